@@ -1,19 +1,19 @@
-//! The provenance of measurements: the state of the source and the versions of the tools at the time.
+//! The provenance of measurements: state of the source and versions of the tools.
 
 use std::process::Command;
 
 use super::workspace;
 
-/// Commit and tools with which rows were measured.
+/// Commit and tools of a measurement.
 pub struct Provenance {
     /// The last commit that changed the measured source. `-dirty` is appended if the source has uncommitted changes.
     pub commit: String,
-    /// Versions of the compiler and of the libraries that are compared.
+    /// Versions of the compiler and of the compared libraries.
     pub tools: String,
 }
 
 impl Provenance {
-    /// Finds the commit by git, the version of the compiler by running it, and the versions of the libraries in `Cargo.lock`. A
+    /// Finds the commit by git, the compiler's version by running the compiler, and the libraries' versions in `Cargo.lock`. A
     /// value that cannot be found is `unknown`.
     pub fn find() -> Self {
         let lock = std::fs::read_to_string(workspace::path("Cargo.lock")).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Measurement of the cycles that frames take on the whole SoC, which runs in simulation.
+//! Measurement of the cycles of frames on the whole simulated SoC.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -17,10 +17,10 @@ use crate::report::workspace;
 /// Default clock frequency of the SoC in Hz.
 pub const CLOCK: f64 = 81.25e6;
 
-/// A virtual board with the gateware in a folder below `target/gateware`, and with `firmware` in its memory.
+/// A virtual board with the gateware of a folder in `target/gateware`, and with `firmware` in its memory.
 ///
 /// # Errors
-/// The board is not built, or the firmware is for gateware of another build.
+/// The board is not built, or the firmware is for another gateware build.
 pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
     let library = format!("target/gateware/{folder}/libglint_soc.so");
     let board = VirtualBoard::builder()
@@ -30,10 +30,10 @@ pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
     Ok(SimulatedBoard::new(board))
 }
 
-/// Draws a frame of a scene with another size and quality on a virtual board that has just started, and returns its statistics.
+/// Draws a frame of a scene at another size and quality on a newly started virtual board, and returns its statistics.
 ///
 /// # Errors
-/// The board is not built, the soft core draws the frame, or it differs from the model's.
+/// The board is not built, the soft core draws the frame, or the frame differs from the model's.
 pub fn frame(firmware: &[u8], scene: &SceneFile, changes: &Changes) -> Result<Stats> {
     let folder = match scene.needs().smooth {
         true => "virtual-smooth",
@@ -62,7 +62,7 @@ pub fn frame(firmware: &[u8], scene: &SceneFile, changes: &Changes) -> Result<St
     Ok(stats)
 }
 
-/// Totals of counters over many frames that are drawn back to back, by the counters' names in the console's reply.
+/// Totals of counters over many frames drawn back to back, by the counters' names in the console's reply.
 pub struct BackToBack {
     kernel: String,
     values: BTreeMap<String, f64>,
@@ -113,8 +113,8 @@ impl BackToBack {
     }
 }
 
-/// Runs `work` on all items and returns the results in the order of the items. Only
-/// two items are in work at a time, because each simulation keeps a core busy.
+/// Runs `work` on all items and returns the results in the order of the items. Only two items run at a time, because each
+/// simulation keeps a core busy.
 ///
 /// # Errors
 /// When `work` fails or panics.

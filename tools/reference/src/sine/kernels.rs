@@ -1,4 +1,4 @@
-//! The measured kernels of sine and cosine, each with the inputs it is measured at.
+//! The measured kernels of sine and cosine, each with its inputs.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -13,22 +13,21 @@ use micromath::F32Ext;
 use super::statistics::Statistics;
 use super::truth::{Image, OCTANT, SinCos, TURN};
 
-/// A kernel and the inputs it is measured at. The measurement runs
-/// in steps, numbered from 0, and a step may cover several inputs.
+/// A kernel and its inputs. The measurement runs in steps, numbered from 0, and a step may cover several inputs.
 pub struct Kernel {
     /// Name of the kernel, as in the firmware's `bench sine`.
     pub name: &'static str,
-    /// Name of the line that joins the kernel and its variants in the work-precision diagram.
+    /// Name of the line of the kernel and its variants in the work-precision diagram.
     pub family: &'static str,
     /// Name of the variant of the kernel, for example the order of its series.
     pub config: &'static str,
     /// Number format of the outputs.
     pub format: &'static str,
-    /// Unit in the last place of the outputs' format. For floats, it is the unit in the last place of numbers just below 1.
+    /// Unit in the last place of the outputs' format. For floats, the unit in the last place of numbers just below 1.
     pub ulp: f64,
     /// Description of the measured inputs.
     pub inputs: &'static str,
-    /// Whether the inputs are phases (fractions of a turn), so that the symmetries of the circle can be checked bit for bit.
+    /// Whether the inputs are phases (fractions of a turn), for which the symmetries of the circle are checked bit for bit.
     pub by_phase: bool,
     /// Whether Glint itself uses the kernel.
     pub shipped: bool,
@@ -37,12 +36,12 @@ pub struct Kernel {
     show: Box<dyn Fn(u64) -> String + Sync>,
 }
 
-/// Measures a kernel at its steps with the numbers `stride·i`, for all i in a range, and adds the errors to statistics. The
-/// arguments are the range, the stride and the statistics.
+/// Measures a kernel at the steps `stride·i` for all i in a range, and adds the errors to statistics. The arguments are the
+/// range, the stride and the statistics.
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Kernel {
-    /// Makes a kernel that Glint does not use and whose inputs are not phases. The labels are name, family, config and format.
+    /// Makes a kernel outside Glint with inputs other than phases. The labels are name, family, config and format.
     fn new(
         [name, family, config, format]: [&'static str; 4],
         ulp: f64,
@@ -66,12 +65,12 @@ impl Kernel {
         }
     }
 
-    /// Number of steps of the measurement that cover all inputs. A step covers one or several inputs.
+    /// Number of steps that cover all inputs. A step covers one or several inputs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Measures the kernel at its steps with the numbers `stride·i`, for all i in `range`, and adds the errors to `statistics`.
+    /// Measures the kernel at the steps `stride·i` for all i in `range`, and adds the errors to `statistics`.
     pub fn run(&self, range: Range<u64>, stride: u64, statistics: &mut Statistics) {
         (self.run)(range, stride, statistics);
     }
@@ -143,14 +142,14 @@ pub fn kernels() -> Vec<Kernel> {
 
 const GLINT: &str = "glint: table of 64 and Taylor";
 
-/// The choice of inputs to measure: a number n, for every n-th input of a format, and the description of this choice in words.
+/// The measured inputs: n, for every n-th input of a format, and a description.
 type Inputs = (u32, &'static str);
 
 const SHORT_PHASES: Inputs = (1 << 16, "all 2^16 phases of 16 bits");
 const ALL_PHASES: Inputs = (1, "all 2^32 phases");
 const SOME_PHASES: Inputs = (15, "every 15th phase of an octant, in all octants");
 const ALL_RADIANS: Inputs = (1, "all radians in [−π, π]");
-/// Part of the inputs, for a slow kernel whose format has more than 10^9 inputs.
+/// A part of the inputs, for a slow kernel with a format of more than 10^9 inputs.
 const SOME_RADIANS: Inputs = (17, "every 17th of the radians in [−π, π]");
 
 fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
@@ -158,7 +157,7 @@ fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
     (sin.to_bits(), cos.to_bits())
 }
 
-/// Makes Glint's Q2.30 kernel with its Taylor series cut off at the lower order `ORDER`, measured at a part of the phases.
+/// Makes Glint's Q2.30 kernel with its Taylor series truncated to the lower order `ORDER`, measured at a part of the phases.
 fn lower_order<const ORDER: u32>(name: &'static str, config: &'static str) -> Kernel {
     let labels = [name, GLINT, config, "Q2.30"];
     phases(labels, 30, SOME_PHASES, q30::<ORDER>)
@@ -182,10 +181,9 @@ fn scaled((sin, cos): (i32, i32), ulp: f64) -> SinCos {
     }
 }
 
-/// Makes a kernel whose inputs are phases. A step takes a phase of the first octant and evaluates the kernel at the images of
-/// the phase in all eight octants. Images whose outputs have the same bits as those of the phase, apart from signs and order,
-/// also have the same error. So this error is computed once and counted for each of these images, while an image with
-/// different bits is measured separately.
+/// Makes a kernel whose inputs are phases. A step takes a phase of the first octant and evaluates the kernel at the images of the
+/// phase in all eight octants. Images with bitwise equal outputs, apart from signs and order, have equal errors. Their error is
+/// computed once and counted for each image; an image with different bits is measured separately.
 fn phases(
     labels: [&'static str; 4],
     fraction_bits: u32,
@@ -223,8 +221,8 @@ fn phases(
     }
 }
 
-/// Makes a kernel whose inputs are radians in fixed point, with as many fraction bits as its outputs. Every `spacing`-th
-/// input in [−π, π] is measured.
+/// Makes a kernel with inputs in fixed-point radians, with as many fraction bits as its outputs. Every `spacing`-th input in [−π,
+/// π] is measured.
 fn radians(
     labels: [&'static str; 4],
     fraction_bits: u32,
@@ -247,8 +245,7 @@ fn radians(
     Kernel::new(labels, ulp, inputs, steps, run, show)
 }
 
-/// Makes a kernel whose inputs are radians in f32. All floats from 2^-24 to 2π are measured; at smaller angles, the sine
-/// rounds to the angle itself.
+/// Makes a kernel with inputs in f32 radians. All floats from 2^-24 to 2π are measured; the sine of smaller angles rounds to the angle.
 fn floats(
     labels: [&'static str; 4],
     evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
@@ -273,7 +270,7 @@ fn floats(
     Kernel::new(labels, last_place(24), inputs, last - first + 1, run, show)
 }
 
-/// Makes a kernel that looks the sine up in a table with one entry per degree, measured at all Q16.16 angles in [0°, 360°).
+/// Makes a kernel with a table of sines of one entry per degree, measured at all Q16.16 angles in [0°, 360°).
 fn degrees() -> Kernel {
     let table: Vec<f64> = (0..=180)
         .map(|degree| (f64::from(degree).to_radians().sin() * 65536.0).round() / 65536.0)
@@ -312,7 +309,7 @@ mod tests {
             .expect("a kernel")
     }
 
-    /// The largest error of each kernel lies in a range that is known from theory or from the library's documentation.
+    /// The largest error of each kernel lies in a range known from theory or the library's documentation.
     #[test]
     fn other_libraries_have_their_documented_errors() {
         for (name, at_least, at_most) in [
@@ -348,7 +345,7 @@ mod tests {
         });
         let statistics = sweep(&crooked, 1, &|_| ());
         assert_eq!(statistics.inputs, 1 << 16);
-        // The output at the phase of the first octant is wrong, so the outputs at its seven other images do not match it.
+        // The output at the phase of the first octant is wrong, so it does not match the outputs at the seven other images.
         assert_eq!(statistics.asymmetric, 7);
     }
 }

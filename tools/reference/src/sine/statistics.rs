@@ -20,31 +20,28 @@ impl std::fmt::Display for Function {
     }
 }
 
-/// Number of buckets of the histogram per octave (factor of two) of the error's size. It gives percentiles a relative
-/// resolution of 1/64.
+/// Number of buckets of the histogram per octave (factor of two) of the error's size. Percentiles have a relative resolution of 1/64.
 const BUCKETS_PER_OCTAVE: u64 = 64;
-/// Number of octaves that the histogram has below an error of 1. Errors below 2^-64 share the first bucket, and errors of 1 or
-/// more share the last bucket.
+/// Number of the histogram's octaves below an error of 1. Errors below 2^-64 are in the first bucket, errors of 1 or more in the last.
 const OCTAVES: u64 = 64;
 
 /// Statistics of the absolute errors of sine and cosine together.
 ///
-/// Each input is weighted by the part of the circle that it stands for. So a mean is taken evenly over the angle, even where
-/// inputs are dense, such as floats near zero.
+/// Each input is weighted by the represented part of the circle. So means are uniform over the angle, even where inputs are
+/// dense, such as floats near zero.
 #[derive(Clone, Debug)]
 pub struct Statistics {
     /// Number of inputs. Each input adds two errors, of the sine and of the cosine.
     pub inputs: u64,
     /// The largest error of an output.
     pub max: f64,
-    /// Number of an input with the largest error: the input's bits as an integer.
+    /// The bits of an input with the largest error, as an integer.
     pub worst_input: u64,
-    /// Whether the sine or the cosine has the largest error.
+    /// The output with the largest error.
     pub worst_function: Function,
     /// The largest value of |sin² + cos² − 1|, from the two outputs of an input.
     pub max_norm: f64,
-    /// Number of inputs whose outputs do not follow from the outputs of their image in the first octant by a change of signs and
-    /// order alone.
+    /// Number of inputs whose outputs differ from those of their image in the first octant by more than signs and order.
     pub asymmetric: u64,
     weight: f64,
     sum_of_squares: f64,
@@ -70,15 +67,14 @@ impl Default for Statistics {
 }
 
 impl Statistics {
-    /// Adds the errors of one input. `got` holds the kernel's outputs, `truth` the exact values, and `weight` is the part of
-    /// the circle that the input stands for, in any unit.
+    /// Adds the errors of one input. `got` has the kernel's outputs, `truth` the exact values, and `weight` the represented part
+    /// of the circle in any unit.
     pub fn add(&mut self, input: u64, truth: SinCos, got: SinCos, weight: f64) {
         self.inputs += 1;
         self.add_both(input, truth, got, weight);
     }
 
-    /// Adds the errors of `count` images of an input. The images' outputs are those of the input apart from signs and order, and
-    /// so are their exact values.
+    /// Adds the errors of `count` images of an input. The images' outputs and exact values equal the input's apart from signs and order.
     pub fn add_images(&mut self, input: u64, truth: SinCos, got: SinCos, count: u64) {
         self.inputs += count;
         self.add_both(input, truth, got, count as f64);
@@ -108,7 +104,7 @@ impl Statistics {
     /// Adds `later`, the statistics of other inputs of the same kernel.
     pub fn merge(&mut self, later: &Self) {
         self.inputs += later.inputs;
-        // `later` may contain smaller input numbers. If two inputs share the largest error, the smaller number is kept.
+        // `later` may contain smaller inputs. Of two inputs with the largest error, the smaller is kept.
         if later.max > self.max || (later.max == self.max && later.worst_input < self.worst_input) {
             (self.max, self.worst_input, self.worst_function) =
                 (later.max, later.worst_input, later.worst_function);
@@ -128,12 +124,12 @@ impl Statistics {
         (self.sum_of_squares / self.weight).sqrt()
     }
 
-    /// Returns the mean error of the outputs' magnitudes, which is positive if outputs tend to be too far from zero.
+    /// Returns the mean error of the outputs' magnitudes: positive if outputs tend to be too far from zero.
     pub fn bias(&self) -> f64 {
         self.sum / self.weight
     }
 
-    /// Returns the 99th percentile of the errors' sizes. The result is up to 1/64 of its value too large.
+    /// Returns the 99th percentile of the errors' sizes. The result is too large by up to 1/64 of its value.
     pub fn p99(&self) -> f64 {
         let mut below = 0.0;
         for (index, count) in self.histogram.iter().enumerate() {
@@ -146,8 +142,7 @@ impl Statistics {
     }
 }
 
-/// Number of low bits of an f64 that have no influence on its bucket. The
-/// other bits are the exponent and the six high bits of the mantissa.
+/// Number of low bits of an f64 without influence on the bucket. The remaining bits are the exponent and the six high bits of the mantissa.
 const SHIFT: u32 = 52 - BUCKETS_PER_OCTAVE.ilog2();
 const FIRST: u64 = (1023 - OCTAVES) * BUCKETS_PER_OCTAVE;
 

@@ -7,12 +7,11 @@ use std::thread;
 use super::kernels::Kernel;
 use super::statistics::Statistics;
 
-/// Number of a kernel's steps in a part of a measurement. A core measures one part at a time. The results of the parts are added
-/// in the order of the parts, so that the rounded sum is reproducible.
+/// Number of steps in a part of a measurement. Each core measures one part at a time. The parts' results are added in order, for
+/// a reproducible rounded sum.
 const PART: u64 = 1 << 18;
 
-/// Measures the errors of `kernel` in every `stride`-th of its steps. After
-/// each completed part, `progress` is called with the part's number of steps.
+/// Measures the errors of `kernel` in every `stride`-th of its steps. Calls `progress` with the number of steps of each completed part.
 pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
     let steps = kernel.steps().div_ceil(stride);
     let parts = steps.div_ceil(PART);

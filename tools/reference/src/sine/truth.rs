@@ -1,8 +1,8 @@
-//! The reference values of sine and cosine in f64, and the error of these references.
+//! The reference values of sine and cosine in f64, and their error.
 
 use std::f64::consts::PI;
 
-/// Units of phase in a whole turn. A phase is a `u32` in units of 2^-32 turns.
+/// Units of phase in a full turn. A phase is a `u32` in units of 2^-32 turns.
 pub const TURN: f64 = 4_294_967_296.0;
 
 /// Units of phase in an octant, an eighth of a turn.
@@ -30,8 +30,8 @@ impl SinCos {
     }
 }
 
-/// A symmetry of the circle that maps an angle of the first octant to an angle of some octant, the image. Sine and cosine of
-/// the image are those of the first-octant angle, apart from signs and order.
+/// A symmetry of the circle that maps an angle of the first octant to an angle of some octant, the image. Sine and cosine of the
+/// image equal those of the first-octant angle apart from signs and order.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
     quarter: u32,
@@ -39,10 +39,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// Returns the images of a phase of the first octant, no more than one in each octant.
+    /// Returns the images of a phase of the first octant, at most one in each octant.
     ///
-    /// Together, the phases from 0 to [`OCTANT`] have each of the 2^32 angles as an image exactly once: an angle at the border
-    /// of two octants counts as an image in only one of these octants.
+    /// Each of the 2^32 angles is an image of exactly one phase from 0 to [`OCTANT`]: an angle at the border of two octants
+    /// belongs to only one of them.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {
@@ -62,7 +62,7 @@ impl Image {
         }
     }
 
-    /// Converts sine and cosine of a first-octant phase to those of this image, by exact identities.
+    /// Converts a first-octant phase's sine and cosine to this image's, by exact identities.
     pub fn carry<T: Copy + std::ops::Neg<Output = T>>(self, sin: T, cos: T) -> (T, T) {
         let (sin, cos) = if self.mirrored {
             (cos, sin)
@@ -78,8 +78,8 @@ impl Image {
     }
 }
 
-/// Measures the largest error of [`SinCos::of_octant`] over every `stride`-th phase. The
-/// comparison is with a series in integers of 62 fraction bits, whose error is below 2^-56.
+/// Measures the largest error of [`SinCos::of_octant`] over every `stride`-th phase. The reference is a series in integers of 62
+/// fraction bits, with an error below 2^-56.
 pub fn reference_error(stride: u32) -> f64 {
     let apart = |exact: i128, value: f64| (exact - (value * ONE as f64) as i128).abs();
     let worst = (0..=OCTANT)
@@ -99,8 +99,8 @@ const ONE: i128 = 1 << 62;
 /// π with 93 fraction bits, rounded to nearest.
 const PI_Q93: i128 = 31_112_826_664_028_885_653_815_243_078;
 
-/// Computes sine and cosine of a first-octant phase with 62 fraction bits, by Taylor's series. It has about twenty terms, and
-/// truncation changes each by less than four units in the last place.
+/// Computes sine and cosine of a first-octant phase with 62 fraction bits by Taylor series. The series have about twenty terms,
+/// each with a truncation error below four units in the last place.
 fn series(phase: u32) -> (i128, i128) {
     // The angle is phase·2π/2^32 = phase·π/2^31. The product with `PI_Q93` stays below 2^124, so it fits an i128.
     let angle = (i128::from(phase) * PI_Q93) >> 62;
@@ -108,7 +108,7 @@ fn series(phase: u32) -> (i128, i128) {
     let sum = |first: i128, start: i128| {
         let (mut term, mut total, mut n) = (first, first, start);
         while term != 0 {
-            // The shift and the division act on the magnitude, so that they truncate toward zero.
+            // Shift and division of the magnitude truncate toward zero.
             term = -(term.signum() * (((term.abs() * square) >> 62) / (n * (n + 1))));
             total += term;
             n += 2;

@@ -7,11 +7,11 @@ use serde::Deserialize;
 
 use super::outcome::Expected;
 
-/// A file of the catalogue: the cases of a subject.
+/// A file of the catalogue with the cases of a subject.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Subject {
-    /// Title of its section in the report.
+    /// Title of the subject's section in the report.
     pub title: String,
     /// Whether the cases need the virtual board.
     #[serde(default)]
@@ -21,17 +21,17 @@ pub struct Subject {
     pub cases: Vec<Case>,
 }
 
-/// A case. It has one of `exact`, `at_most` and `refused`.
+/// A case. The outcome is one of `exact`, `at_most` and `refused`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// Unique name.
     pub name: String,
-    /// Name of its kind.
+    /// Name of the case's kind.
     pub kind: String,
-    /// Input, in the form that its kind has.
+    /// Input, in the form of the kind.
     pub input: toml::Value,
-    /// Why the input is hard, or why the outcome is right.
+    /// Explanation of the input's difficulty or of the outcome.
     pub why: String,
     exact: Option<String>,
     at_most: Option<f64>,
@@ -42,7 +42,7 @@ impl Case {
     /// The expected outcome.
     ///
     /// # Errors
-    /// The case has none, or several.
+    /// The case has no outcome, or several.
     pub fn expected(&self) -> Result<Expected> {
         match (&self.exact, self.at_most, &self.refused) {
             (Some(text), None, None) => Ok(Expected::Exact(text.clone())),
@@ -56,7 +56,7 @@ impl Case {
 /// Reads all files of a folder, in the order of their names.
 ///
 /// # Errors
-/// A file is not a file of the catalogue, or a case has no explanation or the name of another one.
+/// A file does not have the form of the catalogue, or a case has no explanation or the name of another case.
 pub fn read(folder: &Path) -> Result<Vec<Subject>> {
     let entries =
         std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;

@@ -1,4 +1,4 @@
-//! The form of a kind of cases.
+//! Kinds of cases.
 
 use anyhow::{Context, Result};
 use serde::de::DeserializeOwned;
@@ -13,7 +13,7 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// Makes a kind whose cases have inputs of the type `I`.
+    /// Makes a kind for inputs of the type `I`.
     pub fn new<I: DeserializeOwned + 'static>(
         name: &'static str,
         run: fn(I) -> Result<Outcome>,
@@ -27,7 +27,7 @@ impl Kind {
     /// Runs a case.
     ///
     /// # Errors
-    /// The input has another form than cases of this kind have, or the case cannot be run.
+    /// The input does not have the form of this kind, or the case cannot be run.
     pub fn run(&self, input: toml::Value) -> Result<Outcome> {
         (self.run)(input)
     }

@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-/// What came of a case.
+/// Measured outcome of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The result, which is the same in every run.
+    /// A reproducible result.
     Exact(String),
     /// An error against the exact result, and its unit.
     Error(f64, &'static str),
-    /// The input was refused with this message.
+    /// A refusal of the input with this message.
     Refused(String),
 }
 
@@ -39,7 +39,7 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// What is expected of a case.
+/// Expected outcome of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expected {
     /// This result.
@@ -51,7 +51,7 @@ pub enum Expected {
 }
 
 impl Expected {
-    /// Whether an outcome is as expected.
+    /// Whether an outcome meets the expectation.
     pub fn holds(&self, outcome: &Outcome) -> bool {
         match (self, outcome) {
             (Self::Exact(expected), Outcome::Exact(found))

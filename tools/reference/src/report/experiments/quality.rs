@@ -24,9 +24,9 @@ pub struct Row {
     pub scene: String,
     /// Width of the frame in pixels.
     pub width: u32,
-    /// Name of the quality with the thresholds of the rays; `None` without a field.
+    /// Name of the quality that sets the rays' thresholds; `None` without a field.
     pub rays: Option<String>,
-    /// Name of the quality, if the frame is that of a quality.
+    /// Name of the quality with this size and these thresholds, if any.
     pub quality: Option<String>,
     /// Share of wrong pixels ([`Measured::wrong`]).
     pub wrong: f64,
@@ -45,25 +45,25 @@ pub struct Cycles {
     pub scene: String,
     /// Width of the frame in pixels.
     pub width: u32,
-    /// Name of the quality with the thresholds of the rays; `None` without a field.
+    /// Name of the quality that sets the rays' thresholds; `None` without a field.
     pub rays: Option<String>,
-    /// Number of cycles of the frame on the whole SoC, drawn alone.
+    /// Cycles of the frame on the whole SoC, drawn alone.
     pub cycles: u64,
     /// Commit of the measurement.
     pub commit: String,
 }
 
-/// A frame to measure: a size, and the quality with the thresholds of the rays.
+/// A frame to measure: a size, and the quality that sets the rays' thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
     /// Size of the picture.
     pub size: Size,
-    /// The quality with the thresholds of the rays; `None` without a field.
+    /// The quality that sets the rays' thresholds; `None` without a field.
     pub rays: Option<Quality>,
 }
 
 impl Variant {
-    /// The frames of a scene: each size, with a field with each precision of the rays.
+    /// The frames of a scene: all sizes, and for fields all precisions of the rays.
     fn all(scene: &SceneFile) -> Vec<Self> {
         let has_field = scene.needs().blocks.contains(&Block::Raymarch);
         let rays: Vec<Option<Quality>> = match has_field {
@@ -74,7 +74,7 @@ impl Variant {
         Size::ALL.into_iter().flat_map(of_size).collect()
     }
 
-    /// The quality that has this size and this precision.
+    /// The quality with this size and precision.
     fn quality(self) -> Option<Quality> {
         let mut qualities = Quality::ALL.into_iter();
         qualities.find(|quality| {
@@ -95,7 +95,7 @@ impl Variant {
     }
 }
 
-/// The built-in scenes with a picture of their own whose names contain `only`.
+/// The built-in scenes with their own pictures whose names contain `only`.
 pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     let scenes = NAMES.into_iter().filter_map(built_in);
     scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
@@ -145,7 +145,7 @@ pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
         bar.set_message(format!("{} on the SoC", scene.name()));
         let mut rows = Vec::new();
         let mut variants = Variant::all(scene);
-        // The frames of the qualities come first, because large frames of others take minutes on a virtual board.
+        // The frames of the qualities first, because other large frames take minutes on a virtual board.
         variants.sort_by_key(|variant| variant.quality().is_none());
         for variant in variants {
             let stats = soc::frame(&firmware, scene, &variant.changes());

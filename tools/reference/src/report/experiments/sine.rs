@@ -1,4 +1,4 @@
-//! Experiment: the kernels of sine and cosine, their errors over all inputs and their cycles on the soft core.
+//! Experiment: errors of sine and cosine kernels over all inputs, and their cycles on the soft core.
 
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -11,8 +11,8 @@ use crate::sine::statistics::Statistics;
 use crate::sine::sweep::sweep;
 use crate::sine::truth::reference_error;
 
-/// Approximate number of steps (one or several inputs each, see `Kernel`) that a quick run measures for each kernel. Only every
-/// n-th step is measured, where n is odd, so that the measured inputs have all values of the low bits.
+/// Approximate number of steps (one or several inputs each, see `Kernel`) per kernel in a quick run. A quick run measures every
+/// n-th step with an odd n, which covers all values of the inputs' low bits.
 const SAMPLE: u64 = 1 << 15;
 
 /// Errors and cycles of a kernel in one configuration: a line of `sine.csv`. Errors are absolute.
@@ -20,7 +20,7 @@ const SAMPLE: u64 = 1 << 15;
 pub struct Row {
     /// Name of the kernel in the console's `bench sine`.
     pub kernel: String,
-    /// Name of the line in the diagram that joins the kernel and its variants.
+    /// Name of the diagram's line of the kernel and its variants.
     pub family: String,
     /// Name of the variant of the kernel, for example the order of its series.
     pub config: String,
@@ -34,20 +34,20 @@ pub struct Row {
     pub samples: u64,
     /// Largest error of the sine and the cosine.
     pub max_err: f64,
-    /// Largest error, in units of the outputs' last place.
+    /// Largest error, in units in the last place of the outputs.
     pub max_ulp: f64,
     /// Root mean square of the errors.
     pub rms: f64,
     /// 99th percentile of the errors.
     pub p99: f64,
-    /// Mean error of the outputs' magnitudes, which is positive if outputs tend to be too far from zero.
+    /// Mean error of the outputs' magnitudes: positive if outputs tend to be too far from zero.
     pub bias: f64,
-    /// Function (sine or cosine) and input that have the largest error, as text.
+    /// Function (sine or cosine) and input of the largest error, as text.
     pub argmax: String,
     /// Largest value of |sin² + cos² − 1|, from the two outputs of an input.
     pub max_norm: f64,
-    /// Number of phases (inputs as fractions of a turn) at which a symmetry of the circle does not hold bit for bit. `None` if
-    /// the inputs are not phases.
+    /// Number of phases (inputs as fractions of a turn) that violate a symmetry of the circle in any bit. `None` if the inputs
+    /// are not phases.
     pub asymmetric: Option<u64>,
     /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
@@ -101,15 +101,15 @@ impl Row {
     }
 }
 
-/// The error of the f64 reference that kernels are compared with: the line of `sine-reference.csv`.
+/// The error of the kernels' f64 reference: the line of `sine-reference.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reference {
-    /// Largest absolute error, in comparison with a Taylor series in integers of 62 fraction bits.
+    /// Largest absolute error, compared with a Taylor series in integers of 62 fraction bits.
     pub max_err: f64,
 }
 
-/// Measures all kernels and the error of the reference. With `quick`, only a sample of the inputs is measured. `cycles` is the
-/// result of the console command `bench sine`.
+/// Measures all kernels and the error of the reference. `quick` measures only a sample of the inputs. `cycles` is the result of
+/// the console command `bench sine`.
 ///
 /// # Errors
 /// When the terminal refuses a progress bar.

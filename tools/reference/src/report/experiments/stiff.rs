@@ -33,7 +33,7 @@ impl Measured {
     }
 }
 
-/// Measured error of a case that has a bound: a line of `stiff.csv`. Every other outcome is the one that the catalogue states.
+/// Measured error of a case with a bound: a line of `stiff.csv`. All other outcomes equal the catalogue's.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Row {
     /// Name of the case.
@@ -42,7 +42,7 @@ pub struct Row {
     pub error: String,
 }
 
-/// The rows of the cases that have an error.
+/// The rows of the cases with an error.
 pub fn errors(measured: &[Measured]) -> Vec<Row> {
     let error = |measured: &Measured| match &measured.outcome {
         Outcome::Error(..) => Some(Row {
@@ -54,16 +54,16 @@ pub fn errors(measured: &[Measured]) -> Vec<Row> {
     measured.iter().filter_map(error).collect()
 }
 
-/// The cases of the catalogue that run together.
+/// A part of the catalogue, run together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Those on this host and on the emulated board.
+    /// The cases on this host and on the emulated board.
     Host,
-    /// Those on the virtual board, one after the other because they share one.
+    /// The cases on the virtual board, run sequentially on one board.
     VirtualBoard,
 }
 
-/// Runs all cases of a part, or those whose name or subject contains `only`.
+/// Runs all cases of a part, or the cases whose name or subject contains `only`.
 ///
 /// # Errors
 /// The catalogue cannot be read, or a case has an unknown kind.
@@ -91,7 +91,7 @@ pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Measured>> {
 }
 
 fn run(case: &Case, kind: &Kind) -> Result<Measured> {
-    // A case that cannot be run, or panics, must not hide the others.
+    // A case that cannot be run, or panics, must not hide other cases.
     let outcome = match catch_unwind(AssertUnwindSafe(|| kind.run(case.input.clone()))) {
         Ok(outcome) => {
             outcome.unwrap_or_else(|error| Outcome::exact(format!("cannot be run: {error:#}")))

@@ -1,4 +1,4 @@
-//! Experiment: where the cycles of a frame go, by the counters of the whole SoC, for each built-in scene.
+//! Experiment: breakdown of the cycles of a frame of each built-in scene, by the counters of the whole SoC.
 
 use anyhow::{Context, Result};
 use glint::board::built_firmware;
@@ -22,17 +22,17 @@ pub struct Row {
     pub scene: String,
     /// Width of the frame in pixels.
     pub width: u32,
-    /// Number of cycles of the frame, drawn alone.
+    /// Cycles of the frame, drawn alone.
     pub cycles: u64,
-    /// Cycles without a pass of the engines.
+    /// Cycles outside the engines' passes.
     pub soft_core: u64,
     /// Number of cycles of geometry passes.
     pub geometry: u64,
     /// Number of cycles of raster passes.
     pub raster: u64,
-    /// Number of cycles in which memory refused a command of the engines; in some of them nothing waits.
+    /// Cycles in which memory refused a command of the engines; not all of them stall an engine.
     pub refused: u64,
-    /// Number of words of 16 bytes that the engines read and wrote.
+    /// Number of words of 16 bytes read and written by the engines.
     pub words: u64,
     /// Evaluations of the field; `None` without a field.
     pub evaluations: Option<u64>,

@@ -1,5 +1,4 @@
-//! Experiment: the speed of the triangle engine on the whole SoC,
-//! where the engine shares LiteDRAM with the scan-out to the monitor.
+//! Experiment: the speed of the triangle engine on the whole SoC, with LiteDRAM shared with scan-out.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{self, SimulatedBoard, built_firmware};
@@ -18,13 +17,12 @@ use serde::{Deserialize, Serialize};
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack, CLOCK};
 
-/// The requirement on the speed at which a scene is drawn. Most kinds of requirement also have a goal beyond it.
+/// The requirement on the drawing speed of a scene. Most kinds of requirement also have a goal.
 #[derive(Clone, Copy)]
 enum Target {
-    /// Lower bound of the pixels per clock, over the clocks in which the rasterizer is at pixels of a triangle (counter
-    /// `cycles_walking`).
+    /// Lower bound of the pixels per walking clock of the rasterizer (counter `cycles_walking`).
     Fill(f64),
-    /// Lower bound and goal of the pixels per clock, for frames that are drawn back to back.
+    /// Lower bound and goal of the pixels per clock, for frames drawn back to back.
     Sustained(f64, f64),
     /// Upper bound and goal of the clocks per triangle.
     Triangle(f64, f64),
@@ -32,7 +30,7 @@ enum Target {
     Frames(f64, Option<f64>),
 }
 
-/// Number of frames back to back: enough that the first one's geometry pass, which no raster pass hides, is a small part.
+/// Number of frames back to back: large enough to make the first geometry pass, which overlaps no raster pass, a small part.
 const FRAMES: u32 = 8;
 
 struct Case {
@@ -43,8 +41,8 @@ struct Case {
     target: Target,
 }
 
-/// Half width of the picture, in world units in the plane at distance 1, with which a sphere of diameter 1 at distance 2 fills
-/// 96 % of the picture's height.
+/// Half width of the picture in world units at distance 1, by which a sphere of diameter 1 at distance 2 fills 96 % of the
+/// picture's height.
 const FILLING: f64 = 0.4781;
 
 static CASES: [Case; 9] = [
@@ -132,8 +130,7 @@ fn generated(name: &str, options: Options) -> Result<Vec<u8>> {
         .0)
 }
 
-/// Makes a mesh of one triangle. Seen from distance 1, it covers the whole screen and stays inside the guard band, so it is not
-/// clipped.
+/// Makes a mesh of one triangle. Seen from distance 1, it covers the whole screen within the guard band, so it is not clipped.
 fn screen() -> Result<Vec<u8>> {
     let mut polygons = Polygons::default();
     let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
@@ -175,43 +172,41 @@ pub struct Row {
     pub half_width: f64,
     /// Number of triangles in the mesh.
     pub triangles: u32,
-    /// Number of triangles that were drawn.
+    /// Number of drawn triangles.
     pub drawn: u32,
-    /// Number of triangles that went through the clipper.
+    /// Number of clipped triangles.
     pub clipped: u32,
     /// Number of covered pixels, counted by the model.
     pub pixels: u64,
-    /// Number of cycles of a frame drawn alone, from the first register write until the firmware sees the end.
+    /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end.
     pub cycles_alone: u64,
-    /// Number of cycles of the geometry pass of a frame drawn alone.
+    /// Cycles of the geometry pass of a frame drawn alone.
     pub cycles_geometry: u64,
-    /// Number of cycles of the raster pass of a frame drawn alone.
+    /// Cycles of the raster pass of a frame drawn alone.
     pub cycles_raster: u64,
-    /// Mean cycles of a frame among many that are drawn back to back.
+    /// Mean cycles of a frame of many drawn back to back.
     pub cycles_frame: f64,
-    /// Mean cycles of the geometry pass of a frame drawn back to back. At the same time, the raster pass of another frame uses
-    /// the memory.
+    /// Mean cycles of the geometry pass of a frame drawn back to back. Another frame's raster pass uses the memory at the same time.
     pub cycles_geometry_together: f64,
-    /// Mean cycles of the raster pass of a frame drawn back to back. At the same time, the geometry pass of another frame uses
-    /// the memory.
+    /// Mean cycles of the raster pass of a frame drawn back to back. Another frame's geometry pass uses the memory at the same time.
     pub cycles_raster_together: f64,
-    /// Fraction of `cycles_raster` that is spent on groups of 8 pixels with covered pixels.
+    /// Fraction of `cycles_raster` spent on groups of 8 pixels with covered pixels.
     pub covered: f64,
-    /// Fraction of `cycles_raster` that is spent on groups of 8 pixels without covered pixels.
+    /// Fraction of `cycles_raster` spent on groups of 8 pixels without covered pixels.
     pub empty: f64,
-    /// Fraction of `cycles_raster` in which a drawn band waits for the flush, which writes the band before it to memory.
+    /// Fraction of `cycles_raster` in which a drawn band waits for the flush of the previous band to memory.
     pub flush: f64,
     /// Remaining fraction of `cycles_raster`.
     pub other: f64,
-    /// Fraction of `cycles_geometry` that is spent waiting for writes to memory.
+    /// Fraction of `cycles_geometry` spent waiting for writes to memory.
     pub geometry_writes: f64,
-    /// Measured value of the quantity that has a requirement.
+    /// Measured value of the quantity with the requirement.
     pub measured: f64,
     /// Unit of `measured`.
     pub unit: String,
-    /// Required bound of `measured`: an upper bound for clocks per triangle, a lower bound for every other unit.
+    /// Required bound of `measured`: upper bound of clocks per triangle, lower bound for every other unit.
     pub at_least: f64,
-    /// The goal for `measured`, beyond the bound.
+    /// Goal for `measured`, stricter than the bound.
     pub aim: Option<f64>,
     /// Whether `measured` meets the required bound.
     pub met: bool,
@@ -221,7 +216,7 @@ pub struct Row {
     pub tools: String,
 }
 
-/// Cycles of a frame that the soft core draws: a line of `triangle-cpu.csv`.
+/// Cycles of a frame drawn by the soft core: a line of `triangle-cpu.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct CpuRow {
     /// Name of the scene.
@@ -240,10 +235,10 @@ pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
     measure_cases(only, CASES.iter(), Backend::Gateware, measure_engine)
 }
 
-/// Name of the model whose frames the soft core does not draw for the report, because the virtual board simulates each for minutes.
+/// Name of the model not drawn by the soft core, because each frame takes minutes on the virtual board.
 const FOR_THE_ENGINE_ALONE: &str = "scan:59";
 
-/// Measures the frames that the soft core draws, of scenes as for [`measure`].
+/// Measures frames drawn by the soft core, of the scenes of [`measure`].
 ///
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
@@ -259,17 +254,17 @@ pub fn measure_cpu(only: Option<&str>) -> Result<Vec<CpuRow>> {
     })
 }
 
-/// A scene on a virtual board. Its first frame is the model's.
+/// A scene on a virtual board. Its first frame has been compared with the model's.
 struct Shown<'r, 'b> {
     renderer: &'r mut BoardRenderer<'b, SimulatedBoard>,
     view: View,
     /// Statistics of the first frame.
     stats: Stats,
-    /// Statistics of the model's frame.
+    /// The model's statistics of the frame.
     expected: Stats,
 }
 
-/// Starts a virtual board for each of `cases` whose name contains `only`, shows the scene by `backend`, and measures it.
+/// Starts a virtual board for each of `cases` whose name contains `only`, draws the scene by `backend`, and measures it.
 fn measure_cases<R: Send>(
     only: Option<&str>,
     cases: impl Iterator<Item = &'static Case>,
@@ -313,10 +308,10 @@ fn measure_cases<R: Send>(
     })
 }
 
-/// Measures the engine in a scene that is shown.
+/// Measures the engine in the displayed scene.
 fn measure_engine(case: &Case, shown: &mut Shown) -> Result<Row> {
-    // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. So
-    // each of the two frame buffers receives the frame once before the frame is measured.
+    // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. So the frame is
+    // drawn once into each of the two frame buffers before the measurement.
     shown.renderer.look(&shown.view)?;
     let alone = shown.renderer.look(&shown.view)?;
     let together = BackToBack::measure(shown.renderer, "triangle", FRAMES)?;

@@ -46,7 +46,7 @@ fn stated(angles: Angles) -> String {
     format!("yaw {yaw:.4}°, pitch {pitch:.4}°, roll {roll:.4}°")
 }
 
-/// The angles of the attitude with these angles: yaw, pitch and roll in degrees.
+/// Converts yaw, pitch and roll in degrees to an attitude and back.
 fn angles(degrees: [f64; 3]) -> Result<Outcome> {
     let [yaw, pitch, roll] = degrees.map(|x| Turns::from_degrees(Q32_32::from_num(x)));
     let attitude = Quaternion::from_angles(Angles { yaw, pitch, roll });
@@ -86,7 +86,7 @@ fn constant_rate(input: Rate) -> Result<Outcome> {
     let rate = input.gyro.map(|count| f64::from(count) / 16.4);
     let speed = rate.iter().map(|x| x * x).sum::<f64>().sqrt();
     let seconds = f64::from(input.samples) * f64::from(input.step) * 1e-6;
-    // Half the angle, without the whole turns of the quaternion.
+    // Half the angle, modulo the full turns of the quaternion.
     let half = (speed * seconds % 720.0).to_radians() / 2.0;
     let (sin, cos) = half.sin_cos();
     let axis = rate.map(|x| if speed > 0.0 { x / speed } else { 0.0 });
@@ -96,12 +96,12 @@ fn constant_rate(input: Rate) -> Result<Outcome> {
         let squares = (0..4).map(|i| (found[i] - sign * exact[i]).powi(2));
         squares.sum::<f64>().sqrt()
     };
-    // Quaternions of unit length that are 2·sin(θ/4) apart turn by an angle of θ between them.
+    // Unit quaternions at a distance of 2·sin(θ/4) differ by a rotation of θ.
     let angle = 4.0 * (apart(1.0).min(apart(-1.0)) / 2.0).asin();
     Ok(Outcome::Error(angle.to_degrees(), "°"))
 }
 
-/// Takes samples, each of a time and the counts of accelerometer and gyroscope, and states their effects and the attitude.
+/// Processes samples (time, and counts of accelerometer and gyroscope); states their effects and the attitude.
 fn samples(samples: Vec<(u64, [i16; 3], [i16; 3])>) -> Result<Outcome> {
     let tilt = Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT);
     let mut tracker = Tracker::new(Scale::MPU_6050, Some(tilt));
@@ -128,10 +128,10 @@ struct Still {
     samples: u32,
     /// Counts of the gyroscope in the even and the odd samples.
     gyro: [[i16; 3]; 2],
-    /// Counts that are added from the middle on.
+    /// Counts added from the middle on.
     #[serde(default)]
     later: [i16; 3],
-    /// Counts that are added to the accelerometer's in the last sample.
+    /// Counts added to the accelerometer's in the last sample.
     #[serde(default)]
     push: [i16; 3],
 }
@@ -164,14 +164,14 @@ fn calibration(input: Still) -> Result<Outcome> {
 #[serde(deny_unknown_fields)]
 struct Image {
     samples: u32,
-    /// Bytes that are written over those of the log: an offset and the byte.
+    /// Overwritten bytes of the log: offset and byte.
     #[serde(default)]
     edits: Vec<(usize, u8)>,
-    /// Length to which the log is cut or filled with zeros.
+    /// Length of the log, truncated or padded with zeros.
     length: Option<usize>,
 }
 
-/// A log in the binary format that boards replay.
+/// A log in the binary replay format.
 fn log_image(input: Image) -> Result<Outcome> {
     let setup = Setup::new(Units::MPU_6050, true, true, [0; 3])?;
     let mut bytes = setup.header(input.samples).to_vec();

@@ -1,4 +1,4 @@
-//! Cameras: directions along each other, poles, fields of view, long orbits, and whole meshes in view.
+//! Cameras: parallel directions, poles, fields of view, long orbits, and whole meshes in view.
 
 use anyhow::{Context, Result};
 use glint_core::camera::{View, ViewError};
@@ -76,7 +76,7 @@ fn towards(Towards { gaze, up }: Towards) -> Result<Outcome> {
     Ok(Outcome::of(view, |view| sides(&view)))
 }
 
-/// The directions of the sides of the screen.
+/// The right and down directions of the screen.
 fn sides(view: &View) -> String {
     let [ux, uy, uz] = view.u();
     let [vx, vy, vz] = view.v();
@@ -94,7 +94,7 @@ struct Spherical {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Fitted {
-    /// Half the side of a cube in 2^-14, and its place in world units.
+    /// Half the side of a cube in 2^-14, and its position in world units.
     half: i16,
     scale: f64,
     place: [f64; 3],
@@ -102,7 +102,7 @@ struct Fitted {
     angle: Option<f64>,
 }
 
-/// The camera that shows a whole cube.
+/// The camera fitted to a whole cube.
 fn fit(input: Fitted) -> Result<Outcome> {
     let bytes = Model::cube(input.half).encoded();
     let place = Matrix::translation(input.place.map(number))?;
@@ -138,7 +138,7 @@ struct Seen {
     depths: [f64; 2],
 }
 
-/// The largest error of positions on the screen for vertices that a camera at `eye` with a gaze along y sees, against f64.
+/// The largest error of screen positions against f64, for vertices seen from `eye` along y.
 fn field_of_view_error(input: Seen) -> Result<Outcome> {
     let Seen {
         degrees,
@@ -188,7 +188,7 @@ struct Orthographic {
     half: i16,
 }
 
-/// The largest error of the depths that are read back for the corners of a cube, as a part of a code's step.
+/// The largest error of the depths read back for the corners of a cube, as a fraction of a code's step.
 fn orthographic_depth(input: Orthographic) -> Result<Outcome> {
     let Orthographic {
         width,

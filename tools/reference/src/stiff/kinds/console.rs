@@ -15,8 +15,8 @@ pub fn kinds() -> Vec<Kind> {
     vec![Kind::new("console", console), Kind::new("upload", uploaded)]
 }
 
-/// The reply to a command, or the reason of the firmware's refusal. Of the reply count the lines whose first word is one of
-/// `counted`, or all lines if there is none.
+/// Outcome of a command: the reply, or the reason of the firmware's refusal. Only lines of the reply with a key of `counted`
+/// count, or all lines if `counted` is empty.
 pub fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Result<Outcome> {
     let counts = |line: &String| {
         let word = line.split(' ').next().unwrap_or_default();
@@ -37,17 +37,17 @@ pub fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> 
 #[serde(deny_unknown_fields)]
 pub struct Session {
     pub commands: Vec<String>,
-    /// Sensor on the pins; none by default.
+    /// Sensor on the pins; by default none.
     pub sensor: Option<Sensor>,
-    /// Time in ms that the board runs before the last command.
+    /// Run time in ms before the last command.
     #[serde(default)]
     pub wait: u64,
-    /// First words of the lines of the last reply that count; by default all lines.
+    /// Keys of the last reply's counted lines; by default all lines count.
     #[serde(default)]
     pub lines: Vec<String>,
 }
 
-/// A board with this sensor that has taken these commands, and has run for this number of milliseconds since.
+/// A board with this sensor after these commands and a wait in milliseconds.
 fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result<Emulated> {
     let mut board = start()?;
     if let Some(sensor) = sensor {
@@ -56,7 +56,7 @@ fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result
     let mut console = Console::new(&mut board);
     console.greet()?;
     for command in commands {
-        // A refusal may be what makes the next command hard.
+        // A refused command may be part of the case.
         let _ = console.command(command);
     }
     let wait = cycles(&mut board, wait);
@@ -64,7 +64,7 @@ fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result
     Ok(board)
 }
 
-/// Sends commands to a board that has just started; states the reply to the last one.
+/// Sends commands to a newly started board; states the reply to the last command.
 fn console(session: Session) -> Result<Outcome> {
     let (last, before) = session.commands.split_last().context("commands")?;
     let mut board = board_after(session.sensor, before, session.wait)?;
@@ -78,19 +78,19 @@ fn console(session: Session) -> Result<Outcome> {
 pub enum Sensor {
     /// At rest.
     Resting,
-    /// Turns at 100.03 °/s.
+    /// Rotates at 100.03 °/s.
     Turning,
-    /// Turns at 3,000 °/s about each axis, beyond its range.
+    /// Rotates at 3,000 °/s about each axis, beyond the range.
     Saturated,
-    /// Measures the same counts repeatedly.
+    /// Measures constant counts.
     Frozen,
     /// Makes no measurements.
     Stalled,
-    /// Holds the data wire low.
+    /// Holds SDA low.
     Stuck,
     /// Another chip.
     Unknown,
-    /// Is pulled off after 1,000 bytes.
+    /// Is unplugged after 1,000 bytes.
     Vanishing,
 }
 
@@ -126,27 +126,27 @@ impl Sensor {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Upload {
-    /// Sensor on the pins; none by default.
+    /// Sensor on the pins; by default none.
     sensor: Option<Sensor>,
     /// Commands before it.
     #[serde(default)]
     before: Vec<String>,
-    /// Time in ms that the board runs after them.
+    /// Run time in ms after the commands.
     #[serde(default)]
     wait: u64,
-    /// Bytes that are written over those of a cube: an offset and the byte.
+    /// Overwritten bytes of a cube's mesh: offset and byte.
     #[serde(default)]
     edits: Vec<(usize, u8)>,
-    /// Length to which the mesh is cut or filled with zeros.
+    /// Length of the mesh, truncated or padded with zeros.
     length: Option<usize>,
-    /// The command that follows.
+    /// The command after the upload.
     then: String,
-    /// First words of the lines of its reply that count; by default all lines.
+    /// Keys of the counted lines of the command's reply; by default all lines count.
     #[serde(default)]
     lines: Vec<String>,
 }
 
-/// Uploads a damaged cube, and states the refusal, and the reply to a command after it.
+/// Uploads a damaged cube; states the refusal, and the reply to the next command.
 fn uploaded(input: Upload) -> Result<Outcome> {
     let mut bytes = Model::cube(8192).encoded();
     bytes.resize(input.length.unwrap_or(bytes.len()), 0);

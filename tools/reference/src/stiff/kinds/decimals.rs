@@ -1,4 +1,4 @@
-//! Decimals that are read as numbers of the named formats.
+//! Decimals parsed as numbers of the named formats.
 
 use anyhow::{Result, bail};
 use glint_core::fixed::{Q2_14, Q2_23, Q2_30, Q5_11, Q8_24, Q32_32, U4_28, U8_28};
@@ -18,7 +18,7 @@ struct Decimal {
     text: String,
 }
 
-/// Reads a decimal. States the shortest decimal of the number, and its bits.
+/// Reads a decimal. States the number's shortest decimal and bits.
 fn decimal(Decimal { format, text }: Decimal) -> Result<Outcome> {
     macro_rules! read {
         ($type:ty) => {

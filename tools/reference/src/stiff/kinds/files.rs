@@ -38,9 +38,9 @@ pub fn kinds() -> Vec<Kind> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    /// Name, whose extension tells the format.
+    /// Name, whose extension selects the format.
     name: String,
-    /// Content. `repeated` follows it `times` times, then `end`.
+    /// Content. `repeated` follows `times` times, then `end`.
     text: String,
     #[serde(default)]
     repeated: String,
@@ -48,7 +48,7 @@ struct File {
     times: usize,
     #[serde(default)]
     end: String,
-    /// Hexadecimal digits of the bytes that follow.
+    /// Further bytes in hexadecimal digits.
     #[serde(default)]
     hex: String,
 }
@@ -86,17 +86,17 @@ fn bytes_of(hex: &str) -> Result<Vec<u8>> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Bytes {
-    /// Bytes that are written over those of a cube: an offset, and hexadecimal digits.
+    /// Overwritten bytes of a cube's mesh: offset and hexadecimal digits.
     #[serde(default)]
     edits: Vec<(usize, String)>,
-    /// Length to which the mesh is cut or filled with zeros.
+    /// Length of the mesh, truncated or padded with zeros.
     length: Option<usize>,
-    /// Whether the checksum of the file is checked too.
+    /// Whether to check the file's checksum too.
     #[serde(default)]
     checksum: bool,
 }
 
-/// A mesh as it lies in memory: a cube of 368 bytes with 8 vertices and 12 triangles, damaged.
+/// A mesh in memory: a damaged cube of 368 bytes with 8 vertices and 12 triangles.
 fn mesh_bytes(input: Bytes) -> Result<Outcome> {
     let mut bytes = Model::cube(8192).encoded();
     if input.checksum {
@@ -130,7 +130,7 @@ fn edit(bytes: &mut Vec<u8>, edits: &[(usize, String)], length: Option<usize>) -
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Conversion {
-    /// The mesh as OBJ.
+    /// The mesh as an OBJ file.
     obj: String,
     #[serde(default)]
     keep_scale: bool,
@@ -160,10 +160,10 @@ fn conversion(Conversion { obj, keep_scale }: Conversion) -> Result<Outcome> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Flash {
-    /// Bytes that are written over those of the contents: an offset in the contents, and hexadecimal digits.
+    /// Overwritten bytes of the contents: offset in the contents and hexadecimal digits.
     #[serde(default)]
     edits: Vec<(usize, String)>,
-    /// Length to which the image is cut or filled with zeros.
+    /// Length of the image, truncated or padded with zeros.
     length: Option<usize>,
     /// Number of bytes of the firmware.
     #[serde(default = "small")]
@@ -184,7 +184,7 @@ fn one() -> usize {
     1
 }
 
-/// An image of a flash with one scene or several.
+/// A flash image with one or more scenes.
 fn flash_image(input: Flash) -> Result<Outcome> {
     let piece = |number| Piece {
         kind: Item::Scene,

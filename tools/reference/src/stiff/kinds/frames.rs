@@ -1,4 +1,4 @@
-//! Inputs of frames that several kinds share.
+//! Inputs of frames, shared by several kinds.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q8_24, U8_28};
@@ -7,7 +7,7 @@ use glint_core::mesh::Mesh;
 use glint_model::{Clip, MeshSubject, Object, Placement};
 use glint_vectors::Camera;
 
-/// A number of a matrix.
+/// Converts a matrix entry.
 pub fn number(x: f64) -> Q8_24 {
     Q8_24::from_num(x)
 }
@@ -24,7 +24,7 @@ pub fn mesh(bytes: &[u8]) -> Mesh<'_> {
     Mesh::new_checked(bytes).expect("a generated mesh is valid")
 }
 
-/// An object without a colour of its own.
+/// An object without its own colour.
 pub fn object(bytes: &[u8], matrix: Matrix) -> Object<'_> {
     Object {
         subject: MeshSubject::new(mesh(bytes)),
@@ -33,7 +33,7 @@ pub fn object(bytes: &[u8], matrix: Matrix) -> Object<'_> {
     }
 }
 
-/// A camera two units in front of the origin that looks along y, with the sides of its view volume at ±0.9 at distance 1.
+/// A camera two units in front of the origin that looks along y, with a half width of 0.9 at distance 1.
 pub fn ahead(near: f64) -> View {
     Camera::looking([0.0, -2.0, 0.0], [0.0; 3], 0.9, near).rounded()
 }

@@ -1,4 +1,4 @@
-//! The console of the virtual board, which is the gateware itself. All cases share one board, because its start takes a minute.
+//! The console of the virtual board, the simulated gateware. All cases share a board, because its start takes a minute.
 
 use std::cell::RefCell;
 
@@ -19,7 +19,7 @@ thread_local! {
     static BOARD: RefCell<Option<SimulatedBoard>> = const { RefCell::new(None) };
 }
 
-/// Sends commands to the board, and states the reply to the last one.
+/// Sends commands to the board; states the reply to the last command.
 fn gateware(session: Session) -> Result<Outcome> {
     BOARD.with_borrow_mut(|board| {
         let board = match board {
@@ -36,7 +36,7 @@ fn gateware(session: Session) -> Result<Outcome> {
         let (last, before) = session.commands.split_last().context("commands")?;
         let mut console = Console::new(board);
         for command in before {
-            // A refusal may be what makes the next command hard.
+            // A refused command may be part of the case.
             let _ = console.command(command);
         }
         let board = console.board().inner();

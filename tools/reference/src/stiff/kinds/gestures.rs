@@ -1,4 +1,4 @@
-//! Counts of the gesture engine, and the arithmetic of the control by a hand.
+//! Statistics of the gesture engine, and the arithmetic of the control by a hand.
 
 use anyhow::Result;
 use glint_core::fixed::{Q4_28, U16_16};
@@ -121,7 +121,7 @@ struct Filtered {
 struct Way {
     from: i32,
     to: i32,
-    /// Part of the distance, in 2^-16.
+    /// Fraction of the distance, in 2^-16.
     gain: u32,
 }
 
@@ -136,10 +136,10 @@ struct Grown {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OneEuroRun {
-    /// Input at the start, and the others, with 28 fraction bits.
+    /// First input and further inputs, with 28 fraction bits.
     start: i32,
     inputs: Vec<i32>,
-    /// Number of times that the last input is repeated.
+    /// Number of repetitions of the last input.
     #[serde(default)]
     repeats: usize,
     /// Time between two inputs in µs.
@@ -179,14 +179,14 @@ struct Zone {
 struct Shown {
     columns: u16,
     rows: u16,
-    /// Cr and Cb of the samples in the middle, again and again in this order, and of the others.
+    /// Cr and Cb of the samples in the middle, a cyclic sequence; `rest` of all other samples.
     middle: Vec<[u8; 2]>,
     rest: [u8; 2],
-    /// Number of samples; all of the picture by default.
+    /// Number of samples; by default the whole picture.
     samples: Option<usize>,
 }
 
-/// The windows of the hand's colour from a small picture.
+/// The windows of the hand's colour calibrated from a small picture.
 fn calibration(shown: Shown) -> Result<Outcome> {
     let (columns, rows) = (usize::from(shown.columns), usize::from(shown.rows));
     let within = |number: usize, length: usize| (length * 3 / 8..length * 5 / 8).contains(&number);
@@ -208,7 +208,7 @@ fn calibration(shown: Shown) -> Result<Outcome> {
     ))
 }
 
-/// The presence of a hand that does not move, after each frame; frames come these numbers of µs after each other.
+/// The presence of a hand at rest after each frame; the input has the times between frames in µs.
 fn pauses(gaps: Vec<u64>) -> Result<Outcome> {
     let hand = Statistics {
         size: [320, 240],

@@ -57,7 +57,7 @@ pub fn kinds() -> Vec<Kind> {
     ]
 }
 
-/// The larger error of sine and cosine, against f64.
+/// The larger of the errors of sine and cosine, against f64.
 fn sine_error(angle: u32) -> Result<Outcome> {
     let (sin, cos) = sin_cos_q30(Turns(angle));
     let exact = (f64::from(angle) / 2f64.powi(32) * std::f64::consts::TAU).sin_cos();
@@ -121,12 +121,12 @@ fn gain_error(
 struct Code {
     mantissa: u32,
     exponent: i32,
-    /// In orthographic projection, the depth of the code 2^18, 37 fraction bits.
+    /// In orthographic projection, the depth of the code 2^18, with 37 fraction bits.
     origin: Option<i64>,
     code: u32,
 }
 
-/// The depth that a code stands for.
+/// The depth of a code.
 fn depth(input: Code) -> Result<Outcome> {
     let scale = DepthScale {
         mantissa: input.mantissa,

@@ -1,4 +1,4 @@
-//! Segments on the screen, as the line engine draws them.
+//! Segments drawn by the model of the line engine.
 
 use glint_model::line::Line;
 use glint_model::triangle::setup::Bounds;
@@ -36,7 +36,7 @@ pub fn kinds() -> Vec<Kind> {
 struct Ends {
     /// The end points, in 1/256 pixel.
     ends: [[i64; 2]; 2],
-    /// First column and row of a square picture, and the ones after its last ones.
+    /// Bounds of a square picture: first column and row, and one past the last.
     square: [i32; 2],
 }
 
@@ -56,14 +56,14 @@ fn pixels(ends: [[i64; 2]; 2], [first, end]: [i32; 2]) -> Vec<[i64; 2]> {
         .collect()
 }
 
-/// Draws segments along an axis, in both directions, at all places across two pixels. `turned` makes a position of one along and one across
-/// the axis.
+/// Draws segments along an axis, in both directions, at all positions across two pixels. `turned` converts coordinates along and
+/// across the axis to a position.
 fn along_axis(turned: impl Fn([i64; 2]) -> [i64; 2]) -> Outcome {
     for across in 1..=512 {
-        // The border between two pixels belongs to the first one.
+        // The border between two pixels belongs to the first pixel.
         let row = (across - 1) / 256;
         let expected = (0..640).map(|along| turned([along, row]));
-        // From a quarter of a pixel outside of the picture to as much on the other side.
+        // From a quarter of a pixel before the picture to a quarter after it.
         let [a, b] = [-64, 640 * 256 + 64].map(|along| turned([along, across]));
         let is_forward = pixels([a, b], [0, 640]).into_iter().eq(expected.clone());
         let is_backward = pixels([b, a], [0, 640]).into_iter().eq(expected.rev());

@@ -1,4 +1,4 @@
-//! Model matrices: singular ones, those out of range, products, points and normals.
+//! Model matrices: singular and out-of-range matrices, products, points and normals.
 
 use anyhow::{Context, Result};
 use glint_core::choice::Choice;

@@ -1,4 +1,4 @@
-//! The memory of uploads: regions at the ends of its length, its number of regions, and its gaps.
+//! The memory of uploads: regions of extreme lengths, the number of regions, and gaps.
 
 use anyhow::Result;
 use glint_core::regions::{Region, Regions};
@@ -21,15 +21,15 @@ struct Memory {
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Step {
-    /// Keeps this number of bytes.
+    /// Allocates this number of bytes.
     Keep(usize),
-    /// Releases the region of an earlier step, which is given by the number of regions at that time.
+    /// Releases the region of an earlier step, identified by the number of regions at that time.
     Release(usize),
-    /// Moves all regions together.
+    /// Compacts the regions.
     CloseGaps,
 }
 
-/// A memory of at most four regions: what each step gives, and the gaps at the end.
+/// A memory of at most four regions: the result of each step, and the gaps at the end.
 fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
     let mut memory = Regions::<4>::new(length);
     let mut kept: Vec<Region> = Vec::new();

@@ -1,4 +1,4 @@
-//! Small parts of the path from a motion sensor's registers to an attitude: times, temperatures, tilt, bias at rest, and products.
+//! Parts of the computation from a motion sensor's registers to an attitude: times, temperatures, tilt, bias at rest, and products.
 
 use anyhow::{Context, Result};
 use glint_core::calibration::{RestBias, Units};
@@ -49,7 +49,7 @@ fn quaternion(parts: [i32; 4]) -> Result<Quaternion> {
     Quaternion::new(parts.map(Q2_30::from_bits)).context("expected an attitude")
 }
 
-/// The times in µs that the clock of the samples gives to reads, each of a time in µs and whether it has a new sample.
+/// The sample clock's time stamps in µs for reads, each with a time in µs and whether it has a new sample.
 fn sample_times(reads: Vec<(u64, bool)>) -> Result<Outcome> {
     let mut pace = Pace::new(glint_core::mpu6050::PERIOD);
     let times = reads.into_iter().map(|(time, found)| {
@@ -59,7 +59,7 @@ fn sample_times(reads: Vec<(u64, bool)>) -> Result<Outcome> {
     Ok(Outcome::exact(times.collect::<Vec<_>>().join(" ")))
 }
 
-/// The times in µs of the samples of a log, from the low words in its records.
+/// The times in µs of a log's samples, from the low words in its records.
 fn log_times(words: Vec<u32>) -> Result<Outcome> {
     let mut time = log::START;
     let times = words.into_iter().map(|word| {
@@ -74,9 +74,9 @@ fn log_times(words: Vec<u32>) -> Result<Outcome> {
 struct Reading {
     /// Counts of the accelerometer, 4096 for 1 g.
     reading: [i16; 3],
-    /// Time since the reading before in µs.
+    /// Time since the previous reading in µs.
     step: u32,
-    /// Parts of the attitude.
+    /// Components of the attitude.
     attitude: [i32; 4],
     /// Number of readings.
     #[serde(default = "one")]
@@ -87,7 +87,7 @@ const fn one() -> u32 {
     1
 }
 
-/// Whether readings correct the tilt, and the last correction about each axis in degrees.
+/// The number of accepted readings, and the last tilt correction about each axis in degrees.
 fn tilt_correction(input: Reading) -> Result<Outcome> {
     let mut tilt = Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT);
     let attitude = quaternion(input.attitude)?;
@@ -105,7 +105,7 @@ fn tilt_correction(input: Reading) -> Result<Outcome> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Resting {
-    /// The bias at first, in 1/256 LSB.
+    /// Initial bias, in 1/256 LSB.
     bias: [i32; 3],
     gyro: [i16; 3],
     accel: [i16; 3],
@@ -114,7 +114,7 @@ struct Resting {
     samples: u32,
 }
 
-/// Whether the sensor counts as resting after some samples, and the bias then.
+/// Whether the sensor counts as resting after some samples, and the resulting bias.
 fn rest(input: Resting) -> Result<Outcome> {
     let mut rest = RestBias::new(Units::MPU_6050, input.bias);
     for number in 0..input.samples {

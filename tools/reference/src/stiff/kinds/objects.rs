@@ -1,4 +1,4 @@
-//! Objects that are mirrored.
+//! Mirrored objects.
 
 use anyhow::{Result, ensure};
 use glint_core::fixed::Q8_24;
@@ -15,8 +15,7 @@ pub fn kinds() -> Vec<Kind> {
     vec![Kind::new("mirrored-object", mirrored_object)]
 }
 
-/// Compares a mirrored object with a mesh whose vertices are mirrored themselves, with the windings of its triangles reversed, in this
-/// number of views.
+/// Compares, in this number of views, a mirrored object with a mesh of mirrored vertices and reversed windings.
 fn mirrored_object(views: u32) -> Result<Outcome> {
     let mut random = Random(33);
     for _ in 0..views {

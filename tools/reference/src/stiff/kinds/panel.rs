@@ -27,13 +27,13 @@ pub fn kinds() -> Vec<Kind> {
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Shown {
-    /// A number, as text because it may have 64 bits.
+    /// A number as text, because it may have 64 bits.
     Number(String),
     Error(u8),
     Text(String),
 }
 
-/// The characters that a person sees on a display.
+/// The visible characters of a display.
 fn seen(digits: [u8; glint_core::digits::COUNT]) -> Result<String> {
     let known = |lit: u8| {
         let mut known = "0123456789E-".chars();
@@ -57,7 +57,7 @@ struct Turns {
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Step {
-    /// Looks at this time in ms.
+    /// Polls at this time in ms.
     At(u64),
     Next,
     Previous,
@@ -68,7 +68,7 @@ enum Step {
     Stop,
 }
 
-/// The scenes that a demo shows at each look.
+/// The demo's scene at each poll.
 fn demo(Turns { scenes, steps }: Turns) -> Result<Outcome> {
     let mut demo = Demo::default();
     demo.start(scenes);
@@ -86,7 +86,7 @@ fn demo(Turns { scenes, steps }: Turns) -> Result<Outcome> {
     Ok(Outcome::exact(shown.join(" ")))
 }
 
-/// The accepted presses in samples of the buttons' levels, each with its time in ms modulo 2^32.
+/// The accepted presses for samples of the buttons' levels, each with a time in ms modulo 2^32.
 fn buttons(samples: Vec<(u32, u8)>) -> Result<Outcome> {
     let mut debouncer = Debouncer::default();
     let presses = samples

@@ -1,4 +1,4 @@
-//! Cameras that an attitude steers: mountings, ends of the ranges, poles, and sensitivities.
+//! Cameras steered by an attitude: mountings, ends of the ranges, poles, and sensitivities.
 
 use anyhow::{Context, Result};
 use glint_core::camera::View;
@@ -79,7 +79,7 @@ fn directions(view: &View) -> String {
     format!("right ({ux}, {uy}, {uz}), forward ({nx}, {ny}, {nz})")
 }
 
-/// The largest difference of a length of the basis from 1, or of a scalar product from 0, in units of 2^-23.
+/// The largest deviation of a basis vector's length from 1, or of a scalar product from 0, in units of 2^-23.
 pub fn distortion(view: &View) -> f64 {
     let [length, angle] = basis::errors(basis::of(view));
     length.max(angle) * 2f64.powi(23)
@@ -90,11 +90,11 @@ pub fn distortion(view: &View) -> f64 {
 struct Path {
     /// In 1/256.
     sensitivity: u16,
-    /// Attitudes of the sensor, one after the other: parts w, x, y, z with 30 fraction bits.
+    /// Successive attitudes of the sensor: components w, x, y, z with 30 fraction bits.
     attitudes: Vec<[i32; 4]>,
 }
 
-/// The camera's attitude after those of the sensor.
+/// The camera's attitude after the sensor's attitudes.
 fn steering(
     Path {
         sensitivity,
@@ -116,12 +116,12 @@ fn steering(
 struct Turning {
     /// In 1/256.
     sensitivity: u16,
-    /// Turn about z between two looks, in 2^-32 turns.
+    /// Rotation about z between two polls, in 2^-32 turns.
     step: u32,
     looks: u32,
 }
 
-/// The error of the camera's attitude after many small turns of the sensor, against f64.
+/// The error of the camera's attitude after many small rotations of the sensor, against f64.
 fn steering_error(
     Turning {
         sensitivity,

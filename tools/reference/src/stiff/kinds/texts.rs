@@ -1,4 +1,4 @@
-//! Texts of the console and of scene files: typed lines, commands, fields, lights and pairs of eyes.
+//! Texts of the console and of scene files: typed lines, commands, fields, lights and stereo parameters.
 
 use glint_core::console::{Command, Event, LineEditor};
 use glint_core::field::Field;
@@ -34,7 +34,7 @@ pub fn kinds() -> Vec<Kind> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Typed {
-    /// Typed text. `repeated` follows it `times` times, then `end`.
+    /// Typed text. `repeated` follows `times` times, then `end`.
     #[serde(default)]
     text: String,
     #[serde(default)]

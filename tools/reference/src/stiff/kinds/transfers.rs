@@ -1,4 +1,4 @@
-//! The receiver of a transfer on a line that falls silent.
+//! The receiver of a transfer on a line with silences.
 
 use anyhow::{Result, ensure};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
@@ -20,15 +20,15 @@ pub fn kinds() -> Vec<Kind> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
-    /// Time in ms at which the transfer begins.
+    /// Start of the transfer in ms.
     start: u64,
-    /// Silences in ms, each of which ends with the sender's first frame again.
+    /// Silences in ms, each ended by a repetition of the sender's first frame.
     silences: Vec<u64>,
-    /// Number of bytes that the receiver has room for.
+    /// Capacity of the receiver in bytes.
     room: usize,
 }
 
-/// The state of a receiver after silences of the line.
+/// The state of the receiver after silences of the line.
 fn silence(line: Line) -> Result<Outcome> {
     let data = [7; 100];
     let mut room = vec![0; line.room];
@@ -44,7 +44,7 @@ fn silence(line: Line) -> Result<Outcome> {
         receiver.on_bytes(now, &frame[..length]);
         receiver.poll(now, &mut answer);
     }
-    // A failed transfer sends its last message three times, and then waits for a quiet line ten times as long as one that is done.
+    // A failed transfer sends its last message three times, and then waits for a quiet line ten times as long as a completed transfer.
     for _ in 0..6 {
         now += 10 * Timing::CONSOLE.quiet_ms;
         receiver.poll(now, &mut answer);

@@ -1,4 +1,4 @@
-//! Triangles on the screen, against the exact rasterizer.
+//! Triangles in screen coordinates, compared with the exact rasterizer.
 
 use std::collections::BTreeSet;
 
@@ -40,7 +40,7 @@ struct Triangle {
 const SIZE: (u32, u32) = (320, 180);
 
 impl Triangle {
-    /// The places of the model's pixels, with their depth codes.
+    /// The positions of the model's pixels, with their depth codes.
     fn drawn(&self) -> Vec<([u32; 2], u32)> {
         let vertices = self
             .vertices

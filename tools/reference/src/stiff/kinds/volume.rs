@@ -1,4 +1,4 @@
-//! The planes of the view volume, and vertices in the plane of the eye.
+//! The planes of the view volume, and vertices in the eye's plane.
 
 use anyhow::{Context, Result, ensure};
 use glint_core::colour::Rgb565;
@@ -31,7 +31,7 @@ struct Planes {
     far: f64,
 }
 
-/// The frame of a cube, clipped to a view volume.
+/// Draws a cube clipped to a view volume.
 fn far_plane(Planes { near, far }: Planes) -> Result<Outcome> {
     let bytes = Model::cube(8192).encoded();
     let subject = MeshSubject {
@@ -62,12 +62,12 @@ fn near_plane(Distant { near, place }: Distant) -> Result<Outcome> {
 struct Deep {
     near: f64,
     far: f64,
-    /// Depths of the first and the second of two cubes in the middle.
+    /// Depths of the two cubes in the middle.
     cubes: [f64; 2],
 }
 
-/// Draws a cube at the near plane beside the middle of the picture, and two others in the middle. States which of these is seen, and the
-/// depth codes of both planes.
+/// Draws a cube at the near plane beside the middle of the picture, and two cubes in the middle. States the visible cube of the
+/// two, and the depth codes of both planes.
 fn deep_volume(Deep { near, far, cubes }: Deep) -> Result<Outcome> {
     let bytes = Model::cube(8192).encoded();
     let cube = |place: [f64; 3], size: f64, colour| -> Result<Object<'_>> {
@@ -105,7 +105,7 @@ fn deep_volume(Deep { near, far, cubes }: Deep) -> Result<Outcome> {
     )))
 }
 
-/// Clips a triangle with this vertex, which lies in the plane of the eye, to the near plane alone and to a view volume.
+/// Clips a triangle with this vertex, in the eye's plane, to the near plane alone and to a view volume.
 fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
     let view = Camera {
         eye: [0.0; 3],
@@ -129,7 +129,7 @@ fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
     ))
 }
 
-/// Draws a cube of side 0.2 at this position, with a far plane at 3, and without one if the place is not beyond it.
+/// Draws a cube of side 0.2 at this position with a far plane at 3, and without a far plane if the position is not beyond 3.
 fn object_at(place: [f64; 3]) -> Result<Outcome> {
     let bytes = Model::cube(1638).encoded();
     let drawn = |clip: Clip| -> Result<_> {

@@ -34,7 +34,7 @@ pub fn kinds() -> Vec<Kind> {
 struct Viewed {
     /// The coordinates of both end points.
     segment: String,
-    /// z of the view plane. The eye is at z = 4, and the window has 160 pixels a unit in a picture 640 wide.
+    /// z of the view plane. The eye is at z = 4; the window has 160 pixels per unit in a picture 640 wide.
     #[serde(default = "two")]
     plane: String,
 }
@@ -118,7 +118,7 @@ struct Turns {
     times: u32,
 }
 
-/// Rotates this many times by the first key, then as often by the second one.
+/// Rotates this many times by the first key, then as often by the second key.
 fn there_and_back(Turns { keys, times }: Turns) -> Result<Outcome> {
     let mut motion = Motion::default();
     for name in keys {
@@ -130,7 +130,7 @@ fn there_and_back(Turns { keys, times }: Turns) -> Result<Outcome> {
     Ok(Outcome::exact(place(&motion)))
 }
 
-/// Pans to the right until it is not possible, at most this many times.
+/// Pans to the right until the limit, at most this many times.
 fn pan(times: u32) -> Result<Outcome> {
     let mut motion = Motion::default();
     let steps = (0..times).take_while(|_| motion.apply(Key::Right.step(false)));

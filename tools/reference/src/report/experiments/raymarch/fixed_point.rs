@@ -16,7 +16,7 @@ const TWICE_SCALE: i64 = 81;
 
 /// The constants of a picture of the sponge, for a chosen number of fraction bits.
 pub struct FixedPoint {
-    /// The model's constants of the picture, from which ray directions are taken.
+    /// The model's constants of the picture, the source of the ray directions.
     setup: FieldSetup,
     /// Number of fraction bits of a length in field units, from 8 to 16.
     fraction: u32,
@@ -28,7 +28,7 @@ pub struct FixedPoint {
     origin: [i32; 3],
     /// Smallest depth of a hit, in field units with `fraction` bits, times 2^`setup.exponent`.
     near: u32,
-    /// Parameters of the march. Its threshold and far limit have `fraction` bits.
+    /// Parameters of the march. Threshold and far limit have `fraction` bits.
     tuning: Tuning,
 }
 
@@ -126,7 +126,7 @@ impl FixedPoint {
         }
     }
 
-    /// Returns the parameter t at which a ray starts: at the near plane, or at the cube around the sponge if the cube is farther.
+    /// Returns the parameter t of a ray's start: at the near plane, or at the cube around the sponge if farther.
     fn start(&self, ray: &Ray) -> u32 {
         let near = ((u64::from(self.near) * u64::from(ray.length + 1)) >> 10) as u32;
         let farthest = farthest(self.fraction);
@@ -136,8 +136,8 @@ impl FixedPoint {
                 let outside = u64::from(self.origin[i].unsigned_abs().saturating_sub(self.bound));
                 let part = magnitude(ray.direction[i]);
                 let inverse = u64::from(self.reciprocal(part >> 7));
-                // The reciprocal is slightly too small, so the first product is too. A second product with the remaining length
-                // corrects it.
+                // The reciprocal, and so the first product, is slightly too small. A second product with the remaining length
+                // corrects the first.
                 let first = ((outside * inverse) >> 9).min(farthest.into());
                 let gone = (first * (u64::from(part) + 1)) >> 17;
                 first + ((outside.saturating_sub(gone + 1) * inverse) >> 9)
@@ -177,8 +177,7 @@ impl FixedPoint {
         (value - half, axis, positive)
     }
 
-    /// Returns by how much t grows from a point at this distance from a face to the plane of the face, for a ray that
-    /// approaches the face.
+    /// Returns the increase of t to the plane of a face at this distance, for a ray that approaches the face.
     fn rest(&self, ray: &Ray, distance: i32, axis: usize, positive: bool) -> u32 {
         let part = ray.direction[axis];
         let slope = if (part < 0) == positive {
@@ -216,7 +215,7 @@ const fn farthest(fraction: u32) -> u32 {
     (1 << (11 + fraction)) - 1
 }
 
-/// Returns |x| if x is at least 0, and |x| − 1 if x is negative.
+/// Returns |x| for x ≥ 0, and |x| − 1 for x < 0.
 const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
@@ -225,7 +224,7 @@ fn mirrored((value, axis, positive): (i32, usize, bool)) -> (i32, usize, bool) {
     (!value, axis, !positive)
 }
 
-/// Returns the index of the largest of three numbers. If several are equal, index 1 has priority over 0, and 0 over 2.
+/// Returns the index of the largest of three numbers. For equal numbers, index 1 has priority over 0, and 0 over 2.
 fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

@@ -1,4 +1,4 @@
-//! Experiment: errors of the model's pictures against exact hits, and the number of distance evaluations that pictures take.
+//! Experiment: errors of the model's pictures against exact hits, and numbers of distance evaluations.
 
 use glint_model::raymarch::{FieldOptions, FieldSetup};
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Side in pixels of the blocks for each of which the prepass marches a cone; 0 without a prepass.
+    /// Side in pixels of the prepass's blocks, with one cone each; 0 without a prepass.
     pub prepass: u32,
     /// Intersection over union of the sets of hit pixels of picture and reference.
     pub iou: f64,
@@ -30,23 +30,23 @@ pub struct Row {
     pub false_misses: usize,
     /// Number of rays that reach the step limit.
     pub undecided: usize,
-    /// Median error of depths that are computed from the rays' parameters t.
+    /// Median error of depths from the rays' parameters t.
     pub depth_median: Option<f64>,
-    /// 99th percentile of the errors of depths that are computed from the rays' parameters t.
+    /// 99th percentile of the errors of depths from the rays' parameters t.
     pub depth_p99: Option<f64>,
-    /// Largest error of depths that are computed from the rays' parameters t.
+    /// Largest error of depths from the rays' parameters t.
     pub depth_max: Option<f64>,
-    /// Median error of depths that are computed from depth codes.
+    /// Median error of depths from depth codes.
     pub code_median: Option<f64>,
-    /// 99th percentile of the errors of depths that are computed from depth codes.
+    /// 99th percentile of the errors of depths from depth codes.
     pub code_p99: Option<f64>,
-    /// Largest error of depths that are computed from depth codes.
+    /// Largest error of depths from depth codes.
     pub code_max: Option<f64>,
-    /// Fraction of pixels with the wrong face, among the pixels with a hit in both picture and reference.
+    /// Fraction of pixels with the wrong face among the pixels that hit in both picture and reference.
     pub wrong_faces: f64,
     /// 99th percentile of the angle between the normals of picture and reference on round surfaces, in degrees.
     pub normal_p99: Option<f64>,
-    /// Fraction of unstable pixels, which are close to an edge: a tiny change of the ray changes their result.
+    /// Fraction of unstable pixels, whose result changes with a tiny change of the ray, because they are close to an edge.
     pub unstable: f64,
     /// Mean number of evaluations per ray, including the evaluations by the cones of the prepass.
     pub evaluations: f64,
@@ -54,9 +54,9 @@ pub struct Row {
     pub evaluations_cones: f64,
     /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,
-    /// Names of the requirements that the picture misses.
+    /// Names of the missed requirements.
     pub missed: String,
-    /// Names of the goals that the picture misses.
+    /// Names of the missed goals.
     pub not_reached: String,
     /// Commit of the measurement.
     pub commit: String,
@@ -80,8 +80,8 @@ impl Row {
         } else {
             LARGE_COST
         };
-        // Returns the names of the requirements (`level` 0) or goals (`level` 1) that the picture misses. Round fields have
-        // requirements but no goals, and flat fields other than the sponge have neither.
+        // Returns the names of the missed requirements (`level` 0) or goals (`level` 1). Round fields have requirements but no
+        // goals; flat fields other than the sponge have neither.
         let list = |level: usize| {
             let sponge = matches!(subject.field, Field::Menger { .. });
             let mut missed = if sponge || subject.parsed.is_round() && level == 0 {
@@ -124,7 +124,7 @@ impl Row {
     }
 }
 
-/// Measures all pictures. With `quick`, pictures of 1280 × 720 are left out.
+/// Measures all pictures. `quick` skips pictures of 1280 × 720.
 pub fn measure(quick: bool) -> Vec<Row> {
     let provenance = Provenance::find();
     let small: Vec<Subject> = [

@@ -1,4 +1,4 @@
-//! Experiment: frames per second of the raymarcher on the whole SoC, where it shares LiteDRAM with the scan-out to the monitor.
+//! Experiment: frames per second of the raymarcher on the whole SoC, with LiteDRAM shared with scan-out.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::built_firmware;
@@ -18,14 +18,14 @@ use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 
-/// Least cycles of a measurement of frames back to back. The first frame takes up to 7,600 cycles more than each other one, which
-/// raises the mean by at most 0.3 %.
+/// Minimum cycles of a measurement of frames back to back. The first frame takes up to 7,600 cycles more than each other frame,
+/// which raises the mean by at most 0.3 %.
 const LEAST_CYCLES: u64 = 3_000_000;
 
 /// A verilated build of the SoC, in a folder of `target/gateware`.
 pub struct Build {
     folder: &'static str,
-    /// Number of lanes (parallel pipelines that evaluate the field) of the build's raymarcher.
+    /// Number of lanes (parallel pipelines for evaluations of the field) of the build's raymarcher.
     pub lanes: u32,
 }
 
@@ -42,30 +42,30 @@ const SPHERES: Build = Build {
     lanes: 4,
 };
 
-/// A field that is measured, with the required frames per second.
+/// A measured field, with the required frames per second.
 pub struct Case {
     /// Text form of the field, as typed in the console.
     pub field: &'static str,
     stereo: Option<&'static str>,
-    /// Whether a prepass marches a cone for each block of pixels before the rays.
+    /// Whether a prepass marches a cone for each block of pixels.
     pub prepass: bool,
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// The build of the SoC that draws the field.
+    /// The SoC build for the field.
     pub build: Build,
     cameras: fn() -> Vec<(&'static str, Camera)>,
-    /// Returns the rotations that are applied to each camera, in degrees. Each rotation gives a pose to measure.
+    /// Returns the rotations of each camera, in degrees. Each rotation is a measured pose.
     path: fn() -> Vec<Vector>,
-    /// Clock in MHz at which the requirement holds.
+    /// Clock of the requirement in MHz.
     pub clock: f64,
     /// Required frames per second.
     pub at_least: f64,
-    /// The goal beyond the requirement, in frames per second.
+    /// Goal above the requirement, in frames per second.
     pub aim: Option<f64>,
 }
 
 impl Case {
-    /// Whether a row was measured for this case.
+    /// Whether a row belongs to this case.
     pub fn contains(&self, row: &Row) -> bool {
         self.field == row.field
             && self.stereo == row.stereo.as_deref()
@@ -89,7 +89,7 @@ const STEREO_SPONGE: Case = Case {
     aim: Some(120.0),
 };
 
-/// The sponge over the whole screen, with a prepass.
+/// The sponge on the full screen, with a prepass.
 const LARGE_SPONGE: Case = Case {
     stereo: None,
     prepass: true,
@@ -169,13 +169,13 @@ pub struct Row {
     pub field: String,
     /// Stereo parameters, as typed in the console; `None` for a picture of one eye.
     pub stereo: Option<String>,
-    /// Whether a prepass marches a cone for each block of pixels before the rays.
+    /// Whether a prepass marches a cone for each block of pixels.
     pub prepass: bool,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Number of lanes (parallel pipelines that evaluate the field) of the raymarcher.
+    /// Number of lanes (parallel pipelines for evaluations of the field) of the raymarcher.
     pub lanes: u32,
     /// Name of the view.
     pub view: String,
@@ -189,15 +189,15 @@ pub struct Row {
     pub rays: u32,
     /// Number of evaluations of the field's distance in a frame.
     pub evaluations: u64,
-    /// Number of cycles of a frame drawn alone, from the first register write until the firmware sees the end.
+    /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end.
     pub cycles_alone: u64,
-    /// Mean cycles of a frame among several that are drawn back to back. They are measured for the slowest pose of a view only.
+    /// Mean cycles of a frame of several drawn back to back. Measured only for the slowest pose of a view.
     pub cycles_frame: Option<f64>,
-    /// Clock in MHz at which the requirement holds.
+    /// Clock of the requirement in MHz.
     pub clock: f64,
     /// Required frames per second.
     pub at_least: f64,
-    /// The goal beyond the requirement, in frames per second.
+    /// Goal above the requirement, in frames per second.
     pub aim: Option<f64>,
     /// Commit of the measurement.
     pub commit: String,

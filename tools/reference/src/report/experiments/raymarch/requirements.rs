@@ -4,7 +4,7 @@ use crate::raymarch::metrics::Accuracy;
 
 /// Size in pixels of the pictures in most measurements.
 pub const SMALL: (u32, u32) = (320, 180);
-/// Size in pixels of pictures that fill the monitor.
+/// Size in pixels of full-screen pictures.
 pub const LARGE: (u32, u32) = (1280, 720);
 
 /// Lower bounds of the intersection over union of the hit pixels of picture and reference.
@@ -17,14 +17,14 @@ pub const P99: [f64; 2] = [3e-3, 5e-4];
 pub const FACES: [f64; 2] = [0.01, 0.003];
 /// Upper bound of the 99th percentile of the angle between normals on round surfaces, in degrees; there is no goal.
 pub const NORMALS: f64 = 0.3;
-/// Upper bounds of the distance evaluations per ray at 320 × 180. The requirement
-/// makes 60 frames per second possible for two eyes, with two lanes of the raymarcher at 81.25 MHz.
+/// Upper bounds of the distance evaluations per ray at 320 × 180. The requirement allows 60 frames per second for two eyes with
+/// two lanes at 81.25 MHz.
 pub const SMALL_COST: [f64; 2] = [23.5, 11.7];
 /// Upper bounds of the distance evaluations per ray at 1280 × 720.
 pub const LARGE_COST: [f64; 2] = [14.4, 11.5];
 
-/// Returns the names of the requirements (`level` 0) or goals (`level` 1) that a picture misses. The number of evaluations is
-/// not checked here.
+/// Returns the names of a picture's missed requirements (`level` 0) or goals (`level` 1). The number of evaluations is not
+/// checked here.
 pub fn missed(accuracy: &Accuracy, level: usize) -> Vec<&'static str> {
     let depth = accuracy.depth;
     let checks = [

@@ -1,4 +1,4 @@
-//! Experiments: studies of raymarching, each of which shows the effect of a parameter on errors, evaluations and clocks.
+//! Experiments: studies of the effect of each raymarching parameter on errors, evaluations and clocks.
 
 use anyhow::{Result, bail};
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
@@ -12,7 +12,7 @@ use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::provenance::Provenance;
 use crate::report::{progress, soc};
 
-/// Function that draws all configurations of a study and returns their trials.
+/// Function that draws all configurations of a study and returns the trials.
 type Study = fn(&Views) -> Vec<Trial>;
 
 /// Name and function of each study, in the order on the report's page. The file of a study is `raymarch-NAME.csv`.
@@ -32,8 +32,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     STUDIES.into_iter().map(|(name, _)| name)
 }
 
-/// Runs all studies, or only the one with the name `only`. As soon as a study is complete, `finished` is called with its name and
-/// trials.
+/// Runs all studies, or only the study `only`. Calls `finished` with the name and trials of each completed study.
 ///
 /// # Errors
 /// When no study has the name, or `finished` fails.
@@ -84,7 +83,7 @@ fn tuned(tuning: Tuning) -> FieldOptions {
 /// Number of field units in one world unit, for the sponge.
 const UNITS: f64 = 40.5;
 
-/// Returns Glint's method of marching, computed in f64, with this `threshold` in field units with 12 fraction bits.
+/// Returns Glint's marching method in f64, with this `threshold` in field units with 12 fraction bits.
 fn in_f64(threshold: u32) -> Method {
     Method {
         distance: Norm::Maximum,
@@ -148,8 +147,8 @@ fn thresholds(views: &Views) -> Vec<Trial> {
     trials.collect()
 }
 
-/// Runs a family of five trials, which differ in the threshold. `change` turns Glint's method in f64 into the method of the
-/// family, and `exact_entry` is as in `Views::variant`.
+/// Runs a family of trials with five thresholds. `change` converts Glint's method in f64 to the family's method; `exact_entry` is
+/// as in `Views::variant`.
 fn by_threshold(
     views: &Views,
     family: &str,
@@ -217,7 +216,7 @@ fn prepasses(views: &Views) -> Vec<Trial> {
             ..DEFAULT_TUNING
         })
     };
-    // For pictures of this size, the prepass of the gateware has blocks of 4 × 4 pixels. Larger blocks exist only in the model.
+    // For pictures of this size, the gateware's prepass has blocks of 4 × 4 pixels. Larger blocks exist only in the model.
     let built = [("no prepass", false), ("blocks of 4", true)];
     let built = built.into_iter().flat_map(|(family, prepass)| {
         THRESHOLDS.map(|threshold| {
@@ -230,7 +229,7 @@ fn prepasses(views: &Views) -> Vec<Trial> {
     built.chain(others).collect()
 }
 
-/// A trial with a cone before each block of 2^`block` × 2^`block` pixels, in software only.
+/// A trial with a cone for each block of 2^`block` × 2^`block` pixels, in software only.
 fn with_blocks(views: &Views, block: u32, options: &FieldOptions) -> Trial {
     let family = format!("blocks of {}", 1 << block);
     views.trial(

@@ -17,7 +17,7 @@ use crate::raymarch::verilated::Raymarcher;
 /// Errors and cost of a configuration of the parameters: a line of a study's CSV file.
 #[derive(Serialize, Deserialize)]
 pub struct Trial {
-    /// Name of the line in the diagram that joins the configuration and related ones.
+    /// Name of the diagram's line of related configurations.
     pub family: String,
     /// Value of the varied parameter.
     pub config: String,
@@ -33,19 +33,19 @@ pub struct Trial {
     pub depth_p99: Option<f64>,
     /// Largest error of the depth, in world units.
     pub depth_max: Option<f64>,
-    /// Fraction of pixels with the wrong face, among the pixels with a hit in both picture and reference.
+    /// Fraction of pixels with the wrong face among the pixels that hit in both picture and reference.
     pub wrong_faces: f64,
     /// Mean number of evaluations of the field's distance per ray.
     pub evaluations: f64,
-    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations that the gateware does not have.
+    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations outside the gateware.
     pub cycles: Option<f64>,
-    /// Names of the requirements that the configuration misses.
+    /// Names of the missed requirements.
     pub failed: String,
     /// Commit of the measurement.
     pub commit: String,
 }
 
-/// The views that every trial draws, with their reference pictures, and the raymarcher that draws them.
+/// The views of every trial with their reference pictures, and the raymarcher.
 pub struct Views<'a> {
     subjects: &'a [Subject],
     expected: Vec<Expected>,
@@ -55,7 +55,7 @@ pub struct Views<'a> {
 }
 
 impl<'a> Views<'a> {
-    /// Collects what trials need. `subjects` are the views, `bar` shows the running trial, and `commit` goes to the trials' rows.
+    /// Prepares trials. `subjects` are the views, `bar` shows the running trial, and `commit` is a column of the trials' rows.
     pub fn new(subjects: &'a [Subject], bar: ProgressBar, commit: &'a str) -> Self {
         let expected = subjects.iter().flat_map(|subject| &subject.expected);
         Self {
@@ -67,8 +67,8 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws all views with `draw` and compares them with the reference. For each hit, `added` evaluations are
-    /// added to the number that `draw` reports.
+    /// Draws all views with `draw` and compares the pictures with the reference. Adds `added` evaluations per hit to the number
+    /// reported by `draw`.
     pub fn trial(
         &self,
         family: &str,
@@ -99,7 +99,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws the views with the model, to measure the errors, and with the verilated raymarcher, to measure the clocks.
+    /// Draws the views with the model, for the errors, and with the verilated raymarcher, for the clocks.
     pub fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
@@ -112,8 +112,8 @@ impl<'a> Views<'a> {
         trial
     }
 
-    /// Draws the views with a method in f64. A ray starts where the model's ray of the same pixel
-    /// starts or, with `exact_entry`, exactly at the cube around the sponge.
+    /// Draws the views with a method in f64. A ray starts at the start of the model's ray of the same pixel or, with
+    /// `exact_entry`, exactly at the cube around the sponge.
     pub fn variant(
         &self,
         family: &str,
