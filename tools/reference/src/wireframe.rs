@@ -1,4 +1,4 @@
-//! Drift of the wireframe simulator's motions, measured against the same steps in f64.
+//! Drift of the wireframe simulator's motions, measured against f64.
 
 use glint_core::fixed::Q5_11;
 use glint_core::wireframe::{
@@ -7,14 +7,14 @@ use glint_core::wireframe::{
 
 use crate::camera::Vector;
 
-/// A way to move end points by steps.
+/// An implementation of motions of end points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// Each frame moves the points of the program by the whole motion: [`Motion`].
     DriftFree,
     /// Each step moves the end points in Q5.11, rounded to nearest: [`accumulate`].
     Nearest,
-    /// As `Nearest`, but each product is rounded down, as a shifter does.
+    /// As `Nearest`, but each product is rounded down, as by a shifter.
     Truncated,
 }
 
@@ -56,7 +56,7 @@ impl Session {
         }
     }
 
-    /// The steps of the session, an infinite sequence.
+    /// The session's infinite sequence of steps.
     pub fn steps(self) -> impl Iterator<Item = Step> {
         let mut state = 1_u32;
         (0_u32..).map(move |number| {
@@ -82,15 +82,15 @@ pub struct Drift {
     pub steps: u32,
     /// Largest distance of an end point from its exact position.
     pub distance: f64,
-    /// Mean distance of the end points from the origin, over that at the start, less 1.
+    /// Relative growth of the end points' mean distance from the origin.
     pub growth: f64,
 }
 
-/// Moves the corners of a cube of side 4 about the origin by the steps of a session, and returns the errors after each number of
-/// steps in `after`, which increases.
+/// Moves the corners of a cube of side 4 about the origin by a session's steps, and returns the errors after each number of steps
+/// in the ascending list `after`.
 ///
-/// The exact position is a rotation in f64 by the angle of (c, s) at each step. A step that is not possible is left out in the form,
-/// and so becomes an error.
+/// The exact position is rotated in f64 by the angle of (c, s) at each step. A step impossible in Q5.11 is skipped, and so
+/// becomes an error.
 pub fn drift(form: Form, session: Session, after: &[u32]) -> Vec<Drift> {
     let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -2.0 } else { 2.0 });
     let start: Vec<Vector> = (0..8).map(corner).collect();
@@ -159,7 +159,7 @@ fn rotate([x, y, z]: &mut Vector, step: Step) {
     }
 }
 
-/// Rotates all end points in Q5.11, each product rounded down. Returns whether this was possible.
+/// Rotates all end points in Q5.11, each product rounded down. Returns `false` if the range does not allow the rotation.
 fn truncated(segments: &mut [Segment], step: Step) -> bool {
     let turn = |i: Q5_11, j: Q5_11, forwards| {
         let product = |x: Q5_11, y: Q5_11| (i32::from(x.to_bits()) * i32::from(y.to_bits())) >> 11;

@@ -1,17 +1,16 @@
 //! Exact rasterization of a snapped triangle in integers: coverage by the top-left rule, and the plane of depth.
 //!
-//! The rule is that of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or
-//! *left* edge. A top edge is exactly horizontal, with the triangle below it. A left edge is not horizontal and has the
-//! triangle to its right. The triangle lies on that side of an edge on which its third vertex lies, so the order of the
-//! vertices (the winding) does not matter.
+//! The rule is that of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or *left*
+//! edge. A top edge is exactly horizontal, with the triangle below it. A left edge is not horizontal and has the triangle to its
+//! right. An edge's inner side is the side of the third vertex, so the winding does not matter.
 
-/// Number of steps per pixel in the grid to which vertices are snapped.
+/// Steps per pixel of the grid of snapped vertices.
 pub const SUBPIXELS: i64 = 256;
 
-/// Number of steps of a vertex's depth per depth code. Depth codes are the integer depths of pixels.
+/// Steps of a vertex's depth per depth code. Depth codes are the integer depths of pixels.
 pub const DEPTH_STEPS: i64 = 64;
 
-/// A vertex whose position is snapped to the grid of the screen.
+/// A vertex with its position snapped to the grid of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnappedVertex {
     /// Distance to the right of the picture's left border, in steps of 1/256 pixel.
@@ -34,10 +33,10 @@ struct Edge {
 }
 
 impl Edge {
-    /// Makes the edge from `a` to `b` of a triangle whose third vertex is `opposite`, which must not lie on the edge's line.
+    /// Makes the edge from `a` to `b` of a triangle with the third vertex `opposite`, which must not lie on the edge's line.
     fn new(a: SnappedVertex, b: SnappedVertex, opposite: SnappedVertex) -> Self {
         let top = a.y == b.y && opposite.y > a.y;
-        // Seen from the upper to the lower end of the edge, a point to the right of it on the screen has a negative orientation.
+        // From the upper to the lower end of the edge, a point right of the edge on the screen has a negative orientation.
         let (upper, lower) = if a.y < b.y { (a, b) } else { (b, a) };
         let left = a.y != b.y && orientation(upper, lower, opposite) < 0;
         let sign = orientation(a, b, opposite).signum();
@@ -166,7 +165,7 @@ mod tests {
 
     #[test]
     fn centres_on_top_and_left_edges_belong_and_those_on_right_and_bottom_edges_do_not() {
-        // Two triangles that together form the square between the centres of the pixels (0, 0) and (2, 2).
+        // Two triangles that form the square between the centres of the pixels (0, 0) and (2, 2).
         let upper = triangle([(128, 128), (640, 128), (640, 640)]);
         let lower = triangle([(128, 128), (128, 640), (640, 640)]);
         assert_eq!(pixels(&upper), [(0, 0), (1, 0), (1, 1)]);

@@ -1,5 +1,5 @@
-//! Errors of smooth shading. The colours of the model's pixels, and colours that are linear on the screen, are compared with
-//! exact perspective interpolation: the quotient of two planes through the triangle's vertices, light/z and 1/z.
+//! Errors of smooth shading. The colours of the model's pixels, and colours interpolated linearly on the screen, are compared
+//! with exact perspective interpolation: the quotient of two planes through the triangle's vertices, light/z and 1/z.
 //!
 //! - [`forms`]: other forms of the interpolation.
 //! - [`scenes()`]: the measured scenes, from common to extreme ones.
@@ -22,10 +22,10 @@ use glint_model::{
 
 use crate::errors::Errors;
 
-/// Number of steps of the red, green and blue channel that a light of 1 spans. All colours in this module are in these steps.
+/// Steps of the red, green and blue channel for a light of 1. All colours in this module are in these steps.
 pub const RANGES: [f64; 3] = [32.0, 64.0, 32.0];
 
-/// A triangle on the screen, whose light is interpolated between the vertices in f64.
+/// A triangle on the screen with light interpolated between the vertices in f64.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolated {
     places: [[f64; 2]; 3],
@@ -51,7 +51,7 @@ impl Interpolated {
         let [a, b, c] = self.places.map(|[px, py]| [px - x, py - y]);
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
         let areas = [cross(b, c), cross(c, a), cross(a, b)];
-        // The divisor is computed from the vertices, because the sum of the three areas would contain their rounding errors.
+        // The divisor is computed from the vertices, because the sum of the three areas has rounding errors.
         let side = |k: usize| [0, 1].map(|axis| self.places[k][axis] - self.places[0][axis]);
         areas.map(|area| area / cross(side(1), side(2)))
     }
@@ -66,13 +66,13 @@ impl Interpolated {
         })
     }
 
-    /// Returns red, green and blue at a point, in steps, for light that is linear on the triangle in space (the exact result).
+    /// Returns red, green and blue at a point, in steps, for light linear on the triangle in space (the exact result).
     pub fn perspective(&self, point: [f64; 2]) -> [f64; 3] {
         let parts = self.parts(point);
         self.weighted([0, 1, 2].map(|i| parts[i] * self.w[i]))
     }
 
-    /// Returns red, green and blue at a point, in steps, for light that is linear on the screen.
+    /// Returns red, green and blue at a point, in steps, for light linear on the screen.
     pub fn affine(&self, point: [f64; 2]) -> [f64; 3] {
         self.weighted(self.parts(point))
     }
@@ -85,7 +85,7 @@ pub struct Triangle {
     pub oriented: Oriented,
     /// The light at each vertex.
     pub lit: [Lit; 3],
-    /// Whether the clipper made the triangle.
+    /// Whether the triangle is from the clipper.
     pub clipped: bool,
     /// Width and height of the picture, in pixels.
     pub size: (u32, u32),
@@ -112,7 +112,7 @@ impl Pixel {
 }
 
 impl Triangle {
-    /// Computes the setup of the triangle; `None` if it covers no pixel.
+    /// Computes the triangle's setup; `None` if the triangle covers no pixel.
     pub fn setup(&self) -> Option<Setup> {
         let (width, height) = self.size;
         let bounds = Bounds::new(&self.oriented.vertices, width, height)?;
@@ -146,21 +146,21 @@ impl Triangle {
 /// Counts and errors over the triangles of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
-    /// Number of triangles on the screen: whole triangles, and those that the clipper made.
+    /// Number of triangles on the screen: unclipped triangles, and triangles from the clipper.
     pub triangles: u64,
-    /// Number of triangles on the screen that the clipper made.
+    /// Number of triangles on the screen from the clipper.
     pub clipped: u64,
-    /// Number of triangles on the screen that show their back face.
+    /// Number of triangles on the screen with a visible back face.
     pub back: u64,
     /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
-    /// The smallest depth code of a covered pixel. It belongs to the farthest pixel.
+    /// The smallest depth code of a covered pixel, the farthest pixel's.
     pub farthest: u32,
-    /// Errors of the colours that the model draws.
+    /// Errors of the model's colours.
     pub model: Errors,
-    /// Errors of the exact colours after rounding to whole steps. No method that returns whole steps has smaller errors.
+    /// Errors of the exact colours after rounding to whole steps. No method with results in whole steps has smaller errors.
     pub rounded: Errors,
-    /// Errors of colours that are linear on the screen, after rounding to whole steps.
+    /// Errors of colours linear on the screen, after rounding to whole steps.
     pub affine: Errors,
 }
 
@@ -194,13 +194,13 @@ impl Measured {
     }
 }
 
-/// A scene with a bound of the model's error.
+/// A scene with a bound on the model's error.
 pub struct Scene {
     /// Description of the scene.
     pub name: &'static str,
     /// Largest allowed error of the model, in steps of a channel.
     pub bound: f64,
-    /// Whether depth or light change much between neighbouring pixels.
+    /// Whether depth or light change strongly between neighbouring pixels.
     pub stiff: bool,
     content: Content,
 }
@@ -213,7 +213,7 @@ enum Content {
         size: (u32, u32),
         cull: bool,
     },
-    /// Triangles given by their snapped vertices and by the light at each vertex.
+    /// Triangles by their snapped vertices and the light at each vertex.
     Screen(Vec<([ScreenVertex; 3], [Lit; 3])>),
 }
 
@@ -230,7 +230,7 @@ impl Scene {
         measured
     }
 
-    /// Returns the triangles that the model draws.
+    /// Returns the triangles drawn by the model.
     ///
     /// # Panics
     /// When the mesh is malformed.
@@ -269,7 +269,7 @@ impl Scene {
     }
 }
 
-/// Returns the triangles that the model draws for an encoded mesh, after clipping.
+/// Returns the triangles drawn by the model for an encoded mesh, after clipping.
 fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> Vec<DrawnTriangle> {
     let mesh = Mesh::new_checked(bytes).expect("a scene's mesh is good");
     let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();

@@ -1,9 +1,9 @@
-//! The visible surface of each pixel of a scene whose vertices are exact, and the pixels where snapping the vertices to the
-//! subpixel grid may change the result.
+//! The visible surface of each pixel of a scene with exact vertices, and the pixels where snapping the vertices to the subpixel
+//! grid may change the result.
 //!
-//! The classes of pixels follow the rasterization checks of the Khronos conformance tests (dEQP). A pixel whose centre is
-//! inside a triangle by at least the tolerance must be drawn. A pixel whose centre is outside by at least the tolerance must
-//! not be drawn. For a pixel in between, both results are right.
+//! The classes of pixels follow the rasterization checks of the Khronos conformance tests (dEQP). A pixel whose centre is inside
+//! a triangle by at least the tolerance must be drawn. A pixel whose centre is outside by at least the tolerance must not be
+//! drawn. For a pixel in between, both results are correct.
 
 use crate::camera::{Camera, Size, Vector, cross, dot, subtract};
 
@@ -21,14 +21,14 @@ pub enum Class {
 /// A triangle clipped and projected in f64.
 #[derive(Clone, Debug)]
 pub struct ProjectedTriangle {
-    /// Corners, in pixels, of the part of the triangle beyond the near plane. Empty if there is no such part.
+    /// Corners, in pixels, of the triangle's part beyond the near plane; empty without such a part.
     pub corners: Vec<[f64; 2]>,
     /// Lines through the edges, each as (a, b, c): the distance of the point (x, y) to the edge is a·x + b·y + c in pixels,
     /// positive inside the triangle.
     edges: Vec<Vector>,
     /// Plane of the inverse depth: 1/z = plane · (x, y, 1), with x and y in pixels and z in world units.
     inverse_depth: Vector,
-    /// Whether the front face is visible, which means that the vertices run counter-clockwise on the screen.
+    /// Whether the front face is visible: the vertices are counter-clockwise on the screen.
     pub front: bool,
 }
 
@@ -46,14 +46,14 @@ impl ProjectedTriangle {
             .iter()
             .map(|&point| camera.screen(point, size))
             .collect();
-        // With the picture's centre (cx, cy) and s pixels per unit, the ray through a point (x, y) of the screen has the
-        // direction ((x − cx)/s, (y − cy)/s, 1). At depth z it meets the triangle's plane: normal · (z · direction) = offset.
+        // With the picture's centre (cx, cy) and s pixels per unit, the ray through a point (x, y) of the screen has the direction ((x
+        // − cx)/s, (y − cy)/s, 1). At depth z the ray intersects the triangle's plane: normal · (z · direction) = offset.
         let scale = camera.pixels_per_unit(size);
         let [a, b] = [normal[0] / scale, normal[1] / scale];
         let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
         let front = offset < 0.0;
         let inverse_depth = if offset == 0.0 {
-            // The triangle is seen edge-on, so its depth is not a function of the position on the screen.
+            // The triangle is edge-on: its depth is not a function of the screen position.
             [0.0, 0.0, f64::INFINITY]
         } else {
             [a / offset, b / offset, c / offset]
@@ -93,7 +93,7 @@ impl ProjectedTriangle {
     }
 
     /// Returns 1/z of the triangle's plane at the centre of a pixel, where z is the depth in world units. The result is infinite
-    /// if the triangle is seen edge-on.
+    /// if the triangle is edge-on.
     pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
         dot(self.inverse_depth, centre(column, row))
     }
@@ -103,8 +103,7 @@ impl ProjectedTriangle {
         self.inverse_depth[0].hypot(self.inverse_depth[1])
     }
 
-    /// Returns the ranges of columns and of rows that contain all pixels whose
-    /// centres lie in the triangle or within a pixel of it.
+    /// Returns the ranges of columns and rows of all pixels with centres inside the triangle or within a pixel of it.
     pub fn bounds(&self, size: Size) -> [std::ops::Range<u32>; 2] {
         let range = |axis: usize, limit: u32| {
             let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -119,12 +118,12 @@ impl ProjectedTriangle {
     }
 }
 
-/// Length in pixels below which an edge is left out, because its direction is not reliable. Leaving an edge out enlarges the
-/// polygon only where the polygon is about as narrow as this length.
+/// Length in pixels below which an edge is dropped, because its direction is unreliable. A dropped edge enlarges the polygon only
+/// where the polygon is about as narrow as this length.
 const SHORTEST_EDGE: f64 = 1e-6;
 
-/// Returns the edges of a convex polygon as lines whose normals point inwards. The corners of a front face run
-/// counter-clockwise on the screen, where y points down, so the signed area of a front face is negative.
+/// Returns the edges of a convex polygon as lines whose normals point inwards. A front face is counter-clockwise on the screen,
+/// where y points down, so its signed area is negative.
 fn inward_edges(corners: &[[f64; 2]], front: bool) -> Vec<Vector> {
     let sign = if front { -1.0 } else { 1.0 };
     let mut edges = Vec::with_capacity(corners.len());
@@ -144,12 +143,12 @@ fn centre(column: u32, row: u32) -> Vector {
     [f64::from(column) + 0.5, f64::from(row) + 0.5, 1.0]
 }
 
-/// The visible surface of a pixel, where snapping the vertices cannot change it.
+/// The visible surface of a pixel, if independent of the snapping of vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
     /// No surface, independent of the snapping of the vertices.
     Background,
-    /// A triangle that is visible however the vertices are snapped.
+    /// A triangle visible independent of the snapping of the vertices.
     Surface {
         /// Index of the triangle in the scene's list of triangles.
         triangle: usize,
@@ -158,11 +157,11 @@ pub enum Visible {
         /// The largest slope of 1/z on the triangle, per pixel.
         slope: f64,
     },
-    /// The visible surface depends on how vertices are snapped or depths are rounded.
+    /// The visible surface depends on the snapping of vertices or the rounding of depths.
     Unstable,
 }
 
-/// Deviation from the exact scene that counts as correct.
+/// Allowed deviation from the exact scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// Largest displacement of an edge, in pixels.
@@ -173,8 +172,8 @@ pub struct Tolerance {
 
 /// Computes the visible surface of each pixel of a picture, row by row.
 ///
-/// With `cull`, back faces are left out. Pixels near the edges of a back face are unstable
-/// nevertheless, because snapping can turn a very thin back face into a front face.
+/// `cull` removes back faces. Pixels near the edges of a back face are still unstable, because snapping can turn a very thin back
+/// face into a front face.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,
@@ -277,7 +276,7 @@ mod tests {
         inverse_depth: 1e-5,
     };
 
-    /// Returns a front face in the plane at this z. It covers the left half of the picture and extends beyond the border.
+    /// Returns a front face in the plane at `z`. The face covers the left half of the picture and extends beyond the border.
     fn half(z: f64) -> [Vector; 3] {
         [[0.0, 9.0, z], [0.0, -9.0, z], [-9.0, 0.0, z]]
     }

@@ -1,5 +1,5 @@
 //! Compares the raymarcher's prepass with exact hits. The prepass marches a cone for each block of pixels, and the block's rays
-//! start where the cone ended. No ray may start behind the surface that it hits.
+//! start at the cone's end. No ray may start behind its hit surface.
 
 use glint_core::camera::View;
 use glint_core::field::Field as Scene;
@@ -9,25 +9,25 @@ use glint_model::raymarch::{Cones, FieldOptions, FieldSetup, Rays, Stereo, Tint}
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::{Field, views};
 
-/// Largest error by the truncation of a point and of a face's position, in field units (docs/formats/raymarch.md).
+/// Largest error from the truncation of a point and of a face's position, in field units (docs/formats/raymarch.md).
 const STEPS: f64 = 2.0 / 4096.0;
 
-/// Result of comparing a picture's rays with and without a prepass.
+/// Comparison of a picture's rays with and without a prepass.
 #[derive(Debug, Default)]
 struct Seen {
     hits: usize,
     /// Number of rays that start farther along with the prepass than without it.
     helped: usize,
-    /// Largest distance by which a ray starts behind the surface that it hits, in field units.
+    /// Largest distance of a ray's start behind its hit surface, in field units.
     behind: f64,
-    /// Number of rays whose kind of result (hit, miss or undecided) is different with the prepass.
+    /// Number of rays with another kind of result (hit, miss or undecided) with the prepass.
     changed: usize,
-    /// Mean number of evaluations per ray, first without and then with a prepass, whose evaluations are included.
+    /// Mean number of evaluations per ray without a prepass, and with a prepass including its cones.
     cost: [f64; 2],
 }
 
 /// Marches the rays of one pixel in each `stride` × `stride` block of a picture, with and without the prepass. Checks that no ray
-/// starts behind the surface that it hits, by more than the rounding error `STEPS`.
+/// starts behind its hit surface by more than the rounding error `STEPS`.
 fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     let field = Field::of(&Scene::parse(scene).expect("a field"));
     let size = (setup.width, setup.height);
@@ -96,8 +96,8 @@ fn no_ray_of_the_views_starts_behind_a_surface() {
     }
 }
 
-/// Draws frames of random cameras with any width of view, for one eye and for two eyes, in every kind of field, and checks the
-/// start of their rays (see `see`). There are 39 frames, or as many as the environment variable `GLINT_CONES` says.
+/// Draws frames of random cameras with any field of view, in mono and stereo, in every kind of field, and checks the starts of
+/// their rays (see `see`). The environment variable `GLINT_CONES` sets the number of frames, by default 39.
 #[test]
 fn no_ray_of_random_cameras_starts_behind_a_surface() {
     let mut state = 7_u64;

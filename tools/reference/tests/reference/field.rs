@@ -1,7 +1,6 @@
-//! Compares the two reference methods for hits of rays on distance fields with each other: hits computed from the geometry, and
-//! hits by sphere tracing.
+//! Compares the two reference methods for hits of rays on distance fields: hits computed from the geometry, and hits by sphere tracing.
 //!
-//! All rays are random with fixed seeds, and a failure prints the ray. `--nocapture` shows the measured figures.
+//! All rays are random with fixed seeds; a failure prints the ray. `--nocapture` shows the measured figures.
 
 use glint_reference::camera::{Ray, Vector};
 use glint_reference::raymarch::{Face, Field, Hit, Plane, Sphere};
@@ -9,18 +8,18 @@ use glint_vectors::math::dot;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Number of rays of each `Kind` that are compared in each field.
+/// Number of compared rays of each `Kind` in each field.
 const RAYS: usize = 10_000;
 
-/// Largest allowed distance between the two hits of a ray, in world units. For
-/// rays at a small angle to the surface it is larger: see `apart`.
+/// Largest allowed distance between the two hits of a ray, in world units. Rays at a small angle to the surface have a larger
+/// tolerance: see `apart`.
 const TOLERANCE: f64 = 1e-6;
 
 /// Distance from the surface at which a trace ends, in world units.
 const TRACE: f64 = 1e-9;
 
-/// Tolerance at edges, in world units. The two methods may give different results for a ray if the geometric result of a ray
-/// that is moved by this much agrees with the trace.
+/// Tolerance at edges, in world units. The two methods may disagree for a ray if the geometric result of a ray moved by this
+/// distance agrees with the trace.
 const BESIDE: f64 = 1e-6;
 
 fn ball(centre: Vector, radius: f64) -> Field {
@@ -31,7 +30,7 @@ fn boxed(field: Field) -> Box<Field> {
     Box::new(field)
 }
 
-/// Returns a box whose corners are cut off by diagonal planes.
+/// Returns a box with corners cut off by diagonal planes.
 fn cut_box() -> Field {
     let planes = (0..6).map(|face| {
         let mut normal = [0.0; 3];
@@ -48,7 +47,7 @@ fn cut_box() -> Field {
     Field::Convex(planes.chain(diagonals).collect())
 }
 
-/// Returns fields of all kinds whose hits are computed from geometry. Each has a name and the spacing of its faces or centres.
+/// Returns fields of all kinds with hits computed from geometry. Each has a name and the spacing of its faces or centres.
 fn fields() -> Vec<(String, Field, f64)> {
     let mut random = Pcg64Mcg::new(2);
     let mut fields: Vec<_> = (1..=6)
@@ -97,14 +96,14 @@ fn fields() -> Vec<(String, Field, f64)> {
 /// Distribution of random rays.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// Any origin, and a direction towards a random point near the field's middle.
+    /// A random origin, and a direction towards a random point near the field's middle.
     Any,
-    /// Any origin, and a direction along an axis.
+    /// A random origin, and a direction along an axis.
     Parallel,
-    /// Any origin, and a direction perpendicular to an axis.
+    /// A random origin, and a direction perpendicular to an axis.
     InPlane,
-    /// An origin close to the planes of the field's faces (multiples of the field's spacing), and a direction along an axis or
-    /// nearly so.
+    /// An origin close to the planes of the field's faces (multiples of the field's spacing), and a direction along or nearly
+    /// along an axis.
     Beside,
     /// An origin in the sponge's large tunnel along y.
     Tunnel,
@@ -153,10 +152,10 @@ fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Smallest parameter of a ray at which a hit counts.
+/// Smallest parameter of a counted hit.
 const NEAR: f64 = 0.01;
 
-/// Largest parameter of a ray at which a hit counts.
+/// Largest parameter of a counted hit.
 const FAR: f64 = 20.0;
 
 fn hit(field: &Field, ray: &Ray) -> Option<Hit> {
@@ -164,7 +163,7 @@ fn hit(field: &Field, ray: &Ray) -> Option<Hit> {
 }
 
 /// Returns the distance between two hits of a ray, and the largest allowed distance, in world units. A trace ends at a distance
-/// from the surface, so more is allowed for a ray at a small angle to the surface.
+/// from the surface, so a ray at a small angle to the surface has a larger tolerance.
 fn apart(ray: &Ray, a: &Hit, b: &Hit) -> (f64, f64) {
     let speed = length(ray.direction);
     let cosine = dot(ray.direction, a.normal).abs() / speed;
@@ -280,7 +279,7 @@ fn smooth_unions() -> Vec<(&'static str, Field)> {
     ]
 }
 
-/// Finds the first parameter between `from` and `to` at which a field's distance is zero, by small steps and then by bisection.
+/// Finds the first parameter between `from` and `to` with a distance of zero, by small steps and then by bisection.
 fn bisected(field: &Field, ray: &Ray, from: f64, to: f64) -> Option<f64> {
     let step = 1e-3 / length(ray.direction);
     let solid = |t| field.distance(ray.at(t)) <= 0.0;
@@ -324,7 +323,7 @@ fn smooth_unions_are_hit_where_their_distance_changes_its_sign() {
                     hits += 1;
                 }
                 (None, None) => {}
-                // The ray crosses a part of the solid that is shorter than a step of `bisected`, which may miss it.
+                // `bisected` may miss a crossing of the solid shorter than its step.
                 (None, Some(hit)) => {
                     let cosine = dot(ray.direction, hit.normal) / length(ray.direction);
                     assert!(cosine.abs() < 0.01, "{}", context());

@@ -1,4 +1,4 @@
-//! Tests of the camera's control by a hand, on drawn frames.
+//! Tests of the camera's control by a hand, with synthetic frames.
 
 use glint_core::gesture::{Doubt, Presence};
 use glint_reference::gesture::cases::{Fault, outcome};
@@ -29,7 +29,7 @@ fn a_still_hand_holds_the_camera_still_and_a_moving_one_is_followed() {
         (0.0..8.0).contains(&shipped.lag) && shipped.tracking < 1.0,
         "{shipped:?}"
     );
-    // The other filters have more noise, or a larger error.
+    // The alternative filters have more noise or a larger error.
     for other in [
         Filter::None,
         Filter::Average(2),
@@ -44,7 +44,8 @@ fn a_still_hand_holds_the_camera_still_and_a_moving_one_is_followed() {
 #[test]
 fn stiff_cases_have_their_stated_outcomes() {
     use Presence::{Absent, Tracked};
-    // Presence after half a second, reason, largest motion of the camera in degrees during the case, and turn in a frame.
+    // Presence after half a second, reason for not using frames, and largest rotations of the camera in degrees during the case
+    // and in a frame.
     for (fault, presence, doubt, moved, step) in [
         (Fault::Nothing, Absent, Some(Doubt::Few), 0.0, 0.1),
         (Fault::OnePixel, Absent, Some(Doubt::Few), 0.0, 0.1),

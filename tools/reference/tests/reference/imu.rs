@@ -1,4 +1,4 @@
-//! Compares the attitude that the firmware computes with the same method in f64, and the two of them with the true attitude.
+//! Compares the firmware's attitude with the same method in f64, and both with the true attitude.
 //!
 //! With `GLINT_IMU=long`, long motions have their full duration of an hour each. The ignored soak test always runs for a day.
 
@@ -98,13 +98,13 @@ fn the_method_is_as_near_to_the_truth_as_it_should_be() {
     let coning = method_error(Method::Cubic, CONING, 20.0, 200.0);
     println!("tumble {tumble:.1e}°, coning {coning:.1e}°");
     assert!(tumble <= 0.01 && coning <= 0.05, "{tumble:e} {coning:e}");
-    // With the plain coefficient of the coning term, the error is more than five times as large as with the firmware's.
+    // The exact coefficient of the coning term has more than five times the error of the firmware's coefficient.
     let plain = method_error(Method::PlainCubic, CONING, 20.0, 200.0);
     assert!(plain > 5.0 * coning, "{plain:e} {coning:e}");
 }
 
-/// Each method must have its known order. The cubic is of order 4 only after its first steps, in which it has too few samples.
-/// In the tumble, the errors of these first steps are of order 3 and dominate.
+/// Each method must have its known order. The cubic is of order 4 only after its first steps, which have too few samples. In the
+/// tumble, the errors of these first steps are of order 3 and dominate.
 #[test]
 fn orders_are_those_of_the_methods() {
     let tumble = Motion::Tumble(700.0);
@@ -130,8 +130,7 @@ fn orders_are_those_of_the_methods() {
     let observed = (slow / fast).log2();
     println!("plain cubic, coning: order {observed:.2}");
     assert!((observed - 4.0).abs() < 0.4, "{observed}");
-    // Adding rates to angles does not converge, because the rates about the body's axes are not the derivatives of yaw, pitch
-    // and roll.
+    // Integration of the angles does not converge, because the rates about the body's axes are not the derivatives of yaw, pitch and roll.
     assert!(method_error(Method::Angles, Motion::Tumble(700.0), 20.0, 1000.0) > 10.0);
 }
 
@@ -161,7 +160,7 @@ fn yaw_stays_after_calibration() {
     assert!(calibrated(sensor, Motion::Hand).is_err());
 }
 
-/// After a rotation beyond the gyroscope's range, the accelerometer restores the tilt within ten seconds. It cannot restore yaw.
+/// After a rotation beyond the gyroscope's range, the accelerometer restores the tilt within ten seconds. Yaw is lost.
 #[test]
 fn saturation_costs_what_it_hides_and_no_more() {
     let sensor = Sensor::real(1000.0);
@@ -191,7 +190,7 @@ fn saturation_costs_what_it_hides_and_no_more() {
     assert!(at[0] > 30.0 && at[1] < 5.0, "{at:?}");
 }
 
-/// Runs the firmware for a day of rotation at the smallest rate, and for a day of rotation at a rate near the sensor's limit.
+/// Runs the firmware for a day at the smallest rate, and for a day at a rate near the sensor's limit.
 #[test]
 #[ignore = "minutes: 86.4 million steps each"]
 fn a_day_does_not_wear_it_out() {

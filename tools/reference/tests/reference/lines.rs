@@ -1,5 +1,5 @@
-//! Compares the model's lines with the exact reference: the same pixels, alone and in rectangles, and depths within the stated
-//! bound. `--nocapture` shows the figures, and `--ignored` compares a million random segments.
+//! Compares the model's lines with the exact reference: equal pixels, in whole pictures and in rectangles, and depths within the
+//! documented bound. `--nocapture` shows the figures, and `--ignored` compares a million random segments.
 
 use glint_model::ScreenVertex;
 use glint_model::line::{Line, LineDepth, LinePixel};
@@ -9,7 +9,7 @@ use glint_reference::triangle::exact::SnappedVertex;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Largest deviation of a line's depth from the exact one, before its rounding to a code, in depth codes.
+/// Largest deviation of a line's depth from the exact depth, before rounding to a code, in depth codes.
 const DEPTH_LIMIT: f64 = 0.26;
 
 /// Pictures, bands of pictures, and the whole range of positions.
@@ -22,7 +22,7 @@ const RECTANGLES: [[i32; 4]; 6] = [
     [-2049, -2049, 2049, 2049],
 ];
 
-/// Counts of a comparison.
+/// Results of a comparison.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     segments: u64,
@@ -48,7 +48,7 @@ fn walked(ends: &[ScreenVertex; 2], rectangle: [i32; 4]) -> Vec<LinePixel> {
     pixels.into_iter().flatten().collect()
 }
 
-/// Compares the pixels of a segment in a rectangle, and their depths.
+/// Compares the pixels and depths of a segment in a rectangle.
 fn check(ends: &[ScreenVertex; 2], rectangle: [i32; 4], tally: &mut Tally) {
     let segment = exact(ends);
     let found = walked(ends, rectangle);
@@ -110,8 +110,8 @@ fn vertex(random: &mut Pcg64Mcg, [x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
-/// A random segment: up to 3, 50 or 300 pixels long from a position in or near the rectangle, or anywhere in the guard band. Its ends
-/// are anywhere, or on multiples of 1/16, 1/4, 1/2 or 1 pixel, where they meet centres and borders of diamonds and ties.
+/// A random segment: up to 3, 50 or 300 pixels long from a position in or near the rectangle, or anywhere in the guard band. Its ends are
+/// anywhere, or on multiples of 1/16, 1/4, 1/2 or 1 pixel, where they touch centres and borders of diamonds and cause ties.
 fn segment(random: &mut Pcg64Mcg, rectangle: [i32; 4]) -> [ScreenVertex; 2] {
     let grid = [1, 1, 16, 64, 128, 256][random.random_range(0..6usize)];
     let snap = |x: i64| x / grid * grid;
@@ -169,8 +169,8 @@ fn a_million_random_segments_have_exactly_their_pixels() {
     assert!(tally.clipped > 100_000, "{tally:?}");
 }
 
-/// Every path of at most one pixel, in steps of 1/8 pixel, from every position of a pixel: ends on centres, corners and sides of
-/// diamonds, and paths along these sides.
+/// Every segment of at most one pixel, in steps of 1/8 pixel, from every position in a pixel: ends on centres, corners and sides
+/// of diamonds, and segments along these sides.
 #[test]
 fn short_segments_have_exactly_their_pixels() {
     let mut tally = Tally::default();
@@ -190,7 +190,7 @@ fn short_segments_have_exactly_their_pixels() {
     println!("{tally:?}");
 }
 
-/// Segments of extreme length and direction, from end points on and beside centres and borders of pixels.
+/// Segments of extreme lengths and directions, from end points on and beside centres and borders of pixels.
 #[test]
 fn difficult_segments_have_exactly_their_pixels() {
     let mut tally = Tally::default();
@@ -224,7 +224,7 @@ fn difficult_segments_have_exactly_their_pixels() {
             check(&ends, [0, 0, 320, 180], &mut tally);
         }
     }
-    // Across the whole range, from corner to corner and along the borders.
+    // Segments across the whole range, from corner to corner and along the borders.
     for [x, y] in pairs(&[low, high]) {
         for [to_x, to_y] in pairs(&[low, high]) {
             let ends = [[x, y], [to_x, to_y]].map(|[x, y]| ScreenVertex { x, y, w: 1 << 20 });
@@ -240,7 +240,7 @@ fn pairs(places: &[i32]) -> impl Iterator<Item = [i32; 2]> {
         .flat_map(|&x| places.iter().map(move |&y| [x, y]))
 }
 
-/// Depth codes follow the depth, saturate, and take the bias.
+/// Depth codes increase with the depth value, saturate, and include the bias.
 #[test]
 fn codes_are_rounded_and_saturate() {
     let pixel = |depth| LinePixel {

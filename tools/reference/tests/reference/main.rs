@@ -1,6 +1,6 @@
-//! Tests of the references, and of the report that compares Glint with them.
+//! Tests of the references, and of the report that compares Glint with the references.
 //!
-//! One program has them all, because each program is linked on its own.
+//! All tests are in one program, because each program takes time to link.
 
 mod cones;
 mod field;

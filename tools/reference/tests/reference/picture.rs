@@ -1,4 +1,4 @@
-//! Whole pictures in f64, and the committed errors and cycles of the qualities.
+//! Tests of whole pictures in f64, and of the committed errors and cycles of the qualities.
 
 use glint::scene::{self, Changes};
 use glint_core::picture::Size;
@@ -17,7 +17,7 @@ fn scenes() -> impl Iterator<Item = SceneFile> {
     scenes.filter(|scene| scene.scenes().is_empty())
 }
 
-/// The model's picture of a scene against the reference of the same scene with `fov` degrees instead of its own field of view.
+/// Errors of the model's picture of a scene against the reference of the scene with a field of view of `fov` degrees.
 fn against(scene: &SceneFile, fov: Option<&str>) -> Measured {
     let changes = Changes {
         quality: Some(Quality::Exact),
@@ -40,8 +40,8 @@ fn against(scene: &SceneFile, fov: Option<&str>) -> Measured {
     scene::draw(scene, &changes, draw).expect("a built-in scene")
 }
 
-/// In its own size the model's picture differs from the reference along edges alone, and by the rounding of colours; that of another
-/// lens differs far more.
+/// With the same field of view, the model's picture differs from the reference only along edges and by the rounding of colours;
+/// with another field of view, far more.
 #[test]
 fn the_models_picture_is_the_reference_but_for_rounding() {
     for scene in scenes() {
@@ -64,7 +64,7 @@ fn committed<T: DeserializeOwned>(name: &str) -> Vec<T> {
     read_csv(&workspace::path("docs/report").join(name)).expect("a committed table")
 }
 
-/// The committed errors of the small pictures are those of today's code.
+/// The committed errors of the small pictures equal the errors of the current code.
 #[test]
 fn committed_errors_are_todays() {
     let rows: Vec<Row> = committed("quality.csv");

@@ -10,7 +10,7 @@ use glint_reference::raymarch::{Field, views};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// Errors and cost of a picture that was compared with the reference.
+/// Errors and cost of a picture compared with the reference.
 struct Seen {
     name: String,
     found: Accuracy,
@@ -40,7 +40,11 @@ impl Seen {
     /// Checks that at most `most` pixels have a false hit or a false miss.
     fn masked(self, most: usize) -> Self {
         let wrong = self.found.false_hit + self.found.false_miss;
-        assert!(wrong <= most, "{}: {wrong} hits and misses", self.name);
+        assert!(
+            wrong <= most,
+            "{}: {wrong} false hits and misses",
+            self.name
+        );
         self
     }
 
@@ -95,7 +99,7 @@ fn the_deepest_sponge_is_where_it_is_and_its_smallest_faces_are_not_all_right() 
     for (name, eye, target) in views::views() {
         let seen = see(name, "menger:6", &at(eye, target));
         assert!(seen.found.iou >= 0.999, "{name}");
-        // A cell of the last level is only 456 steps of a coordinate wide, and the threshold of a hit is at least 28 steps.
+        // A cell of the last level is only 456 coordinate steps wide, and the threshold of a hit is at least 28 steps.
         seen.near(2e-4, 1.6e-2).faced(0.07).decided(0).cheap(15.0);
     }
 }
@@ -139,7 +143,7 @@ fn other_fields_are_where_they_are() {
 
 #[test]
 fn a_camera_inside_the_solid_sees_it_at_the_near_plane() {
-    // In the first case the eye is in the middle of a small cube at the sponge's corner, in the second case deep inside a box.
+    // Eyes in the middle of a small cube at the sponge's corner, and deep inside a box.
     let corner = -80.0 / 81.0;
     let cases = [
         ("menger:4", [corner; 3], [corner, 1.0, corner]),
@@ -174,8 +178,8 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
 
 #[test]
 fn a_camera_just_beside_a_face_sees_it() {
-    // The eye is 0.03 of a cell's side away from the face. In front of a deeper sponge, this fraction of a cell would be less
-    // than the distance of the smallest near plane.
+    // The eye is 0.03 of a cell's side away from the face. For a deeper sponge, this distance would be less than the nearest
+    // allowed near plane.
     let eye = [0.75, -1.0 - 0.03 * 2.0 / 3.0, 0.75];
     see("macro", "menger:1", &at(eye, [0.75, 0.0, 0.765_625]))
         .masked(0)
@@ -190,8 +194,7 @@ fn a_camera_just_beside_a_face_sees_it() {
         .near(2e-4, 4e-3)
         .faced(1e-3)
         .cheap(2.5);
-    // The eye is just below the ceiling and looks to the horizon. A third
-    // of the rays are inside the ceiling at the near plane already.
+    // The eye is just below the ceiling and looks to the horizon. A third of the rays are already inside the ceiling at the near plane.
     let under = at([0.0, 0.0, 0.998_046_875], [4.0, 3.0, 0.998_046_875]);
     see("grazing", "planes:1", &under)
         .masked(30)
@@ -227,16 +230,16 @@ fn a_camera_may_be_far_away() {
     let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
     camera.half_width = 0.05;
     // The camera looks along the walls of the sponge's tunnels, so the picture shows mostly the depths of tunnels. The threshold
-    // of a hit grows with the distance, and here a tunnel is only a few thresholds wide. Therefore, many rays end at the wall of a
-    // tunnel that they would pass through with a threshold of 0.
+    // of a hit grows with the distance, and here a tunnel is only a few thresholds wide. So many rays end at a tunnel's wall,
+    // which they would pass with a threshold of 0.
     let seen = see("far away", "menger:4", &camera);
     assert!(seen.found.iou >= 0.98);
     seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);
 }
 
 /// Marches rays exactly along an axis, a direction that no pixel's ray has. Next to a wall, each step is only as long as the
-/// distance to the wall, and the threshold of a hit doubles every 64 steps. So a ray may end at a wall that is nearer than an
-/// eighth of a cell. No other error may occur.
+/// distance to the wall, and the threshold of a hit doubles every 64 steps. So a ray may end at a wall at a distance of less than
+/// an eighth of a cell. No other error may occur.
 #[test]
 fn rays_along_the_axes_end_at_the_walls() {
     let sponge = Field::Menger { depth: 4 };

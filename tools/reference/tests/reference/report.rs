@@ -1,5 +1,5 @@
-//! Tests of the report. They check that a quick run writes its files, that the committed tables agree with today's code (as far
-//! as this is cheap to check), and that the committed pages are those that are made from the committed tables.
+//! Tests of the report. They check that a quick run writes its files, that the committed tables agree with the current code
+//! (where the check is cheap), and that the committed pages agree with the committed tables.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -34,12 +34,12 @@ use glint_reference::sine::sweep::sweep;
 use glint_reference::triangle::smooth::scenes;
 use serde::de::DeserializeOwned;
 
-/// Transcript of the console, in the form in which the firmware prints it. With a transcript, the report needs no board.
+/// Transcript of the console in the firmware's form. The transcript replaces a board.
 const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
 
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    fs::create_dir_all(&folder).expect("the build's own folder is writable");
+    fs::create_dir_all(&folder).expect("a writable build folder");
     folder
 }
 
@@ -91,7 +91,7 @@ fn committed<T: DeserializeOwned>(name: &str) -> Vec<T> {
     read_csv(&workspace::path("docs/report").join(name)).expect("a committed table")
 }
 
-/// Checks that the figure `committed` is equal to the figure `now`, up to a relative error of `tolerance`.
+/// Checks that the figures `committed` and `now` are equal up to a relative error of `tolerance`.
 fn assert_close(committed: f64, now: f64, tolerance: f64, what: &str) {
     assert!(
         (committed - now).abs() <= tolerance * now,
@@ -112,7 +112,7 @@ fn git(arguments: &[&str]) -> Option<String> {
 #[test]
 fn the_committed_tables_name_commits_of_the_history() {
     if git(&["rev-parse", "--is-shallow-repository"]).is_none_or(|shallow| shallow != "false") {
-        return println!("the checkout has no whole history");
+        return println!("the checkout has no complete history");
     }
     for file in fs::read_dir(workspace::path("docs/report")).expect("docs/report is there") {
         let path = file.expect("an entry").path();
@@ -124,7 +124,7 @@ fn the_committed_tables_name_commits_of_the_history() {
         for commit in commits.collect::<BTreeSet<_>>() {
             assert!(
                 git(&["merge-base", "--is-ancestor", commit, "HEAD"]).is_some(),
-                "{}: {commit} is no commit of the history: measure the table again",
+                "{}: expected a commit of the history, found {commit}: measure the table again",
                 path.display()
             );
         }
@@ -154,7 +154,7 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
             .collect()
     };
     let mut made = names(&folder);
-    assert_eq!(names(&committed), made, "files have come or gone");
+    assert_eq!(names(&committed), made, "files were added or removed");
     made.insert("constants.csv".into());
     for name in made {
         let read = |folder: &Path| fs::read(folder.join(&name)).expect("readable");
@@ -175,7 +175,7 @@ fn what_the_pages_compute_is_right() {
     );
 }
 
-/// Headings that every page has. The index has none of them.
+/// Headings of every page. The index has no such headings.
 const SECTIONS: [&str; 4] = [
     "What",
     "Reference",
@@ -207,11 +207,11 @@ fn every_page_has_the_same_sections() {
     }
 }
 
-/// Measures the rows of sine.csv that take less than a second again, and compares the errors with the committed ones.
+/// Repeats the measurements of sine.csv that take less than a second, and compares the errors with the committed errors.
 #[test]
 fn the_committed_errors_of_sines_hold() {
     let rows: Vec<sine::Row> = committed("sine.csv");
-    assert_eq!(rows.len(), kernels().len(), "kernels have come or gone");
+    assert_eq!(rows.len(), kernels().len(), "kernels were added or removed");
     let mut recomputed = 0;
     for (row, kernel) in rows.iter().zip(kernels()) {
         assert_eq!(
@@ -231,12 +231,12 @@ fn the_committed_errors_of_sines_hold() {
     assert!(recomputed >= 2);
 }
 
-/// Measures the rows of geometry-precision.csv again, and compares the errors with the committed ones.
+/// Repeats the measurements of geometry-precision.csv, and compares the errors with the committed errors.
 #[test]
 fn the_committed_errors_of_geometry_hold() {
     let rows: Vec<precision::Row> = committed("geometry-precision.csv");
     let now = precision::measure(&Cycles::new());
-    assert_eq!(rows.len(), now.len(), "kernels have come or gone");
+    assert_eq!(rows.len(), now.len(), "kernels were added or removed");
     for (row, now) in rows.iter().zip(now) {
         assert_eq!((&row.kernel, row.samples), (&now.kernel, now.samples));
         let name = |column| format!("geometry-precision.csv: {} of {}", column, row.kernel);
@@ -245,12 +245,12 @@ fn the_committed_errors_of_geometry_hold() {
     }
 }
 
-/// Measures the rows of kernels.csv again, and compares the errors with the committed ones.
+/// Repeats the measurements of kernels.csv, and compares the errors with the committed errors.
 #[test]
 fn the_committed_errors_of_small_kernels_hold() {
     let rows: Vec<small_kernels::Row> = committed("kernels.csv");
     let now = small_kernels::measure(None, 1, &Cycles::new()).expect("cameras are accepted");
-    assert_eq!(rows.len(), now.len(), "kernels have come or gone");
+    assert_eq!(rows.len(), now.len(), "kernels were added or removed");
     for (row, now) in rows.iter().zip(now) {
         assert_eq!((&row.config, row.samples), (&now.config, now.samples));
         let name = |column| format!("kernels.csv: {} of {}", column, row.config);
@@ -264,7 +264,7 @@ fn the_committed_errors_of_small_kernels_hold() {
     assert!(missing.is_empty(), "no cycles: {missing:?}");
 }
 
-/// Measures the rows of gouraud-forms.csv of common scenes again, and compares the errors with the committed ones.
+/// Repeats the measurements of gouraud-forms.csv in common scenes, and compares the errors with the committed errors.
 #[test]
 fn the_committed_errors_of_smooth_shading_hold() {
     let rows: Vec<forms::Row> = committed("gouraud-forms.csv");
@@ -272,7 +272,7 @@ fn the_committed_errors_of_smooth_shading_hold() {
     assert_eq!(
         rows.len(),
         scenes.len() * forms::FORMS.len(),
-        "scenes or forms have come or gone"
+        "scenes or forms were added or removed"
     );
     for scene in scenes.iter().filter(|scene| !scene.stiff) {
         let committed = rows.iter().filter(|row| row.scene == scene.name);
@@ -285,13 +285,13 @@ fn the_committed_errors_of_smooth_shading_hold() {
     }
 }
 
-/// Draws the frames of timeline.csv again on the model, and compares the evaluations with the committed ones. The parts of a frame are
-/// the whole frame.
+/// Draws the frames of timeline.csv on the model, and compares the evaluations with the committed evaluations. Also checks that
+/// the parts of a frame add up to the frame.
 #[test]
 fn the_committed_parts_are_of_the_frames_of_all_scenes() {
     let rows: Vec<timeline::Row> = committed("timeline.csv");
     let scenes: Vec<_> = quality::scenes("").collect();
-    assert_eq!(rows.len(), scenes.len(), "scenes have come or gone");
+    assert_eq!(rows.len(), scenes.len(), "scenes were added or removed");
     for (row, scene) in rows.iter().zip(&scenes) {
         let picture = (row.scene.as_str(), row.width);
         assert_eq!(picture, (scene.name(), scene.size().width()));
@@ -310,8 +310,8 @@ fn the_committed_parts_are_of_the_frames_of_all_scenes() {
     }
 }
 
-/// Counts the distance evaluations of the sponge's small frames in raymarch-rates.csv again, and compares them with the committed
-/// ones. The cycles of these frames are not measured again, because that needs the whole SoC.
+/// Counts the distance evaluations of the sponge's small frames in raymarch-rates.csv, and compares them with the committed
+/// numbers. The cycles are not measured, because they need the whole SoC.
 #[test]
 fn the_committed_frames_a_second_are_of_these_frames() {
     let rows: Vec<rates::Row> = committed("raymarch-rates.csv");
@@ -364,8 +364,7 @@ fn the_committed_frames_a_second_are_of_these_frames() {
     }
 }
 
-/// Draws the views of the sponge again with Glint's configuration on the verilated raymarcher, and compares the cycles with the
-/// committed ones in raymarch-cap.csv.
+/// Draws the views of the sponge with Glint's configuration on the verilated raymarcher, and compares the cycles with raymarch-cap.csv.
 #[test]
 fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
@@ -380,15 +379,14 @@ fn the_committed_cycles_of_pictures_hold() {
     let shipped = rows.iter().find(|row| row.shipped);
     let cycles = shipped.and_then(|row| row.cycles).expect("Glint's cycles");
     let now = clocks as f64 / subjects.len() as f64;
-    // The previous picture decides which of the raymarcher's two lanes gets the first ray of a picture. This can change the
-    // cycles of the picture by one.
+    // The previous picture determines the lane of a picture's first ray. This can change the picture's cycles by one.
     assert!(
         (cycles - now).abs() <= 1.0,
         "raymarch-cap.csv: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"
     );
 }
 
-/// Draws the small pictures of raymarch.csv again, and compares their errors with the committed ones.
+/// Draws the small pictures of raymarch.csv, and compares the errors with the committed errors.
 #[test]
 fn the_committed_pictures_of_fields_hold() {
     let rows: Vec<pictures::Row> = committed("raymarch.csv");
@@ -406,7 +404,7 @@ fn the_committed_pictures_of_fields_hold() {
                 && row.width == 320
                 && (row.prepass != 0) == prepass
         });
-        let row = row.expect("pictures have come or gone: run `cargo xtask report raymarch`");
+        let row = row.expect("pictures were added or removed: run `cargo xtask report raymarch`");
         let picture = subject.picture(&FieldOptions {
             prepass,
             ..FieldOptions::of(&subject.parsed)
@@ -436,8 +434,8 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Integrates the motions of imu-methods.csv (tumble and coning) again, at two low sample rates, and compares the errors of the
-/// attitude with the committed ones.
+/// Integrates the motions of imu-methods.csv (tumble and coning) at two low sample rates, and compares the attitude errors with
+/// the committed errors.
 #[test]
 fn the_committed_errors_of_attitudes_hold() {
     let rows: Vec<MethodTrial> = committed("imu-methods.csv");
@@ -452,7 +450,7 @@ fn the_committed_errors_of_attitudes_hold() {
                     (row.motion.as_str(), row.method.as_str()) == (name, method.name())
                         && row.rate == rate
                 });
-                let row = row.expect("methods have come or gone: run `cargo xtask report imu`");
+                let row = row.expect("methods were added or removed: run `cargo xtask report imu`");
                 let now = method_error(method, motion, 20.0, rate);
                 let what = format!("imu-methods.csv: {name}, {} at {rate}", method.name());
                 assert_close(row.error, now, 1e-3, &what);

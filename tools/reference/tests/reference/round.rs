@@ -21,7 +21,7 @@ fn round_fields_are_where_they_are() {
         let horizon = subject.scene.starts_with("lattice");
         let (most, angle) = if horizon { (6e-3, 0.7) } else { (3e-3, 0.3) };
         assert!(depth.median <= 3e-4 && depth.p99 <= most);
-        // Some views show only flat faces, so there are no normals of round surfaces to compare.
+        // Some views show only flat faces, without normals of round surfaces to compare.
         let normal = found.normal.map_or(0.0, |normal| normal.p99);
         assert!(normal <= angle, "{normal}");
     }
@@ -58,7 +58,7 @@ fn every_kind_of_field_is_where_it_is() {
 }
 
 /// Compares the colours of a lit sphere with the material times the light: the sum of the ambient light and, for each light, its
-/// colour times max(0, n·l). Here n is the exact normal, and l the direction to the light.
+/// colour times max(0, n·l). n is the exact normal, and l the direction to the light.
 #[test]
 fn spheres_are_lit_as_they_should_be() {
     let light = |text| Light::parse(text).expect("a light");

@@ -9,7 +9,7 @@ use glint_reference::stiff::{catalogue, kinds};
 
 #[test]
 fn every_case_has_its_expected_outcome_and_its_row() {
-    let cases = measure(Part::Host, None).expect("the catalogue can be read");
+    let cases = measure(Part::Host, None).expect("a readable catalogue");
     let differing: Vec<_> = cases.iter().filter(|case| !case.holds()).collect();
     assert!(
         differing.is_empty(),

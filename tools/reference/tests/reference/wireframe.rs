@@ -4,7 +4,7 @@ use glint_reference::wireframe::{Form, Session, drift};
 
 const STEPS: u32 = 10_000;
 
-/// The error after any number of steps is that of rounding once: three coordinates, each within half a unit of 2^−20.
+/// The error after any number of steps is the error of one rounding: half a unit of 2^−20 in each of three coordinates.
 #[test]
 fn the_motion_is_free_of_drift() {
     for session in Session::ALL {

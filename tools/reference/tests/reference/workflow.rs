@@ -1,4 +1,4 @@
-//! Tests of the report's workflow, which Snakemake runs.
+//! Tests of the report's Snakemake workflow.
 
 use std::fs;
 use std::os::unix::process::CommandExt;
@@ -10,12 +10,12 @@ use std::time::SystemTime;
 use glint_reference::report::experiments::raymarch::studies;
 use glint_reference::report::workspace;
 
-/// Cycles of the kernels that the jobs of these tests measure, as the console prints them.
+/// Console output with the cycles of the kernels measured in these tests.
 const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
-/// Jobs of these tests. What the pages make of their tables, the tests of the pages show.
+/// Jobs run in these tests. The contents of the pages are covered by the pages' tests.
 const TABLES: [&str; 2] = ["tables/sine", "tables/raymarch-pictures"];
 
-/// A run of the workflow in a folder of its own, with jobs that need no board.
+/// A run of the workflow in a separate folder, with jobs that need no board.
 struct Run {
     folder: PathBuf,
 }
@@ -24,7 +24,7 @@ impl Run {
     fn new(name: &str) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         if folder.exists() {
-            fs::remove_dir_all(&folder).expect("an old folder can be removed");
+            fs::remove_dir_all(&folder).expect("a removable old folder");
         }
         fs::create_dir_all(&folder).expect("the folder can be made");
         fs::write(folder.join("transcript"), TRANSCRIPT).expect("writable");
@@ -33,12 +33,12 @@ impl Run {
         run
     }
 
-    /// Sets the checksums of all that the jobs run.
+    /// Sets the checksums of the jobs' programs and sources.
     fn stamp(&self, text: &str) {
         fs::write(self.folder.join("inputs"), text).expect("writable");
     }
 
-    /// Snakemake with some workers, for some targets.
+    /// The Snakemake command for these workers and targets.
     fn snakemake(&self, workers: u32, targets: &[&str]) -> Command {
         let cycles = format!(
             "cycles=--transcript {}",
@@ -73,12 +73,12 @@ impl Run {
         );
     }
 
-    /// A file of a folder of the run.
+    /// A file in a folder of the run.
     fn read(&self, file: &str) -> String {
         fs::read_to_string(self.folder.join(file)).expect("readable")
     }
 
-    /// Time at which a table was written.
+    /// Modification time of a table.
     fn written(&self, table: &str) -> SystemTime {
         let table = fs::metadata(self.folder.join("tables").join(table));
         let time = table.and_then(|table| table.modified());
@@ -86,7 +86,7 @@ impl Run {
     }
 }
 
-/// The names in a list of the workflow's description, which stands on one line.
+/// The names in a one-line list of the workflow's description.
 fn list(name: &str) -> Vec<String> {
     let path = workspace::path("tools/reference/workflow/Snakefile");
     let text = fs::read_to_string(path).expect("readable");
@@ -129,7 +129,7 @@ fn one_and_two_workers_write_the_same_report() {
         let committed = fs::read_to_string(workspace::path("docs/report").join(table));
         assert!(
             table_of_one != committed.expect("readable"),
-            "{table}: not that of the quick run"
+            "{table}: differs from the quick run's"
         );
     }
     assert!(
@@ -147,7 +147,7 @@ fn a_run_goes_on_where_another_one_was_killed() {
     let begun = run.folder.join("tables/raymarch-pictures");
     while !begun.exists() {
         let ended = killed.try_wait().expect("Snakemake can be awaited");
-        assert_eq!(ended, None, "Snakemake ends before its job");
+        assert_eq!(ended, None, "Snakemake ended before its job");
         thread::yield_now();
     }
     let group = format!("-{}", killed.id());

@@ -7,12 +7,12 @@ use super::{Interpolated, Pixel, RANGES};
 /// A form of smooth shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Light that is linear on the screen, in f64.
+    /// Light linear on the screen, in f64.
     Affine,
-    /// Exact light in the first and the last lane of a group of eight pixels, in f64, cut to the range of a channel because these
-    /// lanes may lie outside the triangle. Light is linear between them.
+    /// Exact light in the first and the last lane of a group of eight pixels, in f64, clamped to the range of a channel because
+    /// these lanes may lie outside the triangle. Light is linear between these lanes.
     GroupEnds,
-    /// Light by Glint's division at the first and the last covered pixel of a group, and linear between them.
+    /// Light by Glint's division at the first and the last covered pixel of a group, and linear between these pixels.
     CoveredEnds,
     /// A division at each pixel.
     Pixels(Inverse),
@@ -21,9 +21,9 @@ pub enum Form {
 /// The reciprocal of a division: a table of 2^`index` entries, each with `index` + 7 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inverse {
-    /// Number of bits of the depth's mantissa that select the entry.
+    /// Number of bits of the depth's mantissa for the index of an entry.
     pub index: u32,
-    /// Whether a Newton step follows the table. Its result has 17 bits.
+    /// Whether a Newton step follows the table lookup. Its result has 17 bits.
     pub newton: bool,
 }
 
@@ -90,7 +90,7 @@ impl Light<'_> {
         }
     }
 
-    /// Returns light over depth at a pixel, as docs/formats/triangle.md defines it in "Smooth shading", with any reciprocal.
+    /// Returns light over depth at a pixel by docs/formats/triangle.md, "Smooth shading", with any reciprocal.
     fn divided(&self, inverse: Inverse, pixel: &Pixel) -> [f64; 3] {
         let value = |plane: &Plane| {
             let right = (pixel.column - self.setup.start_column) as u32;
@@ -115,7 +115,7 @@ impl Light<'_> {
     }
 }
 
-/// Returns light that is linear between two columns.
+/// Interpolates light linearly between two columns.
 fn between(
     (left, from): (i32, [f64; 3]),
     (right, to): (i32, [f64; 3]),

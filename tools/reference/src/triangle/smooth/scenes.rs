@@ -10,13 +10,13 @@ use rand_pcg::Pcg64Mcg;
 
 use super::{Content, Scene};
 
-/// Returns a bound of the error of a channel, in steps, for depth codes of at least `farthest`. It is half a step for the last
-/// rounding, plus the bound in docs/formats/triangle.md, "Smooth shading".
+/// Returns a bound on the error of a channel, in steps, for depth codes of at least `farthest`. The bound is half a step for the
+/// last rounding, plus the bound in docs/formats/triangle.md, "Smooth shading".
 fn bound(farthest: f64) -> f64 {
     0.5 + 0.032 + 43.0 / farthest
 }
 
-/// Smallest depth code (code of the farthest depth) that a camera and a mesh can give.
+/// Smallest possible depth code (of the farthest depth) of a camera and a mesh.
 const FARTHEST: f64 = 228.0;
 /// Largest depth of a vertex, in steps of 1/64 depth code.
 const LARGEST: u32 = ((1 << 18) - 4) * 64;
@@ -29,8 +29,7 @@ fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     Box::new(glint::view::parse(json.as_bytes()).expect("a good camera"))
 }
 
-/// Encodes a mesh of triangles that share no vertices, with random
-/// colours and with random normals, most of which point towards −y.
+/// Encodes a mesh of triangles without shared vertices, with random colours and random normals, most of them towards −y.
 fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let quantised = |x: f64| (x * 16384.0).round().clamp(-32768.0, 32767.0) as i16;
     let vertices: Vec<Vertex> = triangles
@@ -60,8 +59,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     encode(&vertices, &triangles).expect("a small mesh")
 }
 
-/// Makes random triangles on the screen, over the whole range of depths. If `thin` is set they are slivers, otherwise they
-/// have any shape.
+/// Makes random triangles on the screen, over the whole range of depths. With `thin` the triangles are slivers, otherwise of any shape.
 fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3])> {
     const GUARD: i32 = 2047 << 8;
     (0..300)
@@ -73,7 +71,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
             };
             let [a, b, mut c] = [corner(), corner(), corner()];
             if thin {
-                // The third corner is close to the middle of the edge between the first two corners.
+                // The third corner is close to the midpoint of the first two corners.
                 c = [0, 1].map(|k| (a[k] + b[k]) / 2 + random.random_range(-64..=64));
             }
             let vertices = [a, b, c].map(|[x, y]| ScreenVertex {
@@ -97,7 +95,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
         .collect()
 }
 
-/// Makes triangles with the smallest and the largest depth at their vertices, and black and white light.
+/// Makes triangles with the smallest and the largest depth, and black and white light, at the vertices.
 fn largest_ratio() -> Vec<([ScreenVertex; 3], [Lit; 3])> {
     let places = [[20, 10], [300, 20], [150, 170]];
     let (near, far) = (LARGEST, FARTHEST as u32 * 64);
@@ -132,8 +130,8 @@ pub fn scenes() -> Vec<Scene> {
         let made = glint::convert::convert(&polygons, glint::convert::Options::default());
         made.expect("a good mesh").0
     };
-    // Two triangles of a floor: its narrow near edge is at y = `from`, just in front of the eye, and its wide far edge is at
-    // y = 1.99, near the largest coordinate that a mesh can have.
+    // Two triangles of a floor: the narrow near edge is at y = `from`, just in front of the eye, the wide far edge at y = 1.99,
+    // near the largest coordinate of a mesh.
     let floor = |from: f64| {
         let (near, far) = (0.05, 1.9);
         [

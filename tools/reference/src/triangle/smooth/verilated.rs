@@ -1,4 +1,4 @@
-//! The verilated rasterizer for smooth triangles (its SystemVerilog, simulated), which measures the clocks of a picture.
+//! The verilated rasterizer for smooth triangles, for measurements of the clocks of a picture.
 
 use glint_core::colour::Rgb565;
 use glint_model::Shading;
@@ -6,7 +6,7 @@ use glint_model::triangle::descriptor::{Descriptor, GROUP, band_rows};
 use glint_model::triangle::setup::Setup;
 use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls, exchange};
 
-/// The rasterizer's SystemVerilog module with smooth shading, without stalls: triangles and groups are transferred at once.
+/// The rasterizer's SystemVerilog module with smooth shading, without stalls: triangles and groups are transferred immediately.
 pub struct Rasterizer {
     module: Module,
     triangles: Source,
@@ -15,11 +15,11 @@ pub struct Rasterizer {
     idle: Port,
 }
 
-/// A band (strip of lines) of a picture, drawn.
+/// A drawn band (strip of lines) of a picture.
 pub struct Band {
     /// Number of clocks from the first triangle until the rasterizer is idle.
     pub clocks: u64,
-    /// The covered pixels of each group: bit 0 is the leftmost one.
+    /// The covered pixels of each group; bit 0 is the leftmost pixel.
     pub masks: Vec<u8>,
 }
 
@@ -42,7 +42,7 @@ impl Rasterizer {
         }
     }
 
-    /// Draws a picture of this width and height, band after band. A triangle whose setup has light is smooth, another one flat.
+    /// Draws a picture of this width and height band by band. A triangle whose setup has light is smooth, any other is flat.
     pub fn draw(&mut self, setups: &[Setup], (width, height): (u32, u32)) -> Vec<Band> {
         let rows = band_rows(width);
         let bands = (0..height).step_by(rows as usize);

@@ -6,13 +6,13 @@ use glint_vectors::math::{cross, normalised};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-/// Converts a camera to a view. Each number is rounded to the nearest number of its fixed-point format.
+/// Converts a camera to a view. Rounds each number to the nearest number of its fixed-point format.
 pub fn view(camera: &Camera) -> View {
     let view = camera.view();
     view.unwrap_or_else(|error| panic!("{camera:?}: {error}"))
 }
 
-/// Returns a camera at `eye` that looks at `target`, turned by `roll` radians about its line of sight.
+/// Returns a camera at `eye` that looks at `target`, rolled by `roll` radians about its line of sight.
 pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
     let n = normalised(minus(target, eye));
     // An arbitrary direction that is not parallel to n.
@@ -35,7 +35,7 @@ pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near:
     }
 }
 
-/// Returns a random camera. It looks at a random point near the origin, from a random direction and this distance.
+/// Returns a random camera. It looks at a random point near the origin, from a random direction at this distance.
 pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> Camera {
     let target = [(); 3].map(|()| random.random_range(-0.3..0.3));
     let direction = direction(random);
@@ -57,7 +57,7 @@ pub fn direction(random: &mut Pcg64) -> Vector {
     [across * cos, across * sin, z]
 }
 
-/// Returns a random number from `low` to `high` whose logarithm is uniformly distributed.
+/// Returns a random number from `low` to `high` with a uniformly distributed logarithm.
 pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     random
         .random_range(low.ln()..high.ln())

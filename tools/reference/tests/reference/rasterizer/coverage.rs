@@ -1,6 +1,6 @@
-//! Checks the pixels that the model draws for single triangles. Coverage and depth are compared with the exact rasterizer, which
-//! takes the vertices as the model snapped them. Coverage is also compared with the unsnapped triangle: pixels more than a
-//! tolerance inside it must be drawn, and pixels more than a tolerance outside must not (see `surface::Class`).
+//! Checks the model's pixels of single triangles. Coverage and depth are compared with the exact rasterizer, with the model's
+//! snapped vertices. Coverage is also compared with the unsnapped triangle: pixels more than a tolerance inside it must be drawn,
+//! and pixels more than a tolerance outside must not (see `surface::Class`).
 
 use glint_reference::camera::{Camera, Size};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
@@ -42,8 +42,8 @@ impl Tally {
 /// Largest allowed deviation of a depth from the plane through the snapped vertices, in depth codes.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Returns the largest allowed displacement of an edge by snapping, in pixels. The Khronos conformance tests allow three steps
-/// of the subpixel grid, which are 3/256 pixel.
+/// Largest allowed displacement of an edge by snapping, in pixels. The Khronos conformance tests allow three steps of the
+/// subpixel grid, which are 3/256 pixel.
 pub fn snap_limit(size: Size) -> f64 {
     if size == LARGE {
         2.0 / 256.0
@@ -79,8 +79,7 @@ pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
     total
 }
 
-/// Compares the renderer's last picture, which shows one triangle, with the exact coverage and depth of the parts into which the
-/// model clipped the triangle.
+/// Compares the renderer's last picture, of one triangle, with the exact coverage and depth of the triangle's clipped parts.
 fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     let mut tally = Tally::default();
     let mut left = renderer.depth.clone();
@@ -88,7 +87,7 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
         part.for_each_pixel(size.width, size.height, |column, row| {
             let code = &mut left[(row * size.width + column) as usize];
             if *code == 0 {
-                // The pixel was not drawn, or it was already counted for another part. The second case is an error too, because
+                // The pixel was not drawn, or was already counted for another part. The second case is also an error, because
                 // parts do not overlap.
                 tally.missing += 1;
             } else {
@@ -103,7 +102,7 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     tally
 }
 
-/// Compares the renderer's last picture, which shows one triangle, with the class of each pixel for the unsnapped triangle.
+/// Compares the renderer's last picture, of one triangle, with the class of each pixel for the unsnapped triangle.
 fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, tally: &mut Tally) {
     let size = case.size;
     let triangle = ProjectedTriangle::new(camera, size, scene.corners(0));
@@ -125,7 +124,7 @@ fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, ta
             }
         }
     }
-    // The drawn pixels that remain are outside the triangle's bounds, where nothing should be drawn.
+    // The remaining drawn pixels are outside the triangle's bounds, where no pixel may be drawn.
     tally.class_extra += drawn;
 }
 
@@ -139,7 +138,7 @@ fn random_scenes_are_covered_exactly() {
     println!("240 random scenes: {total:?}");
     assert!(
         total.covered > 1_000_000,
-        "too little was compared: {total:?}"
+        "too few pixels were compared: {total:?}"
     );
     assert!(
         total.clipped > 100,

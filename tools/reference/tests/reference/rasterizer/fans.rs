@@ -1,4 +1,4 @@
-//! Checks that triangles that share edges cover every pixel exactly once.
+//! Checks that triangles with shared edges cover every pixel exactly once.
 
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
@@ -9,11 +9,11 @@ use super::cameras::{around, log_range, view};
 use super::renderer::{Renderer, exact};
 use super::scenes::{Case, ONE, SMALL, Scene};
 
-/// Number of lattice steps along each of the two sides of a [`Cut`].
+/// Number of lattice steps along each of two sides of a [`Cut`].
 const STEPS: i64 = 200;
 
-/// A large triangle that is cut into many triangles with shared edges. All vertices lie on a lattice in the plane of the large
-/// triangle, so the small triangles together are exactly the large one.
+/// A large triangle cut into many triangles with shared edges. All vertices lie on a lattice in the plane of the large triangle,
+/// so the union of the small triangles is exactly the large triangle.
 struct Cut {
     origin: [i64; 3],
     sides: [[i64; 3]; 2],
@@ -22,7 +22,7 @@ struct Cut {
 }
 
 impl Cut {
-    /// Makes a random triangle, still uncut, whose corners have coordinates from −`reach` to `reach`.
+    /// Makes a random uncut triangle with corner coordinates from −`reach` to `reach`.
     fn new(random: &mut Pcg64, reach: f64) -> Self {
         let reach = (reach * ONE) as i64;
         let mut corner = || [(); 3].map(|()| random.random_range(-reach..reach));
@@ -36,8 +36,8 @@ impl Cut {
         }
     }
 
-    /// Cuts a random one of the triangles into three at a lattice point inside it, if there is one. The first vertex of
-    /// each part is chosen at random, because the model computes the plane of depth from the first vertex.
+    /// Cuts a random triangle into three at a lattice point inside it, if any. The first vertex of each part, from which the
+    /// model computes the depth plane, is random.
     fn cut(&mut self, random: &mut Pcg64) {
         let chosen = random.random_range(0..self.triangles.len());
         let [a, b, c] = self.triangles[chosen];
@@ -84,8 +84,8 @@ fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
 }
 
-/// Returns a random large triangle as a scene, and the triangles into which it is cut as another scene. About half of the parts
-/// show their back face.
+/// Returns two scenes: a random large triangle, and the triangles that it is cut into. About half of the parts show their back
+/// face.
 fn whole_and_parts(random: &mut Pcg64, reach: f64) -> (Scene, Scene) {
     let mut cut = Cut::new(random, reach);
     let whole = cut.scene();
@@ -97,7 +97,7 @@ fn whole_and_parts(random: &mut Pcg64, reach: f64) -> (Scene, Scene) {
     (whole, parts)
 }
 
-/// Swaps two vertices in about half of the triangles, which turns these triangles over.
+/// Swaps two vertices in about half of the triangles, which reverses their orientation.
 fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     for triangle in &mut scene.triangles {
         if random.random_bool(0.5) {
@@ -106,7 +106,7 @@ fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     }
 }
 
-/// Counts for each pixel how many triangles of a case cover it. The triangles are drawn one by one.
+/// Counts the triangles of a case that cover each pixel. The triangles are drawn one by one.
 fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     let view = view(&case.camera);
     let mut counts = vec![0; (case.size.width * case.size.height) as usize];
@@ -119,9 +119,8 @@ fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     counts
 }
 
-/// Checks the number of triangles that cover each pixel: one inside the outline of all triangles together, none outside, and at
-/// most one where the pixel's centre is close to the outline. Returns the number of pixels inside. `outline` is the index of the
-/// outline in the scene `whole`.
+/// Checks the number of triangles that cover each pixel: one inside the triangles' common outline, none outside, at most one for a pixel
+/// centre close to the outline. Returns the number of pixels inside. `outline` is the index of the outline in the scene `whole`.
 fn check_against_outline(case: &Case, outline: usize, whole: &Scene, counts: &[u32]) -> u64 {
     let camera = Camera::from(&view(&case.camera));
     let outline = ProjectedTriangle::new(&camera, case.size, whole.corners(outline));
@@ -165,7 +164,7 @@ fn a_cut_triangle_covers_what_it_did_before_and_once() {
         let counts = counts(&mut renderer, &case);
         check_against_outline(&case, 0, &whole, &counts);
 
-        // Nothing is clipped here, so the outline's snapped corners tell exactly which pixels are inside.
+        // Without clipping, the outline's snapped corners determine the inner pixels exactly.
         renderer.draw(&whole, &view(&case.camera), case.size, false);
         let mut expected = vec![0; counts.len()];
         if let Some(outline) = renderer.drawn.first().and_then(exact) {

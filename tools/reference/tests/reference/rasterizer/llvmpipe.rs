@@ -1,8 +1,8 @@
 //! Compares the model's coverage with Mesa's software rasterizer llvmpipe, on machines that have Mesa and moderngl.
 //!
-//! llvmpipe draws each triangle twice. From the vertices that the model has snapped to its subpixel grid, llvmpipe must cover the
-//! same pixels as the model. From the vertices before snapping, which llvmpipe snaps to its own grid, pixels may differ only if
-//! llvmpipe snaps a vertex to another position.
+//! llvmpipe draws each triangle twice. From the model's vertices, snapped to the subpixel grid, llvmpipe must cover the model's
+//! pixels. From the unsnapped vertices, which llvmpipe snaps to its own grid, pixels may differ only if llvmpipe snaps a vertex
+//! to another position.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -63,22 +63,22 @@ impl Differences {
     }
 }
 
-/// A triangle that the model has drawn, with the data that explain a difference.
+/// A triangle drawn by the model, with data to explain a difference.
 struct Subject {
     name: String,
     exact: ProjectedTriangle,
-    /// Unsnapped positions of the triangle's corners on the screen, in pixels. They have no meaning for corners behind the eye.
+    /// Unsnapped positions of the triangle's corners on the screen, in pixels. Meaningless for corners behind the eye.
     places: [[f64; 2]; 3],
-    /// The triangle's corners as the model snapped them, in the order of `places`; `None` if the triangle was clipped.
+    /// The model's snapped corners in the order of `places`; `None` if the triangle was clipped.
     snapped: Option<[SnappedVertex; 3]>,
     covered: Vec<bool>,
 }
 
 /// Distance in pixels from the middle of the picture to each border of llvmpipe's viewport. The viewport is larger than the
-/// model's guard band (the positions that need no clipping), so llvmpipe clips only triangles that the model clips too.
+/// model's guard band (the positions without clipping), so llvmpipe clips only triangles that the model also clips.
 const REACH: u32 = 2400;
 
-/// Converts a point of the world to clip coordinates. x/w and y/w are −1 and 1 at the borders of the viewport, and the near plane
+/// Converts a point from world to clip coordinates. x/w and y/w are −1 and 1 at the borders of the viewport, and the near plane
 /// is at z = −w.
 fn clip_coordinates(camera: &Camera, size: Size, point: Vector) -> [f64; 4] {
     let [x, y, z] = camera.coordinates(point);
@@ -86,7 +86,7 @@ fn clip_coordinates(camera: &Camera, size: Size, point: Vector) -> [f64; 4] {
     [x * scale, y * scale, z - 2.0 * camera.near, z]
 }
 
-/// Returns the runs of covered pixels, row by row. Each run is its row, its first column, and the column after its last.
+/// Returns the runs of covered pixels, row by row. A run has its row, its first column, and the column after its last.
 fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     let mut spans = Vec::new();
     for (row, pixels) in (0..).zip(covered.chunks(size.width as usize)) {
@@ -102,8 +102,8 @@ fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     spans
 }
 
-/// Returns the snapped vertices of the triangle that the model has drawn, in the order of `places`, the corners' unsnapped
-/// positions. Returns `None` if the triangle was clipped.
+/// Returns the snapped vertices of the triangle drawn by the model, in the order of `places`, the corners' unsnapped positions.
+/// Returns `None` if the triangle was clipped.
 fn snapped_corners(renderer: &Renderer, places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [drawn] = renderer.drawn.as_slice() else {
         return None;
@@ -162,17 +162,15 @@ fn subjects() -> (Scenes, Vec<Subject>) {
     (scenes, subjects)
 }
 
-/// Returns the coordinate to which llvmpipe snaps `place`, in steps of 1/256 pixel; `None` if this is not certain, because
-/// llvmpipe computes in f32, whose rounding errors may decide.
+/// Returns llvmpipe's snapped coordinate of `place`, in steps of 1/256 pixel; `None` if f32 rounding errors in llvmpipe may change it.
 fn llvmpipe_snap(place: f64) -> Option<i64> {
     let steps = place * 256.0;
-    // Bound of the error of a few f32 operations, each with a relative error of 2^-24, on numbers as large as the position and
-    // the picture.
+    // Error bound of a few f32 operations, each with a relative error of 2^-24, on numbers as large as the position and the picture.
     let uncertain = 0.01 + (steps.abs() + 160.0 * 256.0) * 4.0 / 16_777_216.0;
     ((steps - steps.floor() - 0.5).abs() > uncertain).then(|| steps.round() as i64)
 }
 
-/// Returns the vertices as llvmpipe snaps them; `None` if this is not certain.
+/// Returns llvmpipe's snapped vertices; `None` if they are uncertain.
 fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [a, b, c] = places.map(|[x, y]| {
         let (x, y) = (llvmpipe_snap(x)?, llvmpipe_snap(y)?);
@@ -181,7 +179,7 @@ fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     Some([a?, b?, c?])
 }
 
-/// Returns llvmpipe's coverage, which is the model's coverage with the differing pixels inverted.
+/// Returns llvmpipe's coverage: the model's coverage with the differing pixels inverted.
 fn llvmpipe_coverage(subject: &Subject, differences: &Differences) -> Vec<bool> {
     let mut covered = subject.covered.clone();
     for &[column, row] in differences.pixels() {
@@ -197,7 +195,7 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
     let results = match compare(&scenes) {
         Ok(results) => results,
         Err(reason) => {
-            // The reason is written directly to the terminal, because the test harness captures the output of tests.
+            // Written directly to the terminal, because the test harness captures the output of tests.
             let _ = writeln!(
                 std::io::stderr(),
                 "SKIPPED the comparison with llvmpipe: {reason}"
@@ -213,19 +211,19 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
     println!("{} ({}): {tally:?}", results.renderer, results.version);
     assert!(
         tally.whole > 300 && tally.other_covered > 10_000,
-        "too little was compared: {tally:?}"
+        "too few triangles were compared: {tally:?}"
     );
 }
 
 /// Counts of compared triangles and differing pixels.
 #[derive(Debug, Default)]
 struct Tally {
-    /// Number of triangles that were drawn without clipping.
+    /// Number of unclipped drawn triangles.
     whole: usize,
     covered: usize,
     snapped_differently: usize,
     differing_pixels: usize,
-    /// Number of triangles that were clipped or not drawn.
+    /// Number of clipped or undrawn triangles.
     others: usize,
     other_covered: usize,
     other_differing_pixels: usize,
@@ -235,8 +233,8 @@ impl Tally {
     fn add(&mut self, subject: &Subject, comparison: &Comparison) {
         let covered = subject.covered.iter().filter(|&&covered| covered).count();
         let projected = &comparison.projected;
-        // The model and llvmpipe follow the same rule, and their vertices differ by one step of the grid
-        // at most. So only pixels close to an edge can differ.
+        // The model and llvmpipe apply the same rule, and their vertices differ by at most one grid step. So only pixels close to
+        // an edge can differ.
         for &[column, row] in projected.pixels() {
             let class = subject.exact.classify(column, row, 2.0 / 256.0);
             assert_eq!(
@@ -278,7 +276,7 @@ impl Tally {
             self.snapped_differently += 1;
             self.differing_pixels += projected.count();
         }
-        // If llvmpipe's snapped vertices are certain, it must cover the same pixels as the exact rasterizer with these vertices.
+        // If llvmpipe's snapped vertices are certain, llvmpipe must cover the same pixels as the exact rasterizer.
         if let Some(theirs) = theirs {
             let mut expected = vec![false; subject.covered.len()];
             if let Some(triangle) = ExactTriangle::new(theirs) {
@@ -296,12 +294,12 @@ impl Tally {
     }
 }
 
-/// Runs compare.py on scenes and returns its results. The error is the reason why llvmpipe cannot be used.
+/// Runs compare.py on scenes and returns its results. The error is the reason that llvmpipe is not available.
 fn compare(scenes: &Scenes) -> Result<Results, String> {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR"));
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("llvmpipe-scenes.json");
     let json = serde_json::to_vec(scenes).expect("numbers are JSON");
-    std::fs::write(&path, json).expect("the build's own folder is writable");
+    std::fs::write(&path, json).expect("a writable build folder");
     let environment = reference.join("../../.venv/bin/python");
     let python = if environment.exists() {
         environment
@@ -316,7 +314,7 @@ fn compare(scenes: &Scenes) -> Result<Results, String> {
     read(&output)
 }
 
-/// Reads the results of compare.py, or the reason why llvmpipe cannot be used. Panics if compare.py failed in another way.
+/// Reads the results of compare.py, or the reason that llvmpipe is not available. Panics if compare.py failed in another way.
 fn read(output: &Output) -> Result<Results, String> {
     let complaint = String::from_utf8_lossy(&output.stderr).trim().to_owned();
     match output.status.code() {

@@ -1,7 +1,6 @@
 //! Compares the model of the triangle engine with an exact rasterizer and with computations in f64.
 //!
-//! All scenes are random with fixed seeds, and a failure names the
-//! case and the triangle. `--nocapture` shows the measured figures.
+//! All scenes are random with fixed seeds; a failure names the case and the triangle. `--nocapture` shows the measured figures.
 
 mod cameras;
 mod coverage;

@@ -1,4 +1,4 @@
-//! A simple interface to the model of the triangle engine, which draws a scene and keeps the picture and the drawn triangles.
+//! A simple interface to the model of the triangle engine, which draws a scene and stores the picture and the drawn triangles.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -10,7 +10,7 @@ use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 
 use super::scenes::Scene;
 
-/// Draws scenes with the model, and keeps the last picture. The buffers are reused for the next picture.
+/// Draws scenes with the model, and stores the last picture. The buffers are reused for the next picture.
 #[derive(Default)]
 pub struct Renderer {
     /// Colours of the last picture, in RGB565.
@@ -19,7 +19,7 @@ pub struct Renderer {
     pub depth: Vec<u32>,
     /// Light on the mesh; `None` for white light at the camera.
     pub light: Option<MeshLight>,
-    /// Triangles that the model drew in the last picture.
+    /// Triangles drawn in the last picture.
     pub drawn: Vec<DrawnTriangle>,
     scratch: Vec<Projected>,
 }
@@ -28,7 +28,7 @@ impl Renderer {
     /// Clears the buffers and draws a scene.
     pub fn draw(&mut self, scene: &Scene, view: &View, size: Size, cull: bool) -> Stats {
         let bytes = scene.encode();
-        let mesh = Mesh::new_checked(&bytes).expect("the encoder makes good meshes");
+        let mesh = Mesh::new_checked(&bytes).expect("a valid encoded mesh");
         let pixels = size.width as usize * size.height as usize;
         self.colour.resize(pixels, 0);
         self.depth.resize(pixels, 0);

@@ -1,4 +1,4 @@
-//! Scenes of triangles, which are encoded as meshes, and random test cases.
+//! Scenes of triangles, encoded as meshes, and random test cases.
 
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex, encode};
 use glint_reference::camera::{Camera, Size, Vector};
@@ -23,25 +23,25 @@ pub const LARGE: Size = Size {
     height: 720,
 };
 
-/// A list of triangles, whose vertices have coordinates in Q2.14.
+/// A list of triangles with vertex coordinates in Q2.14.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     pub positions: Vec<[i16; 3]>,
     pub triangles: Vec<[u32; 3]>,
-    /// A face normal for each triangle; empty if no triangle has one.
+    /// A face normal for each triangle, or empty.
     pub normals: Vec<[i16; 3]>,
-    /// A colour for each triangle; empty if no triangle has one.
+    /// A colour for each triangle, or empty.
     pub colours: Vec<u16>,
 }
 
 impl Scene {
-    /// Adds a vertex at the position in Q2.14 that is nearest to `point`, and returns the vertex's number.
+    /// Adds a vertex at the nearest Q2.14 position to `point`, and returns the vertex's index.
     pub fn vertex(&mut self, point: Vector) -> u32 {
         self.positions.push(point.map(|x| (x * ONE).round() as i16));
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a triangle and its three vertices, which no other triangle uses.
+    /// Adds a triangle with three vertices of its own.
     pub fn triangle(&mut self, points: [Vector; 3]) {
         let indices = points.map(|point| self.vertex(point));
         self.triangles.push(indices);
@@ -90,11 +90,11 @@ impl Scene {
                 normal: self.normals.get(i).copied().unwrap_or_default(),
             })
             .collect();
-        encode(&vertices, &triangles).expect("small meshes are never refused")
+        encode(&vertices, &triangles).expect("a valid small mesh")
     }
 }
 
-/// A test case: a scene with a camera and the options with which it is drawn.
+/// A test case: a scene with a camera and drawing options.
 pub struct Case {
     pub name: String,
     pub scene: Scene,
@@ -106,7 +106,7 @@ pub struct Case {
 /// A function that makes a random scene and a camera for it.
 type Kind = fn(&mut Pcg64) -> (Scene, Camera);
 
-/// Name and function of each kind of random case. Each kind is difficult for a rasterizer in another way.
+/// Name and function of each kind of random case. Each kind is a different difficulty for a rasterizer.
 const KINDS: [(&str, Kind); 8] = [
     ("a cloud of small triangles", cloud),
     ("triangles larger than the picture", large),
@@ -118,7 +118,7 @@ const KINDS: [(&str, Kind); 8] = [
     ("closed bodies cut by a far near plane", bodies),
 ];
 
-/// Makes the random case that belongs to a seed.
+/// Makes the random case of a seed.
 pub fn random_case(seed: u64) -> Case {
     let mut random = Pcg64::seed_from_u64(seed);
     let kinds = KINDS.len() as u64;
@@ -149,8 +149,8 @@ fn near(random: &mut Pcg64, middle: Vector, reach: f64) -> Vector {
     [0, 1, 2].map(|i| middle[i] + offset[i])
 }
 
-/// Makes `count` random triangles whose middles are in a box of half width `reach` about the origin. Each triangle's size is
-/// random between the two `sizes`.
+/// Makes `count` random triangles with middles in a box of half width `reach` about the origin. Each triangle's size is random
+/// between the two `sizes`.
 fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
     let mut scene = Scene::default();
     for _ in 0..count {

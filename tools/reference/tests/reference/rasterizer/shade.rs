@@ -13,7 +13,7 @@ use super::cameras::{direction, looking_at, view};
 use super::renderer::Renderer;
 use super::scenes::{ONE, SMALL, Scene};
 
-/// Returns the red, green and blue channel of an RGB565 colour, which have 5, 6 and 5 bits.
+/// Returns the red, green and blue channel of an RGB565 colour, of 5, 6 and 5 bits.
 fn channels(colour: u16) -> [f64; 3] {
     [colour >> 11, colour >> 5 & 63, colour & 31].map(f64::from)
 }
@@ -31,7 +31,7 @@ fn intensity(normal: [i16; 3], facing: Facing, towards: [f64; 3]) -> f64 {
     towards.clamp(0.0, 1.0)
 }
 
-/// A light in f64: the direction to it, its colour and the ambient light, 1 is full.
+/// A light in f64: its direction, its colour and the ambient light; 1 is the maximum.
 struct Exact {
     towards: [f64; 3],
     colour: [f64; 3],
@@ -48,7 +48,7 @@ impl Exact {
     }
 }
 
-/// A random light, for the model and in f64. Directions have any length, colours are full or none in one of four channels each.
+/// A random light, for the model and in f64. Directions have any length; a quarter of the colour channels are 1, a quarter 0.
 fn any_light(random: &mut Pcg64, view: &View) -> (MeshLight, Exact) {
     let mut colour = || -> [u8; 3] {
         [(); 3].map(|()| [0, 255, random.random(), random.random()][random.random_range(0..4)])
@@ -100,7 +100,7 @@ fn shades_are_exact(scenes: u64, light: impl Fn(&mut Pcg64, &View) -> (Option<Me
         let mut scene = Scene::default();
         for _ in 0..60 {
             scene.triangle([(); 3].map(|()| direction(&mut random)));
-            // The normals have lengths from 0 to 1.5, because a mesh may contain normals of any length.
+            // Normals have lengths from 0 to 1.5, because a mesh may contain normals of any length.
             let length = random.random_range(0.0..1.5) * ONE;
             scene
                 .normals

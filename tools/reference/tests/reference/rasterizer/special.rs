@@ -1,4 +1,4 @@
-//! Hard cases for the rasterizer, made by hand. Each case passes through all checks of `coverage`.
+//! Hand-made edge cases for the rasterizer. Each case must pass all checks of `coverage`.
 
 use glint_reference::camera::{Camera, Vector};
 use rand::{RngExt, SeedableRng};
@@ -26,12 +26,12 @@ fn case(name: &str, camera: Camera, triangles: &[[Vector; 3]]) -> Case {
     }
 }
 
-/// Returns the camera at (0, −2, 0) that looks along +y. On its screen, x is to the right and z is up.
+/// Returns the camera at (0, −2, 0) that looks along +y. On the screen, x points right and z up.
 fn ahead() -> Camera {
     looking_at([0.0, -2.0, 0.0], [0.0; 3], 0.0, 0.5, 0.1)
 }
 
-/// Checks a case in all sizes, with and without culling, and returns the number of pixels covered at 320x180 without culling.
+/// Checks a case at all sizes, with and without culling, and returns the number of pixels covered at 320x180 without culling.
 fn check_all(case: Case) -> usize {
     let mut renderer = Renderer::default();
     let mut case = case;
@@ -47,7 +47,7 @@ fn check_all(case: Case) -> usize {
     covered(&mut renderer, &case)
 }
 
-/// Counts the pixels that a case covers when all its triangles are drawn together.
+/// Counts the pixels covered by all triangles of a case drawn together.
 fn covered(renderer: &mut Renderer, case: &Case) -> usize {
     renderer.draw(&case.scene, &view(&case.camera), case.size, case.cull);
     renderer.depth.iter().filter(|&&code| code != 0).count()
@@ -57,7 +57,7 @@ fn covered(renderer: &mut Renderer, case: &Case) -> usize {
 fn triangles_without_area_draw_nothing() {
     let point = [0.1, 0.2, 0.3];
     let triangles = [
-        // A single point, a line there and back, three points of a line, and a triangle that is seen edge-on.
+        // A single point, a line forth and back, three points of a line, and a triangle seen edge-on.
         [point; 3],
         [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
         [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
@@ -85,8 +85,8 @@ fn slivers_a_thousand_times_longer_than_wide() {
 #[test]
 fn off_the_screen_on_every_side() {
     let mut triangles = Vec::new();
-    // Triangles beside the picture, some of them so far away that they are clipped (beyond the guard band). The triangle that is
-    // added last is between the eye and the near plane.
+    // Triangles beside the picture, some of them beyond the guard band and therefore clipped. The last added triangle is between
+    // the eye and the near plane.
     for far in [1.2, 1.9] {
         for [x, z] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0]] {
             let middle = [x * far, -0.5, z * far];
@@ -124,7 +124,7 @@ fn an_apex_at_the_eye() {
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.55).sin_cos();
         triangles.push([eye, [cos, 1.0, sin], [0.7 * sin, 1.5, 0.7 * cos]]);
-        // A triangle with a corner close to the eye: one step of Q2.14 away from it in x, and 0 to 352 steps in y.
+        // A triangle with a corner close to the eye: one step of Q2.14 from the eye in x, and 0 to 352 steps in y.
         let beside = [eye[0] + STEP, eye[1] + f64::from(i) * STEP * 32.0, eye[2]];
         triangles.push([beside, [sin, 0.5, cos], [-cos, 1.5, sin]]);
     }

@@ -1,5 +1,4 @@
-//! Checks the visible surface and its depth in pictures of whole scenes, in all pixels where snapping the vertices cannot change
-//! the surface.
+//! Checks the visible surface and depth in pictures of whole scenes, at all pixels where snapping the vertices cannot change the surface.
 
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
@@ -16,14 +15,14 @@ struct Tally {
     stable: u64,
     surface: u64,
     unstable: u64,
-    /// Largest error of the depth in depth codes, after the effect of displaced vertices on a slope is subtracted.
+    /// Largest error of the depth in depth codes, without the effect of displaced vertices on a slope.
     depth_error: f64,
 }
 
-/// Largest allowed error of the depth in depth codes, after the effect of displaced vertices on a slope is subtracted.
+/// Largest allowed error of the depth in depth codes, without the effect of displaced vertices on a slope.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Gives every triangle a colour of its own and a normal towards the camera, so that shading does not change the colour.
+/// Gives every triangle a unique colour, and a normal towards the camera to exclude shading.
 fn colour_by_number(case: &mut Case) {
     let camera = &case.camera;
     for (i, [a, b, c]) in case.scene.all_corners().into_iter().enumerate() {
@@ -45,7 +44,7 @@ fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
         .flatten()
         .map(|&p| dot(p, p).sqrt())
         .fold(0.0, f64::max);
-    // A mesh keeps its radius with 14 fraction bits, rounded up.
+    // A mesh stores its radius with 14 fraction bits, rounded up.
     let radius = (radius * ONE).ceil() / ONE;
     let depth_scale = camera.depth_scale(radius);
     let tolerance = Tolerance {
@@ -114,10 +113,10 @@ fn the_right_surface_is_in_front_wherever_it_is_certain() {
     println!("visible surfaces of 200 random scenes: {tally:?}");
     assert!(
         tally.surface > 1_000_000,
-        "too little is certain: {tally:?}"
+        "too few pixels are certain: {tally:?}"
     );
     assert!(
         tally.unstable * 20 < tally.stable,
-        "too much is uncertain: {tally:?}"
+        "too many pixels are uncertain: {tally:?}"
     );
 }
