@@ -33,7 +33,7 @@ def check_pins(found, table, in_design):
 
 
 def ports(verilog, top):
-    """The ports of the module `top`, one name a bit."""
+    """Returns the ports of the module `top`, one name per bit."""
     header = re.search(rf"^module {top} \((.*?)^\);", verilog, re.M | re.S).group(1)
     names = set()
     for width, name in re.findall(r"^\s*(?:input|output|inout)\s+(?:wire|reg)\s+(?:\[(\d+):0\])?\s*(\w+),?$", header, re.M):

@@ -26,7 +26,7 @@ def readings():
     sums, problems = {name: [0] for name in names}, []
     bus = block.bank.bus
 
-    # A sum follows its event by as many clocks as there are counters, and three more.
+    # The delay from an event to its sum is the number of counters plus three clocks.
     late = len(names) + 3
 
     def run():
@@ -34,7 +34,7 @@ def readings():
             asked = rng.choice(names)
             yield bus.adr.eq(names.index(asked))
             yield bus.re.eq(1)
-            # The bus has the address in the next clock, and the value in the one after that.
+            # The address is on the bus in the next clock, the value in the clock after that.
             for _ in range(2):
                 for name in names:
                     event = block.counters.events[name]

@@ -1,4 +1,4 @@
-"""Test of the displays of digits: what the pins show of the registers."""
+"""Test of the digit displays: the pins as a function of the registers."""
 
 from migen import Record, run_simulation
 
@@ -9,7 +9,7 @@ _TURN = 1 << 16
 
 
 def check_digits():
-    """Checks that each digit shows its byte for the same time, no two digits are lit at once, and none while the segments change."""
+    """Checks that digits show their bytes for equal times, at most one digit is lit at a time, and none while segments change."""
     pads = Record(_LAYOUT)
     digits, problems = Digits(pads), []
     times, shown, before = {}, {}, {}

@@ -19,7 +19,7 @@ TRANSACTIONS = 250
 
 
 class Memory:
-    """Model of the memory at a native port of LiteDRAM: takes commands at random times, and its answers cannot be held back."""
+    """Model of the memory at a native port of LiteDRAM: takes commands at random times, and answers without back-pressure."""
 
     def __init__(self, bus, port, rng):
         self.bus = bus
@@ -38,7 +38,7 @@ class Memory:
         cycle, earliest = 0, 0
         previous = None
         while True:
-            # Checks that a command does not change until it is taken, unless the bus withdraws the access.
+            # Checks that a command holds until it is taken, unless the bus withdraws the access.
             shown = None
             if (yield port.cmd.valid):
                 shown = ((yield port.cmd.we), (yield port.cmd.addr))
@@ -133,8 +133,8 @@ def master(bus, memory, rng, errors, counts):
                                   f"expected {expected[word + n]:#010x}, got {found:#010x}")
                     return
         if kind == "given up" and stop == 0:
-            # Gives the access up before its first answer is used: the request stays for 1 to 12 cycles, so that its command
-            # may already have gone to memory.
+            # Cancels the access before its first answer: the request holds for 1 to 12 cycles, so that its command may already have
+            # reached memory.
             yield bus.adr.eq(BASE // 4 + word)
             yield bus.cti.eq(wishbone.CTI_BURST_INCREMENTING)
             for _ in range(rng.randint(1, 12)):

@@ -20,7 +20,7 @@ _CYCLES = 3000
 
 
 class _Settings:
-    """Settings of a small memory with the given members."""
+    """Makes settings of a small memory with the given members."""
 
     def __init__(self, **members):
         self.__dict__.update(members)
@@ -52,7 +52,7 @@ class _Memory:
         controller, rng = self.controller, self.rng
         banks = [getattr(controller, f"bank{number}") for number in range(_BANKS)]
         queues = [deque() for _ in banks]
-        # Each clock delays by one what the simulation writes to a signal, and the crossbar adds a clock to both latencies.
+        # Signals written by the simulation change one clock later, and the crossbar adds a clock to both latencies.
         # Commands take effect when the data of writes have arrived.
         phy = controller.settings.phy
         commands = deque([(False, None)] * (phy.write_latency + 2))
@@ -109,7 +109,7 @@ def _clients(ports, rng, pause, counts):
             if idle and cycle < _CYCLES and rng.random() >= pause:
                 yield port.cmd.valid.eq(1)
                 yield port.cmd.we.eq({"both": rng.getrandbits(1), "read": 0, "write": 1}[port.mode])
-                # Neighbours are likely, as in the streams of the blocks.
+                # Consecutive addresses are likely, as in the blocks' streams.
                 yield port.cmd.addr.eq(((yield port.cmd.addr) + 1 if rng.random() < 0.8 else rng.getrandbits(8)) % _WORDS)
         yield
     left = [len(queue) for queue in (*expected, *data)]
@@ -141,7 +141,7 @@ def random_traffic():
 
 
 def command_a_clock():
-    """Checks that one port alone has a command in nearly each clock while it stays in a bank."""
+    """Checks that a single active port sends a command in nearly every clock while it stays in a bank."""
     count, = _run(("both",), (4, 0), 1, 0)
     return [] if count > 0.5 * _CYCLES else [f"{count} commands in {_CYCLES} clocks"]
 

@@ -1,4 +1,4 @@
-"""Test of the memory of the virtual board against LiteDRAM's own model, which has a memory for each bank."""
+"""Test of the virtual board's memory against LiteDRAM's own model, which has a separate memory for each bank."""
 
 import random
 from types import SimpleNamespace
@@ -17,19 +17,20 @@ ACTIVATE, PRECHARGE, READ, WRITE, NONE = (0, 1, 1), (0, 1, 0), (1, 0, 1), (1, 0,
 ALL_BANKS = 1 << 10
 
 PLACES = (2, 5)
-"""Rows, and words of a row, that are accessed: few, so that words are read after they are written."""
+"""Number of rows, and of words per row, that are accessed: small, so that words are read after they are written."""
 
 
 def _commands(rng, geometry, settings):
-    """Yields for each cycle the commands that a controller may issue: a tuple of levels, bank and address for some phases."""
+    """Yields for each cycle legal commands of a controller: a tuple of levels, bank and address for some phases."""
     rows = {}
-    # The first cycle in which the row of a bank may change: the data of a write come after it.
+    # The first cycle in which the row of a bank may change, because the data of a write come later than its command.
     earliest = {bank: 0 for bank in range(2**geometry.bankbits)}
     for cycle in range(CYCLES):
         commands = {}
         kind, bank = rng.choice((READ, WRITE, NONE)), rng.randrange(2**geometry.bankbits)
         if kind != NONE and bank in rows:
-            # With A10, memory closes the row after the access. The models do not, but a controller opens a row before it uses it.
+            # With A10, memory closes the row after the access. The models do not close the row, but a controller opens a row before each
+            # use.
             column = 8*rng.choice(PLACES) | rng.choice((0, ALL_BANKS))
             commands[settings.rdphase if kind == READ else settings.wrphase] = kind, bank, column
             earliest[bank] = max(earliest[bank], cycle + 1 + settings.write_latency)

@@ -26,15 +26,15 @@ class Module:
         return {self.top: {}, **self.variants}
 
 
-# Video timing of a small picture: a frame takes about 1/200 of the time of one at 1280x720, but in the active part of a line
-# a memory word lasts as many pixel clocks.
+# Video timing of a small picture: a frame takes about 1/200 of the time of a 1280x720 frame, but in the active part of a line a memory
+# word lasts for the same number of pixel clocks.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
 _LINES = {"LINES": 1}
 _FIELDS_ALONE = {"TRIANGLES": 0, "FIELDS": 1}
 _NO_DEPTHS = _FIELDS_ALONE | {"DEPTHS": 0}
-# Parameters of the builds with every field: of a lane (ring_lane), and of the module that colours the ends of rays (ray_paint).
+# Parameters of builds with every field: of a lane (ring_lane), and of the module that computes the colours of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
 _PREPASS = {"PREPASS": 1}

@@ -10,7 +10,7 @@ from pathlib import Path
 from tools import BUILD, TESTS, run_yosys
 
 SLICE_LUTS, SLICE_FLIP_FLOPS = 4, 8
-"""What a slice of the 7 series has of each; it has one CARRY4."""
+"""Numbers of LUTs and flip-flops in a slice of the 7 series, which has one CARRY4."""
 
 _FLIP_FLOP = re.compile(r"(FD[RSCP]|LD[CP])E(_1)?")
 _RESETS = ("R", "S", "CLR", "PRE")
@@ -65,7 +65,7 @@ class Netlist:
         return min((name for name, _ in self._names.get(bit, ()) if name.startswith(instance)), key=len, default=None)
 
     def described(self, bit):
-        """The name of a net; one without a name is described by a register that it controls."""
+        """The name of a net; for an unnamed net, a description by a register that it controls."""
         if name := self.name(bit):
             return name
         for pin, cell in self._loads[bit]:
@@ -79,7 +79,7 @@ class Netlist:
         return Counter(_control_set(cell) for cell in self.cells.values() if _FLIP_FLOP.fullmatch(cell["type"]))
 
     def fan_outs(self, count):
-        """Descriptions and loads of the nets with the most loads, without clocks."""
+        """Descriptions and numbers of loads of the nets with the most loads, except clocks."""
         numbers = {bit: len(loads) for bit, loads in self._loads.items()
                    if not any(_is_clock(pin, self.cells[cell]) for pin, cell in loads)}
         return [(self.described(bit), numbers[bit]) for bit in sorted(numbers, key=lambda bit: (-numbers[bit], bit))[:count]]
@@ -138,7 +138,7 @@ def _net(cell, *pins):
 
 
 def _bits(cell, direction, pin=None):
-    """The nets at the outputs or inputs of a cell, or at one pin if it is one of these."""
+    """The nets at the outputs or the inputs of a cell, or only at a given pin."""
     directions = cell.get("port_directions", {})
     return [bit for each in ([pin] if pin else cell["connections"]) if directions.get(each) == direction
             for bit in cell["connections"][each] if isinstance(bit, int)]
@@ -149,18 +149,18 @@ def _is_clock(pin, cell):
 
 
 def _files(thing):
-    """Names of the source files of a net or a cell, without those of Yosys."""
+    """Names of the source files of a net or a cell, except Yosys' own files."""
     sources = thing["attributes"].get("src", "").split("|")
     return {Path(source.rpartition(":")[0]).name for source in sources if source and "/share/" not in source}
 
 
 def check_placement():
-    """Control sets, slices and fan-outs of a module in which they are known."""
+    """Checks the computed control sets, slices and fan-outs of a module with known values."""
     folder = BUILD / "placement_sample"
     run_yosys("synth_xilinx -family xc7 -top placement_sample -flatten; select placement_sample; "
               "write_json -selected netlist.json", [TESTS / "placement_sample.sv"], folder)
     netlist = Netlist.read(folder / "netlist.json")
-    # An enable without a name is described by any flip-flop that it controls.
+    # An unnamed enable may be described by any flip-flop that it controls.
     fan_outs = sorted((re.sub(r"\[\d\]", "", name), loads) for name, loads in netlist.fan_outs(4))
     counts = placement(netlist, 1, 2)
     expected = [

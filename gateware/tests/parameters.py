@@ -15,7 +15,7 @@ _WINDOW = 3
 
 
 class _Block(LiteXModule):
-    """A block with a register of another kind, four parameters in two passes, one of them in both, and a `Parameter` of its own."""
+    """A block with an ordinary register, four parameters in two passes (one parameter is in both), and a separate `Parameter`."""
 
     def __init__(self):
         other = CSRStorage(32, name="other")
@@ -29,7 +29,7 @@ class _Block(LiteXModule):
 
 
 def check_loads():
-    """Checks that the copies of a pass have the words that software wrote before the load, and hold until the next load."""
+    """Checks that the copies for a pass equal the words that software wrote before the load, and hold until the next load."""
     rng = random.Random(1)
     block = _Block()
     bus, parameters, registers = block.bank.bus, block.parameters, block.registers
@@ -78,7 +78,7 @@ def check_loads():
             if clocks > 20:
                 problems.append(f"loads of {loads} took {clocks} clocks")
             yield from compare()
-            # The bank has passed the last write on by now.
+            # At this time the bank has forwarded the last write.
             alone = registers[2]
             if (found := (yield alone.storage)) != written[2]:
                 problems.append(f"{alone.name}: {found:#x}, expected {written[2]:#x}")

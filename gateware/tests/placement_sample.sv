@@ -1,4 +1,4 @@
-// Flip-flops in five control sets, and nets with a known number of loads, to test what `netlist.py` counts.
+// Flip-flops in five control sets, and nets with known numbers of loads, to test `netlist.py`.
 module placement_sample (
     input  logic        clk,
     input  logic        enable,
@@ -11,8 +11,8 @@ module placement_sample (
     output logic [1:0]  two,
     output logic        one
 );
-    // 9 flip-flops with an enable, and 8 with another one, whose net has no name, and a reset. So `enable` has 9 loads and the
-    // LUT of the other enable, `shared` 9 LUTs, the reset 8 flip-flops.
+    // 9 flip-flops with an enable, and 8 with a reset and another enable, whose net has no name. The loads are: of `enable` 9 flip-flops
+    // and the LUT of the other enable, of `shared` 9 LUTs, of the reset 8 flip-flops.
     logic shared;
     always_ff @(posedge clk) if (enable) nine <= data[8:0] ^ {9{shared}};
     always_ff @(posedge clk) begin
@@ -20,7 +20,7 @@ module placement_sample (
         else if (enable & ~hold) eight <= data[16:9];
     end
 
-    // A flip-flop with a clock only, one at the falling edge, 2 with a reset that needs no clock.
+    // A flip-flop with only a clock, a flip-flop at the falling edge, and 2 flip-flops with an asynchronous reset.
     always_ff @(posedge clk) shared <= data[3];
     always_ff @(negedge clk) one <= data[2];
     always_ff @(posedge clk or posedge clear) begin

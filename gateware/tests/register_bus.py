@@ -17,7 +17,7 @@ _REGISTERS = 5
 
 
 class _Soc(LiteXModule):
-    """A bridge and two banks, each with registers that the CPU writes and one that counts the writes to the first of these."""
+    """A bridge and two banks, each with registers that the CPU writes and a register that counts the writes to the first of them."""
 
     def __init__(self):
         self.bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
@@ -34,7 +34,7 @@ class _Soc(LiteXModule):
 
 
 def check_accesses():
-    """Checks that each write reaches its register alone and once, and that a read returns what was written last."""
+    """Checks that each write reaches only its register, once, and that a read returns the last written value."""
     rng = random.Random(1)
     soc = _Soc()
     written = [[0] * _REGISTERS for _ in _WINDOWS]

@@ -7,7 +7,7 @@ from glint_soc.packed import Enumeration, Struct
 
 
 def check_packages():
-    """Checks that the committed SystemVerilog packages are those that the descriptions generate."""
+    """Checks that the committed SystemVerilog packages equal the packages generated from the descriptions."""
     stale = packages.stale(packages.full_soc())
     return [f"{path} is out of date: `{packages.WRITER}` writes it" for path in stale]
 
@@ -39,7 +39,7 @@ def _signals(value):
 
 
 def check_enumeration():
-    """Checks that the values are numbered from 0, in as many bits as the last number needs."""
+    """Checks that the values are numbered from 0, with the number of bits that the last number needs."""
     values = Enumeration("error", "Errors.", {"none": "no error", "size": "wrong size", "late": "too late"})
     expected = "    // Errors.\n" + "\n".join(
         f"    localparam logic [1:0] ERROR_{name} = 2'd{number};" for number, name in enumerate(("NONE", "SIZE", "LATE")))

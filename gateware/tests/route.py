@@ -27,7 +27,7 @@ from tools import BUILD, NEXTPNR, TESTS, YOSYS, ToolError, run_nextpnr, run_yosy
 from verilate.programs import digest, is_current
 
 REFERENCE = "vexriscv"
-"""The soft core in the SoC's variant: every ratio is to this block's rate."""
+"""The soft core in the SoC's variant: all ratios are relative to this block's rate."""
 
 SEEDS = (1, 2, 3)
 """Seeds of the placer. The rate of a block is the median of their rates."""
@@ -38,14 +38,14 @@ _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6", "--freq", "100", "-
 _CLOCK = re.compile(r"(\w+_)?clk(_\w+)?")
 _BLOCK = "block." # the module's instance in the wrapper
 
-# Inputs of a cell at which a level of logic continues: the carry chain, and the multiplexers that make wide LUTs.
+# Inputs of a cell that do not start a new level of logic: the carry chain, and the multiplexers of wide LUTs.
 _JOINED = {"FCI", "F1", "FXA", "FXB"}
 _KINDS = {"DP16KD": "block RAM", "TRELLIS_DPR16X4": "LUT memory", "MULT18X18D": "multiplier"}
 
 
 @dataclass(frozen=True)
 class Port:
-    """A port of a module, as Yosys sees it: a packed struct is a vector."""
+    """A port of a module in Yosys, where a packed struct is a vector."""
 
     name: str
     width: int
@@ -77,7 +77,7 @@ def measure(name, seeds=SEEDS):
 
 
 def _measure(top, sources, parameters, seeds, folder):
-    # A module with other parameters has another name at first.
+    # Yosys first gives a parametrised module another name.
     choose = f"{size.set_parameters(top, parameters)}hierarchy -check -top {top}; rename -top {top};"
     run_yosys(f"{choose} proc; select {top}; write_json -selected ports.json", sources, folder)
     ports = _ports(json.loads((folder / "ports.json").read_text()), top)
@@ -171,7 +171,7 @@ def split_products(module, operand_bits=18):
 
 
 def _chunks(bits, signed, operand_bits):
-    """Parts of an operand, each with the place of its lowest bit. A part of a signed operand is signed."""
+    """Parts of an operand, each with the position of its lowest bit. A part of a signed operand is signed."""
     size = operand_bits - 1 if signed else operand_bits
     for at in range(0, len(bits), size):
         is_last = len(bits) - at <= operand_bits
@@ -194,7 +194,7 @@ def _number(cell, parameter):
 
 
 def _route(folder, seed):
-    """Places and routes; returns the rate of the slowest clock in MHz, and its worst path."""
+    """Runs place and route; returns the rate of the slowest clock in MHz, and its critical path."""
     report = folder / f"report-{seed}.json"
     report.unlink(missing_ok=True)
     run_nextpnr(*_DEVICE, "-q", "--json", "netlist.json", "--seed", seed, "--report", report.name,
@@ -218,7 +218,7 @@ def worst_path(segments, netlist):
 
 
 def _register(netlist, end):
-    """The name of a register at an end of a path. A flip-flop of the wrapper stands for a port of the module."""
+    """The name of a register at an end of a path. A flip-flop of the wrapper represents a port of the module."""
     name = end["cell"]
     while name not in netlist.cells and "$" in name: # nextpnr adds a part to the names of cells that it splits
         name = name.rpartition("$")[0]
@@ -260,7 +260,7 @@ def check_products():
 
 
 def _write_both_products(folder, a, b, operand_bits, signed):
-    """Writes a netlist of two modules, a product and the same product split, with wires for its registers."""
+    """Writes a netlist of two modules, a product and the product split into parts, with wires instead of registers."""
     folder.mkdir(parents=True, exist_ok=True)
     kind = "signed" if signed else "unsigned"
     (folder / "product.sv").write_text(f"module product(input clk, input {kind} [{a - 1}:0] a, input {kind} [{b - 1}:0] b, "
@@ -280,7 +280,7 @@ def _write_both_products(folder, a, b, operand_bits, signed):
 
 
 def _samples(bits):
-    """Values at the ends of the range of an operand and of its parts."""
+    """Extreme values of an operand and of its parts."""
     ends = {0, 1, 2, 1 << 16, 1 << 17, 1 << 18, 1 << bits - 1}
     return sorted({(sign * end - less) % (1 << bits) for end in ends for less in (0, 1) for sign in (1, -1)})
 

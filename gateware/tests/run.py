@@ -62,7 +62,7 @@ def check(name, action):
 
 
 def module_checks():
-    """Yields the checks of the modules, as functions that return whether they failed. The build of a model checks all warnings too."""
+    """Yields the checks of the modules, as functions that return whether they failed. The build of a model also checks all warnings."""
     for module in MODULES:
         for name, parameters in module.builds().items():
             if name in module.measured:
@@ -108,7 +108,7 @@ def test():
 
 
 def board_checks(name, board):
-    """Returns the checks of a board's generated files by name, after generating these."""
+    """Generates a board's files, and returns their checks by name."""
     files = board.generate()
     return {f"{name}: {check_name}": partial(action, *files) for check_name, action in board.CHECKS.items()}
 
@@ -120,7 +120,7 @@ def run_lint(module, parameters):
 
 
 def print_measured(measure, name):
-    """Prints a measurement of the block `name` as a line of JSON. Returns whether the measurement failed."""
+    """Measures the block `name` and prints the result as a line of JSON. Returns whether the measurement failed."""
     try:
         print(json.dumps({"name": name, **measure(name)}), flush=True)
     except ToolError as error:
@@ -136,7 +136,7 @@ def build_models(names):
 
 
 def write_packages():
-    """Writes the generated files that differ from the descriptions. Returns False, which stands for no failure."""
+    """Writes the generated files that differ from the descriptions. Returns False, for no failure."""
     for path in packages.write(packages.full_soc()):
         print(path, flush=True)
     return False

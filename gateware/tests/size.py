@@ -24,16 +24,15 @@ _RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RA
 # Number of LUTs that one cell of each kind of LUT memory takes.
 _LUTRAM = {"RAM32M": 4, "RAM64M": 4, "RAM64X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM64X1D": 2, "RAM128X1D": 4}
 
-# Marks that Yosys leaves in a netlist, and pads and clock buffers that it adds to a top module. Sizes omit these cells, but
+# Marker cells that Yosys leaves in a netlist, and pads and clock buffers that it adds to a top module. Sizes omit these cells, but
 # include the pads of the SoC.
 _MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
 
-# Script for Yosys that maps a design, and counts its cells. Enables and resets of few flip-flops become logic, as in the Urbana's
-# bitstream: `synth_xilinx` has no option for it, so `dfflegalize` runs between two of its steps, with the flip-flops that
-# `synth_xilinx` itself allows there. The script then keeps only the combinational cells between registers and finds the
-# longest path in them. Its command `ltp` treats a flip-flop as logic, and lets a path go from the write of a LUT memory to its
-# read. So reads of LUT memories become tables, and all cells except combinational ones are deleted. A LUT memory of an unknown
-# kind would cut a path, so none is allowed.
+# Script for Yosys that maps a design, and counts its cells. Enables and resets of few flip-flops are turned into logic, as in the Urbana's
+# bitstream: `synth_xilinx` has no option for it, so `dfflegalize` runs between two of its steps, with the flip-flops that `synth_xilinx`
+# itself allows there. The script then keeps only the combinational cells between registers and finds the longest path in them. Its command
+# `ltp` treats a flip-flop as logic, and lets a path go from the write of a LUT memory to its read. Reads of LUT memories are therefore
+# replaced by tables, and all sequential cells are deleted. A LUT memory of an unknown kind would cut a path, so it is an error.
 _SCRIPT = """synth_xilinx -family xc7 -top {top} -flatten -run begin:map_ffs;
 dfflegalize -mince {loads} -minsrst {loads} -cell $_DFFE_?P?P_ 01 -cell $_SDFFE_?P?P_ 01 -cell $_DLATCH_?P?_ 01;
 synth_xilinx -family xc7 -top {top} -flatten -run map_ffs:;
@@ -73,12 +72,12 @@ def _folder(name):
 
 
 def is_soc(name):
-    """Whether this is the name of a SoC."""
+    """Returns whether this is the name of a SoC."""
     return name == SOC or name.startswith(f"{SOC}-")
 
 
 def build(name):
-    """The module and the parameters of a block or of a variant of one."""
+    """Returns the module and the parameters of a block or of a block's variant."""
     known = {name: (module, parameters) for module in MODULES
              for name, parameters in module.builds().items()}
     if name not in known:
@@ -144,7 +143,7 @@ def longest_path(report):
 
 
 def read(module, parameters):
-    """Checks that Yosys understands a module."""
+    """Checks that Yosys can read a module."""
     run_yosys(f"{set_parameters(module.top, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
 
 

@@ -1,4 +1,4 @@
-// A module with a known number of each resource, to test the measurement of sizes.
+// A module with known numbers of all resources, to test the size measurement.
 module size_sample (
     input  logic        clk,
     input  logic [31:0] a,
@@ -16,8 +16,8 @@ module size_sample (
     output logic [15:0] small_out
 );
     // A sum of 32 LUTs and 8 CARRY4; a LUT memory that stores 6 bits of it (a RAM32M of 4 LUTs); a sum of these 6 bits and 32
-    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops without an enable. The memory is between the two sums, so the longest
-    // path is the read of the memory, a LUT and 8 CARRY4.
+    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops without an enable. The memory is between the two sums, so the longest path is a
+    // read of the memory, a LUT and 8 CARRY4.
     (* ram_style = "distributed" *) logic [5:0] few [32];
     logic [31:0] a_held, b_held, first;
     logic [4:0] read_address_held;
@@ -35,7 +35,7 @@ module size_sample (
     always_ff @(posedge clk) delay <= {delay[6:0], bit_in};
     assign bit_out = delay[7];
 
-    // 4 flip-flops. Their enable has too few loads for a control set of its own, and becomes 4 LUTs.
+    // 4 flip-flops. Their enable has too few loads for a separate control set, and becomes 4 LUTs.
     always_ff @(posedge clk) if (bit_in) kept <= a[3:0];
 
     // A DSP48 with its registers.

@@ -20,13 +20,13 @@ _GATEWARE = _OUTPUT / "gateware"
 _PINS = TESTS / "ulx3s_pins.csv"
 _TOP = "glint_ulx3s"
 
-# Clocks that the PLLs of the FPGA must generate exactly: frequency in MHz and phase in degrees.
+# Clocks that the FPGA's PLLs must generate exactly: frequency in MHz and phase in degrees.
 _CLOCKS = Counter({(40.0, 0.0): 1, (40.0, 90.0): 1, (25.2, 0.0): 1, (126.0, 0.0): 1})
 
 # Limits of a PLL in MHz: its phase detector, its VCO, its outputs.
 _DETECTOR, _VCO, _OUTPUTS = (10, 400), (400, 800), (3.125, 400)
 
-# Bits of the capabilities: the sizes 320x180 and 640x360, and the scales 1 and 2.
+# Capability bits: the sizes 320x180 and 640x360, and the scales 1 and 2.
 _CAPABILITIES = {"SIZES": 0b011, "MEMORY_BITS": 21, "H_ACTIVE": 640, "V_ACTIVE": 360, "V_BORDER": 60}
 
 # Values of the board's identity registers, in Hz and bytes.
@@ -49,7 +49,7 @@ def check_pins(lpf, verilog, _script):
 
 
 def check_constraints(lpf, verilog, script):
-    """Checks the constraint of the input clock, the sources of the script, and the limits that the video and the memory set."""
+    """Checks the constraint of the input clock, the sources of the script, and the limits imposed by video and memory."""
     problems = [f"not in the constraints: {line}" for line in ('FREQUENCY PORT "clk25" 25.0 MHz;', "BLOCK ASYNCPATHS;")
                 if line not in lpf.splitlines()]
     problems += [f"not in the Yosys script: {word}" for word in ("scanout.sv", "VexRiscv_Full.v", f"{_TOP}.v") if word not in script]
@@ -61,7 +61,7 @@ def check_constraints(lpf, verilog, script):
 
 
 def check_identity(*_files):
-    """Checks the clock frequency and the size of memory that the board states for the firmware."""
+    """Checks the clock frequency and the memory size in the board's identity registers."""
     identity = Ulx3sSoC(build_id=0, blocks=Ulx3sSoC.possible_blocks).identity
     stated = {name: getattr(identity, name).status.reset.value for name in _IDENTITY}
     return [] if stated == _IDENTITY else [f"expected {_IDENTITY}, got {stated}"]
@@ -82,7 +82,7 @@ def check_clocks(_lpf, verilog, _script):
         for name, frequency in outputs.items():
             output = name.removesuffix("_DIV")
             if output != f"CLKO{feedback}":
-                # The phase counts eighths of a VCO cycle from the phase 0, which is one cycle less than the divider.
+                # The phase is in eighths of a VCO cycle; phase 0 is the value one less than the divider.
                 eighths = 8 * (numbers[f"{output}_CPHASE"] + 1 - numbers[name]) + numbers[f"{output}_FPHASE"]
                 found[frequency, 45.0 * eighths / numbers[name]] += 1
     if found != _CLOCKS:
@@ -127,7 +127,7 @@ def check_serializer(_lpf, _verilog, _script):
 
 
 def check_netlist(*_files):
-    """Checks that a LUT takes the reset before the reset's global buffer, and nothing else changes."""
+    """Checks that a LUT reads the reset from the input of the reset's global buffer, and that no other cell changes."""
     def cell(kind, **ports):
         directions = {port: "output" if port in ("CLKO", "Z") else "input" for port in ports}
         return {"type": kind, "port_directions": directions, "connections": ports}

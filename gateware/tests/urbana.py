@@ -18,17 +18,16 @@ _OUTPUT = BUILD / "urbana"
 _GATEWARE = _OUTPUT / "gateware"
 _PINS = TESTS / "urbana_pins.csv"
 
-# Clocks that the FPGA's MMCMs and PLLs must generate exactly, by the frequency of the system clock in MHz: frequency in MHz and
-# phase in degrees.
+# Clocks that the FPGA's MMCMs and PLLs must generate exactly, for each system clock in MHz: frequency in MHz and phase in degrees.
 _CLOCKS = {
     81.25: Counter({(81.25, 0): 1, (325.0, 0): 1, (325.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1}),
     100: Counter({(100.0, 0): 1, (400.0, 0): 1, (400.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1}),
 }
 
-# Numbers that follow from a system clock of 100 MHz: 115200 baud as a share of 2^32, and clocks of a third of a bit of I2C.
+# Constants for a system clock of 100 MHz: 115200 baud as a fraction of 2^32, and the number of clocks per third of an I2C bit.
 _NUMBERS_100_MHZ = ["23'd4947802", ".PHASE    (7'd84)"]
 
-# Clocks of 100 MHz between two refreshes of the memory: 64 ms for 8192 rows, rounded up.
+# Number of 100 MHz clocks between two refreshes of the memory: 64 ms for 8192 rows, rounded up.
 _REFRESH_100_MHZ = 782
 
 _CONSTRAINTS = [
@@ -62,7 +61,7 @@ def check_pins(xdc, verilog, _script):
 
 
 def check_constraints(xdc, _verilog, script):
-    """Checks that input clock, clock groups and configuration are constrained, and that the script names part and sources."""
+    """Checks that input clock, clock groups and configuration are constrained, and that the script contains part and sources."""
     problems = [f"not in the XDC: {line}" for line in _CONSTRAINTS if line not in xdc.splitlines()]
     for word in ("-part xc7s50csga324-1", "scanout.sv", "read_xdc glint_urbana.xdc", "write_bitstream",
                  "synth_design -directive default -control_set_opt_threshold 4 "):
@@ -94,7 +93,7 @@ def check_clocks(_xdc, verilog, _script, megahertz=81.25):
 
 
 def check_100_mhz(*_files):
-    """Checks that all that depends on the system clock follows its frequency, on both boards."""
+    """Checks that all constants that depend on the system clock match its frequency, on both boards."""
     urbana, virtual = (board(build_id=0, blocks=OPTIONAL_BLOCKS, sys_clk_freq=100e6) for board in (UrbanaSoC, VirtualSoC))
     files = _elaborate(urbana, _OUTPUT.with_name("urbana_100_mhz"))
     virtual.finalize()

@@ -20,7 +20,7 @@ _VERILATE = ["--no-timing", "--flatten", "--public-ignore", "--x-assign", "fast"
 
 
 def build(folder, kind=PROFILED):
-    """Builds the library of a kind from the Verilog that LiteX left in `folder`, unless it is up to date: `libglint_soc.so`, or
+    """Builds a library of the given kind from LiteX's Verilog in `folder`, unless the library is up to date: `libglint_soc.so`, or
     `libglint_soc_trace.so` that can write waveforms."""
     waveforms = kind == WAVEFORMS
     objects = folder / ("verilated-trace" if waveforms else "verilated")
@@ -36,7 +36,7 @@ def build(folder, kind=PROFILED):
     inputs = digest([verilog, *files_below(GATEWARE / "rtl", _SOC), *compiler.RECIPE, Path(__file__)], kind)
     stamp = objects / "model.stamp"
     if not is_current(stamp, inputs):
-        # Verilator derives names of its output files from their content, so the files of an older build must go.
+        # Verilator derives the names of its output files from their content, so the files of an older build are deleted.
         shutil.rmtree(objects, ignore_errors=True)
         objects.mkdir(parents=True)
         print("Verilator", flush=True)
@@ -60,7 +60,7 @@ def _compile_model(objects, options, harness_options, kind):
     slow = [source for source in sources if "__Slow" in source.name]
     hot = [source for source in sources if source not in slow]
     compiler.compile_all("compile what runs once", slow, objects, options)
-    # Waveforms cost more time than a profile gains, and a few frames less than it takes.
+    # With waveforms, the cost of tracing exceeds the gain of a profile; for a few frames, making the profile takes longer than it saves.
     if kind == PROFILED:
         harness = [_SOC / "soc.cpp", _SOC / "train.cpp"]
         compiler.compile_all("compile the training", harness, objects, harness_options)

@@ -40,7 +40,7 @@ def verilate(top, sources, parameters, folder, options):
                   *(f"-G{key}={value}" for key, value in parameters.items()), *sources)
     description = describe(top, sources, parameters, folder)
     (folder / "ports.inc").write_text("".join(f"PORT({port['name']})\n" for port in description["ports"]))
-    # The description becomes one string literal per line, since compilers limit the length of a literal.
+    # The description becomes one string literal per line, because compilers limit the length of a literal.
     text = "".join(json.dumps(line) + "\n" for line in json.dumps(description, indent=0).splitlines())
     (folder / "description.inc").write_text(text)
 
@@ -56,7 +56,7 @@ def object_of(source, folder):
 
 
 def compile_all(name, sources, folder, options):
-    """Compiles every source to an object in `folder`, as many at a time as there are cores, and prints the progress."""
+    """Compiles every source to an object in `folder`, one per core at a time, and prints the progress."""
     done = 0
     lock = threading.Lock()
 
@@ -69,19 +69,19 @@ def compile_all(name, sources, folder, options):
             done += 1
             print(f"{name}: {done} of {len(sources)}", flush=True)
 
-    # Compiles the largest file first, because it decides when the last compilation ends.
+    # Compiles the largest file first, because it determines the total time.
     queue = sorted(sources, key=lambda source: -source.stat().st_size)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(compile_one, queue))
 
 
 def run_linker(objects_and_options, built):
-    """Links the file `built`. Verilator's runtime asks the library `atomic` whether its atomic variables need locks."""
+    """Links the file `built`. Verilator's runtime needs the library `atomic` to find out whether its atomic variables need locks."""
     run([COMPILER, "-pthread", *objects_and_options, "-latomic", "-o", built])
 
 
 def link(objects, built, library):
-    """Links a shared library as `built` and renames it to `library`, so that running programs keep the old one they opened."""
+    """Links a shared library as `built` and renames it to `library`, so that running programs keep the old library."""
     run_linker(["-shared", *objects], built)
     built.rename(library)
 

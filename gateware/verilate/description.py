@@ -12,7 +12,7 @@ import json
 
 from .programs import ToolError, run_verilator
 
-# Widths of the integer types that need no declared range.
+# Widths of the integer types without a declared range.
 _WIDTHS = {"logic": 1, "bit": 1, "byte": 8, "shortint": 16, "int": 32, "integer": 32, "longint": 64}
 
 

@@ -10,7 +10,7 @@ MODELS = GATEWARE.parent / "target" / "gateware" / "models"
 
 _OPTIMISE = "-O2"
 
-# Registers start with random values, and each `x` becomes a random value: tests then detect values that were never written.
+# Registers start with random values, and each `x` becomes a random value: tests then detect reads of values that were never written.
 _VERILATE = ["-Wall", "--x-initial", "unique", "--x-assign", "unique"]
 
 
@@ -25,7 +25,7 @@ def build(top, sources, name, parameters):
     folder.mkdir(parents=True)
     compiler.verilate(top, sources, parameters, folder, _VERILATE)
     options = [*compiler.flags(folder), _OPTIMISE]
-    # All files are compiled as one file: compiling a single one of them takes as long as compiling them all together.
+    # All files are compiled as one file: compiling one of them alone takes as long as compiling all of them as one.
     parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
     whole = folder / "whole.cpp"
     whole.write_text("".join(f'#include "{path}"\n' for path in parts))

@@ -1,5 +1,5 @@
 // Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs: for words so wide that this saves more LUTs than
-// the address counter takes. The shift registers of the module delay take a LUT for each bit.
+// the address counter takes. The module delay uses shift registers, one LUT per bit.
 //
 //   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
 //
@@ -19,7 +19,7 @@ module wide_delay #(
     localparam int unsigned PLACE_BITS = $clog2(PLACES);
 
     (* ram_style = "distributed" *) logic [WIDTH-1:0] places [0:2**PLACE_BITS-1];
-    // The place with the oldest word, which is read and then replaced by the newest.
+    // Address of the oldest word, which is read and then replaced by the newest word.
     logic [PLACE_BITS-1:0] place;
 
     always_ff @(posedge clk) begin

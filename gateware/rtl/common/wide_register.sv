@@ -1,11 +1,11 @@
-// A register of many bits with an enable that is known a clock ahead. For every LOADS flip-flops the enable has a copy, so that
-// none drives more than LOADS.
+// A wide register with an enable that is known one clock ahead. The enable has a copy for every LOADS flip-flops, so that no copy drives
+// more than LOADS.
 //
 //   next ─▶ copies of the enable ─┬─┬─┬─▶
 //   in ──────────────────────────▶ register ──▶ out
 //
-// `next` is high in the clock before the register takes `in`, and never in two successive clocks. Each copy of the enable depends
-// on itself for this reason: synthesis would merge flip-flops with the same input into one.
+// `next` is high in the clock before the register takes `in`, and never in two successive clocks. Each copy of the enable depends on
+// itself, because synthesis would otherwise merge flip-flops with equal inputs.
 
 `default_nettype none
 

@@ -1,17 +1,17 @@
 // Writes words of 16 bytes to memory through a native write port, in bursts.
 //
 // Input: a stream of {address, data, strobe}, with strobe bit k for byte k. Memory side, the LiteDRAM native write port:
-// commands by valid/ready, and the data of each command in the same order, some time later. Memory takes data without looking
-// at `wdata_valid`; the data are always valid by then, since they enter their FIFO before the command goes out.
+// commands by valid/ready, and the data of each command in the same order, some time later. Memory takes data without checking
+// `wdata_valid`; the data are always valid by then, because they enter their FIFO before the command is sent.
 //
-// Memory takes a dozen clocks to turn from reads to writes and back. So words wait in the FIFOs until BURST of them go out
-// together. While `hurry` is high, as needed for the last words of a frame, words go out at once.
+// Memory takes a dozen clocks to switch between reads and writes. Words therefore wait in the FIFOs until BURST of them can be sent
+// together. While `hurry` is high, which is needed for the last words of a frame, words are sent at once.
 //
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data
 //
 // Latency 2 clocks from a word to its command during a burst, throughput one word per clock. `idle` is high when memory
-// has taken all words; it rises a clock after the last word. The ready signals of memory, which end a long path in LiteDRAM,
+// has taken all words; it rises one clock after the last word. The ready signals of memory, which end a long path in LiteDRAM,
 // only move the FIFOs. `in_ready` is a register, so that no path goes from the FIFOs through the sources of the words.
 
 `default_nettype none
@@ -45,7 +45,7 @@ module write_port #(
 
     assign move = in_valid && in_ready;
 
-    // `in_ready` implies room for the data. An address leaves its FIFO before its data, so there is room for the address too.
+    // `in_ready` implies that the data fit their FIFO. An address leaves its FIFO before its data, so the address fits too.
     /* verilator lint_off PINCONNECTEMPTY */
     fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(DEPTH)) addresses (
         .clk       (clk),
@@ -71,7 +71,7 @@ module write_port #(
     /* verilator lint_on PINCONNECTEMPTY */
 
     // `gathered` is the number of words whose command has not been taken, `waiting` the number of words whose data memory has not
-    // taken. Both follow memory by a clock, so neither is ever too low, and a burst does not end before a command has been taken.
+    // taken. Both are updated one clock late, so neither is ever too low, and a burst does not end before a command has been taken.
     logic [COUNT_BITS-1:0] gathered, waiting, waiting_next;
 
     assign cmd_valid    = address_valid && bursting;

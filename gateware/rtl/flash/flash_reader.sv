@@ -1,17 +1,17 @@
 // Reads words of 32 bits from a SPI flash with four data lines.
 //
 // The command is 0x6b, fast read with quad output: command and address go out on line 0, eight clocks pass, and the bytes come in on all
-// four lines, the high half first. The flash continues with the next address for as long as it is selected, so a request for the word
-// after the last one takes its data at once:
+// four lines, the high half first. The flash continues with the next address while it is selected, so a request for the word after the
+// last word gets its data at once:
 //
 //   cs_n  ‾‾‾‾‾‾‾╲_______________________________________________ … stays low
 //         8 bits │ 0x6b │ 24 bits of address │ 8 clocks │ 8 × 4 bits │     │ 8 × 4 bits │
 //
-// `sclk` has half the frequency of `clk` and rises in the middle of a bit. It runs only while something is sent or received, and for seven
-// clocks before the flash is selected: the flash needs a pause between two commands, and the primitive STARTUPE2 of an FPGA of the 7
-// series leaves out the first three clocks after the configuration.
+// `sclk` has half the frequency of `clk` and rises in the middle of a bit. It only runs during transfers, and for seven clocks before the
+// flash is selected: the flash needs a pause between two commands, and the primitive STARTUPE2 of 7-series FPGAs suppresses the first
+// three clocks after configuration.
 //
-// A bit from the flash is sampled when `sclk` falls, just before the flash changes it, so it has two periods of `clk` for its path.
+// A bit from the flash is sampled when `sclk` falls, just before the flash changes it, so its path has two periods of `clk`.
 //
 // `request` and `address` hold until `done`, when `data` is valid, for one clock. The byte of the lowest address is in bits 7:0.
 
@@ -36,14 +36,14 @@ module flash_reader #(
 
     typedef enum logic [2:0] {IDLE, DESELECT, SEND, SKIP, RECEIVE} state_t;
     state_t state;
-    // Bits in this state so far, and with the present one.
+    // Number of bits so far in this state, without and with the current bit.
     logic [4:0] count, next_count;
     logic last;
     // The second half of a bit, in which `sclk` is high.
     logic second;
-    // The address after the word that was read last.
+    // The address after the last word read.
     logic [ADDRESS_BITS-1:0] follower;
-    // Bytes in the order of their addresses, the first one in the high bits.
+    // Bytes in the order of their addresses, the first byte in the high bits.
     logic [31:0] received;
     logic [31:0] sent;
 
@@ -63,7 +63,7 @@ module flash_reader #(
             end
         end else begin
             second <= !second;
-            // No clock while the flash is selected.
+            // No clock edge when the flash becomes selected.
             sclk <= !second && !(state == DESELECT && last);
             if (second) begin
                 count <= last ? 5'd0 : next_count;

@@ -1,12 +1,12 @@
-// Takes the bytes of an image sensor from its pins, in the domain of the sensor's clock, and makes tokens of them: a pixel of two
+// Samples the bytes of an image sensor at its pins, in the domain of the sensor's clock, and converts them to tokens: a pixel of two
 // bytes, the end of a line, the end of a frame.
 //
 //   pins ─▶ risen, fallen ─▶ sample ─▶ pairs of bytes ─▶ token
 //
-// A byte is valid while HREF is active and VSYNC is not. VSYNC is active between two frames: its start ends the frame, and also a
-// line that is under way. The first byte of a line is the first byte of a pixel. A token is shown for one clock; if it is not
-// taken, the next token that is taken says that some are lost. The settings may come from any domain; software changes them while
-// the engine is off. `beat` changes every 8 clocks.
+// A byte is valid while HREF is active and VSYNC is not. VSYNC is active between two frames: its start ends the frame and an unfinished
+// line. The first byte of a line is the first byte of a pixel. A token is valid for one clock; if it is not taken, the next token that is
+// taken has `lost` set. The settings may come from any domain, because software only changes them while the engine is off. `beat` changes
+// every 8 clocks.
 //
 // Latency 3 clocks of `pclk` from the last byte of a pixel to its token. There is no reset: every state ends with a frame.
 

@@ -3,8 +3,8 @@
 //
 //   pixel ─▶ green's share ─▶ + red's ─▶ + blue's ─▶ two channels ─▶ mark
 //
-// A share is a constant times 5 or 6 bits, so it is a table of as many inputs as a LUT has, which the LUT of an adder's bit can
-// hold too. Latency 5 clocks, throughput one pixel per clock.
+// A share is a constant times 5 or 6 bits: a table that fits one LUT per bit, the LUT of the adder's bit. Latency 5 clocks, throughput one
+// pixel per clock.
 
 `default_nettype none
 
@@ -17,7 +17,7 @@ module colour_window (
 );
     localparam int unsigned CHANNELS = 3; // luma, Cr, Cb
 
-    // The channels with 10 fraction bits. Green's share includes their middle and what rounds them.
+    // The channels with 10 fraction bits. Green's share includes the offset of the chroma channels and the rounding.
     typedef logic [17:0] share_t;
     (* rom_style = "logic" *) share_t greens [0:CHANNELS*64-1];
     (* rom_style = "logic" *) share_t reds   [0:CHANNELS*32-1];

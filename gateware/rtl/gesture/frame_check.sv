@@ -1,10 +1,10 @@
-// Counts columns and lines, and judges each frame: it is whole if it has `height` lines of `width` pixels, without a fault
+// Counts columns and lines, and checks each frame: a frame is whole if it has `height` lines of `width` pixels, without a fault
 // (docs/formats/gesture.md, "Gestures").
 //
-// Outputs come one clock after `item`: `x` and `y` are those of the pixel, or of the clock after the end of the line;
-// `inside_region` says that they are in the region. With `out_item.frame`, `whole` is the verdict. The first frame begins at the
-// first end of a frame after `enable` has risen. If the sensor's clock stops, the frame under way is dropped, and a new one begins
-// at the next end of a frame. Throughput one item per clock.
+// Outputs come one clock after `item`: `x` and `y` belong to the pixel, or to the clock after the end of the line; `inside_region` is high
+// if they are in the region. `whole` is valid with `out_item.frame`. The first frame begins at the first end of a frame after `enable` has
+// risen. If the sensor's clock stops, the current frame is dropped, and a new frame begins at the next end of a frame. Throughput one item
+// per clock.
 
 `default_nettype none
 
@@ -39,7 +39,7 @@ module frame_check (
         if (item.odd)        line_fault = gesture_registers_pkg::FAULT_BYTE;
         if (item.cut)        line_fault = gesture_registers_pkg::FAULT_CUT;
 
-        // The first fault of a frame stays.
+        // Only the first fault of a frame is kept.
         frame_fault = found;
         if (found == gesture_registers_pkg::FAULT_NONE) begin
             if (item.lost)                            frame_fault = gesture_registers_pkg::FAULT_LOST;
@@ -57,7 +57,7 @@ module frame_check (
         whole    <= active && running && enable && frame_fault == gesture_registers_pkg::FAULT_NONE;
         events   <= '0;
 
-        // Both counts stay at their largest value.
+        // Both counts saturate.
         if (item.pixel || item.blank) column <= column + 11'(column != '1);
         if (item.next || item.frame)  column <= '0;
         if (item.next)                line   <= line + 11'(line != '1);

@@ -1,17 +1,16 @@
-// The gesture engine: takes the frames of an image sensor and finds the hand by its colour. Number, sums and box of the pixels in
-// the hand's colour are the results of each whole frame; software divides and filters (docs/gesture.md; docs/formats/gesture.md,
-// "Gestures").
+// The gesture engine: finds a hand by its colour in the frames of an image sensor. The results of each whole frame are number, sums and
+// bounding box of the pixels in the hand's colour; software divides and filters (docs/gesture.md; docs/formats/gesture.md, "Gestures").
 //
 //    pclk                              clk
 //   pins ─▶ camera_capture ─▶ cdc_fifo ─▶ item ─▶ colour_window ─▶ frame_check ─┬▶ run_filter ─▶ mask_sums ─▶ results
 //                                                                              └▶ snapshot
 //
-// Nothing stops the pipeline in `clk`: only valid bits travel with the pixels. After each line the FIFO waits for 15 clocks, in
-// which run_filter ends the line's last run, and after each frame for 15 clocks, in which the results and the settings of the next
-// frame are taken. Throughput one pixel per clock besides; 9 clocks from the FIFO to the sums.
+// The pipeline in `clk` never stalls: only valid bits travel with the pixels. After each line the FIFO pauses for 15 clocks, in which
+// run_filter ends the line's last run, and after each frame for 15 clocks, in which the results and the settings of the next frame are
+// latched. Throughput one pixel per clock outside of the pauses; 9 clocks from the FIFO to the sums.
 //
-// The sensor's clock may stop at any time: `status.running` is low when it has not ticked for 2^TIMEOUT_BITS clocks. The pins of
-// the camera's bus pass through here only to be brought into the domain of `clk`.
+// The sensor's clock may stop at any time: `status.running` is low when it has not ticked for 2^TIMEOUT_BITS clocks. The pins of the
+// camera's control bus only pass through this module for synchronisation to `clk`.
 
 `default_nettype none
 
@@ -65,7 +64,7 @@ module gesture_engine #(
     cdc_level cross_scl   (.clk, .level(camera_scl),   .synced(status.scl));
     cdc_level cross_sda   (.clk, .level(camera_sda),   .synced(status.sda));
 
-    // ---- Watch of the sensor's clock, and its input clock ---------------------------------------------------------
+    // ---- Monitor of the sensor's clock, and its input clock -------------------------------------------------------
 
     localparam int unsigned HALF       = CLOCK_DIVIDER / 2;
     localparam int unsigned PHASE_BITS = HALF > 1 ? $clog2(HALF) : 1;

@@ -9,16 +9,16 @@ package gesture_pkg;
     localparam logic [1:0] TOKEN_FRAME = 2'd2; // the end of a frame, and the start of the next one
     /* verilator lint_on UNUSEDPARAM */
 
-    // What the image sensor sent. `data` of a pixel is its colour, RGB565; of a line, bit 0 says that a byte was left over, bit 1
-    // that VSYNC cut it. `lost`: tokens before this one are missing.
+    // A token from the image sensor. `data` of a pixel is its colour, RGB565; of a line, bit 0 is set if its number of bytes was odd, bit
+    // 1 if VSYNC cut it. `lost`: tokens before this one are missing.
     typedef struct packed {
         logic        lost;
         logic [1:0]  kind;
         logic [15:0] data;
     } token_t;
 
-    // What a clock of the pipeline is for: one of the first five bits, or none. A line is followed by 14 clocks `blank` and one
-    // `next`, which stand for unmasked pixels past its end; 15 clocks without any of them follow a frame.
+    // The contents of a clock in the pipeline: one of the first five bits, or none. A line is followed by 14 clocks `blank` and one
+    // `next`, which act as unmarked pixels past its end; a frame is followed by 15 clocks without any of these bits.
     typedef struct packed {
         logic pixel;
         logic line;

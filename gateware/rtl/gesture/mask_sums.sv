@@ -1,9 +1,9 @@
-// Adds up the kept pixels of a frame: their number, the sums of their columns and lines, the box around them, and with MOMENTS the
-// sums of the products of columns and lines. The results hold those of the last whole frame.
+// Accumulates the kept pixels of a frame: their number, the sums of their columns and lines, their bounding box, and with MOMENTS the sums
+// of the products of columns and lines. `results` holds the values of the last whole frame.
 //
-// `kept` with `x` and `y` is taken in every clock. A frame ends with `frame`, at least one clock after its last pixel and at least
-// four before the next one; if it is `whole`, its sums are in `results` three clocks later, when `latched` is high. No sum of a
-// frame of up to 1280x720 pixels exceeds its bits.
+// `kept`, `x` and `y` are sampled in every clock. A frame ends with `frame`, at least one clock after its last pixel and at least four
+// before the next `frame`; if it is `whole`, its sums are in `results` three clocks later, when `latched` is high. No sum of a frame of up
+// to 1280x720 pixels exceeds its bits.
 
 `default_nettype none
 
@@ -23,7 +23,7 @@ module mask_sums #(
 );
     gesture_registers_pkg::results_t sums;
     logic                            found, next, loading, clear;
-    // Complements of the least column and line, which begin at 0 like all other registers of the sums.
+    // Complements of the smallest column and line, which start at 0 like all other sum registers.
     logic [10:0]                     most_left, most_up;
 
     assign next = frame && whole;
@@ -32,7 +32,7 @@ module mask_sums #(
     assign sums.box_y.first = ~most_up;
 
     always_ff @(posedge clk) begin
-        // The last products come a clock after the last pixel, and `results` takes the sums two clocks after `frame`.
+        // The last products come one clock after the last pixel, and `results` latches the sums two clocks after `frame`.
         clear   <= frame;
         loading <= next && !rst;
         latched <= loading;

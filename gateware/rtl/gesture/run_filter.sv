@@ -1,4 +1,4 @@
-// Keeps the marked pixels of a line that belong to a run of at least `reach` + 1 of them, and drops all others: a horizontal
+// Keeps the marked pixels of a line that belong to a run of at least `reach` + 1 marked pixels, and drops all others: a horizontal
 // opening (docs/formats/gesture.md, "Gestures").
 //
 //   marked    . M . M M M M . .        reach 2
@@ -6,9 +6,9 @@
 //   full      . . . . . F F . .        the last of three marked pixels in a row
 //   kept      . . . . . K K K K  for columns two to the left: those of the run
 //
-// A pixel is judged when the `reach` pixels after it are known, so `out_x` is less by `reach`. The clocks `blank` and `next`
-// after the end of a line are pixels that are not marked. No memory of the marks is needed: every pixel within `reach` of a full
-// run was marked. Latency one clock, throughput one pixel per clock.
+// The decision about a pixel needs the `reach` pixels after it, so `out_x` lags by `reach`. The clocks `blank` and `next`
+// after the end of a line count as unmarked pixels. No memory of the marks is needed: every pixel within `reach` of a full run was marked.
+// Latency one clock, throughput one pixel per clock.
 
 `default_nettype none
 
@@ -23,7 +23,7 @@ module run_filter (
     output logic [10:0]               out_x,
     output logic [10:0]               out_y
 );
-    // Clocks in which pixels are kept after this one.
+    // Number of further clocks in which pixels are kept.
     logic [3:0] run, more;
     logic       moves, full;
 

@@ -19,17 +19,16 @@
 //   SDA  ═══════════════╳═════════════════════════
 //        HIGH ││ LOW     │ SET    │ HIGH     ││
 //
-// The phase of a high SCL begins when SCL is seen high, so a device may stretch the clock. Between two commands of a
-// transaction, and while there is no room for a byte to receive, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL
-// is seen high. A start takes 3 phases, and 1 more within a transaction; a stop takes 4 phases.
+// The phase of a high SCL begins when SCL is seen high, so a device may stretch the clock. Between two commands of a transaction, and
+// while the FIFO of received bytes is full, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL is seen high. A start takes 3
+// phases, or 4 within a transaction; a stop takes 4 phases.
 //
 // A start checks SDA. A low SDA means that a device is still in the middle of a byte. The device then gets up to nine SCL
 // clocks, and the start condition follows in the first of these clocks in which SDA is released, which resets the device.
 //
 // Repetition: while `repeats` is high, a finished command goes back into the queue, and a transaction begins every `period` + 1
-// clocks, the first one `period` + 1 clocks after `repeats` rises. By then the queue must hold a whole transaction, from
-// start to stop. `ended` pulses once every `batch` + 1 transactions. A transaction that is still running when the next
-// one is due is an error.
+// clocks, the first one `period` + 1 clocks after `repeats` rises. At that time the queue must hold a whole transaction, from start to
+// stop. `ended` pulses once every `batch` + 1 transactions. A transaction that is still running when the next one is due is an error.
 //
 //   command ──▶┌──────┐
 //          ┌──▶│ fifo │──▶ steps ──┐
@@ -42,7 +41,7 @@
 `default_nettype none
 
 module i2c_engine #(
-    // Clocks of a phase, a third of an SCL period.
+    // Number of clocks per phase, a third of an SCL period.
     parameter int unsigned PHASE        = 68,
     // A device may hold SCL low for up to 2^STRETCH_BITS clocks; longer stretching is an error.
     parameter int unsigned STRETCH_BITS = 21,
@@ -100,7 +99,8 @@ module i2c_engine #(
     logic [PHASE_BITS-1:0] phase;
     logic                  held, expired, waiting;
     logic [STRETCH_BITS:0] stretched;
-    // `started`: SDA is low after a start condition. In LOW without one, the engine clocks a device that pulls SDA low.
+    // `started`: Set by a start condition, after which SDA is low. In LOW without a start condition, the engine clocks a device that pulls
+    // SDA low.
     logic                  last_byte, ninth, started;
     logic                  again, due, late, begins;
     logic [23:0]           elapsed;
@@ -144,7 +144,7 @@ module i2c_engine #(
         endcase
     end
 
-    // A device sees no edge before the reset.
+    // The reset comes before a device can see an edge.
     initial begin
         scl_out = 1'b1;
         sda_out = 1'b1;

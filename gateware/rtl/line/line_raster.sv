@@ -9,10 +9,10 @@
 // ends with its last pixel, with its last pixel in the band, or a clock after the line has left the picture. The next piece
 // follows without a gap.
 //
-// Streams are valid/ready. The stages after the walk cannot be stopped; the walk stops while the FIFO has no room for all
-// pixels on the way. Latency 5 clocks, throughput one pixel per clock. `size` and `first_row`, the size code of the picture and the
-// first row of the band, must hold while pieces are inside. If memory is damaged and a piece leaves the band, only its pixels in
-// the band are drawn. `idle` is low from the clock after a piece is taken until its last group is taken.
+// Streams are valid/ready. The stages after the walk cannot be stopped; the walk stops while the FIFO cannot hold all pixels in these
+// stages. Latency 5 clocks, throughput one pixel per clock. `size` and `first_row`, the size code of the picture and the first row of the
+// band, must hold while pieces are inside. If memory is damaged and a piece leaves the band, only its pixels in the band are drawn. `idle`
+// is low from the clock after a piece is taken until its last group is taken.
 
 `default_nettype none
 
@@ -38,7 +38,7 @@ module line_raster (
     logic [4:0]     blocks;
     band_pkg::cut_t cut;
 
-    // The size holds from before the pieces. The width of the picture is 64 times `blocks`.
+    // The size is constant since before the first piece. The width of the picture is 64 times `blocks`.
     always_ff @(posedge clk) begin
         cut       <= band_pkg::cut(size);
         last_line <= cut.lines - 1'b1;
@@ -46,7 +46,7 @@ module line_raster (
 
     assign blocks = cut.stride[7:3];
 
-    // The piece, at its current pixel. `error` belongs to the next one.
+    // The piece, at its current pixel. `error` belongs to the next pixel.
     logic               active, x_major, left, up;
     logic [15:0]        colour;
     logic [11:0]        column;

@@ -1,5 +1,5 @@
-// Set-up of segments (docs/formats/line.md, "Lines"): finds the first pixel, the error and the depth of each line, follows it through
-// the bands of the picture, and sends a piece for each band that it has a pixel in.
+// Set-up of segments (docs/formats/line.md, "Lines"): finds the first pixel, the error and the depth of each line, follows the line
+// through the bands of the picture, and sends a piece for each band in which it has a pixel.
 //
 //        A╲         ┌ first pixel, error, depth
 //      ════╳══════  piece 1 from here
@@ -7,8 +7,8 @@
 //      ══════╲════  piece 2 from here: the raster pass of this band needs no division
 //             B
 //
-// The set-up has one subtractor, one multiplier and one divider, which work at the same time. A one in the shift register `at`
-// shows the step of the program:
+// The set-up has one subtractor, one multiplier and one divider, which work at the same time. The shift register `at` is a one-hot program
+// counter:
 //
 //   at          subtractor                  multiplier                       divider, 32 clocks
 //    0 to  9    |dx|, |dy|, their signs
@@ -17,22 +17,21 @@
 //   19 to 23                                + major * (above - 256)          depth step
 //   24 to 28                                depth step * ahead + bias
 //
-// A coordinate is mirrored (`~(x - 1)`) on an axis along which the segment runs backward, so both walk upward. `edge_row`, mirrored
-// too, is the first row past the band that the line is in; `entered` is high until the piece of this band is made. A piece is
-// copied, so that the walk continues while it waits at the output.
+// On an axis along which the segment runs backward, coordinates are mirrored (`~(x - 1)`), so both coordinates increase in the walk.
+// `edge_row`, also mirrored, is the first row past the line's current band; `entered` is high until the piece of this band is made. A
+// piece is copied, so that the walk continues while the piece waits at the output.
 //
 // Streams are valid/ready. A segment moves after its last piece, so its fields need no copy. It takes 31 clocks, or 59 with a depth
-// step (not with equal depths, nor if it is less than a pixel long); one for each pixel up to the one where it leaves the picture,
-// those before the picture too; one for each piece, and one for each band that it passes, counted from the border of the picture,
-// of which the clocks of the division hide 28. A piece waits for the one before it to move. `size` and `bias` must hold while a
-// segment is inside.
+// step (not with equal depths, nor if it is less than a pixel long); one for each pixel, including those before the picture, until the
+// line leaves the picture; one for each piece; and one for each band that the line crosses in the picture, of which 28 overlap with the
+// division. A piece waits until the previous piece has moved. `size` and `bias` must hold while a segment is inside.
 
 `default_nettype none
 
 module line_setup (
     input  wire                    clk,
     input  wire                    rst,
-    // Size code of the picture, and the depth codes by which lines are moved nearer.
+    // Size code of the picture, and the bias in depth codes by which lines are moved nearer.
     input  wire  [1:0]             size,
     input  wire  [15:0]            bias,
     input  wire                    in_valid,
@@ -42,11 +41,11 @@ module line_setup (
     input  wire                    out_ready,
     output records_pkg::piece_t       out_piece
 );
-    // At most one of these bits is 1: a step of the program, the walk along the line, or the end.
+    // One-hot state: a step of the program, the walk along the line, or the end.
     logic [28:0] at;
     logic        walking, finished, waiting;
 
-    // The coordinate fetched for the subtractor, and the one fetched before.
+    // The coordinate fetched for the subtractor, and the previously fetched coordinate.
     logic               fetch_y, fetch_b, locates;
     logic signed [19:0] fetched, previous;
     logic signed [20:0] difference;
@@ -65,7 +64,7 @@ module line_setup (
     assign fetch_b = at[1] || at[3] || at[10] || at[11] || at[4] && left || at[5] && !left || at[6] && up || at[7] && !up
                   || at[14] && back_minor || at[15] && !back_minor || at[16] && back_major || at[17] && !back_major;
 
-    // A place is that of the coordinate less 1: the subtractor takes 1 off instead of the coordinate before.
+    // Positions are of the coordinate less 1: in that step the subtractor subtracts 1 instead of the previous coordinate.
     assign locates    = at[11] || at[12] || at[13] || at[14];
     assign difference = {fetched[19], fetched} + ~{previous[19], previous} + 21'(!locates);
 
@@ -88,7 +87,7 @@ module line_setup (
         end
     end
 
-    // An end point on both axes, less 1, and mirrored: the number of its pixel and its place in it.
+    // An end point on both axes, less 1, and mirrored: the index of its pixel, and the position in the pixel.
     logic [20:0] minor_place, major_place, on_minor, on_major;
     logic [6:0]  beside;
     logic        below, passed;
@@ -111,13 +110,13 @@ module line_setup (
     logic signed [9:0] ahead, above;
     logic              tie;
 
-    // Yosys puts the logic of the second summand into the LUTs of the sum, but gives that of the first one LUTs of its own.
+    // Yosys puts the logic of the second summand into the LUTs of the sum, but uses separate LUTs for the logic of the first summand.
     assign ahead = 10'(back_major) + {{2{on_major[7] && !passed}}, on_major[7], ~on_major[6:0]};
     assign above = 10'(!back_minor) + {2'b11, on_minor[7:0]};
     assign tie   = x_major ? left || minor == '0 : !left;
 
-    // The depth step: a dividend shifts out and a quotient shifts in. With a negative difference of the depths both are inverted,
-    // so that the quotient is a floor.
+    // The depth step: a dividend shifts out and a quotient shifts in. For a negative difference of the depths both are inverted, so that
+    // the quotient is rounded down.
     logic signed [24:0] depth_difference;
     logic               falls, divides, dividing;
     logic [31:0]        quotient;
@@ -145,7 +144,7 @@ module line_setup (
         if (rst) dividing <= 1'b0;
     end
 
-    // The multiplier. With 0 as a factor, and the sum as the addend, it keeps its sum.
+    // The multiplier. With a factor of 0, and its sum as the addend, it holds its sum.
     logic signed [24:0] factor;
     logic signed [17:0] other;
     logic signed [41:0] addend, sum;
@@ -158,14 +157,14 @@ module line_setup (
         other = at[19] ? 18'(above) : 18'(ahead);
         if (!(at[17] || at[19] || at[24] || at[25])) other = '0;
 
-        // The bias and half a code have 22 fraction bits here.
+        // The bias plus half a code, with 22 fraction bits.
         addend = sum & {42{!(at[19] || at[26] || at[27])}} | {42{at[19] && tie}}
                | {28'd0, bias[15:2]} & {42{at[26]}} | {sum[17:0], bias[1:0], 1'b1, 21'd0} & {42{at[27]}};
     end
 
     multiply_add #(.BITS(42)) multiplier (.clk, .enable(1'b1), .a(factor), .b(other), .c(addend), .p(sum));
 
-    // The current pixel, the error of the next one, and its depth. They start at 0.
+    // The current pixel, its depth, and the error of the next pixel. They start at 0.
     logic               clear, walks, pending;
     logic signed [12:0] at_major, at_minor, end_major, major_change, minor_change;
     logic signed [13:0] remaining;
@@ -201,7 +200,7 @@ module line_setup (
         end
     end
 
-    // The band, and whether the pixel is in the picture.
+    // The current band, and whether the pixel is in the picture.
     logic signed [12:0] row, edge_row, edge_change;
     logic [12:0]        column;
     logic               reached, at_border, entered, shown, tracks, leaves, sends, copies;

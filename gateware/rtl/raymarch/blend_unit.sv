@@ -3,9 +3,9 @@
 //
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
 //
-// a is the distance of the flat solid, b that of the sphere, k the parameter `solid.blend_width`, and w the weight of the
-// farther surface. Latency 8 clocks, throughput one point per clock, no handshake; `solid` must hold. `takes_round` must be high
-// where the sphere is the nearer or the only surface. `nearest` is `known`, delayed.
+// a is the distance of the flat solid, b the distance of the sphere, k the parameter `solid.blend_width`, and w the weight of the
+// farther surface. Latency 8 clocks, throughput one point per clock, no handshake; `solid` must hold. `takes_round` must be high if the
+// sphere is the nearer or the only surface. The output `nearest` is the input `known`, delayed to match the distance.
 
 `default_nettype none
 
@@ -66,7 +66,7 @@ module blend_unit (
     );
     assign distance = sum_8[38:17];
 
-    // The share of the sphere in the colour, in units of 2^-16. The nearer surface has more than half.
+    // The share of the sphere in the colour, in units of 2^-16. The nearer surface has more than half of the colour.
     assign share_5 = round_5 ? 17'h1_0000 - weight_5 : weight_5;
     always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}} | {8{!blends}};
     delay #(.WIDTH(8), .CLOCKS(2)) share_waits (.clk, .enable(1'b1), .in(share_6), .out(share));

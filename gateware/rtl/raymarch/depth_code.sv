@@ -1,10 +1,10 @@
-// Computes the code that the depth buffer stores for a depth: K/depth, rounded to nearest and clamped to the range from 1 to
+// Converts a depth to a depth code: K/depth, rounded to nearest and clamped to the range from 1 to
 // 2^18 - 1 (docs/formats/raymarch.md, "Ends").
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //
-// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks, throughput one depth a clock. The reciprocal is
-// that of the module `reciprocal`, here with a separate multiplier for each product.
+// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks, throughput one depth a clock. The reciprocal is computed
+// as in the module `reciprocal`, but with a separate multiplier for each product.
 
 `default_nettype none
 
@@ -63,8 +63,8 @@ module depth_code (
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
-    // In clock 20 the product mantissa·y is valid. It is then divided by 2^(22 + shift). A divisor below 2^22 would give a code
-    // above the largest one, so a negative shift saturates the code.
+    // In clock 20 the product mantissa·y is valid. It is then divided by 2^(22 + shift). A divisor below 2^22 would give more than the
+    // largest code, so a negative shift saturates the code.
     logic signed [42:0] product_20;
     logic [5:0]         lead_19;
     logic signed [7:0]  shift_20;

@@ -23,8 +23,8 @@ module field_box (
     always_comb begin
         for (int i = 0; i < 3; i++) begin
             place[i] = point[i];
-            // The period of 64 units is 2^18 in units of the coordinates. The point moves to the same position in the cell
-            // about the origin.
+            // The period of 64 units is 2^18 in units of the coordinates. The point is moved to the equivalent position in the cell about
+            // the origin.
             if (repeated) place[i][21:18] = {4{point[i][17]}};
         end
     end
@@ -33,8 +33,8 @@ module field_box (
     logic [2:0]         negative_1, negative_2;
     logic               z_over_x, z_over_y, x_over_y, big_is_z, big_is_x;
 
-    // How far a coordinate is inside of the box along its axis, less 1: side − |k| − 1, the complement of the distance |k| − side.
-    // Yosys puts the absolute value into the LUTs of this sum, but gives that of a minuend LUTs of its own.
+    // Distance of a coordinate to the box's side, positive inside, less 1: side − |k| − 1, the complement of the distance |k| − side.
+    // Yosys puts the absolute value into the LUTs of this sum, but uses separate LUTs for the absolute value of a minuend.
     function automatic logic signed [22:0] depth_within(input logic [21:0] k, input logic [21:0] side, input logic there);
         depth_within = there ? $signed({1'b0, side}) + $signed(~{2'b0, k[20:0] ^ {21{k[21]}}}) : {1'b0, {22{1'b1}}};
     endfunction

@@ -4,15 +4,15 @@
 //   point ─┬─▶ order of the low bits ─────────▲                 ├─▶ ... ─▶ |x| ─▶ largest ─▶ - half ─▶ distance, surface
 //          └─▶ low bits ─▶ wait ─▶ mirrored, in their places ───┘
 //
-// The sides of the first four levels are integers. There the low LOW bits of a coordinate are only mirrored and change places,
-// so they wait outside of the levels, which need nothing of them but the order of each pair. Further levels get all bits.
+// The sides of the first four levels are integers. These levels only mirror and exchange the low LOW bits of the coordinates. The low bits
+// are therefore delayed outside of the levels, which only need their order for each pair. Further levels get all bits.
 //
-// With BOX the module serves boxes too: while `is_box` is high, no level is in use, and the distance is that to a box
-// (field_box). A sponge then ends in the same logic, as a cube of half side `cube_half`.
+// With BOX the module serves boxes too: while `is_box` is high, no level is in use, and the distance is the distance to a box (field_box).
+// The last stage of a sponge is then also a box: a cube of half side `cube_half`.
 //
 // Latency 3 * LEVELS + 3 clocks, throughput one point per clock, no handshake. `levels` has a bit for each level in use, the
-// first level in bit 0; `cube_half` is half the side of the smallest solid cubes; the other inputs are those of field_box. All
-// of them must hold, from two clocks before the first point.
+// first level in bit 0; `cube_half` is half the side of the smallest solid cubes; the other inputs are as in field_box. All parameters
+// must hold, from two clocks before the first point.
 
 `default_nettype none
 
@@ -32,13 +32,13 @@ module field_menger #(
     output logic signed [21:0] distance,
     output logic [2:0]         surface
 );
-    // The low bits are 0 in half the side of the cubes of each of the first SPLIT levels.
+    // In each of the first SPLIT levels, the low bits of half the side of the cubes are 0.
     localparam int unsigned LOW   = raymarch_pkg::LOW_BITS;
     localparam int unsigned SPLIT = LEVELS < 4 ? LEVELS : 4;
-    // Whether the low bits wait until the distance is computed.
+    // Whether the low bits are delayed until the distance is computed.
     localparam bit          APART = LEVELS == SPLIT && !BOX;
 
-    // Coordinates between the levels, without their low bits in the first levels.
+    // Coordinates between the levels; in the first levels without their low bits.
     logic [LEVELS:0][2:0][21:0]   points;
     logic [LEVELS-1:0][2:0][21:0] entering;
     logic [LEVELS:0][2:0][2:0]    grows;

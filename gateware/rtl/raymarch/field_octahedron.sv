@@ -4,7 +4,7 @@
 //
 // Moving a point by r along every axis changes |x| + |y| + |z| by 3r at most, so the distance is at least a third of the sum
 // |x| + |y| + |z| - size. The module computes 85/256 of this sum, rounded down: a lower bound of a third, without a multiplier.
-// `surface` is {z, y, x}, with 1 where the normal of the face is positive.
+// `surface` is {z, y, x}, with a 1 for each positive component of the face's normal.
 //
 // Latency 5 clocks, throughput one point per clock, no handshake. `size` must hold.
 

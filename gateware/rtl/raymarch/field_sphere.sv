@@ -5,7 +5,7 @@
 //                                        └──────────── shift ─────────────────────────┘
 //
 // The shift makes the largest coordinate fill 17 bits. The root is a linear interpolation between two entries of a table. The
-// computed length is never above the exact one, and below it by at most 3 units of 2^-12 plus a part of 2^-15. Distances of
+// computed length is never above the exact one, and below it by at most 3 units of 2^-12 plus a relative 2^-15. Distances of
 // 2^21 units of 2^-12 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is then 0.
 //
 // Latency 18 clocks, throughput one point per clock, no handshake. `number` comes one clock before its point. Spheres are
@@ -121,7 +121,7 @@ module field_sphere (
         .clk, .enable(1'b1), .a({8'b0, part_z_6}), .b({1'b0, part_z_6}), .c(x_y_8), .p(square_9)
     );
 
-    // By clock (the suffix of a name): 10 the sum, divided by 4 where it is too large for the table; 12 the entry of the
+    // By clock (the suffix of a name): 10 the sum, divided by 4 if it is too large for the table; 12 the entry of the
     // table; 15 the root, 2^18 to 2^19.
     logic [17:0]        base_12, base_14;
     logic [9:0]         slope_12;

@@ -4,10 +4,10 @@
 // hold during a frame. A field that is not in the build costs nothing; a single field needs no multiplexer.
 //
 // Spheres are evaluated one after the other, one in each pass of a point. `pass` is the number of the sphere, and comes one
-// clock before the point. `so_far` is the nearest sphere of the point's earlier passes; `nearest` is the nearest sphere
-// including this pass. The distance, to the nearest sphere or to the flat field, is valid in the last pass. BLEND requires
-// spheres and a flat field, and adds the fillet between the two: `round` is then set, `face` is the surface of the flat field,
-// and `share` the weight of the sphere's colour. Without a fillet `share` is all ones.
+// clock before the point. `so_far` is the nearest sphere of the point's earlier passes; `nearest` includes this pass. The distance, to the
+// nearest sphere or to the flat field, is valid in the last pass. BLEND requires spheres and a flat field, and adds the fillet between the
+// two: `round` is then set, `face` is the surface of the flat field, and `share` the weight of the sphere's colour. Without a fillet
+// `share` is all ones.
 
 `default_nettype none
 

@@ -1,9 +1,9 @@
-// Distance to the cube that stands for all cubes of a Menger sponge after the folds of its levels, in the maximum norm.
+// Distance, in the maximum norm, to the cube that represents all cubes of a Menger sponge after the folds of its levels.
 //
 //   point ─▶ |x| ─▶ largest ─▶ - half ─▶ distance, surface
 //
-// With LOW the lowest bits of the coordinates come separately from `point`, as in menger_level: `order` compares them, and `low` has
-// them 2 clocks later. Latency 3 clocks, throughput one point per clock, no handshake. `half` must hold.
+// With LOW the lowest bits of the coordinates come separately from `point`, as in menger_level: `order` compares them, and `low` holds the
+// bits 2 clocks later. Latency 3 clocks, throughput one point per clock, no handshake. `half` must hold.
 
 `default_nettype none
 

@@ -1,4 +1,4 @@
-// One level of the Menger sponge: folds space by mirrors, so that one cube of the level's 3x3x3 cubes stands for all of them
+// One level of the Menger sponge: folds space by mirrors, so that one cube represents all of the level's 3x3x3 cubes
 // (docs/formats/raymarch.md, "Fields"). S is the side of this cube.
 //
 //         ┌───┬───┬───┐
@@ -9,13 +9,13 @@
 //         │   │   │   │
 //         └───┴───┴───┘ 3S wide
 //
-// An integer coordinate k represents k + 1/2, so that -x is ~k. `grows` carries for each coordinate the direction in which it
-// grows in the world, {axis, positive}. Latency 3 clocks, throughput one point per clock, no handshake. While `enable` is low,
-// points pass unchanged; `enable` must hold.
+// An integer coordinate k represents k + 1/2, so that -x is ~k. `grows` holds for each coordinate the world direction in which it
+// increases, {axis, positive}. Latency 3 clocks, throughput one point per clock, no handshake. While `enable` is low, points pass
+// unchanged; `enable` must hold.
 //
-// The bits of a coordinate that are 0 in S/2 are only ever mirrored and exchanged. The LOW lowest ones do not pass this module:
-// they are ignored in `in` and 0 in `out`. `in_order` compares them for each pair of coordinates, without the mirrors: a
-// coordinate that is not positive in `in_grows` has been mirrored. With LOW = 0 `in_order` has every pair equal.
+// The bits of a coordinate that are 0 in S/2 are only ever mirrored and exchanged. The LOW lowest bits do not pass through this module:
+// they are ignored in `in` and 0 in `out`. `in_order` holds their comparison for each pair of coordinates before mirroring: a coordinate
+// that is not positive in `in_grows` has been mirrored. With LOW = 0, all pairs in `in_order` are equal.
 
 `default_nettype none
 

@@ -6,22 +6,21 @@
 //                                        └─▶ start: the largest of the near plane and of the entries into the box;
 //                                            an entry is outside·inverse, with a second product for the remaining distance
 //
-// D is the direction of a ray before it is scaled to length 1. 32-bit additions compute the formula of D exactly. `outside`
-// is the distance of the eye from the box about the field, along each axis. The order of the rays is: band by band, in a
-// band line by line from the top, in a line from the left; with `stereo` each line comes first for the left eye and then for
-// the right eye.
+// D is the direction of a ray before normalisation. 32-bit additions compute the formula of D exactly. `outside`
+// is the distance of the eye from the box about the field, along each axis. Rays come band by band, each band line by line from the top,
+// each line from the left; with `stereo` each line comes for the left eye, then for the right eye.
 //
 // With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces the
-// largest component of D, and a second table replaces the first one.
+// largest component of D, and a second table of inverses replaces the first.
 //
 // While `cones` is high, the module generates cones instead of rays: through the middle of blocks of 2^`block` by 2^`block`
-// pixels, in the same order, each with its number. Columns and lines then count blocks; `offset` and `spread` are the middle
-// and the radius of a block in units of D; and cones start at the near plane. With `prepass` and without `cones`, the rays of a
-// block use the depth that its cone has cleared as their near plane, if it is farther: this depth is requested by `number`, and
-// returned in `cleared` 2 clocks later. `fine` means 160 blocks in a line instead of 80.
+// pixels, in the same order, each with its number. Columns and lines are then columns and lines of blocks; `offset` and `spread` are the
+// middle and the radius of a block in units of D; and cones start at the near plane. With `prepass` and without `cones`, the depth that a
+// block's cone has cleared becomes the near plane of the block's rays, if it is farther: `number` requests this depth, and `cleared`
+// returns it 2 clocks later. `fine` means 160 blocks in a line instead of 80.
 //
-// The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end admits rays. A missing credit stops
-// D and the counters of the place, and nothing else.
+// The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end admits rays. A missing credit only stops D
+// and the position counters.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 27
 // clocks, 30 with ROUND; throughput one ray per clock. `busy` falls two clocks after the last ray has left. The output is a
@@ -33,7 +32,7 @@ module ray_generator #(
     parameter bit ROUND   = 1'b0,
     parameter bit STEREO  = 1'b1,
     parameter bit PREPASS = 1'b0,
-    // Number of places for rays after the pipeline.
+    // Depth of the FIFO of rays after the pipeline.
     parameter int unsigned PLACES = 32
 ) (
     input  wire                       clk,
@@ -67,8 +66,7 @@ module ray_generator #(
     input  wire                       out_ready,
     output raymarch_pkg::ray_t           out_ray
 );
-    // SUM: number of clocks by which the sum of the squares is later than the largest component of D. LAST: number of clocks
-    // until a ray leaves the pipeline.
+    // SUM: additional latency of the sum of squares compared with the largest component of D. LAST: latency of the pipeline in clocks.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
@@ -98,10 +96,10 @@ module ray_generator #(
     assign valid[0]  = enters;
     assign busy      = starts || begins || running || !empty;
 
-    // `inverted_start` is ~D at the first column of the next line, which is that of the right eye if `next_eye` is high. It is
+    // `inverted_start` is ~D at the first column of the next line, for the right eye if `next_eye` is high:
     // `inverted_row`, ~(y·down), minus `first`. The complements turn the sum D into a subtraction: Yosys puts the selection of the
-    // subtracted value into the LUTs of the subtraction, but gives the selection of a summand LUTs of its own. Both are computed
-    // in the first two clocks of a line (`fresh` is high in the first one), so a line must have three columns.
+    // subtracted value into the LUTs of the subtraction, but uses separate LUTs for the selection of a summand. Both are computed in the
+    // first two clocks of a line (`fresh` is high in the first), so a line must have three columns.
     logic next_eye;
 
     assign next_eye = STEREO && stereo && !place.eye && !starts;
@@ -170,7 +168,7 @@ module ray_generator #(
         else                                    largest_2 <= part_y;
     end
 
-    // The length of a cone is that of its middle ray plus `margin`.
+    // The length of a cone is the length of its middle ray plus `margin`.
     logic [7:0] margin;
 
     function automatic logic [9:0] longer(input logic [9:0] length, input logic [7:0] more);
@@ -316,14 +314,14 @@ module ray_generator #(
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], sum_20[42], sum_20[8:0]};
     end
 
-    // In clock 21 the t of the near plane is valid, as are those of the entries into the box.
+    // In clock 21 the values of t for the near plane and for the entries into the box are valid.
     multiply_add #(.BITS(34)) at_near (
         .clk, .enable(1'b1), .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 
-    // Clocks 22 and 23 select the start of the ray: the largest of the four values of t of clock 21, which are those of the
-    // near plane and of the entry into the box along each axis.
+    // Clocks 22 and 23 select the start of the ray: the largest of the four values of t of clock 21: of the near plane, and of the entry
+    // into the box along each axis.
     logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin

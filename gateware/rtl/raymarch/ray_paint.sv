@@ -1,12 +1,12 @@
-// Computes pixels from the ends of rays: the colour of the surface, darkened by the occlusion and faded by the fog, and the
-// depth code (docs/formats/raymarch.md, "Ends").
+// Computes pixels from the ends of rays: the colour of the surface, darkened by occlusion and blended with fog, and the depth code
+// (docs/formats/raymarch.md, "Ends").
 //
 //             ┌─▶ t·inverse ─▶ depth ─┬─▶ depth_code ───────────────────────────────┐
 //   ends ─────┤                       └─▶ fog ─┐                                    ├─▶ group of one pixel
 //             ├─▶ steps ─▶ light ─────┐        ▼                                    │
 //             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
 //
-// First, a hit moves from its last t to the plane of its face: t grows by `gap` divided by the component of the direction along
+// First, the hit point moves from the last t to the plane of its face: t grows by `gap` divided by the component of the direction along
 // the normal (`slope`).
 //
 // A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask of one pixel, one depth code, and
@@ -24,7 +24,7 @@ module ray_paint #(
     parameter bit ROUND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0,
-    // Number of places for pixels after the pipeline.
+    // Depth of the FIFO of pixels after the pipeline.
     parameter int unsigned PLACES = 64
 ) (
     input  wire                     clk,
@@ -167,8 +167,8 @@ module ray_paint #(
         endcase
     endfunction
 
-    // The colour of an end without a hit is the last of the upper four colours for a miss, and the one before it for an
-    // undecided ray. With OCTANTS these colours are taken by the faces.
+    // The colour of a miss is the last of the upper four colours, and the colour of an undecided ray the last but one. With OCTANTS these
+    // colours belong to faces.
     logic       hit_7;
     logic [2:0] number_7;
 
@@ -197,7 +197,7 @@ module ray_paint #(
 
     delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable(1'b1), .in(fog_10), .out(fog_14));
 
-    // By clock (the suffix of a name): 13 the darkened colour, 14 its difference to the horizon's colour, 17 the faded colour.
+    // By clock (the suffix of a name): 13 the darkened colour, 14 its difference to the horizon's colour, 17 the colour blended with fog.
     logic [2:0][7:0] faded_17;
 
     for (genvar i = 0; i < 3; i++) begin : channels

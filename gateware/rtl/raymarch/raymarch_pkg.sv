@@ -16,7 +16,7 @@ package raymarch_pkg;
     // Largest number of evaluations of the field for one cone.
     localparam int unsigned CONE_STEPS     = 192;
 
-    // Position of a pixel: parity of its band's number, eye (0 is the left or the only one), line in the band, and column.
+    // Position of a pixel: parity of its band's number, eye (0 for the left or only eye), line in the band, and column.
     typedef struct packed {
         logic        odd;
         logic        eye;
@@ -37,7 +37,7 @@ package raymarch_pkg;
         logic [2:0][DIRECTION_BITS-1:0] direction;
     } ray_t;
 
-    // Returns the number of low bits of a ray_t that matter in a build with the prepass or without it: only cones have a spread.
+    // Returns the number of low bits of a ray_t that a build uses, with or without the prepass: only cones have a spread.
     function automatic int unsigned ray_bits(input bit prepass);
         ray_bits = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS + (prepass ? SPREAD_BITS : 0);
     endfunction
@@ -75,8 +75,8 @@ package raymarch_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
-    // Comparison of the low bits of two coordinates a and b: a > b, a = b, a > ~b, a = ~b. From these follows the order of both
-    // after mirrors, which invert all bits of a coordinate.
+    // Comparison of the low bits of two coordinates a and b: a > b, a = b, a > ~b, a = ~b. They determine the order of both after
+    // mirroring, which inverts all bits of a coordinate.
     typedef struct packed {
         logic above;
         logic equal;
@@ -92,21 +92,21 @@ package raymarch_pkg;
     } order_t;
 
     localparam int unsigned ORDER_BITS = 12;
-    // Number of these low bits.
+    // Number of low bits that are compared.
     localparam int unsigned LOW_BITS   = 11;
     localparam order_t ALL_EQUAL = {3{4'b0101}};
 
-    // Returns the comparison of b and a from that of a and b.
+    // Returns the comparison of b and a from the comparison of a and b.
     function automatic pair_t swapped(input pair_t pair);
         swapped = {!pair.above && !pair.equal, pair.equal, pair.above_mirror, pair.equal_mirror};
     endfunction
 
-    // Returns the low bits of the coordinate that grows in the direction `grow` of the world, {axis, positive}.
+    // Returns the low bits of the coordinate that increases in the world direction `grow`, {axis, positive}.
     function automatic logic [LOW_BITS-1:0] low_part(input logic [2:0][LOW_BITS-1:0] low, input logic [2:0] grow);
         low_part = (grow[2] ? low[2] : grow[1] ? low[1] : low[0]) ^ {LOW_BITS{!grow[0]}};
     endfunction
 
-    // Returns whether the low bits of a are above those of b. Those of a coordinate are mirrored if it is not positive.
+    // Returns whether the low bits of a are above those of b. The low bits of a coordinate are mirrored if it is not positive.
     function automatic logic low_above(input pair_t pair, input logic a_positive, input logic b_positive);
         unique case ({a_positive, b_positive})
             2'b11: low_above = pair.above;
@@ -130,7 +130,7 @@ package raymarch_pkg;
         if (round && fields != 0) field_clocks = field_clocks + (blend ? 8 : 1);
     endfunction
 
-    // Returns whether the rings of a build are short, 30 slots at most. Arguments: as of field_clocks.
+    // Returns whether the rings of a build are short, of at most 30 slots. Arguments as for field_clocks.
     function automatic bit has_short_rings(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
         has_short_rings = field_clocks(levels, fields, round, blend) <= 24;
     endfunction

@@ -11,22 +11,20 @@
 // high when all pixels of the band have been taken. `band_next` (one clock, only while `band_done` is high) then ends the band
 // and begins the next one; after the last band it ends the frame.
 //
-// While the last rays of a band are still under way, rays of the next band already enter, at most EARLY of them. Their
-// ends wait in a FIFO in block RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of
-// very different lengths.
+// While the last rays of a band are still in the lanes, up to EARLY rays of the next band already enter. Their ends wait in a FIFO in
+// block RAM. The lanes are therefore only idle at the end of the frame, and when a band ends with rays of very different lengths.
 //
-// Where rays of one evaluation follow rays of many, the lanes need more than the one ray per clock that the generator makes. A long
-// ring holds enough rays to bridge this; a lane with a short ring has a queue of rays.
+// When rays with one evaluation follow rays with many, the lanes could take more rays than the generator makes, one per clock. A long ring
+// holds enough rays to bridge this gap; a lane with a short ring has a queue of rays.
 //
-// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Then round_light stands
-// before ray_paint, and a pixel on a sphere or fillet takes a clock for each light there.
+// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. round_light then precedes ray_paint,
+// and takes one clock per light for a pixel on a sphere or fillet.
 //
-// With `prepass` the cones of the whole picture are marched before the rays, and cone_table keeps the depth up to which
-// each cone is free of surfaces. There are 160×90 cones for one eye and a picture wider than 320, and 80×45 cones for
-// each eye otherwise.
+// With `prepass` the cones of the whole picture are marched before the rays, and cone_table stores the depth up to which each cone meets
+// no surface. There are 160×90 cones for one eye and a picture wider than 320, and 80×45 cones for each eye otherwise.
 //
-// Each lane makes one evaluation of the field a clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
-// whose payload holds until the transfer. `events` has the increment of each counter in this clock.
+// Each lane makes one evaluation of the field per clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
+// whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
 
 `default_nettype none
 
@@ -48,7 +46,7 @@ module raymarcher #(
     // Parameters of the frame. `size` is 0 for 320x180, 1 for 640x360 and 2 for 1280x720.
     input  wire  [1:0]                size,
     input  wire                       stereo,
-    // Rays and positions of both eyes, the left one first, and the box about the field (docs/formats/raymarch.md, "Rays").
+    // Rays and positions of both eyes, the left eye first, and the box about the field (docs/formats/raymarch.md, "Rays").
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
@@ -97,7 +95,7 @@ module raymarcher #(
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // Numbers that follow from `size`: the last band, lines of a band, columns (of eight pixels) of a line, rows (of eight
+    // Values derived from `size`: the last band, lines of a band, columns (of eight pixels) of a line, rows (of eight
     // pixels) of a band, and rays of a band.
     logic [5:0]  last_band, lines;
     logic [7:0]  stride;
@@ -129,8 +127,8 @@ module raymarcher #(
     logic [13:0] cones_left, number;
     logic [22:0] cleared;
 
-    // Numbers of the last column, of the last line of a band, and of the last band, from 0. Columns and lines are those of
-    // pixels for rays, and those of blocks for cones; a band of cones has half of CONES_DOWN lines of blocks.
+    // Numbers of the last column, of the last line of a band, and of the last band, from 0. Columns and lines count pixels for rays, and
+    // blocks for cones; a band of cones has half of CONES_DOWN lines of blocks.
     localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
     localparam int unsigned CONE_LINES   = picture_pkg::CONES_DOWN / 2;
     logic [10:0] column_ends;
@@ -178,7 +176,7 @@ module raymarcher #(
         end
     end
 
-    // Sends a ray to the first lane that has room.
+    // Sends a ray to the first lane that can take it.
     logic [LANES-1:0]   lane_ready, lane_valid, end_valid, end_taken, idles, evaluates, waits;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0] end_of;
 
@@ -187,7 +185,7 @@ module raymarcher #(
             lane_valid[i] = ray_valid && may_enter && (lane_ready & ((LANES'(1) << i) - 1'b1)) == '0;
     assign ray_ready = may_enter && lane_ready != '0;
 
-    // Number of places of the queue before a lane; 0 for none.
+    // Depth of the queue before a lane; 0 for no queue.
     localparam int unsigned QUEUE    = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 0;
     localparam int unsigned RAY_BITS = raymarch_pkg::ray_bits(PREPASS);
 
@@ -214,8 +212,8 @@ module raymarcher #(
         );
     end
 
-    // In each clock one lane, chosen in rotation, may hand over the end of a ray. This is enough, since the generator makes at
-    // most one ray per clock.
+    // In each clock one lane, chosen in rotation, may hand over the end of a ray. This suffices, because the generator makes at most one
+    // ray per clock.
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
@@ -227,8 +225,8 @@ module raymarcher #(
     assign next_end   = end_of[turn];
     assign next_valid = end_valid[turn];
 
-    // Ends that have waited in the FIFO are painted first. An end of the next band goes to the FIFO, which always has room,
-    // because at most EARLY rays of the next band enter.
+    // Ends that have waited in the FIFO are painted first. An end of the next band goes to the FIFO, which is never full, because at most
+    // EARLY rays of the next band enter.
     assign next_now      = next_valid && next_end.place.odd == odd && !cones;
     assign waiting_end   = raymarch_pkg::END_BITS'(kept);
     assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;

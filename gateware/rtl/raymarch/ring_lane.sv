@@ -1,25 +1,24 @@
-// Lane of the raymarcher: a pipeline closed to a ring, in which rays circulate. A ray makes one evaluation of the field in each
-// round, and the lane makes one evaluation a clock.
+// Lane of the raymarcher: a ring-shaped pipeline in which rays circulate. The field is evaluated once per round of a ray, and once per
+// clock in the lane.
 //
 //   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance ─▶ hit? miss? undecided? ─┐
 //             ▲                                                                   ├─▶ fifo ─▶ ends
 //             └───────────────────── t + distance ◀───────────────────────────────┘
 //
-// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. o is the eye, d the direction of a ray and t its
-// parameter. The point o + t·d is computed again in each round, so errors do not accumulate. A slot whose ray has ended takes
-// the next ray in the same clock. A ray enters only if the FIFO of ends has a free entry for its end: the FIFO has PLACES, and
-// each ray in the ring reserves one. `evaluates` is high in clocks in which an occupied slot passes the field, `waits` in
-// clocks in which a ray was offered to an empty slot while no place was free.
+// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. In the diagram, o is the eye, d the direction of a ray and t its
+// parameter. The point o + t·d is computed again in each round, so errors do not accumulate. A slot whose ray ends receives the next ray
+// in the same clock. A ray enters only if the FIFO of ends has a free entry for its end: the FIFO has PLACES entries, and each ray in the
+// ring reserves one. `evaluates` is high in clocks in which an occupied slot passes the field, `waits` in clocks in which a ray was
+// offered to an empty slot while no entry was free.
 //
-// With ROUND a field may have spheres. A ray then makes one round for each sphere and keeps its t until the last of these
-// rounds, with the nearest sphere so far as part of its slot. Its end includes its direction, and its limit of evaluations is
-// four times that of `tuning`.
+// With ROUND a field may have spheres. A ray then makes one round for each sphere and keeps its t until the last of these rounds; its slot
+// also stores the nearest sphere so far. Its end includes its direction, and its limit of evaluations is four times the limit in `tuning`.
 //
 // While `cones` is high, the rays in the ring are cones, and `cones` must not change while rays are in the ring. A cone steps
 // by the distance minus its radius, which is t times its spread, and ends where the distance is close to the radius.
 //
-// Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready
-// depends on registers alone. Parameters hold while rays are in the ring. `rst` discards all rays.
+// Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
+// registers. Parameters hold while rays are in the ring. `rst` discards all rays.
 
 `default_nettype none
 
@@ -30,7 +29,7 @@ module ring_lane #(
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
-    // Places in the FIFO of ends, more than the number of slots: with fewer places some slots would stay empty.
+    // Depth of the FIFO of ends, more than the number of slots: otherwise some slots would stay empty.
     parameter int unsigned PLACES = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 64
 ) (
     input  wire                      clk,
@@ -64,8 +63,7 @@ module ring_lane #(
     localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // Constants of a ray in the ring. A word of LUT memory for each slot holds them, written when the ray enters
-    // the slot.
+    // Constants of a ray in the ring. They are stored in a word of LUT memory per slot, written when the ray enters the slot.
     typedef struct packed {
         raymarch_pkg::place_t                         place;
         logic [9:0]                     length;
@@ -115,7 +113,7 @@ module ring_lane #(
         end
     end
 
-    // Numbers of the slots that are in the first stage, in the last one, and in the one before it.
+    // Numbers of the slots in the first stage, in the last stage, and in the last but one.
     logic [SLOT_BITS-1:0] first_slot, last_slot, early_slot;
 
     always_ff @(posedge clk) begin
@@ -125,7 +123,7 @@ module ring_lane #(
         if (rst) {early_slot, last_slot, first_slot} <= {SLOT_BITS'(2), SLOT_BITS'(1), SLOT_BITS'(0)};
     end
 
-    // Each stage has a memory of its own for what it reads. A slot that stays empty may be written.
+    // Each stage has its own memory for the data that it reads. An empty slot may be written.
     (* ram_style = "distributed" *) logic [CARGO_BITS-1:0] cargos [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [1+raymarch_pkg::SPREAD_BITS+3*raymarch_pkg::DIRECTION_BITS-1:0] aims [0:2**SLOT_BITS-1];
 
@@ -331,7 +329,7 @@ module ring_lane #(
     end
 
     // Slope of the ray towards the face: the direction's component along the inward normal, or all ones for a ray that does not
-    // approach the face. Only the quotient of `gap` and `slope` matters.
+    // approach the face. Only the quotient of `gap` and `slope` is used.
     logic [10:0] part;
     logic [9:0]  axis_slope, slope;
     logic [11:0] face_gap;

@@ -16,8 +16,8 @@ module root_table (
     logic [27:0] entries [0:511];
     logic [27:0] latched;
 
-    // An entry is {18 fraction bits of the root, difference to the next root}. Floating-point numbers are exact enough here,
-    // as in round_inverse.
+    // An entry is {18 fraction bits of the root, difference to the next root}. Floating-point numbers are precise enough for the table, as
+    // in round_inverse.
     initial begin
         for (int i = 0; i < 512; i++)
             entries[i] = {

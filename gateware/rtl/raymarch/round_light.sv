@@ -4,10 +4,9 @@
 //                                   └──────────── once for each light ────────────┘
 //
 // All ends of rays pass in order; the colour of ends on other surfaces is undefined. An end on a sphere or fillet takes one
-// clock for each light, any other end one clock. With BLEND the colour is interpolated, by `share`, between the colour of the
-// face, from `palette`, and that of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light after the
-// first. The ends at the output have no direction. Streams are valid/ready. Spheres are written, and parameters change, only
-// while the pipeline is empty.
+// clock for each light, any other end one clock. With BLEND the colour is interpolated, by `share`, between the colours of the face, from
+// `palette`, and of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light after the first. The ends at the output
+// have no direction. Streams are valid/ready. Sphere writes and changes of parameters are only allowed while the pipeline is empty.
 
 `default_nettype none
 
@@ -69,7 +68,7 @@ module round_light #(
         end
     end
 
-    // The constants of the sphere, each read in time for the clock of its use.
+    // The constants of the sphere, each read so that it is valid in the clock of its use.
     logic [2:0]       number_2, number_8, number_11, number_18;
     logic [2:0][21:0] centre_3;
     logic [4:0]       shift_9;
@@ -145,8 +144,8 @@ module round_light #(
         wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
     end
 
-    // By clock (the suffix of a name): 9 the scalar product of the point and the light's direction; 11 the product, shifted to
-    // 17 bits or more; 12 the same, saturated at 17 bits.
+    // By clock (the suffix of a name): 9 the scalar product of the point and the light's direction; 11 the product, shifted to 17 bits or
+    // more; 12 the shifted product, saturated at 17 bits.
     logic [22:0]        apart_y_5, apart_z_6;
     logic [17:0]        towards_y_5, towards_z_6;
     logic signed [42:0] x_7, x_y_8, product_9;

@@ -7,13 +7,13 @@
 //                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
 //
 // Once a frame, when the vertical blanking begins, the sys side latches `frame_base`, `scale` and `enable`, counts the frame
-// and pulses `vblank`. The pix side requests line 0 only after that, so all lines of a picture come from one frame in memory.
-// The video timing never waits: a line that comes late is replaced by the previous line, and counted as an underflow.
+// and pulses `vblank`. The pix side does not request line 0 before that, so all lines of a picture come from one frame in memory.
+// The video timing never stalls: a late line is replaced by the previous line, and counted as an underflow.
 //
 // Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 4 pix_clk from scanout_timing to the video
 // outputs; a source line (a line of the frame in memory) is requested one to `scale` output lines before its first use. Clock
 // domain crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
-// written and read at different times by the protocol of scanout_lines.
+// written and read at different times under the control of scanout_lines.
 
 `default_nettype none
 
@@ -93,7 +93,7 @@ module scanout #(
 
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // `enabled` crosses as a level, so that a reset of the sys side blacks the screen at once.
+    // `enabled` crosses as a level, so that a reset of the sys side blanks the screen at once.
     logic pix_enabled;
     cdc_level cross_enabled (.clk(pix_clk), .level(enabled), .synced(pix_enabled));
 
@@ -126,7 +126,7 @@ module scanout #(
         end
         if (sys_underflow) underflow_seen <= 1'b1;
 
-        // Registers apart from the counters, because memory's signals end long paths in LiteDRAM.
+        // Registers before the counters, because memory's signals end long paths in LiteDRAM.
         stalled <= cmd_valid && !cmd_ready;
         stored  <= store;
 
@@ -207,7 +207,7 @@ module scanout #(
     logic [X_BITS-1:0] source_x;
     logic [2:0]        lane_1, lane_2;
     logic [1:0]        lane_3;
-    // The half of the word with the pixel. Block RAM is slow, so only one level of selection comes before this register.
+    // The half of the word that holds the pixel. Block RAM is slow, so only one multiplexer level precedes this register.
     logic [63:0]       half_word;
     logic [2:0]        sync_1, sync_2, sync_3; // hsync, vsync, active
     logic [15:0]       pixel;

@@ -1,11 +1,11 @@
 // Fetches one source line (a line of the frame in memory) into a slot of the line ring, which is a buffer of two lines.
 //
-// Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), one word a
-// clock at most; data comes in order, some time later, and cannot be held back. The whole slot is free before the first
-// command, so each word is stored in its place in the clock in which it comes.
+// Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), at most one word per
+// clock; data comes later, in order, and without back-pressure. The whole slot is free before the first command, so each word is stored in
+// the clock in which it comes.
 //
 // Work side: `request` is a level with `line` and `slot`, held until `done` (one clock). While `enable` is low, a request is
-// done at once and reads nothing. A request that is withdrawn ends without `done`. Latency: 3 clocks to the first command, 1
+// done at once and reads nothing. A withdrawn request ends without `done`. Latency: 3 clocks to the first command, 1
 // clock from the last word to `done`.
 
 `default_nettype none
@@ -41,7 +41,7 @@ module scanout_fetch #(
     localparam int unsigned OFFSET_BITS = Y_BITS + WORD_BITS;
     localparam logic [WORD_BITS-1:0] FULL_LINE = WORD_BITS'(LINE_WORDS);
 
-    // Multiplies by LINE_WORDS with shifts and adds, two for 160 words: synthesis would spend a DSP48 on `*`.
+    // Multiplies by LINE_WORDS with shifts and adds, two for 160 words: synthesis would use a DSP48 for `*`.
     function automatic logic [OFFSET_BITS-1:0] times_line_words(input logic [Y_BITS-1:0] factor);
         times_line_words = '0;
         for (int i = 0; i < WORD_BITS; i++)

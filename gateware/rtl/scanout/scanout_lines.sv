@@ -1,17 +1,16 @@
 // Control of the line ring, two slots of one source line each: decides which slot is shown, and which source line (a line of the
 // frame in memory) is fetched into the other, hidden slot.
 //
-// Decisions are taken once an output line, at the tick (the leading edge of hsync, when the last pixel has left):
+// It decides once per output line, at the tick (the leading edge of hsync, when the last pixel has left):
 //
-//   1. if the hidden slot holds the source line that the next output line needs, the slots change places;
-//   2. if it does not, and this is the first use of that source line, there is an underflow: the shown slot is shown again,
-//      or black where this frame has shown nothing yet. Later output lines of the same source line check the slot again;
-//   3. if the hidden slot is free, the source line after the needed one is requested, even after an underflow. During the
-//      vertical blanking that is line 0, as soon as the frame's parameters are latched (`frame_begun`).
+//   1. if the hidden slot holds the source line that the next output line needs, the slots are exchanged;
+//   2. if it does not, and this is the first use of that source line, there is an underflow: the shown slot is shown again, or black if
+//      this frame has not shown a slot yet. Later output lines of the same source line check the slot again;
+//   3. if the hidden slot is free, the source line after the needed one is requested, even after an underflow. During vertical blanking
+//      line 0 is requested, as soon as the frame's parameters are latched (`frame_begun`).
 //
-// A slot is written only while it is hidden, and a frame shows only lines requested after its vblank, so the screen never
-// mixes frames. A slow fetch delays later fetches, never the raster. `fetch_line` and `fetch_slot` are stable from `fetch`
-// until `fetch_busy` falls.
+// A slot is written only while it is hidden, and a frame only shows lines requested after its vblank, so the screen never mixes frames. A
+// slow fetch delays later fetches, never the video timing. `fetch_line` and `fetch_slot` are stable from `fetch` until `fetch_busy` falls.
 
 `default_nettype none
 
@@ -50,7 +49,7 @@ module scanout_lines #(
         first_use   = (tick_line & group_mask) == '0;
         needed      = tick_line >> shift;
         next        = in_picture ? needed + 1'b1 : '0;
-        // No source line follows the last one, whose output lines end with the last line of the picture.
+        // No source line follows the last source line, whose output lines end with the last line of the picture.
         next_exists = (tick_line | group_mask) != Y_BITS'(V_ACTIVE - 1);
     end
 
@@ -59,7 +58,7 @@ module scanout_lines #(
     logic frame_open, hidden_asked, hidden_ready;
     assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
 
-    // Step 3 of the decisions at the head of this module runs a clock after steps 1 and 2, and uses their results.
+    // Step 3 (see the head of this file) runs one clock after steps 1 and 2, and uses their results.
     logic              decide;
     logic [Y_BITS-1:0] decide_line;
     logic              decide_exists;

@@ -1,6 +1,6 @@
 // Generates the video timing: counters of pixels and lines, both syncs, and a tick in each line.
 //
-// A line consists of active pixels, front porch, sync and back porch, and a frame likewise of lines. Both syncs are active
+// A line consists of active pixels, front porch, sync and back porch; a frame has the same four parts in lines. Both syncs are active
 // high, and vsync changes with the leading edge of hsync, as in CEA-861. The only inputs are clock and reset. The last
 // V_BORDER lines of the back porch and the first V_BORDER lines of the front porch are visible lines around the picture.
 //

@@ -19,11 +19,11 @@
 //   7      its high 8 bits      pass 5         depth in lane 0
 //
 // `offset` is the number of rows from the triangle's top to `first`. Streams are valid/ready, and ready comes from registers.
-// Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous one finishes, or is
-// held until there is room, and another one waits at the input. Two triangles leave at least two clocks apart. A triangle without
-// a row in the band is taken and dropped. The band's first row `in_y0` and the parity `in_odd` of its number come with the
-// triangle; bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must hold
-// while triangles are inside. With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
+// Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous triangle finishes, or is held
+// until the output is free, and the next one waits at the input. Triangles leave at least two clocks apart. A triangle without a row in
+// the band is taken and dropped. The band's first row `in_y0` and the parity `in_odd` of its number come with the triangle; bit b of
+// `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must hold while triangles are inside.
+// With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
 
 `default_nettype none
 
@@ -45,8 +45,8 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Outputs that come, and hold, one clock later than `out_triangle`, and the planes of light LIGHT_LATER clocks after that.
-    // These have the format of `in_planes`, with their values at the triangle's first row in the band, in lane 0.
+    // Outputs that come, and hold, one clock later than `out_triangle`, and the planes of light LIGHT_LATER clocks after that. The planes
+    // have the format of `in_planes`, with their values at the triangle's first row in the band, in lane 0.
     output raster_pkg::placed_late_t       out_late,
     output logic [PLANES_BITS-1:0]         out_planes
 );
@@ -76,8 +76,8 @@ module band_entry #(
                         || out_valid && out_odd == 1'(b);
     end
 
-    // Rows of the triangle, counted from the first row of the band: its first row, the row after its last one, and their
-    // number. Before that, `top` and `bottom` are not limited to the rows of the band.
+    // Rows of the triangle, counted from the first row of the band: its first row, the row after its last row, and the number of rows.
+    // Before that, `top` and `bottom` are not limited to the rows of the band.
     logic [10:0] above, top, bottom;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
@@ -162,7 +162,7 @@ module band_entry #(
     logic [2:0]               all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        // LANE_0: the number of the pass in whose clock the edge's value in lane 0 arrives. STEP: the number of the pass that
+        // LANE_0: number of the pass during which the edge's value in lane 0 arrives. STEP: the number of the pass that
         // multiplies the edge's step_x.
         localparam logic [2:0] LANE_0 = k == 2 ? 3'd7 : 3'd3 + 3'(k);
         localparam logic [2:0] STEP   = k == 2 ? 3'd6 : 3'd2 + 3'(k);
@@ -178,7 +178,7 @@ module band_entry #(
                 all_falls[k] <= falls;
             end
             if (at_lane_0 || at_lane_7 && all_rises[k]) placed.best[k] <= sum[33:0];
-            // Written without a clock enable, since a flip-flop with an enable of its own takes a slice of the FPGA.
+            // Written without a clock enable, because flip-flops with different enables cannot share a slice of the FPGA.
             placed.beside_fails[k] <= at_lane_7 && beside[33] || !at_lane_7 && placed.beside_fails[k];
         end
 
@@ -189,8 +189,8 @@ module band_entry #(
         assign step_y[k] = steps.y;
     end
 
-    // The held triangle: its results stay in their registers, its other fields are copied here in the last pass. Two registers tell
-    // of this pass, one for each half of the fields. Each depends on itself, because synthesis would merge them into one.
+    // The held triangle: its results stay in their registers, its other fields are copied here in the last pass. Two registers enable the
+    // copy, one for each half of the fields. Each depends on itself, because synthesis would otherwise merge them.
     (* keep *) logic [1:0] copies;
 
     always_ff @(posedge clk) begin
@@ -218,7 +218,7 @@ module band_entry #(
     if (SMOOTH) begin : light
         logic smooth, held_smooth, give;
 
-        // A held triangle stays unchanged for as long as its planes come later.
+        // A held triangle stays unchanged until its planes have come.
         delay #(.WIDTH(1), .CLOCKS(raster_pkg::LIGHT_LATER)) give_delay (.clk, .enable(1'b1), .in(moved), .out(give));
 
         always_ff @(posedge clk) begin
@@ -239,7 +239,7 @@ module band_entry #(
         wire _unused = &{1'b0, in_planes};
     end
 
-    // The output register loads only while it is empty: its enable is a register, at the price of a clock between two triangles.
+    // The output register only loads while it is empty, so that its enable is a register; this costs one clock between two triangles.
     assign out_valid = !out_free;
 
     held_register #(.WIDTH($bits(placed) + 1)) result (

@@ -1,5 +1,5 @@
-// Writes the results of the setup to memory: each descriptor once, the number of the descriptor to the list of every band that
-// the triangle touches, and the numbers of exceptions to a list of their own.
+// Writes the results of the setup to memory: each descriptor once, the descriptor's number to the list of every band that the triangle
+// touches, and the numbers of exceptions to a separate list.
 //
 // Layout in words of 16 bytes, entries being u32 (docs/formats/triangle.md "Band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
@@ -7,23 +7,22 @@
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries per word
 //   exceptions    exception_base                       4 entries per word
 //
-// Up to three entries of each list are kept in this module until a fourth one completes the word, so that each word is
-// written whole. Memory needs several clocks to change between the descriptors and a list, and writes of four entries make
-// these changes rare.
+// Up to three entries of each list are kept in this module until a fourth entry completes the word, so that each word is written whole.
+// Memory needs several clocks to switch between descriptors and a list, and writes of four entries make these switches rare.
 //
 // With LINES, `in_line` selects `in_piece` as the input: a piece of a line, which is in one band and replaces a
 // triangle's descriptor (records_pkg::stored_piece_t). `in_line` must hold from `restart` until `done`.
 //
-// Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. A descriptor is written from the
-// input, so it moves a clock after its last word. `in_ready` is a register.
+// Throughput 6 clocks per descriptor, or 9 with SMOOTH, plus 2 for each band after the first. A descriptor is written directly from the
+// input, so it moves one clock after its last word. `in_ready` is a register.
 //
 //   clock  1      2, 3, 4       5          6                 7, 8 …
 //          IDLE   WORD          LOOK       ENTRY             LOOK, ENTRY
 //                 3 words out   in_ready   the first band    each further band
 //
 // `restart` (while idle) empties all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths
-// and ends with `done`. Later inputs continue the lists until the next `restart`. Items for which there is no room are dropped,
-// and `full` is set: the frame is then incomplete.
+// and ends with `done`. Later inputs are appended to the lists until the next `restart`. Items that do not fit are dropped, and `full` is
+// set: the frame is then incomplete.
 
 `default_nettype none
 
@@ -82,8 +81,8 @@ module binner #(
     typedef enum logic [2:0] {CLEAR, IDLE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // For each list: its length, the first three entries of its incomplete last word, and its address. The addresses follow from
-    // each other while the lists are emptied.
+    // For each list: its length, the first three entries of its incomplete last word, and its address. The addresses are computed
+    // incrementally while the lists are emptied.
     (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
     (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
     (* ram_style = "distributed" *) logic [ADDRESS_BITS-1:0] addresses [0:BANDS-1];
@@ -115,7 +114,7 @@ module binner #(
         assign piece     = in_piece;
         assign first_row = in_line ? in_piece.row : in_descriptor.top;
 
-        // The words that a piece does not need repeat its lower bits, so that a word has as few sources as possible.
+        // The unused words of a piece repeat its lower bits, so that a word has as few sources as possible.
         always_comb begin
             word_data = in_line ? piece[127:0] : words[128 * word +: 128];
             if (in_line && word[1]) word_data[127:64] = {in_piece.colour, records_pkg::PIECE_MARK, 8'd0, piece[165:128]};
@@ -148,9 +147,9 @@ module binner #(
     end
 
     // The band of a row, two clocks later. The row is the first row of the descriptor at the input, when `top_comes[2]` is high, and
-    // its last row from the first LOOK clock on. The few bands of the smallest picture are found by comparisons. A band
-    // of the others has 3·2^n rows (glint_soc/constants.py), so that one division by 3 serves them all: v/3 is v·171/512, which is
-    // exact for 8 bits, and 171 is 2·5·17 + 1.
+    // its last row from the first LOOK clock on. The few bands of the smallest picture are found by comparisons. In all other pictures a
+    // band has 3·2^n rows (glint_soc/constants.py), so one division by 3 suffices: v/3 is v·171/512, which is exact for 8 bits, and 171 is
+    // 2·5·17 + 1.
     localparam int unsigned SMALL_ROWS   = band_pkg::lines(2'd0);
     localparam int unsigned SMALL_BANDS  = picture_pkg::HEIGHT / SMALL_ROWS;
     localparam int unsigned SMALL_BITS   = $clog2(SMALL_BANDS);
@@ -185,7 +184,7 @@ module binner #(
         row_band   <= size == 2'd0 ? BAND_BITS'(small_band) : by_171[9 +: BAND_BITS];
     end
 
-    // Values that are read for `band` are valid a clock after `band`. `room` is the number of entries of a full list, a power of
+    // Values read for `band` are valid one clock after `band`. `room` is the number of entries of a full list, a power of
     // two.
     logic [127:0] list_data;
 
@@ -256,7 +255,7 @@ module binner #(
                     state    <= LOOK;
                 end
             end
-            // Waits a clock to read the length and the last entries of the next list.
+            // Waits one clock to read the length and the last entries of the next list.
             LOOK: state <= ENTRY;
             ENTRY: if (free || !word_ends) begin
                 if (word_ends) begin

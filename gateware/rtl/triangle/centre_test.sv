@@ -1,6 +1,6 @@
 // Tests whether a tiny triangle covers one of 2×2 pixel centres: evaluates its three edge functions there (docs/formats/triangle.md,
-// "Triangle setup"). A triangle is tiny if it has at most 2×2 pixel centres in its bounds, so its extents are below 3 pixels,
-// and 11 bits hold each difference of coordinates. Other triangles pass.
+// "Triangle setup"). A triangle is tiny if it has at most 2×2 pixel centres in its bounds, so its extents are below 3 pixels, and
+// differences of coordinates fit 11 bits. Other triangles pass.
 //
 // P is the upper left centre, (px, py) its position relative to the vertex at which an edge begins, E = dx·py − dy·px the edge
 // function at P. Edges 0 → 1 and 2 → 0 are evaluated from vertex 0, edge 1 → 2 from vertex 1.
@@ -9,7 +9,7 @@
 //              │     │                     in_valid ─▶ 0 → 1 ─▶ 1 → 2 ─▶ 2 → 0 ─▶ … ─▶ out_valid
 //   E + 256·dx · ─── · E + 256·(dx − dy)
 //
-// Throughput a triangle in 3 clocks, an edge a clock; latency 10 clocks, and nothing stops it. The inputs are the steps of the
+// Throughput one triangle per 3 clocks, one edge per clock; latency 10 clocks; never stalls. The inputs are the steps of the
 // three edge functions by a pixel to the right (−dy) and down (dx), and (px, py) of vertex 0, s3.8. The vertices are clockwise on
 // the screen.
 
@@ -29,7 +29,7 @@ module centre_test (
 );
     logic [2:0][10:0] steps_x, steps_y;
     logic [10:0]      px_0, py_0;
-    // Whether the edge of this clock is the first one, and the second one.
+    // Whether the edge of this clock is the first, and whether it is the second.
     logic [1:0]       now;
 
     always_ff @(posedge clk) begin
@@ -48,7 +48,7 @@ module centre_test (
     always_comb begin
         step_x = now[0] ? steps_x[0] : now[1] ? steps_x[1] : steps_x[2];
         step_y = now[0] ? steps_y[0] : now[1] ? steps_y[1] : steps_y[2];
-        // dx and −dy of the edge from vertex 0 lead to vertex 1.
+        // dx and −dy of the edge from vertex 0 give the position relative to vertex 1.
         px     = px_0 - (now[1] ? steps_y[0] : '0);
         py     = py_0 + (now[1] ? steps_x[0] : '0);
         bias   = step_x[10] || step_x == '0 && step_y[10];
@@ -61,7 +61,7 @@ module centre_test (
         later_step_y <= step_y;
     end
 
-    // The functions at P less their biases. The product of the second multiplier comes a clock after that of the first.
+    // The functions at P less their biases. The product of the second multiplier comes one clock after the product of the first.
     logic signed [24:0] at_first, at_p;
 
     multiply_add #(.BITS(25)) along (
@@ -71,7 +71,7 @@ module centre_test (
         .clk, .enable(1'b1), .a(25'(later_step_y)), .b(18'(later_py)), .c(at_first), .p(at_p)
     );
 
-    // The steps of the edge whose function comes next, in flip-flops (`keep`), since shift registers would take LUTs.
+    // The steps of the edge whose function comes next, in flip-flops (`keep`), because shift registers would take LUTs.
     (* keep *) logic signed [10:0] step_x_1, step_x_2, step_x_3, step_x_4, step_y_1, step_y_2, step_y_3, step_y_4;
     logic signed [11:0] both;
 
@@ -87,8 +87,8 @@ module centre_test (
         both     <= 12'(step_x_3) + 12'(step_y_3);
     end
 
-    // Whether a centre is outside of one of the edges so far: P, right of it, below it, and both. A centre is inside an edge where
-    // the function is at least its bias; centres are 256 units apart, so the low 8 bits have no part in it.
+    // Whether a centre is outside of one of the edges so far: P, the centre to the right, the centre below, and the diagonal one. A centre
+    // is inside an edge if the edge function is at least its bias; centres are 256 units apart, so the low 8 bits are not needed.
     logic signed [13:0] value, right, below, across;
     logic [3:0]         beyond, outside;
 

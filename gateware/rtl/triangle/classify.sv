@@ -1,12 +1,12 @@
-// Decides what happens to a triangle after the vertex stage (`Renderer::path` of glint-model): it goes to the setup, or its
-// number goes to the firmware's clipper as an exception, or it is dropped.
+// Selects the path of a triangle after the vertex stage (`Renderer::path` of glint-model): the triangle goes to the setup, or its number
+// goes to the firmware's clipper as an exception, or it is dropped.
 //
 //   all vertices behind, or none behind and all beyond the same side of the picture   dropped, with a pulse of `unseen`
 //   otherwise, a vertex behind or beyond the guard band                            exception: its number goes out
 //   otherwise                                                                      regular: goes to the setup
 //
-// Latency 2 clocks. Throughput: one triangle per 3 clocks, in which `vertex_cache` collects the vertices of the next one. One
-// triangle is inside, so `in_ready` depends on registers alone. `width` and `height` must hold while it is inside. Triangles are
+// Latency 2 clocks. Throughput: one triangle per 3 clocks, in which `vertex_cache` collects the vertices of the next triangle. The module
+// holds one triangle, so `in_ready` comes directly from registers. `width` and `height` must hold while it is inside. Triangles are
 // numbered in the order in which they come, from 0 after `restart`.
 
 `default_nettype none
@@ -46,7 +46,7 @@ module classify #(
     logic [2:0]      behind, beyond;
     logic            is_unseen, is_exceptional;
 
-    // The first clock examines each vertex, the second one decides about the triangle, which is then `known`.
+    // The first clock examines each vertex, the second classifies the triangle, which is then `known`.
     assign idle           = in_ready;
     assign is_unseen      = behind == '1 || behind == '0 && (off[0] & off[1] & off[2]) != '0;
     assign is_exceptional = behind != '0 || beyond != '0;

@@ -4,22 +4,22 @@
 // picture are empty. A tiny triangle, with at most 2×2 centres in its bounds, is also dropped if it covers none of them. `mirror`
 // exchanges front and back faces.
 //
-// Throughput: one triangle per 3 clocks, or per 6 if it is 512 pixels high or more; latency 18 or 21. Two triangles are inside, in
+// Throughput: one triangle per 3 clocks, or per 6 if it is 512 pixels high or more; latency 18 or 21. The module holds two triangles, in
 // different stages; `phase` counts the 3 clocks of a stage:
 //
 //   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─┬▶ FIFO ───────────────▶ drop or out
 //        │ area, minima, maxima; or twice 3 │  │ bounds, start; then verdict │ └▶ centre_test ─▶ FIFO ───▲
 //
-// The stages cannot be stopped. A triangle moves in only if the FIFO has room for all triangles inside, so culled triangles leave
-// while earlier ones wait for `out`, as many as the FIFO has places: the later parts of the setup take longer for a triangle.
-// The result of centre_test comes when the triangle is in the FIFO; a dropped triangle leaves the FIFO in two clocks.
-// `in_ready` is a register, decided a clock ahead.
+// The stages cannot be stopped. A triangle is only accepted if the FIFO can hold all triangles inside, so culled triangles leave while
+// earlier triangles wait for `out`, up to the depth of the FIFO. This hides that the later parts of the setup take longer per triangle.
+// The result of centre_test comes after the triangle has entered the FIFO; a dropped triangle leaves the FIFO in two clocks. `in_ready` is
+// a register, decided a clock ahead.
 
 `default_nettype none
 
 module cull #(
     parameter bit SMOOTH = 1'b0,
-    // Places of the FIFO at the end, a power of two.
+    // Depth of the FIFO at the end, a power of two.
     parameter int unsigned PLACES = 128,
     localparam int unsigned LIGHT_BITS = SMOOTH ? 41 : 1,
     localparam int unsigned LIT_BITS   = SMOOTH ? 1 + 3 * 41 : 1
@@ -41,7 +41,7 @@ module cull #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output setup_pkg::oriented_t              out_triangle,
-    // {swap, light of the vertices numbered as in the mesh}; with `swap` vertices 1 and 2 have changed places.
+    // {swap, light of the vertices numbered as in the mesh}; with `swap` vertices 1 and 2 are exchanged.
     output logic [LIT_BITS-1:0]    out_lit
 );
     // The inputs of a triangle, and differences of the coordinates of its vertices: x10 is x1 − x0, y01 is y0 − y1, and so on.
@@ -59,7 +59,7 @@ module cull #(
     assign v1 = in_vertices[1];
     assign v2 = in_vertices[2];
 
-    // `tall`: a product of `first` needs both halves of its height, in two turns of 3 clocks; `second` marks the last turn.
+    // `tall`: the products of `first` need both halves of its height, in two turns of 3 clocks; `second` is high in the last turn.
     logic [1:0] phase;
     logic       room, queue_idle, verdict, drop, kept, skip, tall, second, again;
     logic       first_valid, last_valid, first_x_21;
@@ -81,7 +81,7 @@ module cull #(
         fits = highest == '0 || highest == '1;
     endfunction
 
-    // The next triangle. `takes` is high a clock before it moves in.
+    // The next triangle. `takes` is high one clock before it moves in.
     triangle_t taken;
     logic      takes;
 
@@ -122,9 +122,9 @@ module cull #(
         end
     end
 
-    // `area` is 2A = x10·y20 + x20·y01, twice the signed area, one product a clock in phases 0 and 1. Of a tall triangle the
-    // first turn takes the highest four bits of y20 and y01, the second turn their low 17 bits. The sum is valid in phases 1 and
-    // 2 of a triangle's last 3 clocks.
+    // `area` is 2A = x10·y20 + x20·y01, twice the signed area, one product a clock in phases 0 and 1. For a tall triangle the first turn
+    // uses the highest four bits of y20 and y01, the second turn their low 17 bits. The sum is valid in phases 1 and 2 of a triangle's
+    // last 3 clocks.
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] c, area;
@@ -150,8 +150,8 @@ module cull #(
     logic [10:0] cut_x, cut_y, left, right;
     logic [9:0]  top, bottom;
 
-    // Returns the number of the vertex with the smallest coordinate, or with `largest` the largest. before_10: that of vertex 1
-    // is before that of vertex 0, and so on.
+    // Returns the number of the vertex with the smallest coordinate, or with `largest` the largest. before_10: vertex 1 comes before
+    // vertex 0 in this order, and so on.
     function automatic logic [1:0] choose(input logic largest, input logic before_10, input logic before_20, input logic before_21);
         unique case ({largest, before_10})
             2'b00:   choose = before_20 ? 2'd2 : 2'd0;
@@ -177,7 +177,7 @@ module cull #(
     end
 
     // The reasons to cull the triangle, and the values that depend on its facing, registered for phase 2.
-    // `swap`: vertices 1 and 2 change places, so that the vertices are clockwise on the screen.
+    // `swap`: vertices 1 and 2 are exchanged, so that the vertices are clockwise on the screen.
     logic        swap, front, no_area, no_column, no_row, tiny;
     logic [39:0] magnitude;
     logic [9:0]  group_top;
@@ -186,13 +186,13 @@ module cull #(
     logic [10:0] right_last;
 
     assign right_last = right - 1'b1;
-    // Numbers of pixel centres in the bounds before the cut to the picture.
+    // Numbers of pixel centres in the bounds before clamping to the picture.
     assign columns    = pixel_x - first_x;
     assign rows       = pixel_y - first_y;
 
     always_comb begin
         // `topmost` is the number of the highest vertex on the screen, after the swap of vertices 1 and 2.
-        // Among vertices of equal height it is the smallest number.
+        // Among equally high vertices it is the smallest number.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
@@ -231,7 +231,7 @@ module cull #(
         endcase
     end
 
-    // Values that change their sign use −v = ~v + 1.
+    // Negations use −v = ~v + 1.
     setup_pkg::oriented_t oriented;
 
     always_comb begin
@@ -245,8 +245,8 @@ module cull #(
         oriented.group_start = $signed(group_top) < $signed({2'b0, group_left})  ? group_left
                              : $signed(group_top) > $signed({2'b0, group_right}) ? group_right : group_top[7:0];
         oriented.area        = magnitude;
-        // ~(a − b) = b + ~a: Yosys puts the selection of the last summand into the LUTs of a sum, but gives that of a minuend LUTs
-        // of its own.
+        // ~(a − b) = b + ~a: Yosys puts the selection of the last summand into the LUTs of a sum, but uses separate LUTs for the selection
+        // of a minuend.
         oriented.not_w10     = {1'b0, last.v0.w} + ~{1'b0, swap ? last.v2.w : last.v1.w};
         oriented.not_w20     = {1'b0, last.v0.w} + ~{1'b0, swap ? last.v1.w : last.v2.w};
         oriented.x10         = swap ? last.x20 : last.x10;
@@ -258,7 +258,7 @@ module cull #(
         oriented.x0          = last.v0.x;
     end
 
-    // Light is selected by `swap` where it is used, in setup_light.
+    // setup_light, the user of the light, selects it by `swap`.
     logic [LIT_BITS-1:0] lit;
 
     if (SMOOTH) begin : light
@@ -283,7 +283,7 @@ module cull #(
     assign skip      = queued && tested && !covers && !verdict;
     assign pop       = out_valid && out_ready || skip;
 
-    // `room` tells of an item before the next triangle can move in, so at most the two triangles in the stages follow it.
+    // `room` is updated for an item before the next triangle can move in, so at most the two triangles in the stages are not counted.
     pipeline_fifo #(.WIDTH($bits(oriented) + LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
         .clk, .rst, .idle(queue_idle), .room, .in_valid(kept), .in_data({lit, oriented}),
         .out_valid(queued), .out_ready(pop), .out_data({out_lit, out_triangle})

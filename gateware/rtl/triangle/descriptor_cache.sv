@@ -1,5 +1,5 @@
 // A cache of descriptors (triangles after the setup): descriptor numbers in, descriptors out. A triangle is drawn in several
-// bands, one after the other, and with the cache its descriptor is mostly read from memory only once.
+// bands, one after the other, and with the cache its descriptor is usually read from memory only once.
 //
 //                 ┌──────┐ miss                              ┌───────┐
 //   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
@@ -8,17 +8,16 @@
 //                                                            └───────┘
 //
 // The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order
-// of the numbers, the second stage fills lines and the third reads them in the same order. So a number that hits finds the
-// descriptor of its tag. The FIFO `marks` tells the second stage what to do for each item: fill a line, or pass it on. Every
-// descriptor comes from its line, even one that missed, so no selection follows the block RAM. An item without a descriptor
-// (`in_end`) passes in order.
+// of the numbers, the second stage fills lines and the third reads them in the same order. A number that hits therefore finds the
+// descriptor of its tag. The FIFO `marks` controls the second stage for each item: fill a line, or pass the item on. Even a descriptor
+// that missed is read from its line, so no multiplexer follows the block RAM. An item without a descriptor (`in_end`) passes in order.
 //
-// Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput a hit in 4 clocks and a miss in 5, with
-// SMOOTH in 8. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
-// is in the cache, starts to invalidate all lines, one line per clock; numbers wait until all lines are invalid.
+// Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput one hit per 4 clocks, or one miss per 5
+// clocks, 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request is in
+// the cache, starts to invalidate all lines, one line per clock; numbers wait until all lines are invalid.
 //
-// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
-// it is until it has moved. Memory: a client of read_port.
+// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
+// moved. Memory: a client of read_port.
 
 `default_nettype none
 
@@ -65,7 +64,7 @@ module descriptor_cache #(
     logic [TAG_BITS-1:0]     tags [0:2**LINE_BITS-1];
     logic                    looked, read_out, compared, is_end, set, hit, passes, asks;
     logic [COUNT_BITS-1:0]   number;
-    // Place of the descriptor, in words, after the first descriptor of its set.
+    // Offset of the descriptor, in words, from the first descriptor of its set.
     logic [ADDRESS_BITS-1:0] place;
     logic [TAG_BITS-1:0]     tag, latched, found;
     logic [LINE_BITS-1:0]    line, swept_line;
@@ -115,7 +114,7 @@ module descriptor_cache #(
         end
     end
 
-    // Requests the words of a descriptor, one address a clock.
+    // Requests the words of a descriptor, one address per clock.
     logic [WORD_BITS-1:0] word;
 
     assign words_asked = !ask_valid || ask_ready && word == WORD_BITS'(WORDS - 1);
@@ -154,10 +153,10 @@ module descriptor_cache #(
         if (rst) words <= '0;
     end
 
-    // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM has two words of
-    // each line, because one word of each fills only half of it: the first ones are read a clock before the second ones. The
-    // block RAM holds the second ones until the item has moved, so the register after it needs no enable. The last one of an
-    // odd number of words makes two words of 64 bits. The second one is written a clock late, still before it is read.
+    // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM holds two words of each
+    // line, because one word of each line fills only half of it. The first word is read one clock before the second. The block RAM holds
+    // the second word at its output until the item has moved, so the register after it needs no enable. The last word of an odd number is
+    // split into two words of 64 bits. The second of them is written one clock late, still before it is read.
     logic                 read_valid, arrives;
     logic [128*WORDS-1:0] descriptor;
 
@@ -171,7 +170,7 @@ module descriptor_cache #(
         logic [WIDTH-1:0] part, cached;
         logic             stores, second;
         // A copy of `reads_again` for each block RAM, so that it enables no more than 128 flip-flops. `reads` is never high in two
-        // successive clocks; each copy depends on itself, because synthesis merges registers with equal inputs.
+        // successive clocks; each copy depends on itself, because synthesis would otherwise merge registers with equal inputs.
         logic             first_is_read;
 
         if (WIDTH == 128) begin : of_two_words

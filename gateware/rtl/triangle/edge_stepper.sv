@@ -1,8 +1,8 @@
 // An edge function along the walk: its value E' in the best lane of the current group, a snapshot of that value at an earlier
 // group, and whether the edge fails beside the group (`best` and `beside` in raster_pkg).
 //
-// From group to group E' changes by eight times the slope. It grows when the walker moves to the right if the edge rises, to the
-// left otherwise: a move to the better side. In each clock with `advance`:
+// From group to group E' changes by eight times the slope. It increases with a move to the right if the edge rises, to the left otherwise:
+// the better side. In each clock with `advance`:
 //
 //   move               best becomes                    beside becomes the sign of
 //   to the better side from + 8 * slope                from
@@ -13,9 +13,9 @@
 // `from` is the current value, or the snapshot if the move is RIGHT and `resume` is high. `beside_step` is step_y - 8 * slope.
 // `keep` preserves the snapshot; without `keep` the snapshot takes the new value. Sums are modulo 2^34.
 //
-// `move` is the last signal to arrive in the walker's critical loop. So all sums are computed at the same time as the move, and
-// the move only selects one of them. For the same reason `resume` comes a clock ahead, as `next_resume`. Latency 1 clock,
-// throughput a move a clock.
+// `move` is the last signal to arrive in the walker's critical loop. All sums are therefore computed in parallel with the move, which only
+// selects one of them. For the same reason `resume` comes one clock ahead, as `next_resume`. Latency 1 clock, throughput one move per
+// clock.
 
 `default_nettype none
 
@@ -39,7 +39,7 @@ module edge_stepper (
     logic [29:0] not_beyond;
     logic        sideways, select, next_beside_fails;
 
-    // `resume`, for the side that is to the right.
+    // `resume`, for the side of the edge that is to the right.
     logic better_resumes, worse_resumes;
 
     always_ff @(posedge clk) begin
@@ -49,8 +49,8 @@ module edge_stepper (
     assign better_from = better_resumes ? snapshot : best;
     assign worse_from  = worse_resumes ? snapshot : best;
 
-    // A difference a - b is computed as the inverse of b + ~a, so that one operand of each adder comes from a register: then a sum
-    // takes one LUT for each bit.
+    // A difference a - b is computed as the inverse of b + ~a, so that one operand of each adder comes from a register: a sum then takes
+    // one LUT per bit.
     assign better      = {11'd0, slope} + better_from[33:3];
     assign not_worse   = {11'd0, slope} + ~worse_from[33:3];
     assign not_beyond  = {10'd0, slope} + ~worse_from[33:4];

@@ -4,8 +4,8 @@
 //
 // One multiplier makes nine products: three for N·l, one for each share, and one for each channel of the colour. The module
 // `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The
-// inputs hold during a beat; the colour comes a beat after the normal, and the lit colour is valid from clock 9 of that beat on. Of
-// two triangles that follow each other:
+// inputs hold during a beat; the colour comes a beat after the normal, and the lit colour is valid from clock 9 of that beat on. For two
+// consecutive triangles:
 //
 //   count      0 … 2     3 … 5              6 … 8
 //   factors    N·l       colour·share       light·intensity
@@ -63,7 +63,7 @@ module flat_shade (
         endcase
         c = count == 4'd3 || count == 4'd4 ? p : addend;
 
-        // The intensity is 0 where the sum is negative, 1 where the sum is at least 1, otherwise the fraction of the sum.
+        // The intensity is 0 if the sum is negative, 1 if the sum is at least 1, otherwise the fraction of the sum.
         intensity = p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
         share     = p[17:16] != '0 ? 9'h100 : {1'b0, p[15:8]};
     end

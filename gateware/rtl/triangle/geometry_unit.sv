@@ -11,20 +11,19 @@
 //
 // `start` (one clock, not while `busy`) begins a frame. The parameters must hold from a clock before `start` until `done` (one
 // clock), when all results are in memory. With `done`, two errors mark an incomplete frame: `mesh_error` (a chunk without
-// vertices or beyond the mesh's end) and `full` (no room for all descriptors, list entries or exceptions). The lists then name
-// the descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
+// vertices or beyond the mesh's end) and `full` (not all descriptors, list entries or exceptions fit their memory). The lists then contain
+// only descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
 //
-// A frame of several meshes takes a start for each. With `flags.append` descriptors, lists, exceptions, their counts and `full`
-// continue those of the previous mesh; size, places and `list_shift` must be the same. Exceptions have their numbers in their mesh.
-// After `restart` there is nothing to continue, and the lists are emptied.
+// A frame of several meshes takes a start for each. With `flags.append` the results are appended to the descriptors, lists, exceptions,
+// counts and `full` of the previous mesh; size, addresses and `list_shift` must be equal. The number of an exception is its number in its
+// own mesh. After `restart`, `append` has no effect, and the lists are emptied.
 //
 // With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats/line.md, "Segments in memory"): mesh_walk reads
-// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which replace descriptors.
+// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which take the place of descriptors.
 //
-// Throughput is that of the slowest part: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled one, 6 per vertex
-// that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) and 2 more for each of its bands after the
-// first. Memory: two clients of a read_port, two native write ports. `results` has the counts of triangles and descriptors of the
-// frame.
+// The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled one, 6 per vertex
+// that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 for each of its bands after the first. Memory:
+// two clients of a read_port, two native write ports. `results` has the counts of triangles and descriptors of the frame.
 
 `default_nettype none
 
@@ -61,7 +60,7 @@ module geometry_unit #(
 );
     // Number of bits of a triangle's colour and normal together.
     localparam int unsigned SIDE_BITS = 64;
-    // Number of bits of the light of a vertex: a triangle_pkg::light_t, or without SMOOTH one bit in its place, 0.
+    // Number of bits of the light of a vertex: a triangle_pkg::light_t, or without SMOOTH one bit, 0.
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
     localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;
@@ -75,7 +74,7 @@ module geometry_unit #(
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
 
-    // `has_lists`: the lists are those of a frame that was not cancelled.
+    // `has_lists`: the lists belong to a frame that was not cancelled.
     logic clear, has_lists, walk_busy, lists_idle, lists_done, drained, hurry;
     logic [1:0] writes_idle;
 
@@ -139,7 +138,7 @@ module geometry_unit #(
 
         assign half_ready = !has_first || segment_ready;
 
-        // The first half waits here for the second one, which stays at the input.
+        // The first half is stored here until the second half, which stays at the input, is used.
         always_ff @(posedge clk) begin
             if (in_lines && word_valid && half_ready) has_first <= !has_first;
             if (!has_first) {segment.colour, segment.a_w, segment.a_y, segment.a_x}
@@ -277,8 +276,8 @@ module geometry_unit #(
     assign hurry       = state == FINISH || state == IDLE;
     assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
 
-    // Descriptors are written to consecutive addresses, words of lists are not. Each kind has its own port, so that lists do
-    // not make the descriptors' port turn to other memory banks.
+    // Descriptors are written to consecutive addresses, words of lists are not. Each kind has its own port, so that lists do not make the
+    // descriptors' port switch between memory banks.
     assign descriptors_write_request.wdata_strobe = '1;
 
     /* verilator lint_off PINCONNECTEMPTY */

@@ -6,10 +6,10 @@
 //   lengths ─────────▶ lists ────────┬─────▶│ descriptor_cache │──▶ out
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
-// Each part reads ahead of the next part as far as its FIFO has room, even past the ends of lists and bands: the lengths of up
+// Each part reads ahead of the next part until its FIFO is full, even past the ends of lists and bands: the lengths of up
 // to 16 bands, up to 8 jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). This
 // hides the latency of memory. Three clients of a read_port read the lengths of the lists, the lists, and the descriptors.
-// Throughput a descriptor in 4 clocks, or in 7 with SMOOTH; a list takes at least 4 clocks.
+// Throughput one descriptor per 4 clocks, or per 7 with SMOOTH; a list takes at least 4 clocks.
 //
 // `list_error` is high if since `start` a list was longer than the largest length and was read as empty, or an entry was not
 // below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.
@@ -58,7 +58,7 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Requests the lengths of the lists, one read for each list. A word of the table of lengths has the lengths of four bands,
+    // Requests the lengths of the lists, one read for each list. A word of the table of lengths holds the lengths of four bands,
     // and is read again for each of them, because the lists of the two sets alternate.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
@@ -81,8 +81,8 @@ module list_reader #(
         if (rst) asks_lengths <= 1'b0;
     end
 
-    // Requests the words of the lists. For each list a job goes to the next part first: the length of the list, or 0 if the
-    // list is too long or its set is absent.
+    // Requests the words of the lists. For each list a job is first sent to the next part: the length of the list, or 0 if the list is too
+    // long or its set is absent.
     typedef enum logic [2:0] {IDLE, LENGTH, CHECK, JOB, WORDS} list_state_t;
     list_state_t list_state;
 
@@ -103,8 +103,8 @@ module list_reader #(
                     || list_state == WORDS && ask_ready[1] && words_left == '0;
 
     always_ff @(posedge clk) begin
-        // Places and lengths that follow from parameters of the frame, or from `list_set` and `list_band`, are registered: these
-        // hold for at least two clocks before their use.
+        // Addresses and lengths that depend on parameters of the frame, or on `list_set` and `list_band`, are registered, because these
+        // inputs hold for at least two clocks before their use.
         list_room  <= 34'd4 << list_shift;
         list_step  <= (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::BANK_WORDS);
         list_first <= lists[list_set] + list_offset;
@@ -153,8 +153,8 @@ module list_reader #(
         .out_valid(next_valid), .out_ready(next_ready), .out_data(next_length)
     );
 
-    // Takes the entries from the words of each list, one after the other. After the lists of both sets an item for the end of
-    // the band follows.
+    // Extracts the entries from the words of each list, one per clock. After the lists of both sets, an item for the end of the band
+    // follows.
     logic                    job_valid, set, left, last_entry, entry_taken, end_taken;
     logic                    item_valid, item_ready, item_free, item_end, item_set;
     logic [COUNT_BITS-1:0]   entries_after;

@@ -4,10 +4,9 @@
 //                                   ▲
 //                                   c
 //
-// Latency 3 clocks in which `enable` is high, counted from `a` and `b`, and 1 clock counted from `c`. Throughput one product a
-// clock. `c` may depend on `p`, to accumulate: in the form `select ? p : other` the DSP48 itself selects, without LUTs. Users
-// multiply a factor that is too wide for an input in pieces: unsigned pieces of 17 bits, and a signed piece with the highest
-// bits.
+// Latency 3 clocks in which `enable` is high, counted from `a` and `b`, and 1 clock counted from `c`. Throughput one product per clock.
+// `c` may depend on `p`, to accumulate: an expression `select ? p : other` is mapped to the DSP48, without LUTs. Users multiply a factor
+// that is too wide for an input in pieces: unsigned pieces of 17 bits, and a signed piece with the highest bits.
 
 `default_nettype none
 
@@ -23,7 +22,7 @@ module multiply_add #(
 );
     logic signed [24:0] factor_a;
     logic signed [17:0] factor_b;
-    // A product has at most 43 bits; only the low bits of it are kept if p is narrower.
+    // A product has at most 43 bits; only its low bits are kept if p is narrower.
     localparam int unsigned PRODUCT_BITS = BITS < 43 ? BITS : 43;
     logic signed [PRODUCT_BITS-1:0] product;
 

@@ -5,8 +5,8 @@
 //           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐
 //           light ────────────────────────────────────────────────────┴▶ light·y + half ─▶ five or six bits, by the zeros
 //
-// `zeros` is the number of leading zeros of the depth, at most 11. The table takes half a RAMB36. Latency 7 clocks, throughput a
-// pixel a clock; the pipeline cannot be stopped.
+// `zeros` is the number of leading zeros of the depth, at most 11. The table takes half a RAMB36. Latency 7 clocks, throughput one pixel
+// per clock; the pipeline cannot be stopped.
 
 `default_nettype none
 

@@ -21,7 +21,7 @@ module plane_entry (
 );
     localparam logic [2:0] LOW = 3'd6;
 
-    // The start waits in `late_start` for the first product, when the next triangle may have entered.
+    // `late_start` holds the start until the first product comes, because the next triangle may then have entered.
     logic [31:0]        start, late_start, step_x, step_y, held_step_x, held_step_y, held;
     logic signed [24:0] a;
     logic signed [17:0] b;

@@ -30,7 +30,7 @@ package raster_pkg;
         logic [15:0] colour;
     } placed_late_t;
 
-    // The walker's next group: the one to the left or to the right, the first group of the next row, or that of the next
+    // The walker's next group: the group to the left or to the right, the first group of the next row, or the first group of the next
     // triangle.
     typedef enum logic [1:0] {DOWN, LOAD, LEFT, RIGHT} move_t;
 
@@ -51,8 +51,8 @@ package raster_pkg;
         logic [15:0] colour;
     } late_t;
 
-    // The planes of light come this number of clocks later than the other late fields, so that the light of a group comes
-    // together with its mask, which `lanes` computes.
+    // Number of clocks by which the planes of light come later than the other late fields, so that the light of a group comes together
+    // with the mask from `lanes`.
     localparam int unsigned LIGHT_LATER = 3;
 endpackage
 

@@ -7,17 +7,17 @@
 //   pixels of a field, from a raymarcher ────────────────────┘
 //
 // `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is in
-// memory. A band takes the time of its groups of eight pixels, plus about 16 clocks until its flush begins; meanwhile
-// descriptors are read ahead, and the first triangles of the next band are prepared. `restart` (any time) cancels the frame;
-// the next start must wait until the unit is `ready` and read_port is idle.
+// memory. A band takes the time of its groups of eight pixels, plus about 16 clocks until its flush begins; during these clocks,
+// descriptors are read ahead and the first triangles of the next band are prepared. `restart` (any time) cancels the frame; the next start
+// must wait until the unit is `ready` and read_port is idle.
 //
 // With FIELDS, a raymarcher outside of this unit draws a distance field into each frame with `field_source.enable`.
 // `field_sink.start` begins the field. When the triangles of a band are drawn, `open` admits the field's pixels of this band
-// until the raymarcher raises `done`, and `next` tells the raymarcher to continue with the next band. `compose` selects how the
+// until the raymarcher raises `done`, and `next` makes the raymarcher continue with the next band. `compose` selects how the
 // luminances of two eyes become colours, see band_flush.
 //
 // With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of
-// the lists: a piece after triangles waits until their last group is taken, about 30 clocks, and so does a triangle after pieces.
+// the lists: when the kind changes, the next item waits about 30 clocks, until the last group of the previous items is taken.
 //
 // Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
 // must then be low, and the unit reads no memory.
@@ -28,8 +28,8 @@
 // frame: after reset, and after a cancelled frame.
 //
 // Memory: three clients of a read_port, and two native write ports, one for the words in even banks of the DDR3 memory and one
-// for the words in odd banks. A port turns to another bank only when the previous bank is idle, a dozen clocks later, and
-// consecutive lines of a band lie in different banks. So while one port waits for its bank, the other port writes.
+// for the words in odd banks. A port only switches to another bank when the previous bank is idle, a dozen clocks later, and consecutive
+// lines of a band lie in different banks. While one port waits for its bank, the other port therefore writes.
 
 `default_nettype none
 
@@ -70,13 +70,13 @@ module raster_unit #(
     input  wire triangle_registers_pkg::write_answer_t odd_write_answer,
     output triangle_registers_pkg::events_t events
 );
-    // Numbers that follow from the size of the picture: its last band, the rows of a band, the groups of a row, and the 128-bit
+    // Values derived from the size of the picture: its last band, the rows of a band, the groups of a row, and the 128-bit
     // words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
 
-    // The size holds from before `start`.
+    // The size is constant since before `start`.
     always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
     typedef enum logic [2:0] {IDLE, DRAW, FIELD, HAND_OVER, FLUSH} state_t;
@@ -87,7 +87,7 @@ module raster_unit #(
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
 
-    // For each slot, whether its frame buffer holds a complete frame. The bit of a slot is 0 while it is drawn.
+    // For each slot, whether its frame buffer holds a complete frame. The bit of a slot is 0 while the slot is drawn.
     logic [1:0] known;
     logic       all_words;
 
@@ -273,7 +273,7 @@ module raster_unit #(
         wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
-    // Whether groups come from the raymarcher in this clock; without TRIANGLES it is the only source.
+    // Whether groups come from the raymarcher in this clock; without TRIANGLES they always do.
     logic from_field;
 
     assign from_field = FIELDS && (field_sink.open || !TRIANGLES);

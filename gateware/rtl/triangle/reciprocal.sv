@@ -1,14 +1,14 @@
 // Computes the reciprocal y = 2^47/m of a mantissa m in [2^23, 2^24), from a table and two Newton steps
 // (docs/formats/triangle.md, "The reciprocal").
 //
-// `out_y` comes with `out_valid` (one clock) 15 clocks after m, and stays until the next result; nothing stalls. Throughput:
-// `in_ready` admits one m in 10 clocks. One DSP48 makes the four products:
+// `out_y` comes with `out_valid` (one clock) 15 clocks after m, and holds until the next result; never stalls. Throughput:
+// `in_ready` admits one m per 10 clocks. One DSP48 makes the four products:
 //
 //   clock  0      1       2        5             8           11            14         15
 //          m ─▶ seed ─▶ y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
 //
 // −m·y is computed as ~m·y + y, so that there is no adder before the multiplier. The residues are e0 = 2^33 − m·y0 and
-// e1 = 2^40 − m·y1; only their bits 8 to 25 are used, in which the powers of two are 0.
+// e1 = 2^40 − m·y1; only their bits 8 to 25 are used, in which 2^33 and 2^40 are 0.
 
 `default_nettype none
 
@@ -28,8 +28,8 @@ module reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // Bit k of `since` is high when a mantissa m entered k + 1 clocks ago. The seed comes from a block RAM, whose output is late
-    // in the clock, so y0 is a register after it.
+    // Bit k of `since` is high when a mantissa m entered k + 1 clocks ago. The seed comes from a block RAM, whose output is late in the
+    // clock, so it is registered as y0.
     logic [14:0] since;
     logic [23:0] m;
     logic [9:0]  seed, y0;

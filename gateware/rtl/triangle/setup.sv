@@ -7,19 +7,19 @@
 //
 // Throughput: one drawn triangle per 11 clocks, or 33 with smooth shading, one culled triangle per 3; latency at most 86 clocks,
 // or 196. A beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if
-// the last clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the
-// last clock of a beat, even empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits
-// for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
-// triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `mirror`,
-// `row_light`, `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.
+// the last clock is repeated, because the light takes longer or stage 4 waits for the output. All stages, even empty stages, move together
+// in the last clock of a beat, so a single triangle passes through without others behind it. A culled triangle leaves before stage 1. It
+// only waits for earlier triangles if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
+// triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `mirror`, `row_light`,
+// `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.
 //
 // E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
 // vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This holds at every point: the
 // differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
 // With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes its values P
-// at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then follow each other through one datapath, in rounds of 11
-// clocks, three to a beat of a frame with smooth shading:
+// at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then pass through one datapath in turn, in rounds of 11
+// clocks; a beat of a frame with smooth shading has three rounds:
 //
 //   beat           2                       3                       4
 //   round          0       1       2       0       1       2
@@ -173,7 +173,7 @@ module setup #(
     );
 
     // Stage 2 computes (E1 − bias)/2^8 with E1 − bias = a − (E0 − bias) − (E2 − bias) − the sum of the three biases: of the
-    // lowest 8 bits only the carry is kept. The last products of the flat shading are made meanwhile.
+    // lowest 8 bits only the carry is kept. The last products of flat shading are made at the same time.
     passed_t            passed_2;
     origin_t            origin_2;
     logic        [45:0] nx_2, ny_2;

@@ -30,7 +30,7 @@ module setup_edges (
     logic        [16:0] low;
 
     // The factors follow from count = 4·k + 2·high + term: k is 0 for edge 0 and 1 for edge 2, high is 1 for the high bits of a
-    // step, term is 0 for the product with py and 1 for that with px. The addend `c` comes two clocks after the factors of its
+    // step, term is 0 for the product with py and 1 for the product with px. The addend `c` comes two clocks after the factors of its
     // product.
     always_comb begin
         a    = 25'($signed(count[0] ? px : py));

@@ -1,10 +1,10 @@
 // Stage 1 of the triangle setup for smooth shading: computes P = nearest((w + 1/2)·L) of each vertex and channel
-// (docs/formats/triangle.md, "Smooth shading"), with w the depth of the vertex and L its light. The results have the form that a plane
-// needs: P at vertex 0 (`value`), and the differences of the other vertices from it (`p10`, `p20`).
+// (docs/formats/triangle.md, "Smooth shading"), with w the depth of the vertex and L its light. The results are the inputs of a plane: P
+// at vertex 0 (`value`), and the differences of the other vertices from it (`p10`, `p20`).
 //
 // A round computes the three products of a channel, vertex after vertex, for the triangle in stage 1. The results wait in a queue
 // and belong to the same round of the next beat. The module `setup` drives `count`, the number of the clock in a round (11 clocks
-// or more), `round`, and `next`, which is high a clock before the last clock of a round. The inputs hold during a beat.
+// or more), `round`, and `next`, which is high one clock before the last clock of a round. The inputs hold during a beat.
 //
 //   count        0 … 2      3 … 5      6 …        10
 //   factors      vertex 0   vertex 1   vertex 2

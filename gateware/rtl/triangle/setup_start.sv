@@ -39,7 +39,7 @@ module setup_start (
     end
 
     always_ff @(posedge clk) begin
-        // In clocks 4, 6 and 8 comes a sum. The last of them stays from then on, even while clock 10 is repeated.
+        // A sum comes in clocks 4, 6 and 8. The last sum holds from then on, even while clock 10 is repeated.
         if (!count[0] && count != 4'd10) begin
             high   <= p[16:0];
             middle <= high;

@@ -6,20 +6,20 @@
 //                                  ▲      │ + step_x
 //                                  └──────┘
 //
-// A group of a flat triangle takes one clock. A group of a smooth triangle takes a clock for each pixel from the first one, or
-// the fifth one if the first four are not covered, to the last covered one: an average of some five, at most eight. Three
-// multipliers then do the divisions of a pixel, instead of 24 for one group per clock.
+// A group of a flat triangle takes one clock. A group of a smooth triangle takes one clock per pixel, from the first pixel (the fifth if
+// the first four are not covered) to the last covered pixel: some five on average, at most eight. Three multipliers then suffice for the
+// divisions of a pixel, instead of 24 for one group per clock.
 //
-// Groups come from a pipeline that cannot be stopped. It sends only while `room` is high, FLIGHT clocks before a group is here
-// (see pipeline_fifo). Latency 2 clocks for a flat group, 13 more than its pixels for a smooth one; the order of the groups stays.
-// Output: a valid/ready stream. `idle` is high while no group is inside.
+// Groups come from a pipeline that cannot be stopped. The pipeline only sends while `room` is high, FLIGHT clocks before a group arrives
+// (see pipeline_fifo). Latency 2 clocks for a flat group, 13 clocks plus one per pixel for a smooth group; groups stay in order. Output: a
+// valid/ready stream. `idle` is high while no group is inside.
 
 `default_nettype none
 
 module smooth_shader #(
     parameter int unsigned GROUP_BITS = 8,
     parameter int unsigned FLIGHT     = 5,
-    // Places of each FIFO, a power of two.
+    // Depth of each FIFO, a power of two.
     parameter int unsigned GROUPS     = 16,
     // Clocks of pixel_colour.
     parameter int unsigned LATENCY    = 7
@@ -56,8 +56,8 @@ module smooth_shader #(
     assign group_gone  = out_ready && (!group_smooth || colours_valid);
     assign out_colours = group_smooth ? smooth_colours : {8{group_colour}};
 
-    // Four accumulators: the depth, then red, green and blue. The FIFO holds some of the groups, so it has room for a group
-    // whenever the other FIFO has.
+    // Four accumulators: the depth, then red, green and blue. The FIFO holds a subset of the groups in the other FIFO, so it is never full
+    // unless the other FIFO is.
     logic             light_valid, light_room, takes, is_first, is_last, upper;
     logic [2:0]       lane, last_lane;
     logic [3:0][31:0] starts, steps, values;
@@ -90,7 +90,7 @@ module smooth_shader #(
         if (rst) is_first <= 1'b1;
     end
 
-    // The position of a pixel in its group goes with it through pixel_colour.
+    // The position of a pixel in its group travels with the pixel through pixel_colour.
     logic [LATENCY:0] valid;
     logic             ends_1, ends, finished, colours_room;
     logic [2:0]       place;
@@ -116,7 +116,7 @@ module smooth_shader #(
             if (place == 3'(i)) collected[i] <= colour;
     end
 
-    // The FIFO has only colours of groups that are in the first FIFO, so it has room for them.
+    // The FIFO only holds colours of groups that are in the first FIFO, so it is never full.
     fifo #(.WIDTH(8 * 16), .DEPTH(GROUPS)) finished_colours (
         .clk, .rst, .in_valid(finished), .in_ready(colours_room), .in_data(collected),
         .out_valid(colours_valid), .out_ready(out_ready && group_valid && group_smooth), .out_data(smooth_colours)

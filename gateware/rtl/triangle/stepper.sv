@@ -1,7 +1,7 @@
-// One of the accumulators that follow the walker's moves, depth or light: its value at the current group, and a snapshot of its
+// An accumulator of depth or light that follows the walker's moves: its value at the current group, and a snapshot of its
 // value at an earlier group.
 //
-// In each clock with `advance` the value becomes the one that `move` selects. `keep` preserves the snapshot; without `keep` the
+// In each clock with `advance` the new value is selected by `move`. `keep` preserves the snapshot; without `keep` the
 // snapshot takes the new value.
 //
 //   LEFT    current - step_x
@@ -9,8 +9,8 @@
 //   DOWN    snapshot + step_y
 //   LOAD    load_value
 //
-// All controls come from registers, so one adder after the selection of its operands is fast enough, and takes half the LUTs of
-// edge_stepper. Sums are modulo 2^32. Latency 1 clock, throughput a move a clock.
+// All controls come from registers, so one adder behind an operand multiplexer is fast enough, and takes half the LUTs of edge_stepper.
+// Sums are modulo 2^32. Latency 1 clock, throughput one move per clock.
 
 `default_nettype none
 
@@ -30,8 +30,7 @@ module stepper (
 
     assign group_step = {step_x[28:0], 3'b000};
 
-    // All sums are differences, from - less - borrow: Yosys may exchange the operands of an addition, and needs a third LUT for
-    // each bit then.
+    // All sums are differences, from - less - borrow: Yosys may exchange the operands of an addition, and then needs a third LUT per bit.
     always_comb begin
         case (move)
             raster_pkg::LEFT:  from = current;

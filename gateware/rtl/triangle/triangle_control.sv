@@ -9,10 +9,10 @@
 // pass, and a raster pass with `first` or `second`, with ERROR_TRIANGLES; a build without LINES ends a geometry pass with `lines`
 // with ERROR_LINES.
 //
-// A pass is requested by one clock of `ask`. `ended` (one clock) answers each request when its pass is refused, done or
-// cancelled; `error` then holds until the next request of this pass.
+// A pass is requested by one clock of `ask`. `ended` (one clock) reports for each request that its pass is refused, done or cancelled;
+// `error` then holds until the next request of this pass.
 //
-// A pass is `active` from its request until its error is valid. A second request meanwhile does not stop the pass; the error is
+// A pass is `active` from its request until its error is valid. A second request during that time does not stop the pass; the error is
 // then ERROR_BUSY, unless the pass ends with another error.
 //
 // A request waits while the parameters of its pass are `loading`, from the next clock on. `kept` holds the flags of a pass from
@@ -89,7 +89,7 @@ module triangle_control #(
 
     assign size = rastering ? raster_kept.size : geometry_kept.size;
 
-    // The code 3 is not a size in any build.
+    // Code 3 is not a valid size in any build.
     localparam logic [3:0] SUPPORTED = {1'b0, 3'(SIZES)};
 
     assign bands = band_pkg::bands(size);
@@ -142,7 +142,7 @@ module triangle_control #(
             4'd8:    begin first = raster.descriptors[0];  words = descriptor_words; used = raster_kept.first; end
             default: begin first = raster.descriptors[1];  words = descriptor_words; used = raster_kept.second; end
         endcase
-        // A build without triangles checks frame and depth only, and needs no logic for the other regions.
+        // A build without triangles only checks frame and depth, and needs no logic for the other regions.
         if (!TRIANGLES) begin
             first = region[0] ? raster.depth : raster.frame;
             words = region[0] ? frame_words << 1 : frame_words;
@@ -178,7 +178,7 @@ module triangle_control #(
 
         if (engine.ready) recovering <= 1'b0;
 
-        // A request of a pass that is pending or busy is refused, and the earlier request continues.
+        // A request for a pass that is pending or busy is refused, and the earlier request continues.
         if (geometry_ask) begin
             if (geometry_active) begin
                 geometry_error <= ERROR_BUSY;

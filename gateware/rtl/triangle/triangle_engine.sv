@@ -5,22 +5,22 @@
 //              └───────────────┘                        └─────────────┘
 //                                firmware's lists ──────────▲
 //
-// Three native read ports of the memory serve triangles, vertices, and the raster unit. LiteDRAM lets a port turn to another
-// memory bank only when the previous bank is idle, four clocks later, so each of these streams has its own port. Write ports
-// serve descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes.
-// `status.ready` is high when no read is under way and the band buffer is clear, so that either unit may start. geometry_unit
-// and raster_unit explain their parameters and results. `events` has the increment of each counter, some clocks late.
+// Three native read ports of the memory serve triangles, vertices, and the raster unit. LiteDRAM only lets a port switch to another memory
+// bank when the previous bank is idle, four clocks later, so each of these streams has its own port. Write ports serve descriptors, lists,
+// and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes. `status.ready` is high when no read
+// is outstanding and the band buffer is clear, so that either unit may start. geometry_unit and raster_unit explain their parameters and
+// results. `events` holds the increment of each counter, some clocks late.
 //
-// SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices
-// is interpolated over the depth, with a division at each pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then have
+// SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices is
+// interpolated with perspective correction, by a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then have
 // twice the words.
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments instead of a mesh.
 //
-// FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws what a raymarcher sends and nothing else: the
+// FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws only the pixels of a raymarcher: the
 // geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
-// `geometry_start` must then stay low. Without DEPTHS as well, there is no depth test: of a pixel that is drawn twice the last one is
-// seen, and depths in memory are 0.
+// `geometry_start` must then stay low. Without DEPTHS as well, there is no depth test: a later pixel always replaces an earlier one, and
+// depths in memory are 0.
 
 `default_nettype none
 
@@ -103,7 +103,7 @@ module triangle_engine #(
             .rdata_valid(vertex_read_answer.rdata_valid), .rdata(vertex_read_answer.rdata)
         );
 
-        // The words of the lists and of the descriptors wait in block RAM, of which the FPGA has more to spare than of LUTs.
+        // The FIFOs of list words and of descriptor words are in block RAM, which is less scarce in the FPGA than LUTs.
         read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
             .clk, .rst, .drop, .idle(ports_idle[2]),
             .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
@@ -143,8 +143,8 @@ module triangle_engine #(
         .events(raster_events)
     );
 
-    // LiteDRAM answers one read port at a time and takes data from one write port at a time, so `items_in` and `items_out`
-    // grow by at most 1 per clock.
+    // LiteDRAM answers one read port at a time and takes data from one write port at a time, so `items_in` and `items_out` increase by at
+    // most 1 per clock.
     logic [2:0] stalled_reads;
     logic [1:0] stalled_lists, stalled_frame;
 
@@ -173,7 +173,7 @@ module triangle_engine #(
         port_events.cycles_busy = status.geometry_busy || status.raster_busy;
     end
 
-    // A register, because these conditions end paths through both units.
+    // A register, because the paths of these conditions go through both units.
     always_ff @(posedge clk) events <= geometry_events | raster_events | port_events;
 endmodule
 

@@ -1,12 +1,12 @@
 // Computes the light of a vertex (docs/formats/triangle.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each
-// channel, and the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With
-// `cull_back` only front faces are seen, so the light is that of front faces. Without, it is that of the side towards the light;
-// the other side is dark, so there must be no ambient light.
+// channel, and the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With `cull_back` only
+// front faces are visible, so the light is for front faces. Without `cull_back`, it is for the side towards the light; the other side is
+// dark, so ambient light is not allowed.
 //
-// One multiplier makes six products: three for N·l, and one for each share of a channel; the other one makes the three products of
-// colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters that
-// stage. The light waits in a FIFO until the position of its vertex leaves that stage; `give` then takes the light out. Latency
-// 22 clocks.
+// One multiplier makes six products: three for N·l, and one for each share of a channel; a second multiplier makes the three products of
+// colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters vertex_stage.
+// The light waits in a FIFO until the position of its vertex leaves vertex_stage; `give` then removes the light from the FIFO. Latency 22
+// clocks.
 //
 //   clocks after `take`   1…3: factors of N·l   6: N·l   7, 8: |N·l| rounded   9: intensity   10…12: factors of the shares
 //                         14…16: shares, factors of L   17…19: L

@@ -1,5 +1,5 @@
-// Step 6 of the vertex stage (docs/formats/triangle.md): X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' = nearest(Y·2^−sh) by
-// the same shifter.
+// Step 6 of the vertex stage (docs/formats/triangle.md): X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' = nearest(Y·2^−sh), by one
+// shifter.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`.
 //
@@ -15,7 +15,7 @@ module vertex_normalise (
     input  wire                half,
     input  wire  [1:0]         element,
     input  wire  [4:0]         scale_shift,
-    // `planar` is X or Y without its lowest five bits; the lowest bit of `planar` is worth at most half a unit of the result.
+    // `planar` is X or Y without its lowest five bits; the lowest bit of `planar` is at most half a unit of the result.
     input  wire  signed [38:0] planar,
     // Leading zeros of Z, valid in clock 7. The shift sh is f + lead − 34, where f is `scale_shift` and lead is 40 − zeros.
     input  wire  [3:0]         zeros,

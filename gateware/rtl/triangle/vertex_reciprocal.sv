@@ -24,7 +24,7 @@ module vertex_reciprocal (
     end
 
     // −m is valid from clock 10 on, `minus_m_later` from 16 on and `minus_m_last` from 22 on; y0 from 11 on; y1 from 18 on and
-    // `y1_later` from 24 on. The seed comes from a block RAM, whose output is late in the clock, so y0 is a register after it.
+    // `y1_later` from 24 on. The seed comes from a block RAM, whose output is late in the clock, so it is registered as y0.
     logic signed [24:0] minus_m, minus_m_later;
     logic        [23:0] minus_m_last;
     logic        [9:0]  seed, y0;
@@ -34,8 +34,8 @@ module vertex_reciprocal (
     logic signed [36:0] c, p;
     logic        [24:0] sum;
 
-    // The residues are e0 = 2^33 − m·y0 and e1 = 2^40 − m·y1. Only their bits 8 to 25 are used, in which the powers of two are
-    // 0, so the products −m·y0 and −m·y1 are enough.
+    // The residues are e0 = 2^33 − m·y0 and e1 = 2^40 − m·y1. Only their bits 8 to 25 are used, in which 2^33 and 2^40 are 0, so the
+    // products −m·y0 and −m·y1 suffice.
     assign e = p[25:8];
 
     logic unused;

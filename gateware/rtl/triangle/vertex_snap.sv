@@ -34,7 +34,7 @@ module vertex_snap (
 );
     // w is the product km·y divided by 2^(16 + depth_shift), with km = `depth_mantissa`; it saturates for a negative
     // depth_shift. `lead` of docs/formats/triangle.md is 40 − zeros. The registers `depth_shifts` and `behinds` shift every 6 clocks, so
-    // that their five places follow the vertices through the stage, from clock 8 and from clock 9 of a vertex on.
+    // that their five entries follow the vertices through the stage, from clock 8 and from clock 9 of a vertex on.
     logic [4:0][4:0]   depth_shifts;
     logic [4:0]        behinds;
     logic signed [4:0] depth_shift;

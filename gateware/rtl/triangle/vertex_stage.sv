@@ -1,11 +1,11 @@
 // The vertex stage: computes the position on the screen and the depth of mesh vertices, in order. It performs steps 1 to 8 of
-// docs/formats/triangle.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on); with `orthographic` those of
-// "Orthographic projection", in the same clocks.
+// docs/formats/triangle.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on); with `orthographic` the
+// steps of "Orthographic projection", in the same clocks.
 //
 // A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work in a fixed
 // schedule of 6 clocks, which repeats for each vertex: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1
-// to 6 of a vertex. Clock 0 is the vertex's entry. A vertex moves in only if the FIFO at the end has a free entry for it, so
-// the schedule never stops.
+// to 6 of a vertex. Clock 0 is the vertex's entry. A vertex is only accepted if the FIFO at the end has a free entry for it, so the
+// schedule never stalls.
 //
 //   clock  1         7            9                  25             37
 //     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out
@@ -93,7 +93,7 @@ module vertex_stage (
         .depth_mantissa(depth_mantissa), .depth_exponent(depth_exponent), .zeros(zeros), .behind(behind), .x(x), .y(y),
         .inverse(inverse), .vertex(vertex));
 
-    // The FIFO is never full, since an entry is reserved for each vertex inside the stage.
+    // The FIFO is never full, because an entry is reserved for each vertex inside the stage.
     logic room, unused;
     assign unused = room;
 

@@ -1,6 +1,6 @@
 // Steps 1 to 4 of the vertex stage (docs/formats/triangle.md): transforms a position P to camera coordinates X, Y, Z, compares Z with
-// the near plane, and normalises Z to its mantissa. In orthographic projection the frame's depth scale, instead of Z, gives the
-// bits that the mantissa takes.
+// the near plane, and normalises Z to its mantissa. In orthographic projection the frame's depth scale, instead of Z, selects the bits of
+// the mantissa.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`, which explains `half` and `element`.
 //
@@ -78,8 +78,8 @@ module vertex_transform (
 
     assign places = 4'd5 - depth_exponent;
 
-    // Compares Z with near in two halves. near_z has no bits above 38; `far` is high if Z has a bit set above 38. In
-    // a Z beyond the near plane the highest set bit is one of the bits 30 to 40.
+    // Compares Z with near in two halves. near_z has no bits above 38; `far` is high if Z has a bit set above 38. For a Z beyond the near
+    // plane the highest set bit is in bits 30 to 40.
     logic        negative, far, high_less, high_equal, low_less;
     logic [40:6] z;
 
@@ -108,7 +108,7 @@ module vertex_transform (
         if (orthographic) zeros <= places;
     end
 
-    // Shifts the highest set bit of Z to the top, first by multiples of four.
+    // Shifts Z so that its highest set bit is at the top, first by multiples of four.
     logic [26:0] risen;
     logic [1:0]  rest;
 

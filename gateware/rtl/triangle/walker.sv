@@ -1,6 +1,6 @@
-// Visits the part of a triangle in a band in groups of eight pixels, one group per clock, and sends the groups that the triangle
-// may cover. E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a pixel with E' >= 0
-// and fails otherwise. A group has lanes 0 to 7 from left to right; lanes -1 and 8 are the pixels next to it.
+// Visits the groups of eight pixels of a triangle in a band, one group per clock, and sends the groups that the triangle may cover. E' is
+// the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a pixel with E' >= 0 and fails otherwise.
+// A group has lanes 0 to 7 from left to right; lanes -1 and 8 are the pixels next to it.
 //
 //        ┌──────┐     row by row, from group_start:
 //        │ seek │───▶ until no edge fails in the whole group
@@ -12,26 +12,26 @@
 // The walker misses no covered group. The covered columns of a row reach from a column a to a column b: edges with step_x > 0
 // (rising) have E' >= 0 from column a on, edges with step_x < 0 (falling) up to column b; a horizontal edge passes everywhere
 // in the row or nowhere.
-//  * An edge that fails at both ends of a group fails in the whole group. If it rises, column a is further right; if it falls,
+//  * An edge that fails at both ends of a group fails in the whole group. If the edge rises, column a is further right; if it falls,
 //    column b is further left. The covered columns lie on that side. The row is empty if two failing edges point to different
 //    sides, if the direction returns to a group where an edge has failed or leaves the bounds, or if a horizontal edge fails.
-//    So seeking never abandons a row with coverage, and never ends in a group without coverage:
-//  * in a group g0…g7 where no edge fails everywhere, a <= g7 and b >= g0. So in a row with coverage (a <= b) the group
-//    covers max(a, g0)…min(b, g7). In an empty row the group is sent without coverage, and the row is done.
+//    Seeking therefore never abandons a row with coverage, and never ends in a group without coverage in such a row:
+//  * in a group g0…g7 where no edge fails everywhere, a <= g7 and b >= g0. In a row with coverage (a <= b) the covered columns of the
+//    group are therefore max(a, g0)…min(b, g7). In an empty row the group is sent without coverage, and the row is done.
 //  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if
 //    lane 8 is. In a group where no edge fails everywhere, the rising edges decide lane -1 and the falling edges lane 8, because
-//    all other edges have an E' there that is at least as large as in any lane of this group. So no edge fails in a whole
-//    group that is reached in this way.
+//    all other edges have an E' there that is at least as large as in any lane of this group. No edge therefore fails in a whole group
+//    that is reached in this way.
 // A group is sent at most once: seeking visits only groups that are not sent, and both directions lead away from the first
-// group. A row begins at the first group of the row above, or, if that row was empty, at the last group tried in it; any start
+// group. A row begins at the first group of the row above, or, if that row was empty, at the last group visited in it; any start
 // within the bounds is correct.
 //
 // The walker stays within group_left…group_right and the rows, so edge functions are evaluated at most one pixel outside of the
 // picture and fit 34 bits.
 //
-// Both streams are valid/ready. `out_ready` is a register outside of the walker, and `in_ready` depends on it. Throughput one
-// group a clock, covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the
-// clocks that are spent on a group.
+// Both streams are valid/ready. `out_ready` is a register outside of the walker, and `in_ready` depends on it. Throughput one group per
+// clock, covered or not; the next triangle's first group follows the last group without a gap. `walking` is high in the clocks in which a
+// group is visited.
 //
 // Only the edge functions and the group's number affect the next move. Depth, line and colour make the same moves one clock
 // later, and light another 1 + LIGHT_LATER clocks later.
@@ -78,7 +78,7 @@ module walker #(
     // from that group on. `resume` is high while groups to the right of the snapshot remain to be visited.
     logic seek_left, seek_right, extend_left, extend_right, resume, next_resume;
 
-    // The next move, decided from the signs of the edge functions and from the directions declared above.
+    // The next move, determined by the signs of the edge functions and the directions declared above.
     logic [2:0]        best_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
@@ -111,7 +111,7 @@ module walker #(
     assign in_ready = leave && out_ready;
 
     // While the walker seeks, the snapshot is the current group. It is kept while the walker extends from the first group
-    // of the row. `resume` and a move to the left by `extend` leave only the way from the snapshot to the right.
+    // of the row. After `resume` and after a move to the left by `extend`, only moves from the snapshot to the right remain.
     logic keep;
 
     assign keep = extend || resume;
@@ -134,8 +134,8 @@ module walker #(
     end
 
     // Like the sums in edge_stepper, the numbers of all possible next groups and their comparisons with the bounds are computed at
-    // the same time as the move. A group to the left is never the rightmost one, nor a group to the right the leftmost one.
-    // Without a next triangle, no direction is open after LOAD: the walker stays idle, ready to load one.
+    // the same time as the move. A group to the left is never the rightmost group, nor a group to the right the leftmost group.
+    // Without a next triangle, no direction is open after LOAD: the walker stays idle, ready to load a triangle.
     logic [7:0] left_group, right_group, next_group;
     logic       load_at_left, load_at_right, snapshot_at_left, snapshot_at_right, at_left, at_right;
 
@@ -197,7 +197,7 @@ module walker #(
     assign out_group.slope = slope;
     assign out_group.rises = rises;
 
-    // The move of the previous clock, which depth, line and colour make now.
+    // The move of the previous clock, which depth, line and colour make in this clock.
     raster_pkg::move_t late_move;
     logic              late_keep, late_resume, late_advance;
     logic [31:0]       depth_step_y;
@@ -222,7 +222,7 @@ module walker #(
         .step_x(out_late.depth_step_x), .step_y(depth_step_y), .current(out_late.depth)
     );
 
-    // An earlier move, for light. Its controls wait, instead of the light, which has many more bits.
+    // An earlier move, for light. Delaying the controls, instead of the light, takes far fewer bits.
     if (SMOOTH) begin : light
         raster_pkg::move_t      early_move, light_move;
         logic                   early_keep, early_resume, early_advance, light_keep, light_resume, light_advance;

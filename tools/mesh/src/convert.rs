@@ -19,10 +19,10 @@ use std::collections::HashMap;
 pub struct Options {
     /// Keeps the coordinates, instead of scaling the mesh to the 1×1×1 box about the origin.
     pub keep_scale: bool,
-    /// Keeps the triangles in the order of the file, instead of one for which the engine fetches fewer vertices. That order is
-    /// only used if there are fewer.
+    /// Keeps the triangles in the order of the file. Otherwise they are reordered if this reduces the number of vertices that the engine
+    /// fetches.
     pub keep_order: bool,
-    /// Turns faces that run the wrong way around.
+    /// Reverses faces with the wrong winding.
     pub fix_winding: bool,
 }
 
@@ -33,15 +33,15 @@ pub struct Report {
     pub points: usize,
     /// Polygons in the file.
     pub faces: usize,
-    /// Number of vertices in the mesh. A vertex that several chunks use is counted once for each of them.
+    /// Number of vertices in the mesh. A vertex in several chunks is counted once per chunk.
     pub vertices: u32,
     /// Number of triangles in the mesh.
     pub triangles: u32,
     /// Triangles dropped because they have no area after rounding.
     pub degenerate: usize,
-    /// Chunks that the mesh is divided into, each of at most 65,535 vertices.
+    /// Number of chunks of the mesh, each of at most 65,535 vertices.
     pub chunks: usize,
-    /// Number of vertices that the engine fetches for a frame with the triangles in the order of the file.
+    /// Number of vertices that the engine would fetch for a frame with the triangles in the order of the file.
     pub fetches_before: u32,
     /// Number of vertices that the engine fetches for a frame of this mesh.
     pub fetches: u32,
@@ -59,7 +59,7 @@ pub struct Report {
     pub error_max_lsb: f64,
     /// `error_rms` in units of 2^-14.
     pub error_rms_lsb: f64,
-    /// Remarks for the user.
+    /// Notes for the user.
     pub remarks: Vec<String>,
 }
 
@@ -117,7 +117,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// Moves and scales the points and turns the faces like [`convert`], without rounding. The order of the faces stays.
+/// Translates and scales the points and reverses the faces like [`convert`], without rounding and in the order of the file.
 ///
 /// # Errors
 /// The mesh has no extent.
@@ -132,14 +132,14 @@ pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatErro
     Ok(())
 }
 
-/// A triangle with an area, and its face normal.
+/// A triangle of non-zero area, and its face normal.
 struct FlatTriangle {
     corners: [Corner; 3],
     normal: Vector,
     colour: Option<Rgb8>,
 }
 
-/// Returns all triangles that have an area after rounding, and the number of those that have none.
+/// Returns all triangles with a non-zero area after rounding, and the number of triangles of area 0.
 fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>, usize) {
     let mut triangles = Vec::with_capacity(polygons.triangle_count());
     let mut degenerate = 0;
@@ -167,8 +167,8 @@ fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Optio
         corners.map(|corner| rounded.position(corner).map(f64::from)),
     ))?;
     let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
-    // Rounding may turn over a triangle that is very narrow. The normal then follows from the rounded corners, because the
-    // rounded triangle is the one that is drawn.
+    // Rounding may flip a very narrow triangle. The normal is then computed from the rounded corners, because the rounded triangle is
+    // drawn.
     Some(
         before
             .filter(|before| dot(*before, after) > 0.0)
@@ -231,7 +231,7 @@ fn index(
     (vertices, indexed)
 }
 
-/// Position, normal and colour of a vertex. Vertices in which all three are equal become one vertex of the mesh.
+/// Position, normal and colour of a vertex. Equal vertices become one vertex of the mesh.
 #[derive(PartialEq, Eq, Hash)]
 struct VertexKey([i16; 3], [i16; 3], Rgb565);
 
@@ -371,7 +371,7 @@ mod tests {
 
     #[test]
     fn normals_of_a_corner() {
-        // Three faces of a cube's corner: the shared normal is the diagonal, however the faces are triangulated.
+        // Three faces at a cube's corner: the shared normal is the diagonal, for any triangulation of the faces.
         let polygons = soup(
             &[
                 [0.0, 0.0, 0.0],

@@ -34,10 +34,10 @@ impl Encoded {
 /// Returns the triangles in an order for which the engine fetches few vertices. Triangles with the same three indices keep their
 /// order.
 ///
-/// The vertices of a chunk are numbered in the order of their first use, so a new vertex replaces the oldest one in the
-/// direct-mapped cache, as in a FIFO of as many places. The order is that of Sander, Nehab and Barczak, "Fast Triangle Reordering for
-/// Vertex Locality and Reduced Overdraw", ACM Transactions on Graphics 26(3), 2007: all triangles about one vertex after another, in
-/// a time proportional to their number. `vertices` is above all indices.
+/// The vertices of a chunk are numbered in the order of their first use, so a new vertex replaces the oldest vertex in the direct-mapped
+/// cache, as in a FIFO of equal size. The algorithm is by Sander, Nehab and Barczak, "Fast Triangle Reordering for Vertex Locality and
+/// Reduced Overdraw", ACM Transactions on Graphics 26(3), 2007: it emits all triangles about one vertex, then about the next vertex, in
+/// linear time. `vertices` is greater than all indices.
 pub fn for_cache(vertices: usize, triangles: &[IndexedTriangle]) -> Vec<IndexedTriangle> {
     let mut fans = Fans::new(vertices, triangles);
     let mut ordered = Vec::with_capacity(triangles.len());
@@ -53,19 +53,19 @@ pub fn for_cache(vertices: usize, triangles: &[IndexedTriangle]) -> Vec<IndexedT
 
 /// The triangles about each vertex, and the state of the cache while they are drawn.
 struct Fans {
-    /// Numbers of triangles, in the order of the file, those about one vertex after those about another.
+    /// Triangle numbers grouped by vertex, in each group in the order of the file.
     triangles: Vec<u32>,
-    /// Place in `triangles` of the first one about each vertex, and the end.
+    /// For each vertex, the index in `triangles` of the start of its group, followed by the end of the last group.
     starts: Vec<usize>,
     /// Number of triangles about each vertex that are not drawn yet.
     left: Vec<u32>,
     is_drawn: Vec<bool>,
-    /// The number of fetches after that of each vertex.
+    /// For each vertex, the total number of fetches after its last fetch.
     fetched: Vec<usize>,
     fetches: usize,
-    /// Vertices of the triangles drawn, the latest last.
+    /// Vertices of the drawn triangles, the latest last.
     recent: Vec<u32>,
-    /// The vertices before this one have no triangles left.
+    /// All vertices before this one have no triangles left.
     cursor: usize,
 }
 
@@ -100,7 +100,7 @@ impl Fans {
         }
     }
 
-    /// Number of fetches since a vertex was fetched: less than [`vertex_cache::SLOTS`] while it is in the cache.
+    /// Number of fetches since the last fetch of a vertex: less than [`vertex_cache::SLOTS`] while it is in the cache.
     fn age(&self, vertex: u32) -> usize {
         self.fetches - self.fetched[vertex as usize]
     }
@@ -129,7 +129,7 @@ impl Fans {
         }
     }
 
-    /// Of the vertices of `drawn` that have triangles left, the one that was fetched first, if it stays in the cache until they are
+    /// The vertex of `drawn` with triangles left that was fetched first, among those that stay in the cache until their triangles are
     /// drawn.
     fn best(&self, drawn: &[IndexedTriangle]) -> Option<u32> {
         let mut best = None;
@@ -151,7 +151,7 @@ impl Fans {
         best.map(|(_, vertex)| vertex)
     }
 
-    /// The latest vertex with triangles left, or else the first one.
+    /// The latest drawn vertex with triangles left, otherwise the first vertex with triangles left.
     fn after_dead_end(&mut self) -> Option<u32> {
         let is_left = |left: &[u32], vertex: u32| left[vertex as usize] > 0;
         while let Some(vertex) = self.recent.pop() {
@@ -170,7 +170,7 @@ impl Fans {
 mod tests {
     use super::*;
 
-    /// A grid of `side`² squares of two triangles, row by row. Each triangle has its number as colour.
+    /// A grid of `side`² squares of two triangles, row by row. The colour of a triangle is its number.
     fn grid(side: u32) -> (Vec<Vertex>, Vec<IndexedTriangle>) {
         let row = side + 1;
         let triangles = (0..side * side).flat_map(|square| {
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_grid_wider_than_the_cache_is_fetched_once() {
-        // A row has more vertices than the cache, so row by row every inner vertex is fetched twice.
+        // A row has more vertices than the cache, so in row order every inner vertex is fetched twice.
         let (vertices, mut triangles) = grid(150);
         triangles.sort_by_key(|triangle| triangle.indices[0] % 151);
         triangles.sort_by_key(|triangle| triangle.colour.0 % 7);

@@ -27,7 +27,7 @@ impl Placing {
                 scale: 1.0,
             });
         }
-        // The bounding box has only the points that a face uses.
+        // The bounding box includes only points that a face uses.
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &corner in &polygons.corners {
             for (i, &c) in polygons.point(corner).iter().enumerate() {
@@ -73,7 +73,7 @@ impl Rounded {
     /// Rounds every point that a face uses.
     ///
     /// # Errors
-    /// A point outside [-2, 2).
+    /// A coordinate is outside of [-2, 2).
     pub fn of(polygons: &Polygons, placing: &Placing) -> Result<Self, FormatError> {
         let mut of_point = vec![Self::UNUSED; polygons.points.len()];
         let mut positions = Vec::new();

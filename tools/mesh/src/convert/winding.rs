@@ -1,17 +1,17 @@
-//! Repair of faces that run the wrong way around.
+//! Repair of faces with the wrong winding.
 
 use crate::polygons::{Face, Polygons, Vector};
 use crate::triangulate::{cross, dot, sub};
 use std::collections::HashMap;
 
-/// Turns faces so that neighbours agree on the side that is outside, and every closed part of the mesh encloses a positive volume:
-/// its faces run counter-clockwise seen from outside. Points with equal coordinates count as one.
+/// Reverses faces so that neighbours have consistent windings, and every closed part of the mesh has a positive volume: its faces are
+/// counter-clockwise seen from outside. Points with equal coordinates count as one.
 ///
-/// A part is a set of faces that are connected over edges of two faces each. Adds remarks: how many faces were turned, and
+/// A part is a set of faces connected by edges that have exactly two faces. Adds notes: the number of reversed faces, and
 ///
-/// - open parts, whose outside is unknown: the side is kept that more faces had;
-/// - parts with one side only, such as a Möbius strip: they are left as they were;
-/// - edges of more than two faces, over which neighbours are not compared.
+/// - open parts, whose outside is unknown: the winding of the majority of faces is kept;
+/// - one-sided parts, such as a Möbius strip: they are left unchanged;
+/// - edges of more than two faces, at which neighbours are not compared.
 pub fn repair(polygons: &mut Polygons) {
     let faces = welded(polygons);
     let edges = Edges::of(&faces);
@@ -56,7 +56,7 @@ pub fn repair(polygons: &mut Polygons) {
     counts.remark(polygons);
 }
 
-/// Counts for the remarks.
+/// Counts for the notes.
 #[derive(Default)]
 struct Counts {
     turned: usize,
@@ -91,7 +91,7 @@ impl Counts {
     }
 }
 
-/// Returns the corners of all faces as numbers of distinct points, without repetitions in sequence.
+/// Returns the corners of all faces as numbers of distinct points, without consecutive duplicates.
 fn welded(polygons: &Polygons) -> Vec<Vec<u32>> {
     let mut numbers = HashMap::new();
     let numbers: Vec<u32> = polygons
@@ -127,13 +127,14 @@ fn edges_of(corners: &[u32]) -> impl Iterator<Item = (u32, u32)> {
     corners.iter().copied().zip(next.copied()).take(count)
 }
 
-/// For each edge, by its lower and its higher point, the faces that use it, and whether they run from the lower to the higher.
+/// For each edge, given by its lower and its higher point, the faces that use it, and whether they traverse it from the lower to the
+/// higher point.
 struct Edges(HashMap<(u32, u32), Vec<(usize, bool)>>);
 
-/// Faces that are connected over edges of two faces each.
+/// A set of faces connected by edges that have exactly two faces.
 struct Patch {
     faces: Vec<usize>,
-    /// Whether the faces can be turned so that all neighbours agree.
+    /// Whether the faces can be reversed so that all neighbours have consistent windings.
     two_sided: bool,
 }
 
