@@ -25,7 +25,7 @@ fn refuse(reason: impl Display) -> FormatError {
 pub struct Changes {
     /// Shading of meshes.
     pub shading: Option<Shading>,
-    /// Quality of the picture, with its size.
+    /// Quality of the picture; also sets its size.
     pub quality: Option<Quality>,
     /// Size of the picture; overrides the size of the quality.
     pub size: Option<Size>,

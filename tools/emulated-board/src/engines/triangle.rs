@@ -2,7 +2,7 @@
 //!
 //! A pass computes its results at its start, by the functions of `glint_model`, and ends after the estimated time of the
 //! gateware. The results in memory, the counts of triangles, groups, pixels and words, and the errors equal those of the
-//! gateware; cycle counters are estimates, and counters of waiting cycles stay 0. Counters grow evenly during a pass.
+//! gateware; cycle counters are estimates, and counters of waiting cycles stay 0. Counters increase evenly during a pass.
 
 mod geometry;
 mod output;

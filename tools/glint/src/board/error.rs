@@ -34,7 +34,7 @@ pub enum OpenError {
     /// The serial ports of this host cannot be listed.
     #[error("the serial ports cannot be listed: {0}")]
     Ports(serialport::Error),
-    /// No serial port, or more than one, is probably connected to a board.
+    /// No serial port has the USB bridge of a board, or more than one has.
     #[error(
         "serial: expected one port with the USB bridge of a board, found {found}; --board PORT selects one"
     )]

@@ -26,7 +26,7 @@ pub struct MakeArguments {
     /// Bitstream of the FPGA, .bit or raw [default: none; the flash keeps its bitstream].
     #[arg(long, value_name = "FILE")]
     bitstream: Option<PathBuf>,
-    /// Scenes that the board shows, separated by commas: built-in scenes, lists of them, or scene files.
+    /// Scenes that the board shows, separated by commas: built-in scenes, lists of scenes, or scene files.
     #[arg(
         long,
         value_name = "NAME|FILE.toml",

@@ -34,7 +34,7 @@ pub use messages::fail;
 ///
 /// MODEL is a mesh file (.obj, .stl, .ply, .gltf, .glb, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot,
 /// gear, teapot, scan:N (frequency, 1 to 64), sponge:N (0 to 4). BOARD is `emulated`, `virtual`, a serial port such as
-/// /dev/ttyUSB1, or `serial` for the port that `glint ports` guesses. ~/.config/glint/config.toml sets the usual one: `board =
+/// /dev/ttyUSB1, or `serial` for the port that `glint ports` guesses. ~/.config/glint/config.toml sets the defaults: `board =
 /// "NAME"`, `baud = NUMBER`. Exit code 2: bad input, with one line that names the location, the expected value and the found
 /// value. Exit code 1: any other failure.
 #[derive(Parser)]

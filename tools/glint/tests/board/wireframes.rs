@@ -48,7 +48,7 @@ fn shown(console: &mut Console<SimulatedBoard<EmulatedBoard>>) -> [Vec<u16>; 2] 
     })
 }
 
-/// A value of the statistics.
+/// Reads a value of the board's statistics.
 fn count(stats: &[String], name: &str) -> u64 {
     let found = stats.iter().find_map(|line| line.strip_prefix(name));
     found.unwrap().trim().parse().unwrap()
