@@ -72,7 +72,7 @@ pub struct Report {
     pub bias: [i32; 3],
     /// Standard deviation of the samples' rate about each axis in 1/256 LSB, rounded down.
     pub deviation: [u32; 3],
-    /// Standard error of the mean rate about each axis in 2^−16 LSB, rounded down. It assumes white noise.
+    /// Standard error of the mean rate about each axis in 2^−16 LSB, rounded down. The formula assumes white noise.
     pub error: [u32; 3],
 }
 
@@ -224,7 +224,7 @@ impl Calibration {
     /// Takes a sample and returns the progress. A sample with the time stamp of the previous sample is ignored.
     ///
     /// # Errors
-    /// The sensor moved or does not measure; the calibration has ended, and a new one is needed.
+    /// The sensor moved or does not measure. This ends the calibration.
     pub fn on_sample(&mut self, sample: &Sample) -> Result<Progress, SampleError> {
         if self.count == 0 {
             self.first = *sample;

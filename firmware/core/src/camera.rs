@@ -62,8 +62,8 @@ pub struct View {
 impl View {
     /// Makes a perspective camera from its eye, basis, half width and near plane, after checking them.
     ///
-    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. In world
-    /// units, the eye must be within 32 of the origin, `half_width` in [0.0087, 115] and `near` in [0.01, 2].
+    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n, and is used without normalisation.
+    /// In world units, the eye must be within 32 of the origin, `half_width` in [0.0087, 115] and `near` in [0.01, 2].
     ///
     /// # Errors
     /// The first violated condition.
@@ -99,7 +99,7 @@ impl View {
     ///
     /// With θ = `theta` and φ = `phi`, C = r·(sin φ cos θ, sin φ sin θ, cos φ), u = (−sin θ, cos θ, 0),
     /// v = (cos φ cos θ, cos φ sin θ, −sin φ) and n = −C/r. θ is the azimuth, and φ the angle from the z axis, at most half a
-    /// turn. The formulas have no singularity: at the poles the basis follows from θ. The sines and cosines have the errors of
+    /// turn. The formulas have no singularity: at the poles θ determines the basis. The sines and cosines have the errors of
     /// [`sin_cos_q30`]; apart from these errors the eye is exact to 2^−32, and each component of the basis to 2^−24.
     ///
     /// # Errors
@@ -165,10 +165,11 @@ impl View {
     }
 
     /// Returns the camera at `eye` that looks in the direction `gaze`, with the direction `up` upwards on the screen as far as
-    /// possible: n = gaze/|gaze|, u = n × up/|n × up|, v = n × u. Both directions have any length except 0.
+    /// possible: n = gaze/|gaze|, u = n × up/|n × up|, v = n × u. `gaze` and `up` may have any length except 0.
     ///
     /// If `gaze` and `up` are parallel or opposite within 0.056° (a sine below 2^−10), the coordinate axis along which `up` has
-    /// its smallest component replaces `up`; among equal components the first. So with `up` = z and a gaze along z, x points up.
+    /// its smallest component replaces `up`; among equal components the first. For example, with `up` = z and a gaze along z, x
+    /// points up.
     ///
     /// Each component of the basis is within 0.51 units (2^−23) of its exact value; u and v have an additional error of 2^−29
     /// divided by the sine of the angle between `gaze` and `up`.
@@ -215,7 +216,7 @@ impl View {
             return Err(ViewError::FieldOfView(angle));
         }
         let (sin, cos) = sines(Turns(angle.0 / 2));
-        // The cosine of an angle below 90° is at least 2^23 in its units, and the dividend at most 2^59.
+        // The cosine of an angle below 90° is at least 2^23 units, and the dividend is at most 2^59.
         let tangent = ((sin << 29) / cos + 1) >> 1;
         Ok(Self {
             half_width: U8_28::from_bits(tangent.unsigned_abs()),
@@ -224,8 +225,8 @@ impl View {
         })
     }
 
-    /// Returns this camera in orthographic projection, with `width` world units from the left side of the picture to the right
-    /// one. The half width is `width`/2, rounded down to 2^−28.
+    /// Returns this camera in orthographic projection, whose picture is `width` world units wide. The half width is `width`/2,
+    /// rounded down to 2^−28.
     ///
     /// # Errors
     /// The width is not from 0.0174 to 230.
@@ -326,7 +327,7 @@ impl View {
     }
 
     /// Shift of the picture's middle from the camera's axis `n`, along `u` at distance 1, in world units; at most 1 in magnitude.
-    /// It is 0 except for the eyes of a stereo pair.
+    /// The shift is 0 except for the eyes of a stereo pair.
     pub const fn shift(&self) -> Q4_28 {
         self.shift
     }
@@ -431,7 +432,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
             });
         }
     }
-    // The three vectors are orthonormal, so u × v is either n or −n. The sign of (u × v)·n decides.
+    // The three vectors are orthonormal, so u × v is either n or −n. The sign of (u × v)·n distinguishes the two cases.
     let cross = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
         let (a, b) = (
             i64::from(u[i].to_bits()) * i64::from(v[j].to_bits()),
@@ -446,7 +447,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
     }
 }
 
-/// Computes the scalar product of two vectors, in units of 2^−46. It is exact for components within ±2.
+/// Computes the scalar product of two vectors, in units of 2^−46. The result is exact for components within ±2.
 fn dot(a: [Q2_23; 3], b: [Q2_23; 3]) -> i64 {
     core::iter::zip(a, b)
         .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))

@@ -1,6 +1,6 @@
-//! Types with a fixed list of named values, such as materials and backends.
+//! Types with a fixed list of named values, such as material and backend.
 
-/// A type with a fixed list of values. Each value has a name, by which the console and the command line of `glint` accept it.
+/// A type with a fixed list of values. Each value has a name for the console and the command line of `glint`.
 pub trait Choice: Copy + 'static {
     /// All values.
     const VALUES: &'static [Self];

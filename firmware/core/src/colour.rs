@@ -47,7 +47,7 @@ pub const fn fine_luminance([r, g, b]: [u8; 3]) -> u16 {
 /// Half a unit of luminance, in units of 2^−8; adding it before truncation rounds to nearest.
 pub const HALF_LUMINANCE: u16 = 1 << 7;
 
-/// The source of a triangle's colours.
+/// Source of a triangle's colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
     /// Each triangle has one colour, from the colour and normal stored with the triangle.
@@ -68,8 +68,8 @@ pub enum Winding {
     /// The order of the vertices in the mesh: counter-clockwise on the screen is the front.
     #[default]
     Mesh,
-    /// The position on the screen: the upper left vertex comes first, and the others follow clockwise. Every triangle is visible,
-    /// independent of the order of its vertices in the mesh, and normals are turned towards the camera.
+    /// Position on the screen: the vertices are reordered clockwise, beginning with the upper left vertex. Every triangle is
+    /// visible, independent of the order of its vertices in the mesh, and normals are turned towards the camera.
     Screen,
 }
 

@@ -1,6 +1,6 @@
 //! The console: a line editor and the grammar of commands.
 //!
-//! [`LineEditor`] turns the bytes of a terminal into lines, [`Command::parse`] turns a line into a command, and
+//! [`LineEditor`] converts the bytes of a terminal to lines, [`Command::parse`] parses a line to a command, and
 //! [`Command::execute`] calls the machine's method for this command. One table defines the commands; the parser, the help, the
 //! completion and the traits that the machine implements are generated from this table. The table also states the options of a scene, with
 //! the keys of scene files and the options of the command line of `glint`.

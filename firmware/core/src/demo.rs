@@ -21,7 +21,7 @@ pub struct Demo {
     number: usize,
     /// Whether the present scene is not yet shown.
     is_due: bool,
-    /// Time at which the next scene follows.
+    /// Time at which the present scene ends.
     end: u64,
     is_held: bool,
 }

@@ -52,7 +52,7 @@ impl Display {
     /// A display with this text.
     pub fn of(text: fmt::Arguments) -> Self {
         let mut display = Self::default();
-        // Writing does not fail.
+        // Writing to the display does not fail.
         let _ = fmt::write(&mut display, text);
         display
     }

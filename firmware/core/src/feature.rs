@@ -57,7 +57,7 @@ features! {
     EDGES = "edges";
     /// Programs of the wireframe simulator, and board buttons as its keys.
     WIREFRAME = "wireframe";
-    /// Cameras that show the whole of a mesh.
+    /// Cameras that show a whole mesh.
     FIT = "fit";
     /// Distance fields and their appearance.
     FIELD = "field";
@@ -81,11 +81,11 @@ features! {
     GESTURE = "gesture";
     /// Upload of meshes and wireframe programs.
     UPLOAD = "upload";
-    /// Pictures by the soft core: those of the backend `cpu`, and those that the gateware cannot draw.
+    /// Drawing on the soft core, by the backend `cpu` or in place of the gateware.
     CPU = "cpu";
     /// Text over the picture.
     OVERLAY = "overlay";
-    /// Demo: shows scenes in turn without a host; scenes, lists and meshes from the flash.
+    /// Demo, which shows scenes in turn without a host; scenes, lists and meshes from the flash.
     DEMO = "demo";
     /// Benchmarks.
     BENCH = "bench";

@@ -3,7 +3,7 @@
 //! `QI.F` is a two's complement number with I integer bits, which include the sign, and F fraction bits; `UI.F` has no sign. The
 //! types are aliases of types of the [`fixed`] crate. Such a type may have more integer bits than the alias states; code that
 //! computes a value keeps the value within the range of the alias. `FromStr` reads a decimal by integer arithmetic, rounds to
-//! nearest with ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same
+//! nearest with ties to even, and rejects out-of-range numbers. `Display` prints the shortest decimal that reads back as the same
 //! bits.
 
 pub use ::fixed;

@@ -32,7 +32,7 @@ pub const MAX_ITEMS: u32 = 64;
 pub const MAGIC: [u8; 4] = *b"GFC1";
 /// Smallest length in bytes of a firmware that LiteX's BIOS boots.
 pub const MIN_FIRMWARE: u32 = 32;
-/// Largest length of a firmware in bytes, which follows its header.
+/// Largest length in bytes of a firmware without its header.
 pub const MAX_FIRMWARE: u32 = (CONTENTS - FIRMWARE - FirmwareHeader::BYTES) as u32;
 
 /// The synchronisation word that marks the start of a bitstream for the FPGA.
@@ -192,7 +192,7 @@ impl<'a> Contents<'a> {
         self.bytes.len()
     }
 
-    /// The items, in order.
+    /// The items, in the order of the list.
     pub fn items(&self) -> impl Iterator<Item = Item<'a>> + use<'a> {
         let mut offset = list_end(self.count);
         let bytes = self.bytes;
@@ -374,7 +374,7 @@ fn name_of(entry: &[u8; FlashEntry::BYTES]) -> Option<&str> {
     (is_name(name) && rest.iter().all(|byte| *byte == 0)).then_some(name)
 }
 
-/// Converts a length to 32 bits; a longer one saturates.
+/// Converts a length to 32 bits, saturating.
 fn clamped(length: usize) -> u32 {
     u32::try_from(length).unwrap_or(u32::MAX)
 }

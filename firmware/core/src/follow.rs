@@ -145,8 +145,8 @@ pub const SENSITIVITY: [u16; 2] = [32, 2_048];
 
 /// Computes the camera's attitude from the sensor's attitude, the attitude chosen as centre, and the sensitivity.
 ///
-/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, with the same accuracy. With
-/// another sensitivity the angle of each turn is scaled and its axis is kept; the horizon may drift.
+/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, with the same accuracy. Any
+/// other sensitivity scales the angle of each turn and keeps its axis; the horizon may drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steering {
     sensitivity: u16,
@@ -199,7 +199,7 @@ impl Steering {
     }
 
     /// Turns the camera about the vertical to the heading 0, the heading of the identity. From then on the sensor's present
-    /// attitude stands for this heading. The horizon does not change.
+    /// attitude corresponds to this heading. The horizon does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());
         self.camera = back.times(self.camera);
@@ -213,8 +213,8 @@ impl Steering {
     }
 }
 
-/// Scales the angle of the rotation `turn` by `sensitivity`/256 and keeps its axis. The angle before scaling is taken as at most
-/// 180°.
+/// Scales the angle of the rotation `turn` by `sensitivity`/256 and keeps its axis. The angle before scaling is reduced to at
+/// most 180°.
 fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
     let [w, x, y, z] = turn
         .canonical()

@@ -1,4 +1,4 @@
-//! Cameras that show the whole of one or several meshes.
+//! Cameras that show one or several whole meshes.
 
 use core::fmt;
 
@@ -31,7 +31,7 @@ pub struct Sphere {
     radius: Length,
 }
 
-/// Reason why no camera shows the whole of a sphere.
+/// Reason why no camera shows a whole sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FramingError {
     /// The sphere extends too far from the origin: no allowed position of the eye is outside of the sphere.
@@ -141,7 +141,8 @@ impl Sphere {
 /// [`FARTHEST`].
 fn tangent_length(radius: Length, angle: Turns) -> Length {
     let [sin, cos] = sines(Turns(angle.0 / 2)).map(i64::unsigned_abs);
-    // A half width h makes a half height of 9/16·h, of which 0.8 are 9/20·h. As a radius is below 2^29, the products are below 2^64.
+    // A half width h means a half height of 9/16·h, and 80 % of this are 9/20·h. As a radius is below 2^29, the products are
+    // below 2^64.
     let length = radius.unsigned_abs() * cos * 20 / (sin * 9).max(1);
     length.min(FARTHEST as u64) as Length
 }

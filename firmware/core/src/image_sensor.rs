@@ -2,8 +2,8 @@
 //!
 //! [`ImageSensor`] finds the chip over any [`I2c`], checks its identity, and writes a short list of registers: RGB565 over the
 //! parallel port, the high byte of a pixel first, a mirrored picture (a hand moves as in a mirror), automatic exposure, gain and
-//! white balance. All other registers keep their values after a reset of the chip. The lists follow the registers of public
-//! drivers; they have not been checked against the data sheets or tried with a real chip.
+//! white balance. All other registers keep their values after a reset of the chip. The register values follow public drivers;
+//! they have not been checked against the data sheets or tried with a real chip.
 //!
 //! SCCB differs from I2C: it has no repeated start, so a read takes two transactions.
 
@@ -49,7 +49,7 @@ pub enum Model {
 impl Model {
     const ALL: [Self; 2] = [Self::Ov7670, Self::Ov5640];
 
-    /// The chip's address on the bus, without the read/write bit.
+    /// The chip's bus address, without the read/write bit.
     pub const fn address(self) -> u8 {
         match self {
             Self::Ov7670 => 0x21,
@@ -108,7 +108,7 @@ pub enum Error<E> {
     Absent,
     /// A chip answers, but has another product number.
     Identity {
-        /// The expected chip with this address.
+        /// The chip that is expected at this address.
         model: Model,
         /// The product number of the chip.
         found: u16,
@@ -205,8 +205,8 @@ impl<B: I2c> ImageSensor<B> {
         Ok(model)
     }
 
-    /// Whether the chip still has the settings of [`start`](Self::start) in the registers that it reads back. A chip loses them
-    /// when its supply fails.
+    /// Whether the chip's readable registers still contain the settings of [`start`](Self::start). A chip loses its settings when
+    /// its supply fails.
     ///
     /// # Errors
     /// The chip does not answer.
@@ -224,8 +224,7 @@ impl<B: I2c> ImageSensor<B> {
     /// Finds a known chip by its address and product number. An unknown chip at one address does not end the search for a known
     /// chip.
     ///
-    /// # Errors
-    /// There is no chip, or only unknown ones.
+    /// # Errors There is no chip, or only unknown chips.
     pub async fn find(&mut self) -> Result<Model, Error<B::Error>> {
         let mut reason = Error::Absent;
         for model in Model::ALL {

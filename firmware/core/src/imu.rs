@@ -1,7 +1,7 @@
-//! The motion sensor that steers the camera: its samples, calibration and attitude, and the steering.
+//! The motion sensor: its samples, calibration and attitude, and the steering of the camera.
 //!
-//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). While the sensor gives no samples,
-//! the attitude stays constant.
+//! [`Imu`] is the [`Sink`] of an MPU-6050's [`Stream`](crate::mpu6050::Stream). Without samples of the sensor, the attitude stays
+//! constant.
 
 use core::fmt;
 
@@ -18,7 +18,7 @@ use crate::orientation::{Counts, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt,
 pub enum Follow {
     /// The camera turns in place, in the direction of the sensor.
     Look,
-    /// The camera orbits the origin and faces it.
+    /// The camera orbits the origin and looks at it.
     Orbit,
 }
 
@@ -168,7 +168,7 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// Result of the last calibration; `None` if none has ended, or while one is in progress.
+    /// Result of the last calibration; `None` before the end of a first calibration, and during a calibration.
     pub const fn calibration(&self) -> Option<Result<Report, CalibrationError<E>>> {
         match self.calibrating {
             Calibrating::Ended(result) => Some(result),
@@ -208,14 +208,14 @@ impl<E: Copy> Imu<E> {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Turns the camera about the vertical to the heading 0. From then on the sensor's present attitude stands for this
+    /// Turns the camera about the vertical to the heading 0. From then on the sensor's present attitude corresponds to this
     /// heading.
     pub fn recentre(&mut self) {
         self.steering.recentre();
         self.moved = true;
     }
 
-    /// Passes a sample to the calibration in progress. This is a separate function, because its code is long and rarely runs.
+    /// Passes a sample to the calibration in progress. A separate function, because its code is long and rarely runs.
     #[cold]
     #[inline(never)]
     fn continue_calibration(&mut self, sample: &Sample) {
@@ -236,8 +236,8 @@ impl<E: Copy> Imu<E> {
     }
 
     /// Computes the steered camera: at `eye` for [`Follow::Look`], at the distance `radius` from the origin for
-    /// [`Follow::Orbit`]. `None` if nothing that moves the camera has changed since the last call, before the first sample, or if
-    /// the sensor does not steer the camera.
+    /// [`Follow::Orbit`]. `None` before the first sample, if the camera is unchanged since the last call, or if the sensor does
+    /// not steer the camera.
     ///
     /// # Errors
     /// Eye or radius is out of range.

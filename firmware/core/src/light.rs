@@ -34,7 +34,7 @@ const ONE: i32 = 1 << 14;
 pub struct Light {
     /// Direction to the light as entered, of any length; `None` for a light at the camera.
     towards: Option<[Q32_32; 3]>,
-    /// Direction to the light, scaled to length 1: s1.14, rounded to nearest. It is 0 for a light at the camera before
+    /// Direction to the light, scaled to length 1: s1.14, rounded to nearest. The vector is 0 for a light at the camera before
     /// [`seen_from`](Self::seen_from).
     direction: [i16; 3],
     colour: Rgb,

@@ -234,9 +234,9 @@ fn is_long(row: [i32; 3]) -> bool {
 /// Returns A/s, in units of 2^−30, for a matrix A that is a rotation or reflection times a uniform scale s; `None` for any other
 /// matrix.
 ///
-/// The squared lengths of the other rows may differ from that of the first row by 2^−13 of it, and the scalar products of the
-/// rows from 0 by the same amount. A row of length s has s·2^24 units, so the rounding of its entries alone may exceed the
-/// tolerance for s below 1/128.
+/// Squared lengths of other rows may differ from that of the first row by 2^−13 of it, and scalar products of rows may differ
+/// from 0 by as much. A row of length s has s·2^24 units, so the rounding of its entries alone may exceed the tolerance for s
+/// below 1/128.
 fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
     let [a, b, c] = rows;
     let square = dot(a, a);
@@ -252,10 +252,10 @@ fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
 
 /// The matrix for the normals of a mesh: the inverse transpose of A, up to a positive factor.
 ///
-/// It is computed without divisions, as the matrix of the cofactors of A with the sign of the determinant.
+/// The computation needs no division: it is the matrix of the cofactors of A, with the sign of the determinant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Normals {
-    /// The highest bit of the largest cofactor has the number `LEAD`.
+    /// Cofactors of A, scaled so that the highest bit of the largest one is bit `LEAD`.
     cofactors: [[i64; 3]; 3],
     /// A divided by its scale, Q2.30, if A is a rotation or reflection times a uniform scale.
     rotation: Option<[[i32; 3]; 3]>,

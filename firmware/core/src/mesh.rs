@@ -49,7 +49,7 @@ pub struct Mesh<'a> {
 
 impl<'a> Mesh<'a> {
     /// Checks every length, count, index and reserved field of a mesh, and that the sphere about the origin with the radius in
-    /// the header contains all vertices. The checksum is not checked: it protects files, and [`checksum()`] computes it.
+    /// the header contains all vertices. This does not check the checksum, which protects files; [`checksum()`] computes it.
     ///
     /// # Errors
     /// The first deviation from the format, with its position.
@@ -292,7 +292,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Takes the next chunk. Returns the offset of its header in the mesh, and the chunk.
+    /// Returns the next chunk, and the offset of its header in the mesh.
     fn chunk(&mut self) -> Result<(u32, Chunk<'a>), MeshError> {
         let offset = self.offset;
         let Some((header, rest)) = self.rest.split_first() else {
@@ -413,7 +413,7 @@ pub struct MeshError {
     pub offset: u32,
     /// The number or value that was expected at this position.
     pub expected: Expected,
-    /// The number that was found instead.
+    /// The number found in the mesh.
     pub found: u32,
 }
 

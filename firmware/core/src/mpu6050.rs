@@ -1,11 +1,11 @@
 //! The MPU-6050, and chips with the same registers: from power-on to samples with time stamps.
 //!
 //! [`Mpu6050`] configures the chip over any [`I2c`]; the caller provides the delays. [`Stream`] runs endlessly: it finds the
-//! chip, wakes it, reads each sample once, and recovers from every error of the bus. The bus repeats one read at a steady pace
+//! chip, wakes it, reads each sample once, and recovers from every error of the bus. The bus repeats one read periodically
 //! ([`PeriodicI2c`]); [`Pace`] computes the times of the samples from the times of these reads.
 //!
 //! The registers are those of the register map RM-MPU-6000A, revision 4.2. The ranges are ±2000 °/s and ±8 g, the low-pass filter
-//! has 98 Hz (a delay of 2.8 ms), and the sample rate is 1 kHz.
+//! has a bandwidth of 98 Hz (a delay of 2.8 ms), and the sample rate is 1 kHz.
 
 mod pace;
 mod stream;
@@ -38,7 +38,7 @@ pub const fn degrees_per_second(rate: i64) -> Q32_32 {
 /// The time between two samples of the chip, in µs.
 pub const PERIOD: u32 = 1_000;
 
-/// Number of reads after which the bus interrupts the processor.
+/// Number of reads per interrupt of the processor.
 const BATCH: u8 = 5;
 
 /// Time that a reset of the chip takes, in ms.
@@ -255,7 +255,7 @@ impl<B: I2c> Mpu6050<B> {
             let answer = self.bus.write_read(address, &[WHO_AM_I], &mut found).await;
             match answer {
                 Ok(()) => return Identity::of(found[0]).ok_or(Error::Identity(found[0])),
-                // No chip answers at the first address: the loop tries the second one.
+                // No chip answers at the first address: the loop tries the second address.
                 Err(error)
                     if address == ADDRESSES[0]
                         && matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => {}
@@ -307,8 +307,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// Starts to read the chip every `period` µs. A read is one burst, which takes 0.45 ms at 400 kHz; during a burst the chip
     /// keeps its data constant.
     ///
-    /// # Errors
-    /// Errors of the bus.
+    /// # Errors The bus fails.
     pub fn begin_polling(&mut self, period: u32) -> Result<(), Error<B::Error>> {
         Ok(self.bus.begin(PeriodicRead {
             address: self.address,
@@ -322,8 +321,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. The sample is `None` if an
     /// earlier read already returned it.
     ///
-    /// # Errors
-    /// Errors of the bus, or the chip vanished within the sample.
+    /// # Errors The bus fails, or the chip vanishes within the sample.
     pub async fn poll(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
         let mut bytes = Burst::default();
         let time = self.bus.next(&mut bytes).await?;

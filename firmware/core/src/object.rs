@@ -121,7 +121,8 @@ impl Place {
         Ok(place)
     }
 
-    /// Composes two placements: applies this one first and `next` second, with the colour of `next` if it has a colour.
+    /// Composes two placements: this placement is applied first, `next` second. The colour of `next` replaces the present colour,
+    /// if set.
     ///
     /// # Errors
     /// The matrix is out of range or singular.

@@ -1,8 +1,9 @@
-//! The attitude of a body from its gyroscope and accelerometer, by integer arithmetic alone.
+//! The attitude of a body from its gyroscope and accelerometer, in integer arithmetic.
 //!
 //! Conventions: the quaternion maps body to world, the world's z axis points up, and a flat sensor at rest reads +1 g on its z
-//! axis. The attitude at the first sample is the identity; with tilt correction it has the tilt that the accelerometer shows, and
-//! yaw 0. Times are in µs. `docs/formats/imu.md` states the number formats and the rounding, `docs/report/imu.md` the errors.
+//! axis. The attitude at the first sample is the identity; with tilt correction it has the tilt measured by the accelerometer,
+//! and yaw 0. Times are in µs. `docs/formats/imu.md` states the number formats and the rounding, and `docs/report/imu.md` states
+//! the errors.
 
 mod gain;
 mod integrator;

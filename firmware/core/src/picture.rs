@@ -1,4 +1,4 @@
-//! Sizes of a picture, the backends that draw pictures, and the edges of a mesh in them.
+//! Sizes of a picture, the backends that draw pictures, and the edges of a mesh in pictures.
 
 use core::fmt;
 

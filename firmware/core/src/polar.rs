@@ -1,7 +1,7 @@
 //! The length and the angle of a vector in the plane, by CORDIC in vectoring mode (Volder, 1959).
 //!
 //! Each of 36 steps turns the vector towards the positive first axis by an angle whose tangent is a power of two; the sum of
-//! these angles is the result. The angle of a vector along an axis is exact. A vector of length 0 has the angle 0.
+//! these angles is the result. The angle of a vector along an axis is exact. The angle of a vector of length 0 is 0.
 
 use crate::fixed::Turns;
 use crate::trig::PI_Q60;
@@ -13,7 +13,7 @@ static ANGLES: [u64; STEPS] = angles();
 /// Factor that compensates the lengthening of the vector by all steps: ∏ cos(atan(2^−i)), with 32 fraction bits.
 const SHORTENING: u64 = 0x9B74_EDA8;
 
-/// Before the steps, the components are shifted so that the highest bit of the larger component has this number. The steps
+/// Number of the highest bit of the larger component after scaling, which precedes the steps. The steps
 /// enlarge a component by a factor of at most √2·1.6468, so all numbers fit 64 bits.
 const LEAD: u32 = 60;
 

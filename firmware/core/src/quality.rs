@@ -21,7 +21,7 @@ choices!(Quality {
     Exact: "exact",
 });
 
-/// The threshold of a hit: a ray hits where the distance is below `base` + t·2^−`footprint`.
+/// The threshold of a hit: a ray has hit if the distance is below `base` + t·2^−`footprint`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threshold {
     /// The constant part of the threshold, in field units with 12 fraction bits.

@@ -1,4 +1,4 @@
-//! The division of a memory into regions of any length, side by side, and the gaps between them.
+//! Allocation of regions of any length in a memory, with gaps between the regions.
 
 use core::ops::Range;
 

@@ -39,7 +39,8 @@ pub fn inverse_root<const STEPS: u32>(x: u32) -> u32 {
 
 /// Computes the square root, rounded to nearest, at most 65535.
 ///
-/// The root is x·(1/√x) with one Newton step. It is at most 2 too small, and a comparison of its square with x corrects it.
+/// The root is x·(1/√x) with one Newton step. The result is at most 2 too small, and comparing its square with x corrects this
+/// error.
 // Not inlined, because the linker script places this function with the code of camera frames.
 #[inline(never)]
 pub fn root(square: u32) -> u16 {

@@ -15,7 +15,7 @@ use crate::vector::{cross, unit};
 pub enum Shape {
     /// A sphere of radius 0.5.
     Sphere,
-    /// A torus of radius 0.5 about the z axis. Its tube has a radius of 0.15.
+    /// A torus of radius 0.5 about the z axis. The tube has a radius of 0.15.
     Torus,
     /// A cylinder of radius 0.3 and length 1 about the z axis.
     Cylinder,
@@ -85,7 +85,7 @@ struct Ring {
 
 impl Shape {
     /// Writes the mesh into `memory` in the format of an upload. Returns its length in bytes; `None` if the memory is too short,
-    /// which does not happen from [`MAX_BYTES`] on. Not inlined, so that the firmware contains one copy.
+    /// which does not happen from [`MAX_BYTES`] on. Not inlined, so that the firmware contains a single copy.
     #[inline(never)]
     pub fn write(self, memory: &mut [u8]) -> Option<usize> {
         let mut writer = Writer {

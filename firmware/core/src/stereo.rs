@@ -11,7 +11,8 @@ use crate::fixed::{Q4_28, Q32_32};
 
 /// Smallest and largest accepted half separation of the eyes, in world units.
 pub const HALF_SEPARATION: [Q32_32; 2] = [Q32_32::ZERO, Q32_32::ONE];
-/// Smallest accepted distance of zero parallax, in world units. The distance must also be at least the half separation.
+/// Smallest accepted distance of zero parallax, in world units. The distance must also be at least as large as the half
+/// separation.
 const LEAST_PARALLAX: Q32_32 = Q32_32::lit("0.1");
 
 /// The text form, for help and error messages.

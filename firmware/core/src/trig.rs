@@ -1,4 +1,4 @@
-//! Sine and cosine together, from one table.
+//! Sine and cosine, computed together from one table.
 //!
 //! An octant of the circle has 64 equal steps; `NODES` holds both functions at the ends of the steps, the nodes (512 bytes). A
 //! Taylor polynomial about the nearest node gives the values between nodes. With S and C as sine and cosine of the node, d as the

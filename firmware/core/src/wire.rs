@@ -19,9 +19,9 @@
 //! * An acknowledgement lists the received blocks and the last data frame. As a line keeps the order of frames, missing blocks of
 //!   earlier frames are lost and are sent again at once. Only the loss of the newest frame or of its acknowledgement requires a
 //!   time-out.
-//! * Only the newest acknowledgement counts. If a damaged acknowledgement passes its CRC-16, the next one corrects the sender's
-//!   state. If damaged data passes its CRC-16, the CRC-32 of the transfer is wrong, and the transfer starts again.
-//! * The receiver decides when the transfer is complete. It repeats its verdict until the sender has closed, so both
+//! * Only the newest acknowledgement counts. If a damaged acknowledgement passes its CRC-16, the next acknowledgement corrects
+//!   the sender's state. If damaged data passes its CRC-16, the CRC-32 of the transfer is wrong, and the transfer starts again.
+//! * The receiver decides when the transfer is complete. The receiver repeats its verdict until it receives a `Close`, so both
 //!   sides reach the end; if every `Close` is lost, the receiver ends after a timeout.
 //!
 //! At the start of a session a host sends a `Reset` ([`reset`]), which cancels an unfinished transfer at once. A typed Ctrl-C has

@@ -2,7 +2,7 @@
 
 use litex_pac::digits;
 
-/// The displays. On a board without displays it has no effect.
+/// The displays. On a board without displays the driver has no effect.
 pub struct Digits {
     registers: digits::Digits,
 }

@@ -1,6 +1,6 @@
 //! The frequency of the SoC's clock, and the conversions between clock cycles and time.
 //!
-//! The gateware states its frequency in the register `identity.clock`, so the same firmware runs at each frequency.
+//! The register `identity.clock` contains the gateware's frequency, so one firmware supports all frequencies.
 
 use core::fmt;
 use core::time::Duration;

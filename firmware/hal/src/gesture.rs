@@ -1,7 +1,7 @@
 //! The gesture engine `gesture`, which counts the pixels of a hand in the frames of an image sensor, and the pins of the sensor.
 //!
-//! After each whole frame the engine raises an interrupt and has the [`Counts`] of this frame; a frame with a fault leaves the
-//! counts unchanged. Windows, region and run take effect with the next frame.
+//! After each whole frame the engine raises an interrupt and provides the [`Counts`] of this frame; a frame with a fault leaves
+//! the counts unchanged. Windows, region and run take effect with the next frame.
 //!
 //! Software moves the sensor's bus (SCCB): the driver implements [`Wires`].
 
@@ -118,7 +118,7 @@ impl GestureEngine {
         registers.least_run().write(least_run);
     }
 
-    /// The counts of the last whole frame; `None` if the engine replaced them meanwhile.
+    /// The counts of the last whole frame; `None` if the engine replaced them during the read.
     #[must_use]
     pub fn counts(&self) -> Option<Counts> {
         let registers = &self.registers;

@@ -1,8 +1,7 @@
 //! Buttons and switches as input pins, LEDs as output pins.
 //!
-//! A port has all pins of one register; [`InputPort::pin`] and [`OutputPort::pin`] give single pins. All pins of an output
-//! port share its register. They may be changed from the main program and from interrupt handlers, because each change is
-//! a critical section.
+//! A port contains all pins of one register; [`InputPort::pin`] and [`OutputPort::pin`] return single pins. All pins of an output
+//! port share its register. The main program and interrupt handlers may change them, because each change is a critical section.
 
 use core::convert::Infallible;
 
@@ -34,7 +33,7 @@ impl<T: Value> InputPort<T> {
     }
 }
 
-/// One pin of an [`InputPort`].
+/// A single pin of an [`InputPort`].
 pub struct Input<'p, T> {
     port: &'p InputPort<T>,
     index: u8,
@@ -84,7 +83,7 @@ impl<T: Value> OutputPort<T> {
     }
 }
 
-/// One pin of an [`OutputPort`].
+/// A single pin of an [`OutputPort`].
 pub struct Output<'p, T> {
     port: &'p OutputPort<T>,
     index: u8,

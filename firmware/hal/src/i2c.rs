@@ -1,6 +1,6 @@
 //! The I2C master `i2c`, which executes a queue of commands.
 //!
-//! The master must be the only one on the bus. It supports 7-bit addresses, 400 kHz and clock stretching. The driver puts
+//! The bus must have no other master. The master supports 7-bit addresses, 400 kHz and clock stretching. The driver puts
 //! a transaction into the queue, and an interrupt reports the end of the transaction: [`embedded_hal_async::i2c::I2c`] yields
 //! until then, [`embedded_hal::i2c::I2c`] polls. A device that was interrupted in the middle of a byte may hold SDA low; before
 //! each start the master therefore sends clocks until the device releases SDA.
@@ -27,8 +27,8 @@ use litex_pac::i2c::{
 
 use crate::timer::{Clock, Deadline, block_on, whole_millis};
 
-/// Longest time without progress before a transaction times out. It is longer than the 25.8 ms of clock stretching
-/// after which the master reports `ClockStuck`, and than the 1 ms that the 33 bytes of a full queue take on the bus.
+/// Longest time without progress before a transaction times out. This exceeds the 25.8 ms of clock stretching after which the
+/// master reports `ClockStuck`, and the 1 ms for the 33 bytes of a full queue.
 const WAIT: Duration = Duration::from_millis(100);
 
 /// Largest number of bytes received by one command.
@@ -41,7 +41,7 @@ const MOST_IN_READ: usize = 32;
 pub struct I2c {
     registers: i2c::I2c,
     clock: Clock,
-    /// [`WAIT`] in clock cycles.
+    /// The time-out [`WAIT`] in clock cycles.
     wait: u64,
     periodic: Option<Periodic>,
 }

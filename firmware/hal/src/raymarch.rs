@@ -56,15 +56,15 @@ pub struct Field<'a> {
     pub solid: Solid,
     /// Half the side of a sponge's smallest cubes.
     pub cube_half: u32,
-    /// Half the sides of a box.
+    /// Half the sides of a box, as a solid.
     pub half: [u32; 3],
-    /// Precision of the march.
+    /// Precision of the ray march.
     pub tuning: Tuning,
     /// The far limit and the near limit of the rays.
     pub limits: [u32; 2],
     /// The left and the right eye.
     pub eyes: [Eye<'a>; 2],
-    /// Half the sides of the bounding box.
+    /// Half the sides of the solid's bounding box.
     pub bounds: &'a [u32; 3],
     /// Change of the direction per pixel to the right, per pixel down, and from the first pixel of a cone's block to its middle.
     pub steps: [&'a [i32; 3]; 3],
@@ -89,8 +89,8 @@ pub struct Raymarcher {
 }
 
 impl Raymarcher {
-    /// Takes the registers if the SoC has the raymarcher. Its interrupt stays disabled, because the end of the raster
-    /// pass also ends the raymarcher's work.
+    /// Takes the registers if the SoC has the raymarcher. The raymarcher's interrupt stays disabled, because the end of the
+    /// raster pass also ends the raymarcher's work.
     ///
     /// # Errors
     /// [`Absent`] if the register `ident` does not identify a raymarcher.

@@ -21,11 +21,11 @@ use crate::Absent;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Scale {
-    /// For frames as wide as the screen.
+    /// The frame is as wide as the screen.
     One = 1,
-    /// For frames of half the width of the screen.
+    /// The frame has half the width of the screen.
     Two = 2,
-    /// For frames of a quarter of the width of the screen.
+    /// The frame has a quarter of the width of the screen.
     Four = 4,
 }
 
@@ -71,7 +71,7 @@ impl Scanout {
             return false;
         }
         registers.fb_next().write(shown);
-        // A vertical blanking may have come before the write, so that `next` is already shown.
+        // If a vertical blanking came before the write, `next` is already shown.
         let withdrawn = registers.fb_current().read() == shown;
         if !withdrawn {
             registers.fb_next().write(next);
@@ -337,7 +337,7 @@ mod tests {
             assert_eq!(display.front()[0], if seen_first { 1 } else { 2 });
             assert_eq!(video.borrow().current[1], address(display.front()));
         }
-        // A waiting frame with another scale than the shown one is not withdrawn.
+        // A waiting frame is not withdrawn if its scale differs from the shown frame's scale.
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
         display.show(320);

@@ -20,7 +20,7 @@ pub struct Clock {
     frequency: Frequency,
 }
 
-/// The uptime counter does not advance, because the SoC has none.
+/// The uptime counter does not advance, because the SoC lacks it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 

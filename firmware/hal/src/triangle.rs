@@ -1,6 +1,6 @@
-//! Driver of the triangle engine, which draws meshes in memory into frames in memory.
+//! Driver of the triangle engine, which draws meshes from memory to frames in memory.
 //!
-//! A frame takes a geometry pass for each of its meshes and one raster pass. A geometry pass writes descriptors and band lists of a
+//! A frame needs one geometry pass per mesh, and one raster pass. A geometry pass writes descriptors and band lists of a
 //! mesh, and a list of the triangles that need clipping. The raster pass draws a frame from these lists, and from a second set
 //! that the program may write (docs/formats/triangle.md, "Descriptors and band lists"). A geometry and a raster pass may run at the same
 //! time, for two frames.
@@ -73,7 +73,8 @@ pub struct Lists {
     pub lists: u32,
     /// In these passes and in the raster pass, the capacity of a band list is 4 << `list_shift` entries.
     pub list_shift: u8,
-    /// Address of the list of exceptions, the triangles that need clipping: their numbers in their mesh, of 4 bytes each.
+    /// Address of the list of exceptions, the triangles that need clipping. An entry is the triangle's number in its mesh, 4
+    /// bytes.
     pub exceptions: u32,
     /// Largest number of exceptions that fit the memory at `exceptions`.
     pub exception_limit: u32,
@@ -82,7 +83,7 @@ pub struct Lists {
 /// A segment of a line, or the header of a list of segments: 8 words.
 pub type Segment = [u32; 8];
 
-/// A geometry pass. The numbers are those of docs/formats/camera.md, "Frame constants".
+/// A geometry pass. docs/formats/camera.md, "Frame constants", defines the numbers.
 #[derive(Clone, Copy)]
 pub struct Geometry<'a> {
     /// The records of the mesh.
@@ -233,7 +234,7 @@ impl TriangleEngine {
             registers.colour().write(colour);
         }
         registers.scale_shift().write(pass.scale_shift);
-        // The registers are written one by one, because a loop would need a table of their addresses.
+        // Each register has its own write, because a loop would need a table of addresses.
         registers.row_u0().write(pass.u[0] as u32);
         registers.row_u1().write(pass.u[1] as u32);
         registers.row_u2().write(pass.u[2] as u32);

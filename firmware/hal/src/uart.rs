@@ -1,6 +1,6 @@
 //! The UART, driven by interrupts, with a queue of bytes in each direction: calls do not wait for the line.
 //!
-//! A [`Uart`] is a `static`. [`Uart::start`] gives it the registers, [`Uart::on_interrupt`] handles
+//! A [`Uart`] is a `static`. [`Uart::start`] passes the registers to it, [`Uart::on_interrupt`] handles
 //! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). The program reads through [`Uart::reader`] and writes through
 //! [`Uart::writer`]. Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
 //!
@@ -148,7 +148,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         });
     }
 
-    // Runs `action` on the state. No `action` in this file calls `with` itself, so the state is never borrowed twice.
+    // Runs `action` on the UART's state, in a critical section. No `action` in this file calls `with` itself, so the state is
+    // never borrowed twice.
     fn with<R>(&self, action: impl FnOnce(&mut State<RX, TX>) -> R) -> R {
         critical_section::with(|token| action(&mut self.state.borrow_ref_mut(token)))
     }
@@ -272,7 +273,7 @@ impl<const RX: usize, const TX: usize> Write for Writer<'_, RX, TX> {
         }
     }
 
-    /// Waits until the last byte has left the queues; the line may still be sending it.
+    /// Waits until the last byte has left the queues; the line may still be sending this byte.
     fn flush(&mut self) -> Result<(), TimedOut> {
         let deadline = self.clock.after(self.timeout);
         let sent = |state: &mut State<RX, TX>| {

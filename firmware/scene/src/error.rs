@@ -10,7 +10,7 @@ use glint_core::matrix::MatrixError;
 use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::Size;
 
-/// Reason why an option is refused. Its text names the option and the expected value.
+/// Reason why an option is rejected. The error text names the option and the expected value.
 #[derive(Clone, Copy, Debug)]
 pub enum SettingError<'l> {
     /// The camera is out of range.
@@ -53,7 +53,7 @@ pub enum ObjectError {
     Matrix {
         /// The number of the object.
         number: u32,
-        /// The row, and the condition that it violates.
+        /// The row, with its violated condition.
         error: MatrixError,
     },
 }

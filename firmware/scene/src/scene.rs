@@ -1,4 +1,4 @@
-//! The scene, its options, and its frames.
+//! The scene, with its options and its conversion to frames.
 
 use core::fmt;
 
@@ -41,7 +41,7 @@ pub trait Board {
     /// Whether a mesh with this name exists. The board creates the mesh if necessary.
     fn has_mesh(&mut self, name: &str) -> bool;
 
-    /// The mesh with this name, for which [`has_mesh`](Self::has_mesh) has returned true.
+    /// The mesh with this name, after [`has_mesh`](Self::has_mesh) has returned true for the name.
     fn mesh(&self, name: &str) -> Option<Mesh<'_>>;
 }
 
@@ -104,7 +104,7 @@ pub struct PlacedMesh {
 /// The subject that a scene shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The mesh, the field, or both.
+    /// The selected mesh, the field, or both.
     Solid,
     /// The objects.
     Objects,
@@ -163,7 +163,7 @@ pub struct Scene {
     pub objects: Vec<PlacedMesh, MAX_OBJECTS>,
     /// The distance field, alone or with the mesh in it; `None` shows the mesh alone.
     pub field: Option<Field>,
-    /// Whether a field is shown with the mesh in it.
+    /// Whether a shown field contains the mesh.
     pub with_mesh: bool,
     /// Drawing mode of the edges of a single mesh; `None` for faces only, and for every other subject.
     pub edges: Option<Edges>,

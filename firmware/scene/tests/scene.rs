@@ -8,7 +8,7 @@ use glint_core::quality::Quality;
 use glint_scene::{AnyBoard, Board, Kind, Reason, Scene};
 use proptest::prelude::*;
 
-/// A scene and its board, which supports pictures up to 640×360 and has no mesh named `none`.
+/// A board that supports pictures up to 640×360, and has no engine and no mesh named `none`.
 struct SmallBoard;
 
 impl Board for SmallBoard {

@@ -7,7 +7,7 @@ use super::syntax::{Kind, Parameter, Shape, Syntax};
 use crate::choice::Choice;
 use crate::words::{Word, Words};
 
-/// A type of argument, which takes one word or several words of a line.
+/// A type of command argument, which takes one or several words of a line.
 pub trait Argument {
     /// The value that the argument's words are parsed into.
     type Value<'a>;
@@ -38,8 +38,8 @@ pub trait WordArgument {
 
 /// Reads the words of a line after the command's name, and stores the first error.
 ///
-/// The reader stores the error, so that the many small functions that read arguments return `Option` instead of `Result`, which
-/// makes the code smaller.
+/// The reader stores the error, so that the many small functions that read arguments can return `Option` instead of `Result`;
+/// this reduces code size.
 pub struct Reader<'a> {
     syntax: &'static Syntax,
     words: Words<'a>,
@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
         T::read(self, parameter)
     }
 
-    /// Returns whether all words of the line were taken.
+    /// Returns whether all words of the line were read.
     #[inline(never)]
     pub fn is_empty(&self) -> bool {
         self.words.clone().next().is_none()
@@ -103,7 +103,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Rejects a value whose words are valid one by one, but not in combination: stores `error`.
+    /// Rejects a combination of valid words: stores `error`.
     #[cold]
     #[inline(never)]
     pub fn reject(&mut self, error: ValueError<'a>) {
@@ -111,7 +111,7 @@ impl<'a> Reader<'a> {
         self.error = Some(ParseError(ParseErrorKind::Value { syntax, error }));
     }
 
-    /// Checks that all arguments were accepted and that no word is left.
+    /// Checks that all arguments were accepted and all words were read.
     ///
     /// # Errors
     /// An argument was rejected, or the line has surplus words.
@@ -190,9 +190,9 @@ impl Argument for Flag {
     }
 }
 
-/// Defines the argument type `Name` of several words: `group!(Name: Value = (word: Type, …) => expression)`. The
-/// expression computes the value from the parsed words, which it uses by their names. The type of the expression is a
-/// `Result` with a [`ValueError`].
+/// Defines the argument type `Name` of several words: `group!(Name: Value = (word: Type, …) => expression)`. The expression
+/// computes the value from the parsed words, which are variables with these names. The type of the expression is a `Result` with
+/// a [`ValueError`].
 macro_rules! group {
     ($(#[$doc:meta])* $name:ident: $value:ty = ($($word:ident: $type:ty),+ $(,)?) => $build:expr) => {
         $(#[$doc])*

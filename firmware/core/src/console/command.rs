@@ -23,9 +23,9 @@ use crate::stereo::{self, Stereo};
 use crate::wireframe::Key;
 use crate::words::Words;
 
-/// A machine that executes commands. Each trait that the table below defines extends this trait, and has one method per command.
+/// A machine that executes commands. Each trait from the table below extends this trait, with one method per command.
 pub trait Executor<'a> {
-    /// The result of a command. It may borrow from the line.
+    /// The result of a command. The result may borrow from the line.
     type Output;
 
     /// The result of a setting.
@@ -34,7 +34,7 @@ pub trait Executor<'a> {
     /// The result of a command that shows an option.
     fn show(&mut self, option: OptionName) -> Self::Output;
 
-    /// The result of a command that this build leaves out. [`Command::parse`] refuses such a command.
+    /// The result of a command that this build leaves out. [`Command::parse`] returns an error for such a command.
     fn left_out(&mut self, feature: Feature) -> Self::Output;
 }
 

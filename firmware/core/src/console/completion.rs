@@ -4,8 +4,8 @@ use super::command::{find, syntaxes};
 use super::syntax::{Kind, Parameter, Shape};
 use crate::words::{Word, Words};
 
-/// Calls `offer` for each candidate for the last word of `line`. The arguments of `offer` are the whole candidate and the part of
-/// it that is missing in the line.
+/// Calls `offer` for each candidate for the last word of `line`. The arguments of `offer` are the whole candidate and its part
+/// that the line does not yet contain.
 pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     let words = Words::new(line);
     // After a blank at the end of the line, the word to complete is a new, empty word.
@@ -38,7 +38,7 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     }
 }
 
-/// Returns the parameter of `command` that takes the word with the number `index` (from 0) after the command's name.
+/// Returns the parameter of `command` for the word at `index` (from 0) after the command's name.
 fn parameter(command: &str, index: usize) -> Option<&'static Parameter> {
     let mut left = index;
     find(command)?

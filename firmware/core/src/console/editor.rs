@@ -52,7 +52,7 @@ pub struct LineEditor {
     overlong: bool,
     /// Whether the line has ended and was returned to the caller; if so, the next byte first clears the line.
     ended: bool,
-    /// Whether the last byte was a carriage return; if so, a line feed that follows belongs to the same end of line.
+    /// Whether the last byte was a carriage return; if so, a following line feed belongs to the same line end.
     returned: bool,
     escape: Escape,
     /// The history, newest line last.
@@ -63,7 +63,7 @@ pub struct LineEditor {
     typed: Line,
 }
 
-/// State within an escape sequence.
+/// State of the parser within an escape sequence.
 #[derive(Clone, Copy, Debug)]
 enum Escape {
     No,
@@ -113,7 +113,7 @@ impl LineEditor {
     }
 
     /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed.
-    /// Errors of `echo` are ignored, because they mean that no terminal shows the echo.
+    /// Errors of `echo` are ignored, because they only mean that no terminal is connected.
     pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
         if self.ended {
             self.clear();
@@ -129,7 +129,7 @@ impl LineEditor {
             b'\n' if returned => {}
             b'\r' | b'\n' => return self.end(echo),
             _ => {
-                // Errors of the echo are ignored, because they mean that no terminal shows the echo.
+                // Errors of the echo are ignored, because they only mean that no terminal is connected.
                 let _ = match self.decode(byte) {
                     Input::Nothing => Ok(()),
                     Input::Character(byte) => self.insert(byte, echo),
@@ -152,7 +152,7 @@ impl LineEditor {
             if self.history.is_full() {
                 self.history.pop_front();
             }
-            // This cannot fail: if the history was full, its oldest line was removed above.
+            // This cannot fail: the oldest line was removed above if the history was full.
             let _ = self.history.push_back(self.line.clone());
         }
         Event::Line(text(&self.line))
@@ -335,7 +335,7 @@ impl LineEditor {
             place += 1;
             !(start + 1..=end).contains(&place)
         });
-        // The characters that did not fit into the line are lost; what remains after the deletion is a valid line.
+        // The characters that did not fit into the line are lost; the rest after the deletion is a valid line.
         self.overlong = false;
         self.move_to(start, echo)?;
         echo.write_str("\x1B[K")?;

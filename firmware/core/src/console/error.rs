@@ -39,7 +39,7 @@ pub(super) enum ParseErrorKind<'a> {
         syntax: &'static Syntax,
         word: Word<'a>,
     },
-    /// The words are valid one by one, but not in combination.
+    /// Each word is valid, but the combination is not.
     Value {
         syntax: &'static Syntax,
         error: ValueError<'a>,
@@ -53,7 +53,7 @@ pub enum ValueError<'a> {
     Kind,
     /// The width and height are not a picture size.
     Size([u32; 2]),
-    /// A number of samples follows an action of the sensor that takes no such number.
+    /// A number of samples follows an action of the sensor that does not take this argument.
     Samples {
         /// The action.
         action: &'static str,

@@ -5,7 +5,7 @@
 pub struct Row {
     /// Name of the command.
     pub command: &'static str,
-    /// Its key and its option.
+    /// Key and option of the command.
     pub forms: Forms,
 }
 
@@ -18,17 +18,17 @@ pub struct Forms {
     pub action: Option<&'static str>,
     /// Position of the command in the order of execution.
     pub turn: Turn,
-    /// Whether the value may be a list, with a command for each of its members.
+    /// Whether the value may be a list, with one command per element.
     pub is_list: bool,
-    /// Keys of which the file must also have one; empty if no other key is needed.
+    /// Required keys, of which the file must contain at least one; empty if no other key is required.
     pub with: &'static [&'static str],
-    /// Keys that the file must not also have.
+    /// Excluded keys, which the file must not contain.
     pub without: &'static [&'static str],
     /// The option of `glint render` and `glint orbit`, if any.
     pub host: Option<HostOption>,
 }
 
-/// An option of `glint render` and `glint orbit`. Its value is the argument of the command.
+/// An option of `glint render` and `glint orbit`. The value of the option is the argument of the command.
 #[derive(Clone, Copy, Debug)]
 pub struct HostOption {
     /// Name, without the dashes.
@@ -50,7 +50,7 @@ pub struct HostOption {
 pub enum Turn {
     /// Quality, then size, which overrides the size of the quality.
     Size,
-    /// The camera, which also sets the lens.
+    /// The camera, whose command may also set the lens.
     Camera,
     /// The lens.
     Lens,
@@ -133,7 +133,7 @@ impl Forms {
         }
     }
 
-    /// Sets the keys of which the file must also have one.
+    /// Sets the required keys.
     pub const fn with(self, with: &'static [&'static str]) -> Self {
         Self { with, ..self }
     }
@@ -146,7 +146,7 @@ impl Forms {
         }
     }
 
-    /// Sets the keys that the file must not also have.
+    /// Sets the excluded keys.
     pub const fn without(self, without: &'static [&'static str]) -> Self {
         Self { without, ..self }
     }

@@ -25,7 +25,7 @@ pub enum ObjectAction<'a> {
     Change {
         /// Number of the object, from 1.
         number: u32,
-        /// The operation to apply after the object's earlier operations, or its new colour.
+        /// The operation to append to the object's operations, or the object's new colour.
         next: Place,
     },
     /// Remove the object with this number, from 1; `None` removes all objects.
@@ -68,7 +68,7 @@ impl Keyword for All {
 /// The number of an object.
 type Number = Whole<{ MAX_OBJECTS as u32 }>;
 
-/// The action of the command `object`, and the words that it needs.
+/// The action of the command `object`, with the words that this action needs.
 pub struct Object;
 
 static ACTION: Parameter = Parameter::of::<Action>("action");

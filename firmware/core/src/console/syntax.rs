@@ -7,9 +7,9 @@ use core::fmt::{self, Display, Write as _};
 pub struct Syntax {
     /// The first word of the line.
     pub name: &'static str,
-    /// Help line: what the command does, in the imperative and without a full stop.
+    /// Help line: an imperative without a full stop.
     pub summary: &'static str,
-    /// Parameters in their order. Only the last one may be optional.
+    /// Parameters in their order. Only the last parameter may be optional.
     pub parameters: &'static [Parameter],
     /// Whether the line may end before the parameters, which shows the present setting.
     pub is_shown: bool,
@@ -44,7 +44,7 @@ pub enum Shape {
     Word(&'static Kind),
     /// A keyword: the parameter's own name.
     Flag,
-    /// Several words, which form one value; each word is described as a parameter.
+    /// Several words that form one value; a parameter describes each word.
     Group(&'static [Parameter]),
 }
 
@@ -60,8 +60,8 @@ pub enum Kind {
     Command,
 }
 
-/// Largest number of accepted words that a usage line lists for a parameter. A parameter that accepts more
-/// words is shown by its name.
+/// Largest number of accepted words that a usage line lists for a parameter. A parameter with more accepted words is shown by its
+/// name.
 const USAGE_WORDS: usize = 3;
 
 /// Writes the usage line: the command's name and its parameters.

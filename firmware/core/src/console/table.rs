@@ -30,8 +30,8 @@ macro_rules! commands {
             $($option:ident $value:ident($($part:ident: $form:ty),+ $(,)?) $(or $shown:ident)? $(in $of:ident)?: $help:literal $(=> $stated:expr)?;)*
         }
     )+) => {
-        /// A command with its arguments. Each argument is in its range. The handler of the command checks whether the state of
-        /// the machine permits the command.
+        /// A command with its arguments. All arguments are in their ranges. The handler of the command checks whether the state
+        /// of the machine permits the command.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[expect(
             clippy::large_enum_variant,

@@ -1,7 +1,6 @@
 //! Types of arguments: numbers, angles, colours, fields and values of several words.
 //!
-//! The parsers of numbers and fields are not inlined, so that all commands share one copy. This makes the firmware smaller, so
-//! that it is loaded faster.
+//! The parsers of numbers and fields are not inlined, so that all commands share one copy. A smaller firmware is loaded faster.
 
 use core::fmt::{self, Display};
 
@@ -22,7 +21,7 @@ use crate::picture;
 use crate::stereo;
 use crate::wire::Manifest;
 
-/// A name: any word is accepted.
+/// A name; accepts any word.
 pub struct Name;
 
 impl WordArgument for Name {
@@ -254,8 +253,8 @@ impl WordArgument for light::Light {
     }
 }
 
-/// The sensitivity of a camera that the sensor steers: the ratio (gain) of the camera's turns to the sensor's turns. It is a
-/// decimal number on the console, and is stored in units of 1/256, rounded down.
+/// The sensitivity of a camera that the sensor steers: the ratio (gain) of the camera's turns to the sensor's turns. The console
+/// shows it as a decimal number; it is stored in units of 1/256, rounded down.
 pub struct Sensitivity;
 
 impl WordArgument for Sensitivity {

@@ -24,7 +24,7 @@ pub trait Arguments<'a> {
     /// The word is not a number.
     fn angle(&mut self, name: &'static str) -> Result<Turns, FieldError<'a>>;
 
-    /// Moves to the next group of numbers, and returns whether there is one. Semicolons separate groups.
+    /// Moves to the next group of numbers, if any, and returns whether it exists. Semicolons separate groups.
     ///
     /// # Errors
     /// The group before the semicolon has a surplus number.

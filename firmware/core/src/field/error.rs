@@ -16,7 +16,7 @@ pub enum FieldError<'a> {
         /// Text form and description of every kind.
         kinds: &'static [(&'static str, &'static str)],
     },
-    /// This build lacks the kind.
+    /// This build lacks this kind of field.
     LeftOut {
         /// The kind.
         kind: &'a str,

@@ -4,7 +4,7 @@
 
 use super::surface::Surface;
 
-/// A coordinate during folding: its value, and the direction in the world in which it increases.
+/// A coordinate during folding: its value, and the world direction of increasing values.
 ///
 /// The integer k represents the coordinate x = k + 1/2, the middle of the interval that is truncated to k. Therefore −x is
 /// exactly `!k`, and a mirror needs no carry.

@@ -21,7 +21,7 @@ pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
 
-/// Whether this build has a kind of field.
+/// Whether this build contains the kind of field `S`.
 const fn is_built<S: Shape>() -> bool {
     SPHERES.is_built || !S::ROUND
 }
@@ -139,7 +139,7 @@ macro_rules! flat_solids {
                 }
             }
 
-            /// Computes the distance of [`sample`](Self::sample) alone.
+            /// Computes only the distance of [`sample`](Self::sample).
             #[inline]
             pub fn distance(&self, point: [i32; 3]) -> i32 {
                 match self {
@@ -203,7 +203,7 @@ impl Solid {
         }
     }
 
-    /// Computes the distance of [`sample`](Self::sample) alone.
+    /// Computes only the distance of [`sample`](Self::sample).
     #[inline]
     pub fn distance(&self, point: [i32; 3]) -> i32 {
         match self {

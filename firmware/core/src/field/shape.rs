@@ -102,7 +102,7 @@ pub trait FlatSolid: Sized {
     /// are in field units, s10.12.
     fn sample(&self, point: [i32; 3]) -> Sample;
 
-    /// Computes the distance of [`sample`](Self::sample) alone, which takes less time for some solids.
+    /// Computes only the distance of [`sample`](Self::sample), which is faster for some solids.
     fn distance(&self, point: [i32; 3]) -> i32 {
         self.sample(point).distance
     }

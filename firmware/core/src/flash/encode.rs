@@ -48,7 +48,8 @@ impl fmt::Display for EncodeError {
 
 impl core::error::Error for EncodeError {}
 
-/// Encodes an image, and checks it. Erased bytes, 0xff, fill the gaps between the parts; without a bitstream its slot is erased.
+/// Encodes an image and validates the result. Erased bytes, 0xff, fill the gaps between the parts; without a bitstream its whole
+/// slot is erased.
 ///
 /// # Errors
 /// A part is too long, or violates its format.

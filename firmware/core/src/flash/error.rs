@@ -9,11 +9,11 @@ pub struct FlashError {
     pub offset: u32,
     /// The number or value that was expected at this position.
     pub expected: Expected,
-    /// The number that was found instead.
+    /// The number found in the image.
     pub found: u32,
 }
 
-/// The content that an image should have at the offset. A variant with a count also holds the name of the counted items.
+/// The content that an image should have at the offset. A variant with a count also contains the name of the counted items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// These four bytes.

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::fixed::{U0_16, U20_12};
 use crate::root::root;
 
-/// A rectangle of pixels of a camera frame. It includes its corners.
+/// A rectangle of pixels of a camera frame. The corners belong to the rectangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
     /// Coordinates x and y of the top left pixel.
@@ -21,7 +21,7 @@ impl Region {
         last: [u16::MAX; 2],
     };
 
-    /// Width and height in pixels. They are 0 if the corners are exchanged.
+    /// Width and height in pixels. Both are 0 if the corners are exchanged.
     pub const fn size(&self) -> [u32; 2] {
         let [left, top] = self.first;
         let [right, bottom] = self.last;
@@ -37,7 +37,7 @@ impl Region {
         columns.saturating_mul(rows)
     }
 
-    /// Returns the rectangle enlarged on each side by `margin` columns and rows. Its start is clamped to the frame; its end may
+    /// Returns the rectangle enlarged on each side by `margin` columns and rows. The start is clamped to the frame; the end may
     /// be outside.
     #[must_use]
     pub const fn grown(&self, margin: [u16; 2]) -> Self {
@@ -60,7 +60,7 @@ pub struct Statistics {
     pub count: u32,
     /// Sums of the x and of the y coordinates of these pixels. The top left pixel of the frame is (0, 0).
     pub sums: [u32; 2],
-    /// Bounding box of these pixels. It has no meaning without such pixels.
+    /// Bounding box of these pixels. Without such pixels the box has no meaning.
     pub bounds: Region,
     /// Whether the frame was received without an error.
     pub is_whole: bool,
@@ -102,7 +102,7 @@ impl fmt::Display for Doubt {
 
 /// Exponent of the smallest part of the frame's pixels that a hand must have: 2^−10.
 const LEAST_AREA: u32 = 10;
-/// Exponent of the factor on the smallest area from which on the area gives full confidence: 2^2.
+/// Exponent of the area for full confidence, as a multiple of the smallest area: 2^2.
 const FULL_AREA: u32 = 2;
 /// Filled parts of the bounds, in 1/256, at which the confidence starts to rise and at which it is full: 1/8 and 3/8. A hand
 /// fills about half of its bounds.

@@ -36,9 +36,9 @@ pub enum CalibrationError {
     Samples,
     /// The box shows several colours: the middle 80 % of a channel's values span more than [`WIDEST`]. The value is this span.
     Colours(u8),
-    /// Too few samples of the box are in both windows, in percent: the box shows several colours.
+    /// The share of the box's samples in both windows, in percent, is too small: the box shows several colours.
     Inside(u8),
-    /// Too many samples outside the box have the hand's colour, in percent.
+    /// The share of samples outside the box with the hand's colour, in percent, is too large.
     Outside(u8),
 }
 

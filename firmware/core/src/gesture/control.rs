@@ -16,8 +16,8 @@ pub const RUN_SEARCHING: u8 = 6;
 pub const RUN_MOVING: u8 = 4;
 /// Smallest run that counts in the smaller region around a hand at rest, so that fingertips 5 pixels wide count.
 pub const RUN_RESTING: u8 = 3;
-/// Time in µs for which a lost hand is searched for in its region only. Afterwards it is searched for in the whole frame. It is
-/// also the longest time between two frames after which tracking continues.
+/// Time in µs for which a lost hand is searched for in its region only. Afterwards the whole frame is searched. This is
+/// also the longest pause between two frames after which tracking continues.
 pub const PATIENCE: u32 = 250_000;
 /// Number of successive frames that must show a hand before it moves the camera.
 const FRAMES: u8 = 3;
@@ -58,7 +58,7 @@ impl Pose {
     /// Makes the camera at this position.
     ///
     /// # Errors
-    /// Numbers that do not come from a [`Control`] may be out of range.
+    /// A number is out of range, which does not occur for values from a [`Control`].
     pub fn view(&self) -> Result<View, ViewError> {
         View::spherical(self.r, self.theta, self.phi)
     }
@@ -135,7 +135,7 @@ struct Last {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Absent,
-    /// The hand of the last frame, and the number of frames that showed it.
+    /// The hand of the last frame, and the number of successive frames with this hand.
     Appearing(Blob, u8),
     /// The hand of the last frame.
     Tracked(Last),
@@ -149,8 +149,8 @@ enum State {
 struct Channel {
     filter: OneEuro,
     zone: Backlash,
-    /// Remaining offset from the hand's new position to the camera's held position. It fades through two low passes in series, so
-    /// that the camera also starts smoothly.
+    /// Remaining offset from the hand's new position to the camera's held position. The offset fades through two low passes in
+    /// series, so that the camera also starts smoothly.
     offsets: [Q4_28; 2],
     output: Q4_28,
 }
@@ -165,8 +165,8 @@ impl Channel {
         }
     }
 
-    /// Filters the target with the gain `speed` of the low pass for the speed, and lets the offsets fade with the gain `back`. One
-    /// function for all channels, because the instruction cache is small.
+    /// Filters the target with the gain `speed` of the low pass for the speed, and lets the offsets fade with the gain `back`. A
+    /// single function for all channels, because the instruction cache is small.
     #[inline(never)]
     fn steer(
         &mut self,
@@ -195,7 +195,7 @@ pub struct Control {
     setting: Setting,
     /// Time in µs at which the last frame ended.
     ended: Option<u64>,
-    /// Result of the last frame: the hand, or the reason why it shows none.
+    /// Result of the last frame: the hand, or the reason why the frame shows no hand.
     seen: Result<Blob, Doubt>,
     /// Azimuth, polar angle and distance.
     channels: [Channel; 3],
@@ -242,7 +242,7 @@ impl Control {
         }
     }
 
-    /// Result of the last frame: the hand, or the reason why it shows none.
+    /// Result of the last frame: the hand, or the reason why the frame shows no hand.
     ///
     /// # Errors The last frame did not show the hand.
     pub const fn seen(&self) -> Result<Blob, Doubt> {
@@ -264,7 +264,7 @@ impl Control {
         // The first frame counts as following a pause of the maximum length.
         let gap = before.and_then(|before| u32::try_from(time.saturating_sub(before)).ok());
         self.take(gap.unwrap_or(u32::MAX), statistics);
-        // A copy, which an inlined call omits if its result is unused.
+        // An inlined call with an unused result omits this copy.
         self.seen
     }
 
@@ -297,7 +297,7 @@ impl Control {
         self.steer(target(&blob, size), Step::new(gap));
     }
 
-    /// Takes a frame that does not simply continue with a tracked hand, `gap` µs after the previous frame.
+    /// Takes a frame in any other case than a tracked hand that is still visible, `gap` µs after the previous frame.
     #[cold]
     #[inline(never)]
     fn seek(&mut self, gap: u32, size: [u16; 2]) {
@@ -307,7 +307,7 @@ impl Control {
             waited = *since;
         }
         if waited > PATIENCE && self.state != State::Absent {
-            // The statistics of this frame may be those of the hand's region alone, so the search begins with the next frame.
+            // The statistics of this frame may cover only the hand's region, so the search begins with the next frame.
             self.search();
         }
         match self.state {
@@ -397,8 +397,8 @@ const fn within_a_turn(angle: Q4_28) -> Q4_28 {
     Q4_28::from_bits((angle.to_bits() << 4) >> 4)
 }
 
-/// Whether an area differs from that of the hand in an earlier frame by at most a factor of 1.5; an earlier area of 0 is unknown. Areas
-/// are below 2^20 pixels.
+/// Whether an area differs by at most a factor of 1.5 from the hand's area in an earlier frame; an earlier area of 0 means
+/// unknown. Areas are below 2^20 pixels.
 const fn is_like(count: u32, blob: &Blob) -> bool {
     count == 0 || (2 * blob.count <= 3 * count && 2 * count <= 3 * blob.count)
 }

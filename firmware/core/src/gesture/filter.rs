@@ -29,7 +29,7 @@ impl Step {
 }
 
 /// Returns the gain of a low pass of first order with the corner frequency `cutoff`, for one step: k/(1 + k) with k = 2π·cutoff·step,
-/// with 16 fraction bits, rounded up. Unlike the explicit gain k it is below 1 for every step, so the filter is monotone.
+/// with 16 fraction bits, rounded up. Unlike the explicit gain k, this gain is below 1 for every step, so the filter is monotone.
 #[inline(never)]
 pub fn low_pass_gain(cutoff: U16_16, step: Step) -> u32 {
     // The step is at most 0.63 rad per Hz, so k is below 2^16 with 16 fraction bits.
@@ -50,7 +50,7 @@ pub struct Tuning {
 }
 
 /// A low pass of first order whose corner frequency grows with the speed of its input: the 1€ filter (Casiez, Roussel and Vogel,
-/// CHI 2012). At rest it is slow and rejects noise; in motion it is fast.
+/// CHI 2012). At rest the filter is slow and rejects noise; in motion it is fast.
 ///
 /// At the constant speed v the output lags by 1/(2π·(cutoff + slope·v)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

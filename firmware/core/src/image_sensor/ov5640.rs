@@ -1,4 +1,4 @@
-//! Registers of the OV5640. Its frame takes 984 lines of 1,896 clocks.
+//! Registers of the OV5640. A frame takes 984 lines of 1,896 clocks.
 
 use super::step::Step::{self, Check, Wait, Write};
 
@@ -12,7 +12,7 @@ pub const RESET: &[Step] = &[
 
 /// Settings for all sizes: clock, pixel array, format and automatic control.
 pub const COMMON: &[Step] = &[
-    // The clock comes from the PLL from here on: pre-divider 3 and root divider 2, times 70, divided by 2.
+    // From here on the PLL generates the clock: pre-divider 3 and root divider 2, times 70, divided by 2.
     Write(0x3103, 0x03),
     Check(0x3034, 0x1a),
     Check(0x3035, 0x21),

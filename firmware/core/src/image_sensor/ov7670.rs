@@ -1,4 +1,4 @@
-//! Registers of the OV7670. Its frame takes 510 lines of 784 pixels, 33 ms with XCLK = 24 MHz.
+//! Registers of the OV7670. A frame takes 510 lines of 784 pixels, 33 ms with XCLK = 24 MHz.
 
 use super::step::Step::{self, Check, Wait, Write};
 

@@ -9,18 +9,18 @@ use glint_i2c::PeriodicI2c;
 use super::pace::Pace;
 use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
 
-/// Time between the starts of two reads in µs. It is slightly longer than one read takes, and slightly less than half a sample
-/// period. Therefore no sample is missed, and relative to the samples the reads drift by 40 µs per sample period.
+/// Time between the starts of two reads in µs. This is slightly longer than the duration of a read, and slightly shorter than
+/// half a sample period. Therefore no sample is missed, and relative to the samples the reads drift by 40 µs per sample period.
 const POLL_PERIOD: u32 = 480;
-/// Time between the starts of two reads in µs for a chip that stretches the I2C clock. It is slightly less than a sample period,
-/// and gives the same drift as `POLL_PERIOD`.
+/// Time between the starts of two reads in µs for a chip that stretches the I2C clock. This is slightly shorter than a sample
+/// period, and results in the same drift as `POLL_PERIOD`.
 const SLOW_POLL_PERIOD: u32 = 960;
 
 /// Longest accepted time without a new sample, in µs.
 const SILENCE: u32 = 20_000;
 /// Number of successive equal samples that is an error.
 const FROZEN: u32 = 50;
-/// Pause before the next attempt to find the chip, in ms. It limits the CPU load with an absent sensor.
+/// Pause before the next attempt to find the chip, in ms. The pause limits the CPU load while the sensor is absent.
 const RETRY_DELAY: u32 = 30;
 
 /// Receiver of samples.
@@ -30,7 +30,7 @@ pub trait Sink<E> {
     /// Takes a sample and its time in µs. The time is delayed against the measured motion by the chip's filter. Apart
     /// from this delay, the error of the time is at most 0.1 ms, or 0.3 ms for the first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
-    /// The chip was not found, or reading it failed. The stream tries again.
+    /// The chip was not found, or reading it failed. The stream then retries.
     fn on_error(&mut self, error: Error<E>);
 }
 
@@ -45,7 +45,7 @@ pub struct Stream<B, D, S> {
 }
 
 impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
-    /// Makes a stream that reads the chip on `bus` and gives the samples to `sink`.
+    /// Makes a stream that reads the chip on `bus` and passes the samples to `sink`.
     pub const fn new(bus: B, delay: D, sink: S) -> Self {
         Self {
             chip: Mpu6050::new(bus),

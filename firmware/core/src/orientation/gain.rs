@@ -9,7 +9,8 @@ pub struct Gain {
     time_constant: u32,
     /// 2^48 divided by the time constant.
     inverse: u64,
-    /// The length of the last step in µs, and its gain. They are stored because most steps have the same length.
+    /// The length of the last step in µs, and its gain. Storing them saves the computation, because most steps have the same
+    /// length.
     last: (u32, u32),
 }
 

@@ -1,6 +1,6 @@
 //! Computes an attitude by integration of angular rates: exactly for a constant rate, and without numerical drift.
 //!
-//! A step turns the body by twice the half angle vector h. It multiplies the attitude q by the quaternion exp h = (cos|h|,
+//! A step turns the body by twice the half angle vector h. The step multiplies the attitude q by the quaternion exp h = (cos|h|,
 //! h·sin|h|/|h|). The product is computed as q + q·(exp h − 1), because the second term is small, and so is its rounding error.
 //! The series of 1 − cos|h| and of 1 − sin|h|/|h| in |h|² have no singularity and need neither a root nor a division. Three
 //! rounding errors would accumulate over millions of steps and are avoided: the attitude has 62 fraction bits, of which the upper
@@ -22,13 +22,13 @@ pub struct Integrator {
     attitude: [i64; 4],
     /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
-    /// Half angle vector with 48 fraction bits that the next step adds to its own half angle vector. It contains the rounding
-    /// remainder of the last step's vector part of exp h, and corrections.
+    /// Half angle vector with 48 fraction bits that the next step adds to its own half angle vector. This vector contains the
+    /// rounding remainder of the last step's vector part of exp h, and corrections.
     rest: [i64; 3],
 }
 
-/// Largest component of the half angle vector h that one multiplication applies: 1/8 rad with 48 fraction bits. It bounds |h|² by
-/// 3/64.
+/// Largest component of the half angle vector h that one multiplication applies: 1/8 rad with 48 fraction bits. This limits |h|²
+/// to 3/64.
 const LARGEST: i64 = 1 << 45;
 
 impl Integrator {
@@ -166,8 +166,8 @@ impl Integrator {
 }
 
 /// Computes 1 − |q|² with 58 fraction bits. The length of q is 1 within 2^−28, so the result fits 32 bits and needs only the low
-/// words of products. With q = 2a + b, where b is the lowest bit of q, q² is 4·a·(a + b) + b. The sum of the terms b/4 is left
-/// out.
+/// words of products. With q = 2a + b, where b is the lowest bit of q, q² is 4·a·(a + b) + b. The sum of the terms b/4 is
+/// neglected.
 fn excess(q: &[i32; 4]) -> i32 {
     q.iter().fold(0_i32, |sum, &q| {
         sum.wrapping_sub((q >> 1).wrapping_mul(q - (q >> 1)))

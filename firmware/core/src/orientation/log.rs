@@ -1,7 +1,7 @@
 //! The format of a log of sensor samples, which a board can replay: a header, then one record for each sample. A replay computes
 //! the attitude after each sample, and writes the attitude over the sample's record.
 //!
-//! All numbers are little-endian. A sample is less than 2^31 µs, 36 minutes, later than the one before it; any other difference
+//! All numbers are little-endian. A sample is less than 2^31 µs (36 minutes) later than the previous sample; any other difference
 //! of the times means an earlier sample.
 //!
 //! | bytes | header |
@@ -34,7 +34,7 @@ use crate::fixed::Q32_32;
 pub const HEADER_BYTES: usize = 48;
 /// Size of a record in bytes.
 pub const RECORD_BYTES: usize = 16;
-/// Largest accepted magnitude of a bias, in 1/256 LSB. No mean of 16-bit counts exceeds it.
+/// Largest accepted magnitude of a bias, in 1/256 LSB. No mean of 16-bit counts exceeds this limit.
 pub const LARGEST_BIAS: u32 = 1 << 23;
 
 const MAGIC: [u8; 4] = *b"GIMU";
@@ -44,7 +44,7 @@ const FOLLOW_BIAS: u32 = 1 << 1;
 /// The four words of a record: a sample, or the attitude after this sample.
 pub type Record = [u32; 4];
 
-/// The parameters of a replay, which the log's header holds.
+/// The parameters of a replay, from the log's header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
     units: Units,
@@ -57,7 +57,7 @@ pub struct Setup {
 /// Reason why bytes are not a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogError {
-    /// The log is shorter than a header; it has this number of bytes.
+    /// The log is shorter than a header. The value is its length in bytes.
     Short(usize),
     /// The magic number is wrong.
     Magic([u8; 4]),
@@ -298,7 +298,7 @@ pub fn record(sample: &Sample) -> Record {
 /// The time in µs before the first sample of a log, for [`sample`]: with this value the first sample has the time of its record.
 pub const START: u64 = 1 << 31;
 
-/// Unpacks the sample that a record holds. `last` is the time in µs of the previous sample, or [`START`].
+/// Unpacks the sample in a record. `last` is the time in µs of the previous sample, or [`START`].
 pub const fn sample([time, ax_ay, az_gx, gy_gz]: Record, last: u64) -> Sample {
     let step = time.wrapping_sub(last as u32).cast_signed();
     Sample {
@@ -314,16 +314,15 @@ pub fn attitude_record(attitude: Quaternion) -> Record {
     attitude.parts.map(|part| part as u32)
 }
 
-/// Unpacks the attitude that a record holds; `None` unless the quaternion's length is 1 (within 2^−28).
+/// Unpacks the attitude in a record; `None` unless the quaternion's length is 1 (within 2^−28).
 pub fn attitude(record: Record) -> Option<Quaternion> {
     Quaternion::exact(record.map(|part| part as i32))
 }
 
-/// Replays a log in place: replaces each sample by the attitude after this sample. Returns how many samples had
-/// each effect on the attitude.
+/// Replays a log in place: replaces each sample by the attitude after this sample. Returns the numbers of samples by their effect
+/// on the attitude.
 ///
-/// # Errors
-/// The bytes are not a log; they stay unchanged.
+/// # Errors The bytes are not a log; they are not modified.
 pub fn replay(bytes: &mut [u8]) -> Result<Counts, LogError> {
     let (setup, records) = open(bytes)?;
     let mut tracker = setup.tracker();

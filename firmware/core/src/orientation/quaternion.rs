@@ -42,7 +42,7 @@ impl Quaternion {
             .iter()
             .map(|&x| i64::from(x) * i64::from(x))
             .try_fold(0_i64, i64::checked_add)?;
-        // The relative error of the squared length is twice that of the length.
+        // The relative error of the squared length is twice the relative error of the length.
         (square - (1 << 60))
             .unsigned_abs()
             .lt(&(1 << 33))
@@ -107,8 +107,8 @@ impl Quaternion {
         }
     }
 
-    /// Computes the directions of the body's axes x, y, z in the world, which are the columns of the rotation's matrix. They have
-    /// 30 fraction bits, rounded to nearest, and length 1 within 2^−28.
+    /// Computes the directions of the body's axes x, y, z in the world, which are the columns of the rotation's matrix. The
+    /// directions have 30 fraction bits, rounded to nearest, and length 1 within 2^−28.
     pub fn axes(self) -> [[i32; 3]; 3] {
         self.columns()
             .map(|column| column.map(|x| ((x + (1 << 29)) >> 30) as i32))
@@ -150,7 +150,7 @@ impl Quaternion {
     }
 
     /// Computes yaw, pitch and roll: successive rotations about the body's z axis, then its y axis, then its x axis.
-    /// They are for output only.
+    /// These angles are for output only.
     ///
     /// Yaw and roll are in [−½, ½) turns and pitch in [−¼, ¼]. An error ε of the quaternion gives yaw and roll an error of
     /// ε/cos(pitch), and their sum an error of ε. For cos(pitch) < 2^−16, roll is defined as 0, and yaw is the whole remaining
@@ -171,7 +171,7 @@ impl Quaternion {
         Angles { yaw, pitch, roll }
     }
 
-    /// Computes the heading: the angle of that rotation about the world's z axis which is nearest to this attitude (the twist).
+    /// Computes the heading (twist): the angle of the rotation about the world's z axis that is nearest to this attitude.
     /// The heading is continuous, even at both poles of the pitch, except for a body that is upside down.
     pub fn heading(self) -> Turns {
         let [w, _, _, z] = self.parts.map(i64::from);

@@ -32,8 +32,8 @@ pub const LONGEST_CURVE: u32 = 1 << 15;
 /// Largest ratio of a step to the previous step for which the rate is interpolated by a cubic; beyond this ratio old samples
 /// would outweigh new ones.
 pub const MOST_STRETCH: u32 = 3;
-/// The largest rate, in 1/256 LSB: 1.5 times the largest count, which leaves room for a bias. With this limit all numbers in this
-/// file that are stored in 32 bits fit.
+/// The largest rate, in 1/256 LSB: 1.5 times the largest count, so that a bias may be subtracted. This limit ensures that all
+/// 32-bit numbers in this file are in range.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
 /// State of the earlier samples for the next step.
@@ -99,8 +99,8 @@ impl Weights {
             return Self::STRAIGHT;
         }
         let g = Divisor::new(h1).ratio(step);
-        // D of the cubic (see the head of this file) needs S of the previous step. Without two earlier steps it is unknown, and its
-        // weights are 0.
+        // D of the cubic (see the head of this file) needs S of the previous step. Without two earlier steps D is unknown, and
+        // its weights are 0.
         let (mut near, mut far) = (0, 0);
         if steps == 2 && order >= 4 {
             let all = Divisor::new(step + h1 + h2);

@@ -39,8 +39,8 @@ pub struct Tilt {
     /// Square of the largest accepted reading, in LSB².
     largest: u32,
     time_constant: u32,
-    /// Total time of the readings so far in µs, limited to `time_constant`. The filter uses it as its present time constant, so
-    /// that the first readings form a running mean.
+    /// Total time of the readings so far in µs, limited to `time_constant`. The filter uses this time as its present time
+    /// constant, so that the first readings form a running mean.
     age: u32,
     gain: Gain,
 }

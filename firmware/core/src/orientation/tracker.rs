@@ -28,11 +28,11 @@ pub struct Counts {
     pub steps: u64,
     /// Number of samples that were ignored because they are not later than their predecessor.
     pub stale: u64,
-    /// Gaps of more than `LONGEST_STEP` between samples, over which the attitude stayed constant.
+    /// Number of gaps of more than `LONGEST_STEP` between samples, during which the attitude stayed constant.
     pub gaps: u64,
     /// Number of samples in which a rate of the gyroscope is at an end of its range.
     pub saturated: u64,
-    /// Samples whose accelerometer reading was rejected.
+    /// Number of samples with a rejected accelerometer reading.
     pub rejected: u64,
 }
 
@@ -86,7 +86,7 @@ impl Tracker {
         self.integrator.attitude()
     }
 
-    /// Counts of the samples so far, by their effect on the attitude.
+    /// Numbers of samples so far, by their effect on the attitude.
     pub const fn counts(&self) -> Counts {
         self.counts
     }

@@ -8,7 +8,7 @@ const COPIES: u8 = 3;
 /// Factor that lengthens the wait for a quiet line after a failure, because the other side may still be sending.
 const FAILED_QUIET_FACTOR: u64 = 10;
 
-/// Carries out the end of a transfer: sends the last message, waits for a quiet line, and then gives the outcome.
+/// Carries out the end of a transfer: sends the last message, waits for a quiet line, and then returns the outcome.
 pub struct Ending {
     outcome: State,
     last_message: Option<(u8, Message<'static>)>,

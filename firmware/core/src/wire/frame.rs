@@ -1,7 +1,7 @@
 //! Frames: messages and their bytes.
 //!
-//! The first byte of a frame holds the kind in bits 3–0 and the session in bits 7–4. Numbers are little-endian. A CRC-16 of all
-//! earlier bytes ends the frame.
+//! The first byte of a frame contains the kind in bits 3–0 and the session in bits 7–4. Numbers are little-endian. A CRC-16 of
+//! all earlier bytes ends the frame.
 
 use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
 
@@ -14,8 +14,8 @@ pub const OVERHEAD: usize = 10;
 /// Length in bytes of the longest encoded frame, and the required length of the buffer of `poll`.
 pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
 
-/// The CRC-16 of a frame, with the CCITT polynomial. It starts with all ones, so that it detects lost or added zeros
-/// at the start.
+/// The CRC-16 of a frame, with the CCITT polynomial. The initial value is all ones, so that lost or added zeros at the start are
+/// detected.
 static CRC_16: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
 
 /// A message between sender and receiver.
@@ -73,8 +73,8 @@ const GAP_MS: u64 = 50;
 /// The byte that the key Ctrl-C sends.
 const CTRL_C: u8 = 0x03;
 
-/// Writes the frame that cancels an unfinished transfer, and returns its length. Its bytes have no effect on a console without a
-/// transfer.
+/// Writes the frame that cancels an unfinished transfer, and returns its length. The frame's bytes have no effect on a console
+/// without a transfer.
 pub fn reset(out: &mut [u8]) -> usize {
     write(0, Message::Reset, out)
 }
@@ -114,7 +114,7 @@ fn write_body(
         Message::Acknowledge(Acknowledge { number, next, map }) => {
             let [low, middle, high, _] = next.to_le_bytes();
             body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
-            // The map is sent without the zero bytes at its two ends. Before the map, the number of omitted lowest zero bytes is
+            // The map is sent without leading and trailing zero bytes. Before the map, the number of omitted lowest zero bytes is
             // sent.
             let first = map.trailing_zeros() / 8;
             let past = (u128::BITS - map.leading_zeros()).div_ceil(8);

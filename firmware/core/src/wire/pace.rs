@@ -5,7 +5,7 @@ use super::frame::OVERHEAD;
 
 /// Largest number of sent bytes in the statistics of `FrameSize`; beyond it the statistics are halved.
 const MEMORY: u32 = 8_192;
-/// One lost frame in the unit of `FrameSize::lost`, 1/256 frame.
+/// One frame in the unit of `FrameSize::lost`, 1/256 frame.
 const FRAME: u32 = 256;
 
 /// Chooses the best length of a data frame from the rate of lost frames.
@@ -87,7 +87,7 @@ impl Patience {
         };
     }
 
-    /// Returns whether an answer is pending and its timeout has passed. If so, the next, longer timeout starts.
+    /// Returns whether an answer is pending and its timeout has passed. In this case the next, longer timeout starts.
     pub fn is_over(&mut self, now_ms: u64) -> bool {
         let wait = FIRST_WAIT + LONGER * self.tries;
         let over = self

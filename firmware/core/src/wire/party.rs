@@ -1,4 +1,4 @@
-//! Either side of a transfer.
+//! Common code of both sides of a transfer.
 
 use super::ending::Ending;
 use super::frame::{MAX_FRAME, Message, Reader};

@@ -1,10 +1,10 @@
-//! The sender's record of the blocks of a transfer: which were sent, and which of these have arrived.
+//! The sender's record of the sent and the arrived blocks of a transfer.
 
 use super::format::WINDOW;
 use super::frame::Acknowledge;
 
-/// Maximum number of data frames in flight. It is less than half of the 256 frame numbers, so that older and newer
-/// numbers can be distinguished.
+/// Maximum number of data frames in flight. This is less than half of the 256 frame numbers, so that older and newer numbers can
+/// be distinguished.
 const MAX_FRAMES: u8 = 120;
 
 /// The sender's record of sent and acknowledged blocks.
@@ -185,7 +185,8 @@ mod tests {
         assert!(window.update(says(4, 13, 0)).is_none());
         assert!(window.update(says(4, 12, 1)).is_none());
         assert!(window.update(says(5, 12, 0)).is_none());
-        // An acknowledgement of all blocks, which is wrong but possible, is accepted. The next acknowledgement corrects it.
+        // An acknowledgement of all blocks, which is wrong but possible, is accepted. The next acknowledgement corrects the
+        // error.
         assert!(window.update(says(4, 12, 0)).is_some());
         assert!(window.update(says(4, 4, 0b1111_0000)).is_some());
         assert_eq!(

@@ -38,7 +38,7 @@ impl<'a> Violation<'a> {
         Self { expected, found }
     }
 
-    /// Adds the line number.
+    /// Adds the line number to the error.
     pub(super) const fn at(self, place: Location) -> ProgramError<'a> {
         ProgramError {
             place,
@@ -47,7 +47,7 @@ impl<'a> Violation<'a> {
     }
 }
 
-/// Input that was expected.
+/// The expected input at the position of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// One of the opcodes.
@@ -69,7 +69,7 @@ pub enum Expected {
     End,
     /// The end of the program; nothing may follow it.
     NothingAfterEnd,
-    /// Exactly one instruction of a kind.
+    /// Exactly one instruction of this kind.
     One(Opcode),
     /// A z of the eye of at least 0.
     EyeNotNegative,
@@ -95,20 +95,20 @@ pub enum Expected {
     EndOfLine,
 }
 
-/// Input that was found instead.
+/// The input found in place of the expected input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found<'a> {
     /// The three bits of an opcode.
     Opcode(u8),
     /// Some bits.
     Bits(u32),
-    /// This number of bytes.
+    /// This count of bytes.
     Bytes(usize),
     /// A number.
     Number(Q5_11),
-    /// This number of numbers.
+    /// This count of numbers.
     Count(usize),
-    /// A word of a line.
+    /// This word of a line.
     Word(Word<'a>),
     /// A second instruction.
     Second,

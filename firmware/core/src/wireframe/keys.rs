@@ -30,7 +30,7 @@ choices!(Key {
 });
 
 impl Key {
-    /// The step that the key requests. The four arrows pan, or rotate if `rotate` is set (switch 0).
+    /// The step that the key requests. The four arrows pan, or rotate if `rotate` (switch 0) is set.
     pub const fn step(self, rotate: bool) -> Step {
         match (self, rotate) {
             (Self::Up, false) => Step::Pan([0, 1, 0]),
@@ -82,13 +82,13 @@ impl Requests {
     }
 }
 
-/// Time in milliseconds for which all samples of a button must agree before its new level counts.
+/// Time in milliseconds for which all samples of a button must agree before its new level is accepted.
 pub const DEBOUNCE_MS: u32 = 5;
 
 /// Suppresses the contact bounce of up to eight buttons, from samples at irregular times.
 ///
-/// A new level of a button counts at the first sample that is at least [`DEBOUNCE_MS`] after the first sample of this level, if no
-/// sample between them differs. Therefore a single sample never counts, and bounces shorter than this time are ignored.
+/// A new level of a button is accepted at the first sample at least [`DEBOUNCE_MS`] after the first sample of this level, if all
+/// samples between them agree. Therefore a single sample never counts, and bounces shorter than this time are ignored.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Debouncer {
     /// The debounced levels.

@@ -39,9 +39,9 @@ pub enum Step {
 
 /// The motion of all segments since the start, without drift: the segments in the program stay unchanged.
 ///
-/// It maps a point p to R(p + d). The rotation R is a quaternion with 62 fraction bits and length 1, so that 10,000 steps have an
-/// error of 10^−14. The displacement d is in the body's axes, where a rotation does not change it; a pan adds a multiple of a row
-/// of R's matrix to it, exactly.
+/// The motion maps a point p to R(p + d). The rotation R is a quaternion with 62 fraction bits and length 1, so that 10,000 steps
+/// have an error of 10^−14. The displacement d is in the body's axes, where a rotation does not change it; a pan adds a multiple
+/// of a row of R's matrix to it, exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motion {
     /// w, x, y, z: s2.62.
@@ -73,7 +73,7 @@ impl Motion {
 
     fn pan(&mut self, direction: [i8; 3]) -> bool {
         // A column of the matrix holds the world's coordinates of a body's axis, in units of 2^−30, so its products with the
-        // direction are the pan along this axis in multiples of δ = 2^−4, with 34 fraction bits in all.
+        // direction are the pan along this axis, with 34 fraction bits for δ = 2^−4.
         let moved = self.quaternion().axes().map(|axis| {
             let products = axis.into_iter().zip(direction);
             products

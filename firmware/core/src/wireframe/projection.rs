@@ -45,7 +45,8 @@ struct Axis {
     offset: i64,
     /// Extent of the window, positive.
     span: i64,
-    /// Extent of the picture in units of 2^−8 pixels. It is negative for the axis down, which is opposite to the world's y axis.
+    /// Extent of the picture in units of 2^−8 pixels. The extent is negative for the downward axis, which is opposite to the
+    /// world's y axis.
     extent: i64,
 }
 
@@ -77,8 +78,8 @@ impl Projection {
         }
     }
 
-    /// Projects a moved segment, whose coordinates are within ±56. `None` if no part of it is behind the view plane and within the
-    /// guard band.
+    /// Projects a moved segment, whose coordinates are within ±56. `None` if no part of the segment is behind the view plane and
+    /// within the guard band.
     ///
     /// The part in front of the view plane is cut off; the cut point is rounded to nearest with 20 fraction bits. A part beyond
     /// the guard band is cut off exactly. Each end is then rounded once, to nearest, half units up.

@@ -193,7 +193,7 @@ fn a_bias_that_wanders_is_followed_at_rest() {
 #[test]
 fn motion_is_not_learnt() {
     // The motions are two oscillations of ±1500 °/s with different periods, a slow sway, and a steady turn that is too fast to be
-    // a bias. None of them may change the bias.
+    // a bias. None of these motions may change the bias.
     let square = |i: u32, period: u32| if i % period < period / 2 { 1.0 } else { -1.0 };
     for rate in [
         Box::new(move |i| [0.0, 0.0, 24_600.0 * square(i, 1_000)])

@@ -1,4 +1,4 @@
-//! Cameras compared with computations in f64, and the conditions on their bases.
+//! Tests of cameras against computations in f64, and of the conditions on their bases.
 
 use std::f64::consts::TAU;
 

@@ -66,7 +66,7 @@ fn decimals_are_rounded_to_the_nearest_and_ties_to_even() {
             .map(Q2_14::to_bits)
             .map_err(|error| error.to_string())
     };
-    // 0.000030517578125 is 2^-15, which is half a unit of the format: such ties are rounded to even.
+    // 0.000030517578125 is 2^-15, half a unit of the format: ties are rounded to even.
     assert_eq!(bits("0.000030517578125"), Ok(0));
     assert_eq!(bits("0.0000305175781250000000000000000000000000001"), Ok(1));
     assert_eq!(bits("0.000091552734375"), Ok(2));

@@ -137,7 +137,7 @@ fn a_field_of_view_moves_the_eye() {
         assert!((view.half_width().to_num::<f64>() - half_width).abs() < 1e-6);
         check(&view, ([0.0; 3], 0.5), Axis::Z);
     }
-    // The eye stays outside of the sphere, and within the range of meshes.
+    // The eye stays outside of the sphere, and within the largest distance for meshes.
     for (degrees, expected) in [(170.0, 0.7), (1.0, 7.9)] {
         let view = sphere.framed(Axis::Z, Turns(0), Some(angle(degrees)));
         let eye = view.unwrap().eye().map(|x| x.to_num::<f64>());

@@ -312,7 +312,7 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
         (last[0] - (290.5 / 320.0 - 0.5) * 360.0).abs() < 0.1,
         "{last:?}"
     );
-    // The path is 101° long; the fastest part of the return takes 4 % of it in a frame at 60 frames per second.
+    // The path is 101° long; the fastest part of the return covers 4 % of the path in a frame, at 60 frames per second.
     assert!(largest < 4.0, "{largest}° in a frame");
 }
 

@@ -217,7 +217,7 @@ fn a_light_at_the_camera_follows_the_camera() {
         ambient: [0; 3],
         lights: [Light::at_camera([255; 3])].into_iter().collect(),
     };
-    // The camera is on the x axis, so the face towards it is in full light and the others are dark.
+    // The camera is on the x axis, so the face towards the camera is in full light and all other faces are dark.
     let lit = lighting.clone().seen_from(&view);
     let [_, face, dark @ ..] = lit.shine_on(&[[200; 3]; 6]);
     assert_eq!(face, [200; 3]);

@@ -292,7 +292,7 @@ fn upright(accel: [i16; 3]) -> f64 {
         .map(|(a, z)| a * f64::from(z) / 2f64.powi(30))
         .sum::<f64>()
         / length;
-    // The yaw must be 0. Its error grows towards the pole, where the projection of the x axis is short.
+    // The yaw must be 0. The yaw's error grows towards the pole, where the projection of the x axis is short.
     let yaw = degrees(attitude.angles().yaw).abs();
     assert!(yaw * a[1].hypot(a[2]) <= 6e-7 * length, "{accel:?} {yaw}");
     1.0 - cosine

@@ -14,8 +14,8 @@ fn registers() -> raymarch::Raymarch {
     unsafe { Peripherals::steal() }.raymarch
 }
 
-/// Probes a block with the given value of the register `ident`. Its build has two lanes and the prepass, and draws sponges of up
-/// to six levels, boxes, spheres, fillets and stereo pictures. Returns the result, and the block's registers.
+/// Probes a block with the given value of the register `ident`. The block's build has two lanes and the prepass, and draws
+/// sponges of up to six levels, boxes, spheres, fillets and stereo pictures. Returns the result, and the block's registers.
 fn probe(ident: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
     let r = registers();
     let caps = 2 | 6 << 4 | 0b1111 << 9 | 0b11 << 16;

@@ -127,7 +127,7 @@ impl Shape for Planes {
 pub struct FixedBox {
     /// Half the length of each side, u10.12; `None` along an axis on which the box is unbounded.
     half: [Option<i32>; 3],
-    /// Whether the box is a room, which means that the solid is outside the box.
+    /// Whether the box is a room, with the solid outside the box.
     room: bool,
     /// Whether the solid is periodic with 64 field units along each axis.
     repeated: bool,

@@ -34,7 +34,7 @@ impl FixedSphere {
     }
 }
 
-/// Several spheres, which the gateware evaluates one after the other.
+/// Several spheres, which the gateware evaluates sequentially.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSpheres {
     /// The spheres are in the first `count` entries; the other entries are not used.
@@ -80,7 +80,7 @@ impl FixedSpheres {
 }
 
 /// Table of √x for x from 1 to 4 in steps of 1/128: the root, and the difference between the next root and this one. The index is
-/// 128·x; the roots have 18 fraction bits and are rounded down. Linear interpolation between entries gives at most the exact
+/// 128·x; the roots have 18 fraction bits and are rounded down. Linear interpolation between entries never exceeds the exact
 /// root; the relative error is at most 2^−19.
 const ROOTS: [(u32, u32); 512] = roots();
 
@@ -88,7 +88,7 @@ const fn roots() -> [(u32, u32); 512] {
     let mut table = [(0, 0); 512];
     let mut i = 0;
     while i < table.len() {
-        // The entries for x below 1 are never read; they repeat the value for x = 1.
+        // The entries for x below 1 are unused, and repeat the value for x = 1.
         let from = if i < 128 { 128 } else { i as u64 };
         let root = (from << 29).isqrt() as u32;
         table[i] = (root, ((from + 1) << 29).isqrt() as u32 - root);
@@ -97,8 +97,8 @@ const fn roots() -> [(u32, u32); 512] {
     table
 }
 
-/// Returns a lower bound of the length of a vector with components of at most 23 bits. It is too small by at most 3 units of the
-/// components plus 2^−15 of the length.
+/// Returns a lower bound of the length of a vector with components of at most 23 bits. The result is too small by at most 3 units
+/// of the components plus 2^−15 of the length.
 pub fn length(q: [i32; 3]) -> i32 {
     let parts = q.map(magnitude);
     let Some(lead) = (parts[0] | parts[1] | parts[2]).checked_ilog2() else {

@@ -56,7 +56,7 @@ const LEVELS: [i32; MAX_DEPTH as usize] = {
     [27 * one, 9 * one, 3 * one, one, third, ninth]
 };
 
-/// The sponge with lengths in field units, in which half its side is 40.5.
+/// The sponge with lengths in field units; half its side is 40.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSponge {
     /// The side S of the cubes of each level: 27, 9, 3, 1, 1/3, 1/9, each an even multiple of 2^−12.
@@ -73,9 +73,10 @@ impl FlatSolid for FixedSponge {
     /// Evaluates the levels from the largest cubes to the smallest. Each level folds space by mirrors: they map all cubes of the
     /// level's side S onto one cube about the origin, and the level's holes onto the outside of this cube.
     ///
-    /// Every coordinate x is replaced by S − |x|, which is above S/2 if x is in the middle third. A point is in a hole if at
+    /// S − |x| replaces every coordinate x; it is above S/2 if x is in the middle third. A point is in a hole if at
     /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2: all points outside
-    /// the holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations keep the maximum norm.
+    /// the holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations preserve the maximum
+    /// norm.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {
         let mut p = Folded::of(point);

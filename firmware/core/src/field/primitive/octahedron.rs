@@ -52,7 +52,7 @@ impl FlatSolid for FixedOctahedron {
     const CODE: u8 = 2;
 
     /// Computes the distance in the maximum norm. Within a cube of half side r about the point, |x| + |y| + |z| changes by at
-    /// most 3r, so the distance is a third of |x| + |y| + |z| − size. The product with 85/256, rounded down, approximates this
+    /// most 3r, so the distance is (|x| + |y| + |z| − size)/3. The product with 85/256, rounded down, approximates this
     /// third from below outside the solid.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> Sample {

@@ -111,7 +111,7 @@ proptest! {
     ) {
         let plane = viewing.plane.to_num::<f64>();
         let mut segment = bits.map(|point| point.map(|x| f64::from(x) / f64::from(1 << 20)));
-        // Half of the points are near the window, because most of the others project far beyond the guard band.
+        // Half of the points are near the window, because most other points project far beyond the guard band.
         for (point, near) in segment.iter_mut().zip(ends) {
             if near {
                 *point = point.map(|x| x / 16.0).map(|x| (x * 2048.0).round() / 2048.0);
