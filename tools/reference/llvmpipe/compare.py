@@ -56,12 +56,12 @@ def make_context():
     except Exception as error:  # moderngl raises Exception itself when EGL or a driver is missing
         give_up(f"no OpenGL context without a display ({error})")
     if "llvmpipe" not in context.info["GL_RENDERER"]:
-        give_up(f"OpenGL is drawn by {context.info['GL_RENDERER']}, not by llvmpipe")
+        give_up(f"OpenGL renderer: expected llvmpipe, found {context.info['GL_RENDERER']}")
     return context
 
 
 class Rasterizer:
-    """Draws one triangle at a time and reads its coverage back, one byte per pixel from the top left."""
+    """Draws single triangles and reads back their coverage, one byte per pixel from the top left."""
 
     def __init__(self, context, width, height, reach):
         self.middle, self.reach = (width // 2, height // 2), reach
@@ -77,9 +77,8 @@ class Rasterizer:
         self.corners.write(b"".join(struct.pack("4f", *corner) for corner in corners))
         self.frame.clear()
         self.triangle.render()
-        # Row 0 of a texture has the smallest y. In these clip coordinates, where y points down, the top of the picture has the
-        # smallest y too. So the rows that are read back start at the top of the picture, and "top" in llvmpipe's top-left rule
-        # is the top of the picture.
+        # Row 0 of a texture has the smallest y. In these clip coordinates, where y points down, the top of the picture has the smallest y
+        # too. So the read rows start at the top of the picture, and "top" in llvmpipe's top-left rule is the top of the picture.
         return self.frame.read(components=1, alignment=1)
 
     def from_screen(self, points):

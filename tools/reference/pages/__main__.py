@@ -15,31 +15,31 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 
 def cycles(row):
-    """Least, median and most cycles of a kernel."""
+    """Minimum, median and maximum cycles of a kernel."""
     figures = [row[f"cycles_{name}"] for name in ("min", "median", "max")]
     return "not measured" if None in figures else " / ".join(map(str, map(tables.shown, figures)))
 
 
 def duration(seconds):
-    """A time in seconds, minutes or hours."""
+    """Formats a time in seconds, minutes or hours."""
     for unit, length in [("h", 3600), ("min", 60), ("s", 1)]:
         if seconds >= length:
             return f"{tables.shown(seconds / length)} {unit}"
 
 
 def cell(text):
-    """A text for a cell: on one line, with messages as code."""
+    """Formats a text for a table cell: on one line, with messages as code."""
     text = text.replace("|", "\\|").replace("\n", " ")
     return f"refused: `{text.removeprefix('refused: ')}`" if text.startswith("refused: ") else text
 
 
 def limit(value):
-    """A limit, with an exponent below 1/1000."""
+    """Formats a limit, with an exponent below 1/1000."""
     return tables.sci(value) if value < 1e-3 else tables.shown(value)
 
 
 def environment(folder):
-    """The functions and filters of the templates."""
+    """Makes the Jinja environment with the functions and filters of the templates."""
 
     def read(name):
         return tables.read(folder, name)
@@ -72,12 +72,12 @@ def environment(folder):
 def main():
     parser = argparse.ArgumentParser(prog="pages", description=__doc__)
     parser.add_argument("--out", type=Path, default=tables.COMMITTED, metavar="DIR",
-                        help="folder of tables, pages and diagrams; tables that it lacks are those of docs/report [default: docs/report]")
+                        help="folder of tables, pages and diagrams; missing tables are read from docs/report [default: docs/report]")
     parser.add_argument("page", nargs="*", help="name of a page, such as sine [default: all]")
     arguments = parser.parse_args()
     pages = environment(arguments.out)
     for name in arguments.page or sorted(path.stem for path in TEMPLATES.glob("*.md")):
-        # Loops and macros leave blank lines.
+        # Collapse the blank lines of loops and macros.
         text = re.sub("\n{3,}", "\n\n", pages.get_template(f"{name}.md").render())
         (arguments.out / f"{name}.md").write_text(text.rstrip() + "\n")
 

@@ -1,4 +1,4 @@
-"""What the pages compute from the tables."""
+"""Figures of the pages, computed from the tables."""
 
 import tomllib
 
@@ -11,7 +11,7 @@ CLOCK = 81.25e6
 
 
 def stiff(errors):
-    """The catalogue of stiff cases, those of the virtual board last, with expected and measured outcomes."""
+    """The catalogue of stiff cases with expected and measured outcomes, cases of the virtual board last."""
     files = sorted((ROOT / "tools/reference/stiff").glob("*.toml"))
     subjects = [tomllib.loads(file.read_text()) for file in files]
     measured = dict(errors.set_index("case").error)
@@ -83,7 +83,7 @@ def qualities(errors, cycles):
 
 
 def frames(scenes, soft_core):
-    """Frames of the triangle engine back to back and alone, and of the soft core."""
+    """The frames of the triangle engine, drawn back to back and alone, and of the soft core."""
     size = scenes.width.astype(str) + "×" + scenes.height.astype(str)
     ways = [("gateware, back to back", scenes.cycles_frame), ("gateware, alone", scenes.cycles_alone), ("soft core", soft_core)]
     points = [
@@ -95,7 +95,7 @@ def frames(scenes, soft_core):
 
 
 def kernels(all_kernels, family):
-    """The kernels of a family that have an error and a cost, in groups: other libraries, Newton steps, and all others."""
+    """The kernels of a family with an error and a cost, in groups: other libraries, Newton steps, and the rest."""
     members = all_kernels[(all_kernels.family == family) & (all_kernels.max_err > 0)]
     members = members[members.bits.notna() | members.cycles_median.notna()]
     names = members.config.str.partition(": ")
@@ -105,7 +105,7 @@ def kernels(all_kernels, family):
 
 
 def cases(rates):
-    """The measured cases of the raymarcher, with the slowest pose of each view, which alone was drawn back to back."""
+    """The measured cases of the raymarcher, with the slowest pose of each view, the only pose drawn back to back."""
     found = []
     columns = ["field", "stereo", "prepass", "width", "height", "lanes", "clock", "at_least", "aim"]
     for key, poses in rates.groupby(columns, sort=False, dropna=False):
@@ -122,7 +122,7 @@ def cases(rates):
 
 
 def best_clocks(clocks):
-    """The clocks of each rate and scene: measured ones if there are any."""
+    """The clocks of each rate and scene: measured if available, otherwise computed."""
     return clocks.sort_values("measured", ascending=False, kind="stable").drop_duplicates(["rate", "scene"]).sort_index()
 
 
@@ -180,7 +180,7 @@ def variants(forms, clocks, costs):
 
 
 def blocks():
-    """Cells of each block of the gateware, from the first table of docs/resources.md."""
+    """The cells of each block of the gateware, from the first table of docs/resources.md."""
     text = (ROOT / "docs/resources.md").read_text()
     table = next(block for block in text.split("\n\n") if block.startswith("|"))
     found = {}
@@ -191,7 +191,7 @@ def blocks():
 
 
 def index(read, blocks):
-    """All configurations of all kernels: error, RMS and cost, and the block of the gateware that has the configuration."""
+    """All configurations of all kernels: error, RMS, cost, and the configuration's block of the gateware."""
     parts = []
 
     def add(name, page, frame, *, error="max_err", rms="rms", cost="cycles_median", error_unit="", cost_unit="cycles", block=None, holds="",
@@ -262,7 +262,7 @@ def index(read, blocks):
 
 
 def overview(index):
-    """Of the kernels on the soft core, the configurations that no other one of the same kernel beats in both error and cycles."""
+    """The Pareto-optimal configurations of each kernel on the soft core, in error and cycles."""
 
     def is_kept(choice):
         others = index[index.name == choice.name]
@@ -280,7 +280,7 @@ def cost(value):
 
 
 def neighbours(choices, choice):
-    """The most exact of the choices that cost less, and the cheapest of those with a smaller error; those without a cost come last."""
+    """The most exact cheaper choice, and the cheapest more exact choice; choices without a cost come last."""
     cheaper = [other for other in choices if None not in (other["cost"], choice["cost"]) and other["cost"] < choice["cost"]]
     exacter = [other for other in choices if other["error"] < choice["error"]]
     return (
@@ -290,7 +290,7 @@ def neighbours(choices, choice):
 
 
 def choices(index):
-    """What Glint uses for each kernel, with the next cheaper and the next more exact choice."""
+    """Glint's choice for each kernel, with the next cheaper and the next more exact choice."""
     for _, group in index.groupby("name", sort=False):
         everything = rows(group)
         for choice in rows(group[group.shipped].drop_duplicates(["error", "cost"])):

@@ -1,4 +1,4 @@
-"""Diagrams of the report as SVG files, the same from run to run."""
+"""Diagrams of the report as reproducible SVG files."""
 
 import itertools
 
@@ -17,7 +17,7 @@ matplotlib.rcParams.update({
     "font.size": 9,
     "axes.axisbelow": True,
     "axes.grid": True,
-    # A fixed place takes no search.
+    # A fixed position saves a search.
     "axes.titley": 1.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -33,7 +33,7 @@ LABEL = 7.5
 
 
 def axes(title, across, up, *, left=0.1, right=0.73, bottom=0.1, top=0.93):
-    """A diagram with room for its legend and other texts around the axes."""
+    """Makes a diagram with margins for a legend and other texts around the axes."""
     figure = Figure(figsize=(9, 5.2))
     axis = figure.add_axes((left, bottom, right - left, top - bottom))
     axis.set_title(title, fontsize=12)
@@ -43,7 +43,7 @@ def axes(title, across, up, *, left=0.1, right=0.73, bottom=0.1, top=0.93):
 
 
 def scale(axis, values, above=0.06):
-    """Makes an axis logarithmic, unless the values are within a decade, with room below them and a part of the axis above them."""
+    """Makes an axis logarithmic, unless the values are within a decade; `above` is the fraction of the axis above the values."""
     low, high = min(values), max(values)
     ratio = above / (0.94 - above)
     if high < 10 * low:
@@ -89,7 +89,7 @@ def work_precision(path, rows, *, title, across, up, error, cost, family, label=
 
 
 def save_labelled(figure, axis, texts, path):
-    """Writes a diagram with a text beside each point, where it covers least of the others."""
+    """Writes a diagram with a label beside each point, at the position with the least overlap."""
     if len(axis.get_legend_handles_labels()[1]) > 1:
         axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.02), fontsize=8)
     places = [axis.transData.transform(text[:2]) * 72 / figure.dpi for text in texts]
@@ -132,7 +132,7 @@ def lines(path, rows, *, title, across, up, at, series, band, least=0.0):
 
 
 def bars(path, rows, *, title, across, label, tracks):
-    """Writes a group of bars for each row, the first at the top. A track is a list of parts: name, start and length."""
+    """Writes a group of bars for each row, first row at the top. A track is a list of parts: name, start and length."""
     figure, axis = axes(title, across, "", left=0.15, right=0.97, bottom=0.16)
     axis.grid(axis="y", visible=False)
     colours = {}

@@ -1,4 +1,4 @@
-"""Tables of the report: reading them, and formats of their cells."""
+"""Tables of the report: reading, and formats of cells."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ COMMITTED = ROOT / "docs/report"
 
 
 def read(folder, name):
-    """The table NAME of a folder. A table that the folder lacks is the committed one."""
+    """The table NAME of a folder, or the committed table if the folder has none."""
     path = Path(folder) / f"{name}.csv"
     return pd.read_csv(
         path if path.exists() else COMMITTED / path.name,
@@ -26,14 +26,14 @@ def rows(frame):
 
 
 def shown(value):
-    """A value as text: numbers without an exponent, nothing for an empty cell."""
+    """Formats a value: numbers without an exponent, an empty cell as an empty text."""
     if value is None:
         return ""
     return np.format_float_positional(value, trim="-") if isinstance(value, float) else value
 
 
 def sci(value, digits=None, missing=""):
-    """A number with an exponent, and with so many digits after the point; as many as it has unless they are given."""
+    """Formats a number with an exponent and `digits` digits after the point, by default all digits."""
     if value is None:
         return missing
     exact = {"trim": "-"} if digits is None else {"precision": digits, "min_digits": digits, "unique": False}
@@ -42,25 +42,25 @@ def sci(value, digits=None, missing=""):
 
 
 def fixed(value, digits=0, missing=""):
-    """A number with so many digits after the point."""
+    """Formats a number with `digits` digits after the point."""
     return missing if value is None else f"{value:.{digits}f}"
 
 
 def measured(value):
-    """A value, or that there is none."""
+    """Formats a value, or "not measured"."""
     return "not measured" if value is None else shown(value)
 
 
 def bold(text, is_bold=True, mark="**"):
-    """A text in bold, if it is to be."""
+    """Formats a text, in bold if `is_bold`."""
     return f"{mark}{shown(text)}{mark}" if is_bold else shown(text)
 
 
 def italic(text, is_italic=True):
-    """A text in italics, if it is to be."""
+    """Formats a text, in italics if `is_italic`."""
     return bold(text, is_italic, "*")
 
 
 def groups(frame, *columns):
-    """The values of some columns and the rows that share them, in the order of the table."""
+    """Groups of rows with equal values in some columns, in the order of the table."""
     return [(key, rows(group)) for key, group in frame.groupby(list(columns), sort=False, dropna=False)]

@@ -1,4 +1,4 @@
-"""Tests of what the pages compute. The tests of the crate run them."""
+"""Tests of the pages' figures, run by the crate's tests."""
 
 import unittest
 
