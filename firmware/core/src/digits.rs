@@ -13,7 +13,7 @@ use core::fmt;
 /// Digits of a display.
 pub const COUNT: usize = 4;
 
-/// The segments of a character that is lit: bits 0 to 6 for a to g. A character that is not defined here lights no segment.
+/// The lit segments of a character: bits 0 to 6 for a to g. A character that is not defined here lights no segment.
 pub const fn segments(character: char) -> u8 {
     const fn lit(names: &str) -> u8 {
         let (names, mut segments, mut place) = (names.as_bytes(), 0, 0);

@@ -77,7 +77,7 @@ features! {
     IMU = "imu";
     /// Replay of a log of the motion sensor.
     REPLAY = "replay";
-    /// The hand in front of the image sensor.
+    /// Steering by a hand in front of the image sensor.
     GESTURE = "gesture";
     /// Upload of meshes and wireframe programs.
     UPLOAD = "upload";

@@ -320,7 +320,8 @@ fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, FlashError> {
     Ok(slot.get(..=last))
 }
 
-/// The firmware with LiteX's header of flash boot at the start of `bytes`, without the header.
+/// Reads the firmware at the start of `bytes`, which begins with LiteX's header for flash boot. Returns the firmware without this
+/// header.
 ///
 /// # Errors
 /// The length is out of range, or the checksum is wrong.

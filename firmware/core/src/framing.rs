@@ -19,7 +19,7 @@ const LEAST_GAP: Length = ONE / 5;
 const FARTHEST: Length = ONE * 79 / 10;
 /// Azimuth of the camera, 30°.
 const AZIMUTH: Turns = Turns::from_degrees(Q32_32::lit("30"));
-/// Angle of the camera from the axis that is up, 60°.
+/// Angle of the camera from the up axis, 60°.
 const POLAR: Turns = Turns::from_degrees(Q32_32::lit("60"));
 
 /// A sphere around all vertices of meshes.

@@ -234,8 +234,8 @@ fn is_long(row: [i32; 3]) -> bool {
 /// Returns A/s, in units of 2^−30, for a matrix A that is a rotation or reflection times a uniform scale s; `None` for any other
 /// matrix.
 ///
-/// Squared lengths of other rows may differ from that of the first row by 2^−13 of it, and scalar products of rows may differ
-/// from 0 by as much. A row of length s has s·2^24 units, so the rounding of its entries alone may exceed the tolerance for s
+/// The tolerance is 2^−13 of the first row's squared length, both for the squared lengths of the other rows and for the scalar
+/// products of rows. A row of length s has s·2^24 units, so the rounding of its entries alone may exceed the tolerance for s
 /// below 1/128.
 fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
     let [a, b, c] = rows;

@@ -1,7 +1,7 @@
 //! Cooperative tasks on one processor, which sleeps when all tasks wait.
 //!
-//! A task returns [`Turn::Wait`] in the code that finds no work; no other code repeats the condition to sleep. Two rules prevent
-//! lost wake-ups. A task that has worked returns [`Turn::Again`], because another task may wait for the result. After an
+//! The code of a task that finds no work returns [`Turn::Wait`]; the condition to sleep is not repeated elsewhere. Two rules
+//! prevent lost wake-ups. A task that has worked returns [`Turn::Again`], because another task may wait for the result. After an
 //! interrupt during a pass over all tasks the processor does not sleep, because a task whose turn was already over may wait for
 //! this interrupt.
 

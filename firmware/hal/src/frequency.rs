@@ -117,7 +117,7 @@ mod tests {
 
     use super::*;
 
-    /// The lowest and the highest frequency, the boards' frequencies, and a frequency of a power of 2 units.
+    /// The lowest and the highest frequency, the boards' frequencies, and a frequency whose number of units is a power of 2.
     const FREQUENCIES: [u32; 6] = [
         1_250_000,
         40_000_000,

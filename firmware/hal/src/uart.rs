@@ -1,6 +1,6 @@
 //! The UART, driven by interrupts, with a queue of bytes in each direction: calls do not wait for the line.
 //!
-//! A [`Uart`] is a `static`. [`Uart::start`] passes the registers to it, [`Uart::on_interrupt`] handles
+//! A [`Uart`] is a `static`. [`Uart::start`] sets its registers, [`Uart::on_interrupt`] handles
 //! [`Interrupt::Uart`](litex_pac::Interrupt::Uart). The program reads through [`Uart::reader`] and writes through
 //! [`Uart::writer`]. Bytes that arrive while the receive queue is full are dropped and counted ([`Uart::lost`]).
 //!
@@ -115,7 +115,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         self.with(|state| state.lost)
     }
 
-    /// Returns the receiving end. Each read waits at most `timeout` for its first byte.
+    /// Returns a reader of received bytes. Each read waits at most `timeout` for its first byte.
     pub const fn reader(&self, clock: Clock, timeout: Duration) -> Reader<'_, RX, TX> {
         Reader {
             uart: self,
@@ -124,7 +124,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Returns the sending end. Each write waits at most `timeout` for space in the queue.
+    /// Returns a writer of bytes to send. Each write waits at most `timeout` for space in the queue.
     pub const fn writer(&self, clock: Clock, timeout: Duration) -> Writer<'_, RX, TX> {
         Writer {
             uart: self,
@@ -214,7 +214,7 @@ impl embedded_io::Error for TimedOut {
     }
 }
 
-/// The receiving end of a [`Uart`].
+/// Reader of the bytes that a [`Uart`] receives.
 pub struct Reader<'u, const RX: usize, const TX: usize> {
     uart: &'u Uart<RX, TX>,
     clock: Clock,
@@ -247,7 +247,7 @@ impl<const RX: usize, const TX: usize> ReadReady for Reader<'_, RX, TX> {
     }
 }
 
-/// The sending end of a [`Uart`].
+/// Writer of the bytes that a [`Uart`] sends.
 pub struct Writer<'u, const RX: usize, const TX: usize> {
     uart: &'u Uart<RX, TX>,
     clock: Clock,

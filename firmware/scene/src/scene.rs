@@ -171,7 +171,7 @@ pub struct Scene {
     pub stereo: Option<Stereo>,
     /// The appearance of a field, with lights and background of meshes.
     pub appearance: Appearance,
-    /// The last set quality. The picture size may differ from it.
+    /// The last set quality. The picture size may differ from the quality's size.
     pub quality: Quality,
     /// Whether a prepass marches cones before the rays of a field.
     pub prepass: bool,

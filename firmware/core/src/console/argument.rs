@@ -9,7 +9,7 @@ use crate::words::{Word, Words};
 
 /// A type of command argument, which takes one or several words of a line.
 pub trait Argument {
-    /// The value that the argument's words are parsed into.
+    /// Type of the value that the argument's words are parsed to.
     type Value<'a>;
     /// Whether the argument may be missing at the end of the line.
     const OPTIONAL: bool = false;
@@ -22,7 +22,7 @@ pub trait Argument {
 
 /// A type of argument that takes one word.
 pub trait WordArgument {
-    /// The value that the word is parsed into.
+    /// Type of the value that the word is parsed to.
     type Value<'a>;
     /// The texts that are accepted as the word.
     const KIND: Kind;

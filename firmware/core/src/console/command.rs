@@ -120,7 +120,7 @@ commands! {
         fit Fit(lens: Option<Fit>) in FIT: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
     }
 
-    /// Commands of the camera's path.
+    /// Commands for camera motion.
     OrbitCommands {
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
@@ -135,7 +135,7 @@ commands! {
     }
     options {}
 
-    /// Commands of the hand in front of the image sensor.
+    /// Commands for steering by a hand in front of the image sensor.
     GestureCommands {
         gesture Gesture(action: Option<GestureAction>) in GESTURE: "show what the hand does; let it steer the camera, calibrate its colour, or send its mask (binary)";
     }

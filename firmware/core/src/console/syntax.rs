@@ -54,7 +54,7 @@ pub enum Kind {
     Words(&'static [&'static str]),
     /// Any text of a certain form. The value is a description of this form, for help and error messages.
     Text(&'static (dyn Display + Sync)),
-    /// The given keyword, or a word of the given kind.
+    /// Either this keyword, or a word of this kind.
     Either(&'static str, &'static Kind),
     /// The name of a command.
     Command,

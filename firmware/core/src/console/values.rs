@@ -253,8 +253,8 @@ impl WordArgument for light::Light {
     }
 }
 
-/// The sensitivity of a camera that the sensor steers: the ratio (gain) of the camera's turns to the sensor's turns. The console
-/// shows it as a decimal number; it is stored in units of 1/256, rounded down.
+/// The sensitivity of a camera that the sensor steers: the ratio (gain) of the camera's turns to the sensor's turns. On the
+/// console the sensitivity is a decimal number; the stored value is in units of 1/256, rounded down.
 pub struct Sensitivity;
 
 impl WordArgument for Sensitivity {

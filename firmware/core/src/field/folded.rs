@@ -59,7 +59,7 @@ impl Folded {
     }
 }
 
-/// Returns the index of the largest of three numbers. If several are largest, y is preferred to x, and x to z.
+/// Returns the index of the largest of three numbers. Among equal numbers y is preferred to x, and x to z.
 pub(in crate::field) fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

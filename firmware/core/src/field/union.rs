@@ -31,7 +31,7 @@ impl Union {
         ),
     ];
 
-    /// Makes a union of two fields, its members, with a fillet of the width `blend` in world units; 0 means no fillet.
+    /// Makes a union of two fields (its members) with a fillet of the width `blend` in world units; 0 means no fillet.
     ///
     /// # Errors `flat` or `round` is of a kind that unions do not accept, or the width is out of range.
     pub fn new(

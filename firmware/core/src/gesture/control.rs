@@ -297,7 +297,7 @@ impl Control {
         self.steer(target(&blob, size), Step::new(gap));
     }
 
-    /// Takes a frame in any other case than a tracked hand that is still visible, `gap` µs after the previous frame.
+    /// Takes a frame that does not continue a tracked hand, `gap` µs after the previous frame.
     #[cold]
     #[inline(never)]
     fn seek(&mut self, gap: u32, size: [u16; 2]) {

@@ -114,8 +114,7 @@ fn write_body(
         Message::Acknowledge(Acknowledge { number, next, map }) => {
             let [low, middle, high, _] = next.to_le_bytes();
             body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
-            // The map is sent without leading and trailing zero bytes. Before the map, the number of omitted lowest zero bytes is
-            // sent.
+            // The map is sent without leading and trailing zero bytes. The number of omitted lowest zero bytes precedes the map.
             let first = map.trailing_zeros() / 8;
             let past = (u128::BITS - map.leading_zeros()).div_ceil(8);
             if let Some(bytes) = map.to_le_bytes().get(first as usize..past as usize) {

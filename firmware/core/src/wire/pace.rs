@@ -5,7 +5,7 @@ use super::frame::OVERHEAD;
 
 /// Largest number of sent bytes in the statistics of `FrameSize`; beyond it the statistics are halved.
 const MEMORY: u32 = 8_192;
-/// One frame in the unit of `FrameSize::lost`, 1/256 frame.
+/// One frame in units of 1/256 frame, as in `FrameSize::lost`.
 const FRAME: u32 = 256;
 
 /// Chooses the best length of a data frame from the rate of lost frames.

@@ -72,8 +72,8 @@ impl Motion {
     }
 
     fn pan(&mut self, direction: [i8; 3]) -> bool {
-        // A column of the matrix holds the world's coordinates of a body's axis, in units of 2^−30, so its products with the
-        // direction are the pan along this axis, with 34 fraction bits for δ = 2^−4.
+        // A column of the matrix contains the world coordinates of an axis of the body, in units of 2^−30, so its products with
+        // the direction are the pan along this axis, with 34 fraction bits for δ = 2^−4.
         let moved = self.quaternion().axes().map(|axis| {
             let products = axis.into_iter().zip(direction);
             products
