@@ -134,7 +134,7 @@ impl Place {
     }
 }
 
-/// Writes the placement as operations that [`parse`](Self::parse) reads back.
+/// Writes the placement as operations that [`Place::parse`] reads back.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("matrix ")?;

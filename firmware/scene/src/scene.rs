@@ -112,7 +112,7 @@ pub enum Kind {
     Wireframe(Motion),
 }
 
-/// Content of a scene. `Display` writes its name.
+/// Content of a scene. `Display` writes the name of the content.
 #[derive(Clone, Copy, Debug)]
 pub enum Shown<'s> {
     /// The mesh with this name.

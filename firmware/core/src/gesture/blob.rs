@@ -100,9 +100,9 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// Exponent of the smallest part of the frame's pixels that a hand must have: 2^−10.
+/// Smallest part of the frame's pixels that a hand must have: 2^−10. The constant is the exponent.
 const LEAST_AREA: u32 = 10;
-/// Exponent of the area for full confidence, as a multiple of the smallest area: 2^2.
+/// Area for full confidence, as a multiple of the smallest area: 2^2. The constant is the exponent.
 const FULL_AREA: u32 = 2;
 /// Filled parts of the bounds, in 1/256, at which the confidence starts to rise and at which it is full: 1/8 and 3/8. A hand
 /// fills about half of its bounds.

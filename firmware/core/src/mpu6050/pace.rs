@@ -23,10 +23,10 @@ pub struct Pace {
 /// samples the reads drift across a whole sample period.
 const SETTLED: u8 = 32;
 
-/// Exponent of the part of each correction of the time by which the estimated period changes: 2^−5, so that the period settles
-/// within some dozens of corrections.
+/// Each correction of the time changes the estimated period by 2^−5 of the correction, so that the period settles within some
+/// dozens of corrections. The constant is the exponent.
 const SLOWNESS: u32 = 5;
-/// Exponent of the largest relative difference between the estimated and the nominal period: 2^−5.
+/// Largest relative difference between the estimated and the nominal period: 2^−5. The constant is the exponent.
 const TOLERANCE: u32 = 5;
 
 impl Pace {

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! where τ is the filter's time constant, dt the time since the previous reading, `a` the reading and `up` the upward direction,
-//! both in the body's axes. Readings are not normalised, and small deviations of their length from 1 g do not reject them.
+//! both in the body's axes. Readings are not normalised, and are accepted despite small deviations of their length from 1 g.
 //! Normalising or rejecting would weight accelerations unequally, and their mean would not be 0. Readings above 3 g, which do not
 //! occur in a hand or during walking, and readings at the end of the sensor's range are rejected.
 

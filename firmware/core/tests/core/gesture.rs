@@ -169,7 +169,7 @@ fn place_and_width_become_a_place_on_the_sphere() {
     // A hand in the middle, with a quarter of the frame's width and height.
     let middle = rectangle([120, 90], [199, 149]);
     near(at(&middle), [0.0, 0.25, 5.0 - 8.0 * (0.25 - 0.0625)]);
-    // A hand at the borders, and hands outside the limits of the width.
+    // A hand at the borders, and hands with a width outside the limits.
     let pole = POLE.to_num::<f64>();
     let corner = rectangle([0, 0], [9, 9]);
     near(at(&corner), [5.0 / 320.0 - 0.5, pole.max(5.0 / 480.0), 5.0]);

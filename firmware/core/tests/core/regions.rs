@@ -25,7 +25,7 @@ impl Memory {
         self.kept.push((region, content));
     }
 
-    /// Checks that all regions have their content, and that neither regions nor the largest gap overlap.
+    /// Checks that all regions have their content, and that regions and the largest gap do not overlap.
     fn check(&self) {
         let mut ranges = vec![self.regions.gap()];
         for (region, content) in &self.kept {
