@@ -1,5 +1,4 @@
-//! Errors in input files, and limits of input files. An error is one line: the place, what was expected there, and
-//! what was found.
+//! Errors in input files, and limits of input files. An error is one line: the position, the expected content, and the found content.
 
 use std::fmt;
 use std::path::Path;
@@ -10,18 +9,18 @@ pub const MAX_FILE: usize = 512 << 20;
 pub const MAX_LINE: usize = 64 << 10;
 /// Maximum number of points in a mesh: three for each of [`MAX_TRIANGLES`].
 pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
-/// Maximum number of triangles in a mesh: at 16 bytes each they fill the 32 MiB that a board has for a mesh.
+/// Maximum number of triangles in a mesh: at 16 bytes each they fill a board's 32 MiB for a mesh.
 pub const MAX_TRIANGLES: usize = 1 << 21;
 /// Maximum number of corners of a polygon.
 pub const MAX_POLYGON: usize = 8192;
 /// Maximum magnitude of a coordinate.
 pub const MAX_COORDINATE: f64 = 1e30;
-/// Magnitude of a coordinate above which a remark says that the file may be damaged.
+/// Magnitude of a coordinate above which a remark warns that the file may be damaged.
 pub const USUAL_COORDINATE: f64 = 1e15;
-/// Maximum number of remarks on a file; further ones are dropped.
+/// Maximum number of remarks on a file; further remarks are dropped.
 pub const MAX_REMARKS: usize = 8;
 
-/// Place of an error in an input.
+/// Position of an error in an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// The file as a whole.
@@ -52,7 +51,7 @@ impl fmt::Display for Location {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}expected {expected}, found {found}")]
 pub struct FormatError {
-    /// Place of the violation.
+    /// Position of the violation.
     pub place: Location,
     /// The requirement of the format at this position.
     pub expected: String,
@@ -70,7 +69,7 @@ impl FormatError {
         }
     }
 
-    /// Creates an error that concerns the whole file.
+    /// Creates an error about the whole file.
     pub fn whole(expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self::new(Location::Whole, expected, found)
     }

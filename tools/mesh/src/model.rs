@@ -7,7 +7,7 @@ use crate::generate;
 use crate::polygons::Polygons;
 use std::path::Path;
 
-/// A mesh for boards, and the report of its conversion.
+/// A mesh for boards, with the report of its conversion.
 pub struct Model {
     /// The mesh in the board's memory layout.
     pub mesh: Vec<u8>,
@@ -15,7 +15,7 @@ pub struct Model {
     pub report: Option<Report>,
 }
 
-/// Whether `name` stands for a generator. If a file of this name exists, it stands for the file.
+/// Whether `name` is a generator. If a file of this name exists, it is the file instead.
 fn is_generated(name: &str) -> bool {
     generate::is_name(name) && !Path::new(name).exists()
 }
@@ -51,7 +51,7 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     )
 }
 
-/// Converts a mesh file that is in memory, without further files. Its name tells the format.
+/// Converts a mesh file in memory, without auxiliary files. The extension of its name selects the format.
 ///
 /// # Errors
 /// As [`load`].

@@ -1,4 +1,4 @@
-//! Vertex normals for mesh files that have none.
+//! Vertex normals for mesh files without normals.
 
 use crate::polygons::Vector;
 use crate::triangulate::{dot, sub, unit};
@@ -33,8 +33,8 @@ impl NormalSums {
 
     /// Unit normal at a point; `None` if the normals of its faces cancel out.
     pub fn at(&self, number: usize) -> Option<Vector> {
-        // The weights are angles in radians. Those at a point add up to a few full turns at most, so a sum of normals that is
-        // shorter than 1e-9 is only rounding error.
+        // The weights are angles in radians. The angles at a point add up to a few full turns at most, so a sum of normals shorter than
+        // 1e-9 is only rounding error.
         self.sums
             .get(number)
             .copied()

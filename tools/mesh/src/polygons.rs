@@ -1,4 +1,4 @@
-//! A mesh as read from a file: points, and polygons between them.
+//! A mesh as read from a file: points, and polygons with these points as corners.
 
 use crate::error::{FormatError, Location, MAX_POINTS, MAX_POLYGON, MAX_REMARKS, MAX_TRIANGLES};
 
@@ -13,7 +13,7 @@ impl Rgb8 {
     /// Colour of surfaces without a colour: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
-    /// Converts three intensities from 0 to 1; values outside saturate.
+    /// Converts three intensities from 0 to 1; values outside this range saturate.
     pub fn from_unit(rgb: [f64; 3]) -> Self {
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
@@ -52,7 +52,7 @@ pub struct Face {
     pub colour: Option<Rgb8>,
 }
 
-/// Points and the polygons between them.
+/// Points, and polygons with these points as corners.
 ///
 /// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) enforce the limits of [`crate::error`], which bound the
 /// memory. Call [`check_indices`](Self::check_indices) before using the polygons.
@@ -75,8 +75,8 @@ pub struct Polygons {
     largest_normal: Largest,
 }
 
-/// The largest index that a face has used so far, and the place of that face. Faces may use points or normals that come later in
-/// the file, so only this index is checked, at the end of the file.
+/// The largest index that a face has used so far, and the position of that face. Faces may use points or normals that come later in the
+/// file, so this index is checked at the end of the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Location)>);
 
@@ -100,7 +100,7 @@ impl Largest {
 }
 
 impl Polygons {
-    /// Adds a remark, unless it is there already or [`MAX_REMARKS`] others are.
+    /// Adds a remark, unless it already exists or there are [`MAX_REMARKS`] remarks.
     pub fn remark(&mut self, remark: impl Into<String>) {
         let remark = remark.into();
         if self.remarks.len() < MAX_REMARKS && !self.remarks.contains(&remark) {
@@ -124,7 +124,7 @@ impl Polygons {
         push(&mut self.normals, normal, "normals", place)
     }
 
-    /// Adds a polygon. Its indices may refer to points added later.
+    /// Adds a polygon. The indices of its corners may refer to points added later.
     ///
     /// # Errors
     /// The polygon has fewer than three corners or more than [`MAX_POLYGON`], or the mesh more than [`MAX_TRIANGLES`] triangles.
@@ -165,7 +165,7 @@ impl Polygons {
         Ok(())
     }
 
-    /// Checks that there is a face, and that the points and normals of all corners exist.
+    /// Checks that a face exists, and that the points and normals of all corners exist.
     ///
     /// # Errors
     /// There is no face, or an index is out of range; the error has the position of the largest index.

@@ -9,21 +9,21 @@ use crate::polygons::{Corner, Face, Polygons, Vector};
 use std::collections::VecDeque;
 use tree::{Point, Tree, area};
 
-/// Buffers reused for each face.
+/// Buffers that are reused for each face.
 #[derive(Default)]
 pub struct Scratch {
     plane: Vec<Point>,
     next: Vec<usize>,
     previous: Vec<usize>,
     is_ear: Vec<bool>,
-    /// The ears, and corners that were ears before.
+    /// Queue of ears; it also holds corners that are no longer ears.
     ears: VecDeque<usize>,
     tree: Tree,
     triangles: Vec<[Corner; 3]>,
 }
 
-/// Vector perpendicular to a triangle, with twice its area as length. From the side it points to, the
-/// corners run counter-clockwise.
+/// Vector perpendicular to a triangle, with twice its area as length. Seen from the side to which it points, the corners are
+/// counter-clockwise.
 pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
     cross(sub(b, a), sub(c, a))
 }
@@ -47,8 +47,8 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector of length 1 in the direction of `v`; `None` for zero and for infinite or invalid vectors. Very short and
-/// very long vectors work too.
+/// Vector of length 1 in the direction of `v`; `None` for zero and for infinite or invalid vectors. Also correct for very short and very
+/// long vectors.
 pub fn unit(v: Vector) -> Option<Vector> {
     let largest = v.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
@@ -72,7 +72,7 @@ pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &
     &scratch.triangles
 }
 
-/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it runs counter-clockwise in `plane`.
+/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it is counter-clockwise in `plane`.
 fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
     let origin = corners
         .first()
@@ -101,7 +101,7 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
     }));
 }
 
-/// Clips one ear after the other. The ears wait in a queue, and clipping one updates its two neighbours only. If a
+/// Clips one ear after the other. The ears wait in a queue, and clipping an ear only updates its two neighbours. If a
 /// self-intersecting polygon has no ears left, any corner is clipped.
 fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
     let n = corners.len();
@@ -135,8 +135,8 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
             }
             scratch.is_ear[i] = ear;
         }
-        // The next ear is not the corner `after`, if there is another one. Otherwise the triangles would often form a fan of narrow
-        // triangles around one corner.
+        // The next ear, other than the corner `after` if possible: the triangles would otherwise often form a fan of narrow triangles
+        // around one corner.
         if scratch.ears.front() == Some(&after) {
             scratch.ears.rotate_left(1);
         }
@@ -154,8 +154,8 @@ fn next_ear(scratch: &mut Scratch) -> Option<usize> {
     None
 }
 
-/// Whether a corner is convex and no other corner lies in the triangle that it forms with its neighbours. Where a hole is joined to
-/// the outline, the polygon passes the same points twice, so points equal to a corner of the triangle do not count.
+/// Whether a corner is convex and no other corner lies in the triangle that it forms with its neighbours. Points equal to a corner of the
+/// triangle are ignored, because a polygon passes the same points twice where a hole is joined to the outline.
 fn is_ear(scratch: &Scratch, i: usize) -> bool {
     let corners = [scratch.previous[i], i, scratch.next[i]];
     let [a, b, c] = corners.map(|i| scratch.plane[i]);
@@ -305,7 +305,7 @@ mod tests {
                 .map(|i| (points[i], points[(i + 1) % n]))
                 .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
                 .sum();
-            // Ears of a simple polygon add up to its area, and none is turned over.
+            // The ears of a simple polygon add up to its area, and none is reversed.
             let sum: f64 = areas.iter().map(|area| area.abs()).sum();
             assert!(
                 (sum - whole.abs()).abs() < 1e-9 * sum,
@@ -314,8 +314,8 @@ mod tests {
         }
     }
 
-    /// The searches for corners in ears visit few nodes of the tree: 20 to 56 for each corner of a polygon. A search of all corners would
-    /// visit 8,000, and there are up to three searches for each.
+    /// The searches for corners in ears visit few nodes of the tree: 20 to 56 per corner of a polygon. An exhaustive search would visit
+    /// 8,000, and there are up to three searches per corner.
     #[test]
     fn the_work_of_260_polygons_of_8000_corners_is_bounded() {
         let n = 8000;

@@ -29,7 +29,7 @@ fn main() -> Result<ExitCode, Error> {
         if monitor {
             board.monitor().turn_on();
         }
-        // All boards are at the same cycle of the same program when the measurements begin.
+        // When the measurements begin, all boards are at the same cycle of the same program.
         board.run(TURN);
         boards.push(board);
     }

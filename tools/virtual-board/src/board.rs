@@ -1,4 +1,4 @@
-//! The virtual board: clock, pins, devices, and the back door to DDR3.
+//! The virtual board: clock, pins, devices, and back-door access to DDR3.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -19,16 +19,17 @@ use crate::{Error, Monitor, Picture, TimingError, boot};
 /// Number of cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
 
-/// Number of cycles after which a store of the CPU has reached memory, even after a line fill of the instruction cache and a refresh.
+/// Number of cycles after which a store of the CPU has reached memory, even if a line fill of the instruction cache and a refresh delay
+/// it.
 const SETTLE: u64 = 1000;
 
-/// Levels of the flash's data lines while nothing drives them.
+/// Levels of the undriven data lines of the flash.
 const FLASH_RELEASED: u8 = 0xf;
 
-/// Minimum number of PCLK periods queued for the sensor's port. It exceeds the periods in a slice, so that none is late.
+/// Minimum number of PCLK periods queued for the sensor's port. This exceeds the number of periods in a slice, so that no period is late.
 const PORT_QUEUE: usize = 2 * SLICE as usize;
 
-/// Cycles without a period of the image sensor's master clock, after which the sensor has none.
+/// Number of cycles without a period of the image sensor's master clock after which the clock counts as stopped.
 const CLOCK_LOST: u64 = 2 * SLICE;
 
 /// Ticks of the pixel clock in two video frames.
@@ -40,7 +41,7 @@ pub enum Start<'a> {
     /// Like a real board: the BIOS in ROM tests the memory and waits for a serial boot.
     #[default]
     Full,
-    /// Preloaded: `firmware` is in main RAM, and the ROM jumps to it.
+    /// Preloaded: Preloaded: `firmware` is in main RAM, and the ROM jumps to it.
     Fast {
         /// The firmware's image.
         firmware: &'a [u8],
@@ -56,8 +57,8 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Sets the library to load [default: that in the folder which the environment variable `GLINT_VIRTUAL_BOARD` names, or without
-    /// the variable the one of `cargo xtask gateware`, which [`built::find`] finds].
+    /// Sets the library to load. By default this is the library in the folder of the environment variable `GLINT_VIRTUAL_BOARD`, or
+    /// without this variable the library of `cargo xtask gateware`, found by [`built::find`].
     #[must_use]
     pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
         self.library = Some(path.into());
@@ -134,7 +135,7 @@ pub struct VirtualBoard {
     flash: Option<Flash>,
     sensor: Option<Wires>,
     image_sensor: Option<ImageSensor>,
-    /// Periods of the image sensor's master clock so far, and the cycle in which this number was seen to change.
+    /// Number of periods of the image sensor's master clock so far, and the cycle in which its last change was seen.
     camera_clock: (u64, u64),
     digits: Digits,
     /// Serial output of the SoC that the user of the board has not read yet.
@@ -172,8 +173,8 @@ impl VirtualBoard {
         self.running += start.elapsed();
     }
 
-    /// Runs `cycles` cycles in a bare C++ loop around the model, whose speed is the reference for [`run`](Self::run). The
-    /// SoC's serial output and video of these cycles are lost, and its serial input waits.
+    /// Runs `cycles` cycles in a bare C++ loop around the model; its speed is the reference for [`run`](Self::run). The SoC's serial
+    /// output and video of these cycles are lost, and serial input stays queued.
     pub fn run_bare(&mut self, cycles: u64) {
         let start = Instant::now();
         self.soc.run_bare(cycles);
@@ -253,7 +254,7 @@ impl VirtualBoard {
         (u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz())) as u64
     }
 
-    /// Takes new serial output and video from the SoC, and looks at the digits.
+    /// Reads new serial output, video and the state of the digits from the SoC.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
         self.digits.look(self.soc.cycles(), self.soc.digits());
@@ -263,12 +264,12 @@ impl VirtualBoard {
         }
     }
 
-    /// Turns the recording of executed instructions on or off; it is off at first.
+    /// Turns the recording of executed instructions on or off; initially it is off.
     pub fn record_instructions(&mut self, on: bool) {
         self.soc.instructions_record(on);
     }
 
-    /// Moves the instructions that were recorded since the last call to the end of `list`, in their order.
+    /// Appends the instructions recorded since the last call to `list`, in their order.
     pub fn take_instructions(&mut self, list: &mut Vec<Instruction>) {
         self.soc.instructions_take(list);
     }
@@ -367,13 +368,13 @@ impl VirtualBoard {
         self.digits.seen(self.cycles())
     }
 
-    /// Connects a sensor to the I2C bus instead of the present sensor, if any. The sensor then drives the wires in place
-    /// of [`i2c_drive`](Self::i2c_drive).
+    /// Connects a sensor to the I2C bus; it replaces the connected sensor, if any. The sensor then drives the wires in place of
+    /// [`i2c_drive`](Self::i2c_drive).
     pub fn plug(&mut self, sensor: Wires) {
         self.sensor = Some(sensor);
     }
 
-    /// The sensor on the I2C bus, if there is one.
+    /// The sensor on the I2C bus, if any.
     pub fn sensor(&mut self) -> Option<&mut Wires> {
         self.sensor.as_mut()
     }
@@ -384,18 +385,18 @@ impl VirtualBoard {
         self.sensor.take()
     }
 
-    /// Connects a flash instead of the present one, if any. Without a flash its window reads as ones.
+    /// Connects a flash; it replaces the connected flash, if any. Without a flash, its window reads as ones.
     pub fn plug_flash(&mut self, flash: Flash) {
         self.flash = Some(flash);
     }
 
-    /// Connects an image sensor instead of the present one, if any.
+    /// Connects an image sensor; it replaces the connected one, if any.
     pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
         self.soc.camera_clear();
         self.image_sensor = Some(image_sensor);
     }
 
-    /// The image sensor, if there is one. Its faults take effect with the next frame that it begins.
+    /// The image sensor, if any. Its faults take effect with its next frame.
     pub fn image_sensor(&mut self) -> Option<&mut ImageSensor> {
         self.image_sensor.as_mut()
     }
@@ -411,7 +412,7 @@ impl VirtualBoard {
         self.soc.i2c_wires()
     }
 
-    /// The monitor on the video output. It is off before [`Monitor::turn_on`].
+    /// The monitor on the video output. It is off until [`Monitor::turn_on`].
     pub fn monitor(&mut self) -> &mut Monitor {
         &mut self.monitor
     }
@@ -464,7 +465,7 @@ impl VirtualBoard {
     pub fn ddr_write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Error> {
         let offset = main_ram_offset(address, bytes.len())?;
         self.settle();
-        // Old data would arrive in the cache after the write.
+        // A pending line fill would bring old data into the cache after the write.
         while self.soc.filling() {
             self.run(1);
         }
@@ -472,7 +473,7 @@ impl VirtualBoard {
         Ok(())
     }
 
-    /// Runs the SoC until all stores of the CPU so far have reached memory.
+    /// Runs the SoC until all pending stores of the CPU have reached memory.
     fn settle(&mut self) {
         if self.cycles() > 0 {
             self.run(SETTLE);

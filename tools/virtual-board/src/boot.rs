@@ -2,16 +2,16 @@
 
 use litex_pac::memories::MAIN_RAM;
 
-/// Numbers of CPU registers, by their names in the ABI.
+/// Numbers of CPU registers, named as in the ABI.
 const T0: u32 = 5;
 const T1: u32 = 6;
 const ZERO: u32 = 0;
 
-/// Returns ROM contents: a program that hands the DDR3 to its controller and jumps to the start of main RAM.
+/// Returns ROM contents: a program that gives the controller access to the DDR3 and jumps to the start of main RAM.
 ///
-/// A real DDR3 would first need its mode registers set and the PHY trained; the model needs neither.
+/// A real DDR3 would first need setting of its mode registers and training of the PHY; the model needs neither.
 pub(crate) fn stub() -> Vec<u8> {
-    // SAFETY: only the address of a register is taken; nothing is accessed.
+    // SAFETY: only computes the address of a register, without an access.
     let control = unsafe { litex_pac::sdram::Sdram::steal() }
         .dfii_control()
         .address() as u32;

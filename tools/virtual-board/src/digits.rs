@@ -1,4 +1,4 @@
-//! The displays of digits, of which the SoC lights one digit at a time.
+//! The digit displays, whose digits the SoC lights one at a time.
 
 /// Number of cycles for which a digit looks lit after it was: twice the cycles in which the SoC lights each digit once.
 const SEEN: u64 = 2 << 16;

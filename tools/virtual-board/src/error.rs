@@ -22,7 +22,7 @@ pub enum Error {
     /// The library cannot be used.
     #[error("the virtual board's library {0}; run `cargo xtask gateware`")]
     Library(#[from] LoadError),
-    /// The library's SoC has another register map.
+    /// The register map of the library's SoC differs from the register access crate's.
     #[error(
         "the virtual board's build id is {found:#010x}: expected {expected:#010x}; \
          run `cargo xtask gateware` and `cargo xtask pac`"
@@ -39,27 +39,27 @@ pub enum Error {
         /// Path of the file for the waveforms.
         path: PathBuf,
     },
-    /// An access of the back door outside main RAM.
+    /// A back-door access outside of main RAM.
     #[error(
         "DDR3 access of {length} bytes at {address:#010x}: expected a range within {:#010x}..{:#010x}",
         .ram.start, .ram.end
     )]
     Address {
-        /// Address of the first byte, as the CPU sees it.
+        /// Address of the first byte on the CPU's bus.
         address: u32,
         /// Number of bytes.
         length: usize,
         /// Address range of main RAM.
         ram: std::ops::Range<u32>,
     },
-    /// The expected output or video did not come in time.
+    /// Time-out while waiting for output or video.
     #[error("expected {expected} within {cycles} cycles, found {got:?}")]
     Timeout {
         /// Expected input.
         expected: String,
         /// Time-out in cycles.
         cycles: u64,
-        /// Output of the SoC during the wait.
+        /// Output of the SoC until the time-out.
         got: String,
     },
     /// The operating system provides no pseudo-terminal.

@@ -1,10 +1,10 @@
-//! The virtual board: Glint's verilated SoC and models of the devices around it.
+//! The virtual board: Glint's verilated SoC, and models of its peripheral devices.
 //!
 //! `cargo xtask gateware` compiles the SoC to a shared library. This crate loads it, drives its clocks and pins, and models its
 //! devices: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with [`pty::Pty`]), buttons, switches,
 //! LEDs, digits, a SPI flash ([`VirtualBoard::plug_flash`]), an MPU-6050 ([`VirtualBoard::plug`]), an image sensor
-//! ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the video timing and captures pictures. A back door reads
-//! and writes DDR3 at run time, coherent with the CPU's caches.
+//! ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the video timing and captures pictures. Back-door accesses read
+//! and write DDR3 at run time, coherently with the CPU's caches.
 //!
 //! ```no_run
 //! use virtual_board::{Start, VirtualBoard};
@@ -18,12 +18,12 @@
 //!
 //! # Time
 //! One cycle is one period of the SoC's system clock, by default 1/81.25 MHz; the pixel clock has exactly 74.25 MHz.
-//! Nothing depends on wall time: equal calls give equal boards, cycle by cycle. At a pseudo-terminal, a board runs at most as fast as in
-//! reality ([`glint_board_api::pace::Pace`]).
+//! Results do not depend on wall time: equal calls give equal boards, cycle by cycle. On a pseudo-terminal, a board runs at most as fast
+//! as in reality ([`glint_board_api::pace::Pace`]).
 //!
 //! # Limits
-//! The UART moves one byte per cycle, where a serial line needs 7053 cycles of 1/81.25 MHz, so output arrives earlier than on a real board.
-//! Waveforms need the library built by `cargo xtask gateware --waveforms`.
+//! The UART transfers one byte per cycle, whereas a serial line needs 7053 cycles of 1/81.25 MHz, so output arrives earlier than on a real
+//! board. Waveforms need the library built by `cargo xtask gateware --waveforms`.
 
 mod board;
 mod boot;

@@ -25,7 +25,7 @@ macro_rules! functions {
             /// The instance implements `soc.h` and outlives the table.
             unsafe fn load(instance: &Instance) -> Result<Self, LoadError> {
                 Ok(Self {
-                    // SAFETY: guaranteed by the caller; the types are those of soc.h.
+                    // SAFETY: guaranteed by the caller; the types match soc.h.
                     $($name: unsafe { instance.symbol(concat!("soc_", stringify!($name)))? },)*
                 })
             }
@@ -69,17 +69,17 @@ functions! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Instruction {
-    /// Cycle of the system clock in which it ended.
+    /// Cycle of the system clock in which the instruction ended.
     pub cycle: u64,
     /// Its address.
     pub pc: u32,
-    /// Number of the register that it wrote, 0 for none.
+    /// Number of the written register, 0 for none.
     pub register: u32,
-    /// Value that it wrote there.
+    /// The written value.
     pub value: u32,
 }
 
-/// Outputs of the SoC to devices that answer each edge. SCL and SDA are released when `true`, and pulled low when `false`.
+/// Outputs of the SoC to devices that react to each edge. SCL and SDA are released when `true`, and pulled low when `false`.
 #[derive(Clone, Copy)]
 pub(crate) struct Outputs {
     /// SCL and SDA of the I2C bus.
@@ -102,9 +102,9 @@ pub(crate) struct Soc {
     buttons: usize,
     switches: usize,
     leds: usize,
-    /// The pins of the left display and of the right one: those that select a digit, and those of the segments.
+    /// The pins of the left and of the right display: the pins that select digits, and the segment pins.
     digits: [[usize; 2]; 2],
-    // The last field, so that the library is unloaded after the table of its functions is dropped.
+    // The last field, so that the library is unloaded after its function table is dropped.
     instance: Instance,
 }
 
@@ -140,8 +140,7 @@ impl Soc {
         unsafe { (self.functions.clock_hz)() }
     }
 
-    /// Starts writing waveforms to a file. Returns `false` when nothing can be written, as with a library that was built
-    /// without waveforms.
+    /// Starts writing waveforms to a file. Returns `false` if this fails, for example with a library that was built without waveforms.
     pub fn trace(&mut self, path: &Path) -> Result<bool, Error> {
         Ok(self.instance.write_waveforms(path)?)
     }
@@ -151,7 +150,7 @@ impl Soc {
         unsafe { (self.functions.run)(self.raw(), cycles) }
     }
 
-    /// Advances the clocks and nothing else; serial output and video are lost.
+    /// Only advances the clocks; serial output and video are lost.
     pub fn run_bare(&mut self, cycles: u64) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.run_bare)(self.raw(), cycles) }
@@ -172,7 +171,7 @@ impl Soc {
         unsafe { (self.functions.uart_queued)(self.raw()) }
     }
 
-    /// Moves the unread serial output of the SoC to the end of `output`.
+    /// Appends the unread serial output of the SoC to `output`.
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         let mut buffer = [0; 256];
         loop {
@@ -200,7 +199,7 @@ impl Soc {
         self.instance.value(self.leds) as u16
     }
 
-    /// The selected digits and the segments of the left display and of the right one, as they are lit: 1 is on.
+    /// The selected digits and the segments of the left and of the right display; 1 is lit.
     pub fn digits(&self) -> [[u8; 2]; 2] {
         // The pins are active low. A display has four digits and eight segments.
         self.digits.map(|[digits, segments]| {
@@ -221,7 +220,7 @@ impl Soc {
         unsafe { (self.functions.i2c_wires)(self.raw()) }
     }
 
-    /// Outputs of the SoC to devices that answer each edge, in the order of their bits.
+    /// Outputs of the SoC to devices that react to each edge, in the order of their bits.
     pub fn outputs(&self) -> Outputs {
         // SAFETY: the handle belongs to a live SoC.
         let bits = unsafe { (self.functions.outputs)(self.raw()) };
@@ -247,7 +246,7 @@ impl Soc {
         unsafe { (self.functions.camera_drive)(self.raw(), released) }
     }
 
-    /// Queues levels of the image sensor's port, one a period of PCLK, whose frequency in Hz is a multiple of 250 kHz.
+    /// Queues levels of the image sensor's port, one per period of PCLK. The frequency of PCLK in Hz must be a multiple of 250 kHz.
     pub fn camera_send(&mut self, frequency: u32, levels: &[Levels]) {
         let levels: Vec<u16> = levels.iter().map(|levels| levels.0).collect();
         // SAFETY: the handle belongs to a live SoC that nothing else uses; the levels are copied during the call.
@@ -271,13 +270,13 @@ impl Soc {
         unsafe { (self.functions.camera_clocks)(self.raw()) }
     }
 
-    /// Levels with which the SoC drives the data lines of the flash, high where it does not.
+    /// Levels with which the SoC drives the data lines of the flash; undriven lines are high.
     pub fn flash_lines(&self) -> u8 {
         // SAFETY: the handle belongs to a live SoC.
         unsafe { (self.functions.flash_lines)(self.raw()) }
     }
 
-    /// Sets the levels of the flash's data lines as the SoC sees them.
+    /// Sets the levels that the SoC reads from the flash's data lines.
     pub fn flash_drive(&mut self, lines: u8) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.flash_drive)(self.raw(), lines) }
@@ -291,7 +290,7 @@ impl Soc {
     /// Passes the recorded video samples to `consume`, and then discards them.
     pub fn video_take(&mut self, consume: impl FnOnce(&[u32])) {
         let mut count = 0;
-        // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is a valid place for the result.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is valid for writing the result.
         let samples = unsafe { (self.functions.video_samples)(self.raw(), &mut count) };
         if count != 0 {
             // SAFETY: the library keeps `count` samples at this address until the next run or clear, and neither can happen
@@ -307,10 +306,10 @@ impl Soc {
         unsafe { (self.functions.instructions_record)(self.raw(), on.into()) }
     }
 
-    /// Moves the recorded instructions to the end of `list`.
+    /// Appends the recorded instructions to `list`.
     pub fn instructions_take(&mut self, list: &mut Vec<Instruction>) {
         let mut count = 0;
-        // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is a valid place for the result.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is valid for writing the result.
         let instructions = unsafe { (self.functions.instructions)(self.raw(), &mut count) };
         if count != 0 {
             // SAFETY: the library keeps `count` instructions at this address until the next run or clear.
@@ -320,7 +319,7 @@ impl Soc {
         unsafe { (self.functions.instructions_clear)(self.raw()) }
     }
 
-    /// Whether the CPU fills a line of a cache.
+    /// Whether the CPU is filling a cache line.
     pub fn filling(&self) -> bool {
         // SAFETY: the handle belongs to a live SoC.
         unsafe { (self.functions.filling)(self.raw()) != 0 }
@@ -331,7 +330,7 @@ impl Soc {
         unsafe { (self.functions.ddr_read)(self.raw(), offset, bytes.as_mut_ptr(), bytes.len()) }
     }
 
-    /// Writes main memory while no line of a cache is filled.
+    /// Writes main memory. No cache line fill may be in progress.
     pub fn ddr_write(&mut self, offset: u32, bytes: &[u8]) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses; the board has checked the range.
         unsafe { (self.functions.ddr_write)(self.raw(), offset, bytes.as_ptr(), bytes.len()) }

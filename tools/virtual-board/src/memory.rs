@@ -1,4 +1,4 @@
-//! The range of main RAM.
+//! The address range of main RAM.
 
 use std::ops::Range;
 

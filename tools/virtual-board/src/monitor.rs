@@ -9,8 +9,8 @@ pub const WIDTH: usize = 1280;
 /// Number of lines of a picture.
 pub const HEIGHT: usize = 720;
 
-/// Video timing of CEA-861 1280×720 at 60 Hz. A line starts with the leading edge of hsync, and a frame with that of
-/// vsync, at the same tick as a line. Both syncs are active high.
+/// Video timing of CEA-861 1280×720 at 60 Hz. A line starts with the leading edge of hsync. A frame starts with the leading edge of vsync,
+/// at the same tick as a line. Both syncs are active high.
 const H_SYNC: usize = 40;
 const H_BACK: usize = 220;
 const H_FRONT: usize = 110;
@@ -97,13 +97,13 @@ impl fmt::Display for TimingError {
 ///
 /// From the first leading edge of vsync on, it compares hsync, vsync and de at every tick with CEA-861 1280×720 (active
 /// picture, front porch, sync, back porch: 1280/110/40/220 ticks, 720/5/5/20 lines; positive syncs). It never
-/// resynchronizes, so a stall or a glitch causes errors from then on.
+/// resynchronizes, so a stall or a glitch causes errors in all later ticks.
 #[derive(Default)]
 pub struct Monitor {
     on: bool,
     /// Ticks since the start of the frame; `None` before the first vsync.
     position: Option<usize>,
-    /// Pins at the last tick. `None` (no tick yet) counts as vsync, so that only a new leading edge of vsync starts a frame.
+    /// Pins at the last tick. `None` (no tick yet) counts as vsync, so that the first frame starts at a leading edge of vsync.
     last: Option<Pins>,
     /// Pixels of the current frame so far, three bytes each.
     pixels: Vec<u8>,
@@ -160,7 +160,7 @@ impl Monitor {
         self.picture.is_some()
     }
 
-    /// Takes the picture of the last complete frame, if it was not taken before.
+    /// Takes the picture of the last complete frame, if it has not been taken.
     pub fn take_picture(&mut self) -> Option<Picture> {
         self.picture.take()
     }
@@ -215,7 +215,7 @@ impl Monitor {
 mod tests {
     use super::*;
 
-    /// Makes `ticks` samples of correct video, which begin `before` ticks ahead of a vsync; each pixel encodes its position.
+    /// Makes `ticks` samples of correct video that begin `before` ticks ahead of a vsync; each pixel encodes its position.
     fn video(before: usize, ticks: usize) -> Vec<u32> {
         (0..ticks)
             .map(|tick| {
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn a_frame_seen_from_its_middle_is_not_captured() {
         let mut monitor = watching();
-        // The first sample is within a vsync, whose start was not seen.
+        // The first sample is within a vsync, whose start is not in the samples.
         monitor.watch(&video(0, FRAME)[1000..]);
         assert_eq!((monitor.frames(), monitor.error_count()), (0, 0));
     }
@@ -277,8 +277,7 @@ mod tests {
         monitor.watch(&samples);
         assert!(monitor.error_count() > 0);
         let first = monitor.errors()[0];
-        // The error shows at the start of the next hsync, the first tick after the doubled one whose control pins differ from
-        // those of the tick before.
+        // The error is detected at the start of the next hsync: the first tick after the doubled tick at which the control pins change.
         assert_eq!((first.line, first.tick), (4, 0));
         assert!(
             first

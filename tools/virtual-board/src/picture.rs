@@ -1,4 +1,4 @@
-//! Pictures as monitors show them.
+//! Pictures on the monitor.
 
 use std::io::Write;
 
@@ -17,7 +17,7 @@ pub enum PictureError {
         /// The requested scale.
         scale: usize,
     },
-    /// The pixels of a block, which show the same pixel of the frame, differ.
+    /// The pixels of a block, which represent one pixel of the frame, differ.
     #[error(
         "pixel {x}, {y}: expected {expected:?} as in the rest of its {scale}x{scale} block, found {found:?}"
     )]
@@ -33,14 +33,14 @@ pub enum PictureError {
         /// Red, green and blue of the pixel.
         found: [u8; 3],
     },
-    /// A colour that is not of RGB565, widened by bit replication.
+    /// A colour that is not an RGB565 colour widened by bit replication.
     #[error("pixel {x}, {y}: expected the RGB565 colour {expected:?}, found {found:?}")]
     Colour {
         /// Column of the pixel.
         x: usize,
         /// Line of the pixel.
         y: usize,
-        /// The nearest colour of RGB565, widened.
+        /// The nearest RGB565 colour, widened.
         expected: [u8; 3],
         /// Red, green and blue of the pixel.
         found: [u8; 3],
@@ -160,8 +160,8 @@ impl Picture {
         Ok(frame)
     }
 
-    /// The picture with one pixel for each `factor`×`factor` pixels: the mean of their channels, rounded to nearest. Pixels beyond the
-    /// last whole block are left out.
+    /// The picture reduced by `factor`: each pixel is the mean of a block of `factor`×`factor` pixels, rounded to nearest per channel.
+    /// Pixels beyond the last whole block are ignored.
     #[must_use]
     pub fn reduced(&self, factor: usize) -> Self {
         let factor = factor.max(1);
@@ -270,7 +270,7 @@ mod tests {
         }
     }
 
-    /// Blocks of 2×2 pixels: all black, all white, and one white of four.
+    /// Blocks of 2×2 pixels: all black, all white, and one of four white.
     #[test]
     fn a_reduced_picture_has_the_means() {
         let colours = [

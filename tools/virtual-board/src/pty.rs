@@ -17,23 +17,23 @@ use crate::{Error, VirtualBoard};
 /// Number of cycles that the board runs between two reads of the terminal.
 const SLICE: u64 = 2000;
 
-/// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.
+/// Largest number of bytes in the queue for the UART; while the queue is full, the board does not read the terminal.
 const QUEUE: usize = 4096;
 
-/// Largest number of bytes of unread output. Above it the older half is dropped, because there may be no reader.
+/// Largest number of bytes of unread output. Beyond this size the older half is dropped, because there may be no reader.
 const UNREAD: usize = 1 << 20;
 
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
 type Task<B> = Box<dyn FnOnce(&mut B) + Send>;
 
-/// A board in its own thread, with its UART on a pseudo-terminal. It runs at most as fast as in reality.
+/// A board in its own thread, with its UART on a pseudo-terminal. It runs at most as fast as a real board.
 ///
 /// The terminal is raw: every byte passes unchanged in both directions. Dropping the `Pty` stops the board.
 pub struct Pty<B = VirtualBoard> {
     path: PathBuf,
     tasks: Option<Sender<Task<B>>>,
     thread: Option<JoinHandle<B>>,
-    /// The side of the terminal that programs use; it is kept open here, so that programs can close and reopen it.
+    /// The slave side of the terminal, for programs; it is kept open so that programs can close and reopen it.
     _terminal: OwnedFd,
 }
 
@@ -69,7 +69,7 @@ impl<B: Uart + Send + 'static> Pty<B> {
     pub fn with<R: Send + 'static>(&self, task: impl FnOnce(&mut B) -> R + Send + 'static) -> R {
         let (reply, answer) = channel();
         let task: Task<B> = Box::new(move |board| {
-            // Sending cannot fail, as the caller waits for the result.
+            // Sending cannot fail, because the caller waits for the result.
             let _ = reply.send(task(board));
         });
         let sent = self
@@ -101,7 +101,7 @@ impl<B> Drop for Pty<B> {
     fn drop(&mut self) {
         self.tasks = None;
         if let Some(thread) = self.thread.take() {
-            // The thread's panic has been printed already.
+            // The thread's panic message has already been printed.
             let _ = thread.join();
         }
     }
@@ -128,8 +128,8 @@ fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
     Ok((File::from(side), terminal, path))
 }
 
-/// Body of the board's thread. In turns it passes bytes from the terminal to the UART, runs the board for a slice, and
-/// passes bytes from the UART to the terminal.
+/// Body of the board's thread. Repeatedly passes bytes from the terminal to the UART, runs the board for a slice, and passes bytes from
+/// the UART to the terminal.
 fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> B {
     let mut output = Vec::new();
     let mut pace = Pace::new(SystemClock::start(), board.clock_hz(), board.cycles());
@@ -163,7 +163,7 @@ fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> 
     }
 }
 
-/// Whether the error only means that nothing can be transferred now, so that the thread continues.
+/// Whether the error only means that no data can be transferred at present, so that the thread continues.
 fn is_passing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }
@@ -172,7 +172,7 @@ fn is_passing(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// A board whose program prints a number after the other.
+    /// A board whose program prints consecutive numbers.
     #[derive(Default)]
     struct Talker {
         cycles: u64,

@@ -26,7 +26,7 @@ impl Simulation for VirtualBoard {
         let Some(picture) = self.monitor().take_picture() else {
             return Ok(None);
         };
-        // Larger blocks of equal pixels are pixels of a smaller frame.
+        // If larger blocks have equal pixels, the frame is smaller.
         let mut scales = [4, 2].into_iter();
         let smaller = scales.find_map(|scale| Some((scale, picture.scaled_back(scale).ok()?)));
         let (scale, pixels) = match smaller {

@@ -1,7 +1,7 @@
-//! A virtual SPI flash for reading: its content, and its pins edge by edge.
+//! A virtual, read-only SPI flash: its content, and its pins edge by edge.
 //!
-//! It knows one command, 0x6b: fast read with quad output. It ignores any other until it is selected again. There is no write, and no limit
-//! of the clock.
+//! It supports one command, 0x6b: fast read with quad output. It ignores any other command. Writes and a maximum clock frequency are not
+//! modelled.
 
 #![forbid(unsafe_code)]
 
@@ -17,14 +17,14 @@ const ADDRESS_END: u32 = 32;
 /// Number of clocks from the start of a command to the data.
 const DATA_START: u32 = ADDRESS_END + 8;
 
-/// Levels of the pins that the flash reads.
+/// Levels of the input pins of the flash.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pins {
     /// CS#: the flash is selected while it is low.
     pub cs_n: bool,
     /// The clock.
     pub clk: bool,
-    /// The data lines; those that nothing drives are high.
+    /// The data lines; undriven lines are high.
     pub lines: u8,
 }
 
@@ -33,7 +33,7 @@ pub struct Pins {
 pub struct Flash {
     bytes: Vec<u8>,
     clk: bool,
-    /// Rising edges of the clock since the flash was selected.
+    /// Number of rising edges of the clock since the flash was selected.
     clocks: u32,
     /// The last 32 bits of line 0 before [`ADDRESS_END`]: command and address.
     received: u32,
@@ -43,7 +43,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// A flash that begins with `bytes`, at most [`MAX_BYTES`] of them, and is erased after them.
+    /// A flash that contains `bytes`, at most [`MAX_BYTES`], followed by erased bytes.
     #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
         Self {
@@ -68,13 +68,13 @@ impl Flash {
         u32::from_le_bytes([0, 1, 2, 3].map(|place| self.byte(address + place)))
     }
 
-    /// Read commands so far.
+    /// Number of read commands so far.
     #[must_use]
     pub fn commands(&self) -> u64 {
         self.commands
     }
 
-    /// Takes new levels of the pins; returns those with which the flash drives the four data lines, if it does.
+    /// Processes new levels of the pins; returns the levels of the four data lines, if the flash drives them.
     pub fn update(&mut self, pins: Pins) -> Option<u8> {
         let (rises, falls) = (pins.clk && !self.clk, !pins.clk && self.clk);
         self.clk = pins.clk;
@@ -94,7 +94,7 @@ impl Flash {
         self.sent
     }
 
-    /// The half byte after `place` others, the high half of a byte first. After the last address comes the first one.
+    /// The half byte at index `place`, the high half of a byte first. The address wraps from the last to the first.
     fn half_byte(&self, place: u32) -> u8 {
         let address = self.received.wrapping_add(place / 2) as usize % MAX_BYTES;
         let byte = self.byte(address);
@@ -110,7 +110,7 @@ impl Flash {
 mod tests {
     use super::*;
 
-    /// Sends bits on line 0, the highest first, and returns what the flash drives after each falling edge.
+    /// Sends bits on line 0, the highest first, and returns the levels that the flash drives after each falling edge.
     fn clock(flash: &mut Flash, bits: &[u8]) -> Vec<Option<u8>> {
         let clocks = bits.iter().map(|&bit| {
             let mut pins = Pins {

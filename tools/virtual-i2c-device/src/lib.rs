@@ -1,5 +1,5 @@
-//! A device on the two wires SCL and SDA of an I2C bus, or of its subset SCCB: [`Wires`] simulates the bus edge by edge, and a
-//! [`Device`] has the registers behind it.
+//! A device on the two wires SCL and SDA of an I2C bus, or of its subset SCCB: [`Wires`] simulates the bus edge by edge, and a [`Device`]
+//! holds the registers.
 
 #![forbid(unsafe_code)]
 
@@ -12,26 +12,26 @@ const DATA_SETUP: u64 = 100;
 const STOP_SETUP: u64 = 600;
 const FREE: u64 = 1_300;
 
-/// The registers behind the wires, and what the device does with the bus.
+/// The registers of a device, and its behaviour on the bus.
 pub trait Device {
     /// A fault of the device, for tests.
     type Fault;
 
-    /// Number of bytes of a register's number, 1 or 2; the high byte comes first. With 1 byte, the device ignores the high byte.
+    /// Number of bytes of a register number, 1 or 2; the high byte comes first. With 1 byte, the device ignores the high byte.
     fn number_bytes(&self) -> u8;
     /// Sets the current fault.
     fn set_fault(&mut self, fault: Option<Self::Fault>);
     /// Advances the time to `now`, in ns.
     fn advance(&mut self, now: u64);
-    /// Tells the device that a transfer starts or ends.
+    /// Notifies the device of the start or end of a transfer.
     fn set_addressed(&mut self, is_addressed: bool);
     /// Whether the device acknowledges `address`.
     fn answers(&self, address: u8) -> bool;
     /// Whether the device acknowledges the bytes after its address.
     fn acknowledges(&self) -> bool;
-    /// Time in ns by which the device stretches the clock after each byte.
+    /// Time in ns for which the device stretches the clock after each byte.
     fn stretch(&self) -> Option<u64>;
-    /// Whether the device holds SDA low although the master has sent this number of clocks since the fault was set.
+    /// Whether the device still holds SDA low after this number of clocks from the master since the fault was set.
     fn is_stuck(&self, clocks: u32) -> bool;
     /// Reads a register.
     fn read(&mut self, register: u16) -> u8;
@@ -54,7 +54,7 @@ enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Byte {
     Address,
-    /// A byte of a register's number, with the number of its bytes that follow.
+    /// A byte of a register number, with the number of bytes that follow.
     Register(u8),
     Value,
 }
@@ -69,7 +69,7 @@ struct Edges {
     stop: u64,
 }
 
-/// A device that is driven by the levels of SCL and SDA.
+/// A device, driven by the levels of SCL and SDA.
 pub struct Wires<D> {
     /// The device.
     pub chip: D,
@@ -86,13 +86,13 @@ pub struct Wires<D> {
     pulls: bool,
     /// Time until which the device stretches the clock, in ns.
     holds: u64,
-    /// Number of clocks since the last call of `set_fault`. Enough clocks free a device that holds SDA low.
+    /// Number of clocks since the last call of `set_fault`. A device that holds SDA low releases it after enough clocks.
     clocks: u32,
     edges: Edges,
 }
 
 impl<D: Device> Wires<D> {
-    /// Puts a device on a free bus.
+    /// Connects a device to a free bus.
     #[must_use]
     pub fn new(chip: D) -> Self {
         Self {
@@ -114,7 +114,7 @@ impl<D: Device> Wires<D> {
     pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         self.chip.advance(now);
         let mut wires = self.wires(now, scl, sda);
-        // The device can change SDA in answer to an edge, so the loop repeats until the levels are stable.
+        // The device can change SDA in response to an edge, so the loop repeats until the levels are stable.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
             self.on_edge(now, before, after);
@@ -280,7 +280,7 @@ impl<D: Device> Wires<D> {
 mod tests {
     use super::*;
 
-    /// A device that only holds SDA low, until the master has sent a clock.
+    /// A device that only holds SDA low until the master has sent a clock.
     struct Stuck;
 
     impl Device for Stuck {
@@ -319,7 +319,7 @@ mod tests {
         fn write(&mut self, _register: u16, _value: u8) {}
     }
 
-    /// A sensor at 1,000 samples per second sends 2^32 clocks in 8.3 hours.
+    /// At 1,000 samples per second, a sensor sees 2^32 clocks in 8.3 hours.
     #[test]
     fn the_number_of_clocks_stays_at_its_largest() {
         let mut wires = Wires::new(Stuck);

@@ -81,11 +81,11 @@ impl Model {
 pub enum Format {
     /// Two bytes per pixel: red with the upper bits of green, then the rest of green with blue.
     Rgb565,
-    /// Two bytes per pixel: luma, then a chroma sample, in turns Cb and Cr.
+    /// Two bytes per pixel: luma, then a chroma sample, alternately Cb and Cr.
     Yuv422,
 }
 
-/// Active levels and edges of the port. The default is that of an OV7670 after a reset.
+/// Active levels and edges of the port. The default is the state of an OV7670 after a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Polarity {
     /// VSYNC is low between frames, not high.
@@ -94,7 +94,7 @@ pub struct Polarity {
     pub href_low: bool,
     /// The second byte of a pixel comes first.
     pub swap: bool,
-    /// The levels are stable at the falling edge of PCLK, not at the rising one.
+    /// The levels are stable at the falling edge of PCLK, not at the rising edge.
     pub falling: bool,
 }
 
@@ -115,19 +115,19 @@ impl BitXor for Polarity {
 /// A fault of the chip on its SCCB wires, for tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChipFault {
-    /// The chip does not answer, and its port is still.
+    /// The chip does not answer, and the levels of its port do not change.
     Absent,
-    /// The chip acknowledges its address, but no byte after it.
+    /// The chip acknowledges its address, but no further byte.
     NoAcknowledge,
     /// The chip holds SDA low.
     StuckData,
     /// The identity reads as this value.
     Identity(u16),
-    /// This register keeps its value when it is written.
+    /// Writes do not change this register.
     Kept(u16),
 }
 
-/// Registers of a virtual image sensor, as their SCCB master sees them.
+/// Registers of a virtual image sensor, accessed by an SCCB master.
 pub struct Chip {
     model: Model,
     registers: Vec<u8>,
@@ -136,7 +136,7 @@ pub struct Chip {
     answers: u64,
     /// Current fault.
     pub fault: Option<ChipFault>,
-    /// Whether the chip has a master clock, and is neither in reset nor in power-down. Otherwise it does not answer.
+    /// Whether the chip has a master clock, and is neither in reset nor in power-down. Otherwise the chip does not answer.
     pub is_awake: bool,
     /// Number of writes to registers so far.
     pub writes: u64,
@@ -176,7 +176,7 @@ impl Chip {
         self.answers = self.now + RESET_TIME;
     }
 
-    /// The place of a register: an OV7670 ignores the high byte of its number.
+    /// The index of a register: an OV7670 ignores the high byte of the register number.
     fn place(&self, register: u16) -> u16 {
         match self.model {
             Model::Ov7670 => register & 0xff,
@@ -190,7 +190,7 @@ impl Chip {
         self.registers[usize::from(self.place(register))]
     }
 
-    /// Format of the pixels, or `None` while the chip is in standby by its registers or not awake.
+    /// Format of the pixels, or `None` while the chip is not awake, or is in standby according to its registers.
     #[must_use]
     pub fn format(&self) -> Option<Format> {
         let (standby, is_rgb565) = match self.model {
@@ -231,7 +231,7 @@ impl Chip {
                 Polarity {
                     vsync_low: sync & 0x01 == 0,
                     href_low: sync & 0x02 != 0,
-                    // The low digit of the format is the order of the bytes: 1 is that of the OV7670.
+                    // The low digit of the format is the byte order: 1 is the order of the OV7670.
                     swap: self.register(ov5640::FORMAT) & 0x0f != 1,
                     falling: sync & 0x20 == 0,
                 }

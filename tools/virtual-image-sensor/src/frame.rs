@@ -1,4 +1,4 @@
-//! Frames of the sensor, and frames from files.
+//! Frames of the sensor, also from files.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -97,7 +97,7 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     u16::from(r >> 3) << 11 | u16::from(g >> 2) << 5 | u16::from(b >> 3)
 }
 
-/// The view of the sensor.
+/// A source of frames: the view of the sensor.
 pub trait Source: Send {
     /// The frame that is exposed at `time`, in s. All frames have the same size.
     fn frame(&mut self, time: f64) -> Frame;
@@ -109,7 +109,7 @@ impl Source for Box<dyn Source> {
     }
 }
 
-/// Pictures that are shown in turn, one a frame, over and over.
+/// Pictures that are shown in turn, one per frame, in a loop.
 pub struct Images {
     frames: Vec<Frame>,
     next: usize,

@@ -9,7 +9,7 @@
 //! The caller passes the current time. Equal calls with an equal seed give equal levels.
 //!
 //! # Limits
-//! The source determines the size of a frame, [`Timing`] its pace; the chip's registers of size, scaling, clock, exposure and colour
+//! The source determines the size of a frame, [`Timing`] the frame rate; the chip's registers of size, scaling, clock, exposure and colour
 //! only store the written values.
 
 #![forbid(unsafe_code)]

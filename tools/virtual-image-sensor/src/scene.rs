@@ -32,7 +32,7 @@ const PARTS: [([f64; 2], [f64; 2], f64); 6] = [
     ([0.72, -0.6], [0.9, -1.6], 0.2),
     ([0.7, 0.1], [1.5, -0.6], 0.23),
 ];
-/// The hand is within this distance of the palm's centre, in radii of the palm.
+/// Bound on the distance of the hand's points from the palm's centre, in radii of the palm.
 const REACH: f64 = 2.2;
 
 fn is_hand([x, y]: [f64; 2]) -> bool {
@@ -73,25 +73,25 @@ fn moments() -> (f64, [f64; 2]) {
 /// A function from the time in s to a property of the scene.
 type Over<T> = Box<dyn Fn(f64) -> T + Send>;
 
-/// Hands in front of a wall, under one light.
+/// Hands in front of a wall, with uniform lighting.
 pub struct Scene {
     /// Width and height of a frame.
     pub size: [usize; 2],
-    /// The hands at a time: none, one or several.
+    /// The hands as a function of time: none, one or several.
     pub hands: Over<Vec<Hand>>,
     /// Discs of the hand's colour that never move: a face, a wooden door.
     pub discs: Vec<Hand>,
-    /// Brightness of the light at a time; 1 is full light.
+    /// Brightness of the light as a function of time; 1 is full light.
     pub light: Over<f64>,
     /// Standard deviation of the noise of each channel, in units of 1/255 of its range.
     pub noise: f64,
-    /// Part of the pixels that have a random colour, of the hand or of none.
+    /// Fraction of the pixels that have a random colour, of the hand or of no object.
     pub salt: f64,
     random: Pcg64Mcg,
 }
 
 impl Scene {
-    /// Creates a scene in full light, without noise. `hands` returns the hands at a time in s.
+    /// Creates a scene in full light, without noise. `hands` is a function of the time in s.
     #[must_use]
     pub fn new(size: [usize; 2], hands: impl Fn(f64) -> Vec<Hand> + Send + 'static) -> Self {
         Self {
@@ -116,8 +116,8 @@ impl Scene {
     }
 }
 
-/// Blends the hand's colour into the pixels of a picture of `size` where `is_inside` says so. `is_inside` gets a point relative to
-/// `centre` in pixels, and is called within `reach` pixels of it.
+/// Blends the hand's colour into the pixels of a picture of `size` for which `is_inside` is true. `is_inside` gets a point relative to
+/// `centre` in pixels, and is called within `reach` pixels of the centre.
 fn paint(
     picture: &mut [[f64; 3]],
     size: [usize; 2],

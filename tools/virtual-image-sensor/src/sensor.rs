@@ -1,14 +1,14 @@
-//! The sensor: its chip, what it sees, and the levels of its port.
+//! The sensor: its chip, its source of frames, and the levels of its port.
 
 use virtual_i2c_device::Wires;
 
 use crate::chip::{Chip, ChipFault, Format, Model, Polarity};
 use crate::frame::Source;
 
-/// Number of periods of PCLK between two looks at a chip that sends nothing.
+/// Number of periods of PCLK between two checks of a chip that sends nothing.
 const STILL: usize = 1_000;
 
-/// Levels of the port in one period of PCLK. They change at its beginning; PCLK rises in its middle.
+/// Levels of the port in one period of PCLK. The levels change at the beginning of the period; PCLK rises in its middle.
 ///
 /// Bits 7:0 are the data, bit 8 HREF, bit 9 VSYNC. With bit 10, PCLK stops in this period. With bit 11, PCLK is inverted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,14 +51,14 @@ impl Levels {
     }
 }
 
-/// Pace of the port.
+/// Timing of the port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Frequency of PCLK in Hz, a multiple of 250 kHz.
     pub clock: u32,
     /// Number of periods of PCLK between two lines.
     pub gap: usize,
-    /// Lines between two frames: with VSYNC, after it, and before the next one.
+    /// Numbers of lines between two frames: during VSYNC, after VSYNC, and before the next VSYNC.
     pub blank: [usize; 3],
 }
 
@@ -80,8 +80,8 @@ impl Timing {
 /// A fault of the frames, for tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The cable is out: the chip has no supply and does not answer, all wires of its port are low, and nothing moves. A chip that is
-    /// plugged in again has the registers of its reset.
+    /// The cable is unplugged: the chip has no supply and does not answer, and all wires of its port stay low. After it is plugged in
+    /// again, the chip has its reset values.
     Unplugged,
     /// VSYNC does not become active.
     NoSync,
@@ -89,10 +89,10 @@ pub enum Fault {
     Slip {
         /// Number of the line.
         line: usize,
-        /// Number of bytes that the middle of a line loses; if negative, number of times that a byte is repeated.
+        /// Number of bytes lost in the middle of a line; if negative, number of repetitions of a byte.
         bytes: isize,
     },
-    /// The frame has this number of lines less, or more if it is negative.
+    /// The frame has this number of lines too few, or too many if negative.
     Lines(isize),
     /// VSYNC cuts the frame in the middle of this line.
     Cut(usize),
@@ -108,9 +108,9 @@ pub struct ImageSensor {
     pub wires: Wires<Chip>,
     /// The view of the sensor.
     pub source: Box<dyn Source>,
-    /// Pace of the port.
+    /// Timing of the port.
     pub timing: Timing,
-    /// Fault of the frames that begin from now on.
+    /// Fault of the following frames.
     pub fault: Option<Fault>,
     /// Number of frames so far.
     pub frames: u64,
@@ -142,8 +142,8 @@ impl ImageSensor {
         chip.is_awake != was_awake
     }
 
-    /// Returns the levels of the next frame, which begins at `time` in s: VSYNC, the lines, and the blanking before the next frame. A
-    /// sensor that sends nothing gives some periods without PCLK.
+    /// Returns the levels of the next frame, which begins at `time` in s: VSYNC, the lines, and the blanking before the next frame. For a
+    /// sensor that sends nothing, returns some periods without PCLK.
     pub fn frame(&mut self, time: f64) -> Vec<Levels> {
         let chip = &self.wires.chip;
         let absent = chip.fault == Some(ChipFault::Absent) || self.fault == Some(Fault::Unplugged);
@@ -161,7 +161,7 @@ impl ImageSensor {
         let line_periods = self.timing.gap + lines.first().map_or(0, Vec::len);
         let [sync, after, before] = self.timing.blank;
         let has_sync = self.fault != Some(Fault::NoSync);
-        // Bit 8 is an active HREF, bit 9 an active VSYNC, whatever their polarity.
+        // Bit 8 is an active HREF, bit 9 an active VSYNC, for either polarity.
         let mut active = Vec::new();
         let blank = |active: &mut Vec<u16>, periods: usize, levels: u16| {
             active.extend(std::iter::repeat_n(levels, periods));
@@ -190,7 +190,7 @@ impl ImageSensor {
             }
             blank(&mut active, self.timing.gap, 0);
         }
-        // A frame that VSYNC cuts has no blanking before VSYNC.
+        // A frame cut by VSYNC has no blanking before VSYNC.
         if !matches!(self.fault, Some(Fault::Cut(_))) {
             blank(&mut active, before * line_periods, 0);
         }

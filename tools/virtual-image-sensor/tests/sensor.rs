@@ -1,4 +1,4 @@
-//! Tests of the virtual image sensor's port against the data sheets' timing, with a receiver of its own.
+//! Tests of the virtual image sensor's port against the data sheets' timing, with an independent receiver.
 
 use virtual_i2c_device::{Device, Wires};
 use virtual_image_sensor::{
@@ -8,7 +8,7 @@ use virtual_image_sensor::{
 
 const SIZE: [usize; 2] = [40, 24];
 
-/// Writes the registers of RGB565, as a set-up does.
+/// Writes the registers for RGB565, as a set-up does.
 fn select_rgb565(sensor: &mut ImageSensor) {
     let registers: &[(u16, u8)] = match sensor.wires.chip.model() {
         Model::Ov7670 => &[(0x12, 0x04), (0x40, 0xd0)],
@@ -34,7 +34,7 @@ fn sensor(model: Model) -> ImageSensor {
     sensor
 }
 
-/// The lines that a receiver takes from the levels: the bytes of each, while HREF is active and VSYNC is not.
+/// The bytes of each line that a receiver samples while HREF is active and VSYNC is not.
 fn received(levels: &[Levels], polarity: Polarity) -> Vec<Vec<u8>> {
     let mut lines = vec![Vec::new()];
     for levels in levels.iter().filter(|levels| levels.ticks()) {
@@ -144,7 +144,7 @@ fn a_camera_without_clock_or_in_standby_is_still_and_a_reset_clears_its_register
     assert!(sensor.frame(0.0).iter().all(|l| !l.ticks()));
     assert!(sensor.set_inputs(true, true));
     assert!(sensor.set_inputs(false, true) && sensor.set_inputs(true, true));
-    // After a reset the format is not RGB565, so the bytes are not those of the source.
+    // After a reset the format is not RGB565, so the bytes differ from the source's.
     let polarity = sensor.wires.chip.polarity();
     let lines = received(&sensor.frame(0.0), polarity);
     assert_ne!(lines, lines_of(&still_hand().frame(0.0)));
@@ -155,7 +155,7 @@ fn a_camera_without_clock_or_in_standby_is_still_and_a_reset_clears_its_register
 /// Time of half a period of SCL, in ns.
 const HALF: u64 = 1_500;
 
-/// A master that moves the wires by the rules of SCCB: no repeated start, no wait for SCL.
+/// A bit-banging SCCB master: no repeated start, no wait for SCL.
 struct Master {
     wires: Wires<virtual_image_sensor::Chip>,
     now: u64,

@@ -1,4 +1,4 @@
-//! The virtual MPU-6050 on a bus that implements the I2C traits of `embedded-hal`.
+//! A bus with the virtual MPU-6050 that implements the I2C traits of `embedded-hal`.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -71,7 +71,7 @@ impl Bus {
         self.shared.borrow().now
     }
 
-    /// Number of transactions so far, failed ones included.
+    /// Number of transactions so far, including failed transactions.
     #[must_use]
     pub fn transactions(&self) -> u64 {
         self.shared.borrow().transactions
@@ -99,7 +99,7 @@ impl Shared {
         result
     }
 
-    /// Checks that SDA is not held low, as a master does before a start. Tries to free the bus by sending clocks.
+    /// Checks, as a master does before a start, that SDA is not held low. Otherwise tries to free the bus by sending clocks.
     fn require_free(&mut self) -> Result<(), Error> {
         match self.chip.fault {
             Some(Fault::StuckData(clocks @ 1..=RECOVERY_CLOCKS)) => {
@@ -117,8 +117,8 @@ impl Shared {
 
     fn operate(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
         let mut reading = None;
-        // The first byte after the address of a write is the register number. It may be in another operation than the
-        // values after it.
+        // The first byte after the address of a write is the register number. The number and the following values may be in different
+        // operations.
         let mut has_register = false;
         for operation in operations {
             let reads = matches!(operation, Operation::Read(_));

@@ -25,8 +25,7 @@ const DATA_RDY: u8 = 0x01;
 const DEVICE_RESET: u8 = 0x80;
 const SLEEP: u8 = 0x40;
 
-/// Delay in ms and bandwidth in Hz of the gyroscope's low-pass filter for each value of DLPF_CFG; the reserved value 7
-/// acts like 0.
+/// Delay in ms and bandwidth in Hz of the gyroscope's low-pass filter, for each value of DLPF_CFG; the reserved value 7 acts as 0.
 const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
     (1.9, 188.0),
@@ -96,7 +95,7 @@ impl Counts {
 pub enum Source {
     /// Function from the time in s to the motion at this time. The chip measures the motion with its imperfections.
     Motion(Box<dyn Fn(f64) -> State + Send>),
-    /// Recorded counts, each with the time in ns from which on the chip delivers them, unchanged.
+    /// Recorded counts, which the chip delivers unchanged, each with the time in ns from which it is delivered.
     Log(Vec<(u64, Counts)>),
 }
 
@@ -151,11 +150,11 @@ impl Imperfections {
 pub enum Fault {
     /// The chip is missing: no byte is acknowledged.
     Absent,
-    /// The chip acknowledges its address, but no byte after it.
+    /// The chip acknowledges its address, but no further byte.
     NoAcknowledge,
     /// The chip holds SDA low until the master has sent this number of clocks; with 0, forever.
     StuckData(u32),
-    /// The chip stretches the clock by this time in ns after each byte.
+    /// The chip stretches the clock for this time in ns after each byte.
     Stretched(u64),
     /// The data registers do not change, but INT_STATUS still announces new data.
     Frozen,
@@ -167,12 +166,12 @@ pub enum Fault {
     Vanishing(u32),
 }
 
-/// A virtual MPU-6050, as its I2C master sees it.
+/// A virtual MPU-6050, accessed by an I2C master.
 pub struct Chip {
     registers: [u8; 128],
     /// Contents of the data registers.
     data: [u8; 14],
-    /// The latest measurement, if it is not in the data registers yet.
+    /// The latest measurement, until it is moved to the data registers.
     newest: Option<[u8; 14]>,
     source: Source,
     imperfections: Imperfections,
@@ -184,7 +183,7 @@ pub struct Chip {
     answers: u64,
     /// Whether a transfer is between its start and its stop. The data registers do not change during a transfer.
     is_addressed: bool,
-    /// I2C address: [`ADDRESS`], or one more with AD0 high.
+    /// I2C address: The I2C address: [`ADDRESS`], or [`ADDRESS`] + 1 with AD0 high.
     pub address: u8,
     /// Current fault.
     pub fault: Option<Fault>,
@@ -219,7 +218,7 @@ impl Chip {
         chip
     }
 
-    /// Resets all registers, as a drop of the supply voltage does. The chip is in sleep mode afterwards.
+    /// Resets all registers, as a drop of the supply voltage does. The chip is then in sleep mode.
     pub fn reset(&mut self) {
         self.registers = [0; 128];
         self.registers[usize::from(PWR_MGMT_1)] = SLEEP;
@@ -250,7 +249,7 @@ impl Chip {
         self.refresh();
     }
 
-    /// Tells the chip that a transfer starts or ends; the data registers do not change during a transfer.
+    /// Notifies the chip of the start or end of a transfer; the data registers do not change during a transfer.
     pub fn set_addressed(&mut self, is_addressed: bool) {
         self.is_addressed = is_addressed;
         self.refresh();
@@ -365,7 +364,7 @@ impl Chip {
         sum - 6.0
     }
 
-    /// Moves the latest measurement to the data registers and announces it in INT_STATUS, unless a transfer is under way.
+    /// Moves the latest measurement to the data registers and announces it in INT_STATUS, unless a transfer is in progress.
     fn refresh(&mut self) {
         if self.is_addressed {
             return;

@@ -1,4 +1,4 @@
-//! A virtual MPU-6050: the chip as its I2C master sees it.
+//! A virtual MPU-6050 for an I2C master.
 //!
 //! | part | purpose |
 //! |---|---|

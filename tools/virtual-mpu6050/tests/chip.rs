@@ -32,8 +32,8 @@ fn write(bus: &mut Bus, register: u8, value: u8) {
         .expect("an acknowledge");
 }
 
-/// Wakes the chip and configures it: samples at 1 kHz, the filter of 98 Hz, ranges of ±2000 °/s and ±8 g, and announcement
-/// of new data in INT_STATUS.
+/// Wakes the chip and configures it: samples at 1 kHz, the 98 Hz filter, ranges of ±2000 °/s and ±8 g, and reporting of new data in
+/// INT_STATUS.
 fn wake(bus: &mut Bus) {
     for (register, value) in [(0x6b, 1), (0x1a, 2), (0x1b, 0x18), (0x1c, 0x10), (0x38, 1)] {
         write(bus, register, value);

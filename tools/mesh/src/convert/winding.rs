@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Reverses faces so that neighbours have consistent windings, and every closed part of the mesh has a positive volume: its faces are
 /// counter-clockwise seen from outside. Points with equal coordinates count as one.
 ///
-/// A part is a set of faces connected by edges that have exactly two faces. Adds notes: the number of reversed faces, and
+/// A part is a set of faces connected by edges that have exactly two faces. Adds remarks: the number of reversed faces, and
 ///
 /// - open parts, whose outside is unknown: the winding of the majority of faces is kept;
 /// - one-sided parts, such as a Möbius strip: they are left unchanged;
@@ -56,7 +56,7 @@ pub fn repair(polygons: &mut Polygons) {
     counts.remark(polygons);
 }
 
-/// Counts for the notes.
+/// Counts for the remarks.
 #[derive(Default)]
 struct Counts {
     turned: usize,
@@ -152,7 +152,8 @@ impl Edges {
         Self(edges)
     }
 
-    /// Collects the part of a face, and sets for each of its faces whether it has to be turned to agree with the first one.
+    /// Collects the faces of a part, starting with one face, and determines for each whether it must be reversed to be consistent with the
+    /// first.
     fn part(&self, faces: &[Vec<u32>], first: usize, turned: &mut [Option<bool>]) -> Patch {
         let mut part = Patch {
             faces: vec![first],
@@ -167,7 +168,7 @@ impl Edges {
                 else {
                     continue;
                 };
-                // Neighbours that agree run along their edge in opposite directions.
+                // Consistent neighbours traverse their common edge in opposite directions.
                 let disagree = one.1 == other.1;
                 let neighbour = if one.0 == face { other.0 } else { one.0 };
                 let wanted = turned[face].map(|turned| turned ^ disagree);
@@ -184,7 +185,7 @@ impl Edges {
     }
 }
 
-/// Whether a part has no border: after the turns, its faces run along each edge equally often in both directions.
+/// Whether a part is closed: after the reversals, its faces traverse each edge equally often in both directions.
 fn is_closed(faces: &[Vec<u32>], part: &[usize], turned: &[Option<bool>]) -> bool {
     let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
     for &face in part {
@@ -196,7 +197,7 @@ fn is_closed(faces: &[Vec<u32>], part: &[usize], turned: &[Option<bool>]) -> boo
     balance.values().all(|&balance| balance == 0)
 }
 
-/// Six times the volume that a closed part encloses after the turns, positive if its faces run counter-clockwise seen from outside.
+/// Six times the volume of a closed part after the reversals; positive if its faces are counter-clockwise seen from outside.
 fn volume(polygons: &Polygons, part: &[usize], turned: &[Option<bool>]) -> f64 {
     let fan = |face: &Face, origin: Vector| -> f64 {
         let corners = polygons.corners_of(face).iter();
@@ -210,7 +211,7 @@ fn volume(polygons: &Polygons, part: &[usize], turned: &[Option<bool>]) -> f64 {
             .map(|pair| dot(*first, cross(pair[0], pair[1])))
             .sum()
     };
-    // A point of the part as the origin keeps the sum's rounding small for a part far from the origin of the file.
+    // With a point of the part as the origin, rounding errors stay small for a part far from the file's origin.
     let first = part
         .first()
         .and_then(|&face| polygons.corners_of(&polygons.faces[face]).first());
@@ -234,7 +235,7 @@ mod tests {
     use crate::generate;
     use crate::polygons::Corner;
 
-    /// Turns about a third of the faces, those of a fixed sequence without a pattern.
+    /// Reverses about a third of the faces, in a fixed pseudo-random pattern.
     fn turn_some(polygons: &mut Polygons, seed: u32) -> usize {
         let mut count = 0;
         for (number, face) in (seed..).zip(&polygons.faces) {
@@ -284,7 +285,7 @@ mod tests {
                     )
                 );
             }
-            // All faces are inside out.
+            // All faces are reversed.
             let mut polygons = whole.clone();
             for face in &whole.faces {
                 polygons.corners[face.first as usize..][1..face.count as usize].reverse();
@@ -318,7 +319,7 @@ mod tests {
 
     #[test]
     fn parts_are_repaired_apart() {
-        // Two tetrahedra that share an edge, far from the origin; the second is inside out.
+        // Two tetrahedra that share an edge, far from the origin; the faces of the second are reversed.
         let at = |x: f64, y: f64, z: f64| [1e6 + x, y, z];
         let mut polygons = strip(
             &[
@@ -375,7 +376,7 @@ mod tests {
 
     #[test]
     fn a_moebius_strip_is_left_as_it_is() {
-        // The strip of five triangles with five points: each triangle shares an edge with the next, all around.
+        // The Möbius strip of five triangles with five points: each triangle shares an edge with the next, in a ring.
         let points = [
             [1., 0., 0.],
             [0.3, 1., 0.2],

@@ -4,7 +4,7 @@ use crate::error::{FormatError, Location};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::mesh::{Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
 
-/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are joined.
+/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are merged.
 ///
 /// # Errors
 /// As [`check_file`], or the mesh has no triangles.
@@ -36,13 +36,13 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// First four bytes of the format before this one, without a checksum.
+/// First four bytes of the previous version of the format, which has no checksum.
 const WITHOUT_CHECKSUM: &[u8] = b"GLM1";
 
 /// Checks the bytes of a file with its checksum, and returns them as a mesh.
 ///
 /// # Errors
-/// The file is of another version, [`Mesh::new_checked`] rejects it, or its checksum is that of other bytes.
+/// The file has another version or a wrong checksum, or [`Mesh::new_checked`] rejects it.
 pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     if bytes.starts_with(WITHOUT_CHECKSUM) {
         let expected = "\"GLM2\", a mesh with a checksum";
@@ -61,7 +61,7 @@ pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     }
 }
 
-/// Checks the bytes of a mesh but their checksum, and returns them as a mesh.
+/// Checks the bytes of a mesh, except the checksum, and returns them as a mesh.
 ///
 /// # Errors
 /// [`Mesh::new_checked`] rejects the mesh.

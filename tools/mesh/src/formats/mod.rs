@@ -27,7 +27,7 @@ pub enum Format {
     Ply,
     /// glTF 2.0, JSON or binary; not written.
     Gltf,
-    /// Glint's own format, GLM: the bytes of a mesh as they lie in a board's memory.
+    /// Glint's own format, GLM: a mesh in a board's memory layout.
     Glm,
 }
 
@@ -56,7 +56,7 @@ impl Format {
         }
     }
 
-    /// Tells the format by a file's contents: by the first word or, for a binary STL, by the length; otherwise it is OBJ.
+    /// Detects the format from a file's contents: from the first word or, for a binary STL, from the length; otherwise OBJ.
     pub fn of_contents(bytes: &[u8]) -> Self {
         let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
         let text = text.trim_ascii_start();
@@ -103,8 +103,8 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     Ok(bytes)
 }
 
-/// Reads a mesh file of any format. Further files, such as the material files of an OBJ and the buffers of a glTF, are read from its own
-/// folder only.
+/// Reads a mesh file of any format. Further files, such as the material files of an OBJ and the buffers of a glTF, are only read from the
+/// file's folder.
 ///
 /// # Errors
 /// The file cannot be read, or violates its format.
@@ -113,7 +113,7 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
     parse(path, format, &bytes, &mut in_folder_of(path))
 }
 
-/// Reads the bytes of a mesh file, and tells its format by the file's name, or by its contents for standard input.
+/// Reads the bytes of a mesh file, and detects its format from the file's name, or from its contents for standard input.
 ///
 /// # Errors
 /// The name has no extension of a mesh, or the file cannot be read.
@@ -125,20 +125,20 @@ pub fn read_mesh(path: &Path) -> Result<(Format, Vec<u8>), InputError> {
     Ok((Format::of(path)?, read_file(path)?))
 }
 
-/// Reads a further file of a mesh file, by its name.
+/// Reads an auxiliary file of a mesh file, by its name.
 pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
-/// Reads further files from the folder of `path`.
+/// Returns a reader of auxiliary files in the folder of `path`.
 pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
     move |name| {
         let file = path.with_file_name(Path::new(name).file_name()?);
-        // A device or a pipe could block, or be endless.
+        // Reading a device or a pipe could block, or never end.
         file.metadata().ok().filter(Metadata::is_file)?;
         read_file(&file).ok()
     }
 }
 
-/// Parses a mesh file that is named `path` in errors.
+/// Parses a mesh file; errors name the file `path`.
 ///
 /// # Errors
 /// The file violates its format.

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped.
 ///
 /// # Errors
-/// A line that is too long, a `Kd` before the first `newmtl`, or a `Kd` without numbers.
+/// A line is too long, or a `Kd` comes before the first `newmtl` or has no numbers.
 pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<(), FormatError> {
     let mut name: Option<Vec<u8>> = None;
     let mut lines = Lines::new(text);

@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 //!
-//! Own parser instead of `tobj`: its errors have no line number, it accepts NaN and infinity as coordinates, and it has no
-//! limit on line length.
+//! This parser replaces `tobj`, whose errors have no line number, and which accepts NaN and infinity as coordinates and lines of any
+//! length.
 
 use super::mtl;
 use super::text::{Line, Lines, coordinate, vector};
@@ -10,7 +10,7 @@ use crate::polygons::{Corner, Polygons, Rgb8};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-/// Statements without effect on the drawn surface.
+/// Keywords of statements without effect on the drawn surface.
 const IGNORED: &[&[u8]] = &[
     b"vt",
     b"vp",
@@ -66,7 +66,7 @@ impl From<FormatError> for ObjError {
     }
 }
 
-/// Parses an OBJ. It reads faces with any number of corners, indices from the start or (negative) from the end, normals, vertex
+/// Parses an OBJ. Supports faces with any number of corners, indices from the start or (negative) from the end, normals, vertex
 /// colours (`v x y z r g b`, up to 1 or up to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines,
 /// points and curves are skipped.
 ///
@@ -88,7 +88,7 @@ pub fn parse(text: &[u8], materials: &mut Materials) -> Result<Polygons, ObjErro
     Ok(reader.finish()?)
 }
 
-/// Joins a line that ends in a backslash with the line after it.
+/// Joins a line that ends in a backslash with the next line.
 fn join_continued<'a>(
     first: Line<'a>,
     lines: &mut Lines<'a>,
@@ -121,9 +121,9 @@ struct Reader {
     palette: HashMap<Vec<u8>, Rgb8>,
     colour: Option<Rgb8>,
     corners: Vec<Corner>,
-    /// Unknown keywords that a remark names.
+    /// Unknown keywords that already have a remark.
     skipped: Vec<Vec<u8>>,
-    /// Material files that were requested. Each is read once.
+    /// Material files that were requested. Each file is read once.
     libraries: HashSet<Vec<u8>>,
 }
 
@@ -157,7 +157,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Skips an unknown statement, with a remark at its first place.
+    /// Skips an unknown statement, with a remark for its first occurrence.
     fn skip(&mut self, keyword: &[u8], place: Location) {
         if self.skipped.len() < MAX_REMARKS && !self.skipped.iter().any(|known| known == keyword) {
             self.skipped.push(keyword.to_vec());
@@ -188,7 +188,7 @@ impl Reader {
         let colour = match count {
             // A single number after x, y and z is a weight, which only curves use.
             0 | 1 => None,
-            // Three numbers after x, y and z are a colour. A fourth one is an opacity, which is ignored.
+            // Three numbers after x, y and z are a colour. A fourth number is an opacity, which is ignored.
             3 | 4 => Some([extra[0] as f32, extra[1] as f32, extra[2] as f32]),
             _ => {
                 return Err(FormatError::new(
@@ -225,7 +225,7 @@ impl Reader {
             match parts.next() {
                 None | Some(b"") => {}
                 Some(part) => {
-                    // Texture indices are parsed, but their range does not matter.
+                    // Texture indices are parsed, but their range is not checked.
                     index(part, i32::MAX as usize).ok_or_else(|| expected("a texture index"))?;
                 }
             }

@@ -1,7 +1,7 @@
 //! STL, ASCII and binary.
 //!
-//! Own parser instead of `stl_io`: its errors have neither line nor offset, it skips the colours of the attribute word, and it
-//! takes a binary file for ASCII if its header starts with `solid`.
+//! This parser replaces `stl_io`, whose errors have neither line nor offset, which skips the colours of the attribute word, and which
+//! treats a binary file as ASCII if its header starts with `solid`.
 
 use super::text::{BYTE_ORDER_MARK, Lines, any_number, checked_at, vector};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
@@ -10,9 +10,9 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, since a text there is a count that
-/// no file has; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a remark.
-/// Normals are ignored: the winding has the same information and is more reliable.
+/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, because ASCII text at this position would be
+/// a count too large for any file; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a
+/// remark. Normals are ignored, because the winding gives the same information more reliably.
 ///
 /// # Errors
 /// The first violation of the format, with its line or offset.
@@ -55,8 +55,8 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 enum Colours {
     /// The encoding of VisCAM and SolidView: a set bit 15 marks a face with a colour; red is in the highest bits.
     VisCam,
-    /// The encoding of Materialise Magics: the header has a default colour, and a clear bit 15 marks a face with a colour of its
-    /// own; blue is in the highest bits.
+    /// The encoding of Materialise Magics: the header has a default colour, and a clear bit 15 marks a face with its own colour; blue is
+    /// in the highest bits.
     Magics(Rgb8),
 }
 
@@ -178,7 +178,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
             }
             Expect::Facet if is(Some(keyword), "facet") && is(words.next(), "normal") => {
                 facet = place;
-                // Some programs write nan for the normal of a face without area.
+                // Some programs write nan for the normal of a face of area 0.
                 for _ in 0..3 {
                     words.next().and_then(any_number).ok_or_else(refuse)?;
                 }

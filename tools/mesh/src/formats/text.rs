@@ -16,7 +16,7 @@ pub struct Lines<'a> {
 pub struct Line<'a> {
     /// Number of the line, counted from 1.
     pub number: usize,
-    /// Bytes of the line; not always UTF-8.
+    /// Bytes of the line, not necessarily UTF-8.
     pub text: &'a [u8],
 }
 
@@ -81,7 +81,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Parses a number, infinity and NaN included.
+/// Parses a number, including infinity and NaN.
 pub fn any_number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
@@ -122,7 +122,7 @@ pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
 /// Parses the next three words of a line as coordinates.
 ///
 /// # Errors
-/// The line has fewer than three more words, or one of them is not a coordinate.
+/// The line has fewer than three more words, or a word is not a coordinate.
 pub fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &str,

@@ -4,7 +4,7 @@ use crate::polygons::{Polygons, Rgb8};
 use crate::triangulate;
 use std::io::{self, Write};
 
-/// Writes an OBJ with point colours after the coordinates. Face colours, which need a material file, are left out.
+/// Writes an OBJ with point colours after the coordinates. Face colours, which would need a material file, are omitted.
 ///
 /// # Errors
 /// Writing to `out` fails.
@@ -96,7 +96,7 @@ pub fn ply(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
         }
     }
     for face in &polygons.faces {
-        // The count of corners has 16 bits, which is enough for MAX_POLYGON.
+        // The count of corners has 16 bits, which suffice for MAX_POLYGON.
         out.write_all(&(face.count as u16).to_le_bytes())?;
         for corner in polygons.corners_of(face) {
             out.write_all(&corner.point.to_le_bytes())?;

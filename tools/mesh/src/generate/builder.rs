@@ -4,7 +4,7 @@ use crate::error::{FormatError, Location};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use std::collections::HashMap;
 
-/// Builds a mesh from faces that are given by the coordinates of their points.
+/// Builds a mesh from faces, given by the coordinates of their points.
 #[derive(Default)]
 pub struct Builder {
     polygons: Polygons,
@@ -12,8 +12,8 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Returns the index of a point, which is added if it is new. Two points are equal if all bits of their coordinates are
-    /// equal, where −0 counts as 0.
+    /// Returns the index of a point, which is added if it is new. Two points are equal if all bits of their coordinates are equal; −0
+    /// counts as 0.
     pub fn point(&mut self, point: Vector) -> Result<u32, FormatError> {
         let point = point.map(|c| c + 0.0);
         let key = point.map(f64::to_bits);
@@ -25,8 +25,8 @@ impl Builder {
         Ok(number)
     }
 
-    /// Adds a face that is counter-clockwise seen from outside. Repeated corners in sequence are dropped. A face with fewer than
-    /// three corners left is not added.
+    /// Adds a face that is counter-clockwise seen from outside. Consecutive equal corners are merged. A face with fewer than three
+    /// remaining corners is not added.
     pub fn face(&mut self, points: &[Vector], colour: Option<Rgb8>) -> Result<(), FormatError> {
         let mut corners = Vec::with_capacity(points.len());
         for &point in points {
@@ -42,8 +42,8 @@ impl Builder {
         self.polygons.add_face(&corners, colour, Location::Whole)
     }
 
-    /// Adds the quads of a grid, whose points are given row by row. The cross product of the direction along a row and the
-    /// direction to the next row points outside.
+    /// Adds the quads of a grid, whose points are given row by row. The cross product of the direction along a row and the direction to
+    /// the next row must point outwards.
     pub fn grid(
         &mut self,
         rows: &[Vec<Vector>],

@@ -30,8 +30,8 @@ const BRASS: Rgb8 = Rgb8([0xd8, 0xa8, 0x50]);
 
 /// The gear about the z axis.
 pub fn gear() -> Result<Polygons, FormatError> {
-    // Every ring of points around the axis has as many points as the outline of all teeth, so that the surface is a grid that
-    // is closed in both directions.
+    // Every ring of points around the axis has the number of points of the outline, so that the surface is a grid closed in both
+    // directions.
     let angles: Vec<(f64, f64)> = (0..TEETH)
         .flat_map(|tooth| {
             TOOTH.map(|(radius, pitch)| (radius, (tooth as f64 + pitch) / TEETH as f64 * TAU))

@@ -1,4 +1,4 @@
-//! The icosphere of frequency f: an icosahedron with edges cut into f parts, and all points moved to the sphere.
+//! The icosphere of frequency f: an icosahedron with edges divided into f parts, and all points projected to the sphere.
 
 use super::builder::Builder;
 use crate::error::FormatError;
@@ -58,16 +58,16 @@ fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     }
 }
 
-/// Cuts each edge of a triangle into `frequency` parts, and adds the frequency² triangles between the cuts, with their points
-/// moved to the sphere.
+/// Divides each edge of a triangle into `frequency` parts, and adds the resulting frequency² triangles, with their points projected to the
+/// sphere.
 fn divide(
     builder: &mut Builder,
     [a, b, c]: [Vector; 3],
     frequency: u32,
 ) -> Result<(), FormatError> {
-    // Returns a point of the sphere. The arguments are the weights of `b` and `c`; the weight of `a` is the rest of
-    // `frequency`. On an edge one of the three weights is zero and the sum of the other two does not depend on their order, so
-    // both triangles at the edge get the same bits.
+    // Returns a point of the sphere. The arguments are the weights of `b` and `c`; the weight of `a` is `frequency` minus both. On an edge
+    // one of the three weights is zero and the sum of the other two does not depend on their order, so both triangles at the edge get
+    // identical points.
     let point = |to_b: u32, to_c: u32| -> Vector {
         let weights = [frequency - to_b - to_c, to_b, to_c].map(f64::from);
         normalised(

@@ -16,7 +16,7 @@ use crate::polygons::Polygons;
 pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, \
     scan:N (frequency, 1 to 64) or sponge:N (0 to 4)";
 
-/// Whether a name is that of a generator, as opposed to a file.
+/// Whether a name is the name of a generator, not of a file.
 pub fn is_name(name: &str) -> bool {
     let stem = name.split(':').next().unwrap_or_default();
     matches!(
@@ -73,7 +73,7 @@ mod tests {
         "scan:8",
     ];
 
-    /// The enclosed volume, positive for faces that run counter-clockwise seen from outside.
+    /// The enclosed volume, positive for faces that are counter-clockwise seen from outside.
     pub fn volume(polygons: &Polygons) -> f64 {
         let mut scratch = triangulate::Scratch::default();
         let mut sum = 0.0;

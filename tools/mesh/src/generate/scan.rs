@@ -1,14 +1,13 @@
-//! A bumpy closed surface, with its triangles in such an order as a scanned surface has in its file.
+//! A bumpy closed surface, with its triangles in an order as in files of scanned surfaces.
 
 use super::icosphere::icosphere;
 use crate::error::FormatError;
 use crate::polygons::{Face, Polygons, Vector};
 
-/// Number of neighbouring triangles that stay together, in turns.
+/// Lengths of the runs of neighbouring triangles, used in turn.
 const RUNS: [usize; 3] = [3, 3, 4];
 
-/// The icosphere of a frequency with waves in its radius. Its triangles are cut into short runs, which follow each other in a
-/// scattered order.
+/// The icosphere of a frequency with waves in its radius. Its triangles are divided into short runs, in a scattered order.
 pub fn scan(frequency: u32) -> Result<Polygons, FormatError> {
     let mut polygons = icosphere(frequency)?;
     for point in &mut polygons.points {
@@ -26,7 +25,7 @@ fn radius([x, y, z]: Vector) -> f64 {
         + 0.012 * (31.0 * x).sin() * (29.0 * y).sin() * (30.0 * z).sin()
 }
 
-/// Cuts faces into runs, and puts the runs into another order: each follows the one before by the golden section of their number.
+/// Divides faces into runs, and reorders the runs with a stride of the golden section of their number.
 fn scattered(faces: &[Face]) -> Vec<Face> {
     let mut runs = Vec::new();
     let mut rest = faces;
@@ -38,7 +37,7 @@ fn scattered(faces: &[Face]) -> Vec<Face> {
         rest = later;
     }
     runs.push(rest);
-    // Every run comes once if the stride has no factor in common with their number.
+    // Every run comes once if the stride has no common factor with the number of runs.
     let count = runs.len();
     let mut stride = (count as f64 * 0.618) as usize;
     while greatest_common_divisor(stride, count) > 1 {

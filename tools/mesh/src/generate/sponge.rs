@@ -1,4 +1,4 @@
-//! The Menger sponge: the faces between full and empty cells, which share their points.
+//! The Menger sponge: the faces between full and empty cells, with shared points.
 
 use super::builder::Builder;
 use crate::error::FormatError;
@@ -11,7 +11,7 @@ pub fn sponge(level: u32) -> Result<Polygons, FormatError> {
     Ok(builder.coloured(|point| Rgb8::from_unit(point.map(|c| 0.66 + 0.6 * c))))
 }
 
-/// Adds the outer faces of the full cells in the cube from `corner` on with 3^`level` cells on each edge. The octree order keeps
+/// Adds the outer faces of the full cells in the cube at `corner` with 3^`level` cells along each edge. The recursive order keeps
 /// neighbours close to each other, so that chunks of the mesh share few points.
 fn cells(
     builder: &mut Builder,

@@ -1,7 +1,7 @@
 //! The Utah teapot: 32 bicubic Bézier patches, with the control points of Martin Newell (1975) and the bottom added later.
 //!
 //! The original has a slit around the lid and an open spout. Here a ring of quads closes the slit, and caps close both ends of
-//! the handle and of the spout, so that body, handle and spout each are a closed surface. The three intersect as in the original.
+//! the handle and of the spout, so that body, handle and spout are three closed surfaces, which intersect as in the original.
 
 use super::builder::Builder;
 use crate::error::FormatError;
@@ -95,7 +95,7 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     let mut builder = Builder::default();
     let body = turned(&mut builder, &BODY, |_| GLAZE)?;
     let cover = turned(&mut builder, &COVER, |_| LID)?;
-    // Closes the slit between the edge of the lid (the last row of the cover) and that of the rim (the first row of the body).
+    // Closes the slit between the edge of the lid (the last row of the cover) and the rim (the first row of the body).
     let (Some(lid_edge), Some(rim_edge)) = (cover.last(), body.first()) else {
         return Ok(builder.finish());
     };
@@ -113,7 +113,7 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     Ok(builder.finish())
 }
 
-/// Cuts patches into rows of points, `CUTS` rows for each patch; `row` makes the points of a row from its control points.
+/// Evaluates patches at rows of points, `CUTS` rows for each patch; `row` makes the points of a row from its control points.
 fn rows<const N: usize>(
     control: &[[[Vector; N]; 4]],
     row: impl Fn([Vector; N]) -> Vec<Vector>,
@@ -132,7 +132,7 @@ fn rows<const N: usize>(
     rows
 }
 
-/// Groups rows of control points into patches of four rows. Each patch starts with the last row of the previous one.
+/// Groups rows of control points into patches of four rows. Each patch starts with the last row of the previous patch.
 fn patches<T, const N: usize>(
     control: &[T],
     row: impl Fn(&T) -> [Vector; N],
@@ -203,8 +203,8 @@ fn tube(
     Ok(rows)
 }
 
-/// A point of a cubic Bézier curve, by de Casteljau's method. The ends of a curve, and all points of a curve with equal control
-/// points, have no rounding error, so that neighbouring patches meet and poles are closed.
+/// A point of a cubic Bézier curve, by de Casteljau's method. The ends of a curve, and all points of a curve whose control points are
+/// equal, have no rounding error, so that neighbouring patches meet and poles are closed.
 fn bezier(mut control: [Vector; 4], t: f64) -> Vector {
     if t == 1.0 {
         return control[3];

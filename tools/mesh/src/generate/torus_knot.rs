@@ -25,8 +25,8 @@ pub fn torus_knot() -> Result<Polygons, FormatError> {
         let t = (j % LENGTH) as f64 / LENGTH as f64;
         let centre = line(t);
         let ahead = sub(line(t + 1e-4), line(t - 1e-4));
-        // The cross-section of the tube is spanned by `up` and `side`. Both follow from the point on the knot alone, so the tube
-        // closes without a twist.
+        // The cross-section of the tube is spanned by `up` and `side`. Both depend only on the point on the knot, so the tube closes
+        // without a twist.
         let [x, y, _] = centre;
         let radial = [x, y, 0.0];
         let side = unit(cross(ahead, radial)).unwrap_or([0.0, 0.0, 1.0]);

@@ -1,4 +1,4 @@
-//! A k-d tree over the corners of a polygon in its plane: which of them lie in a triangle.
+//! A k-d tree over the corners of a polygon in its plane, to find the corners in a triangle.
 
 /// A point of a polygon's plane.
 pub type Point = [f64; 2];
@@ -8,21 +8,21 @@ pub fn area([ax, ay]: Point, [bx, by]: Point, [cx, cy]: Point) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Number of points of a part of the tree from which on it is searched point by point.
+/// Largest number of points in a leaf, which is searched point by point.
 const LEAF: usize = 16;
 
-/// The points of a polygon that are not removed yet.
+/// The remaining points of a polygon.
 ///
 /// A node is a range of `order`, split in its middle. Its children have the numbers 2·n + 1 and 2·n + 2.
 #[derive(Default)]
 pub struct Tree {
-    /// Indices of the points. Those of a node lie side by side.
+    /// Indices of the points. The points of a node are contiguous.
     order: Vec<u32>,
     /// The position of each point in `order`.
     place: Vec<u32>,
     removed: Vec<bool>,
     nodes: Vec<Node>,
-    /// Number of nodes that searches have visited, the measure of their work.
+    /// Number of nodes visited by searches, a measure of the cost.
     #[cfg(test)]
     pub visited: std::cell::Cell<u64>,
 }
@@ -36,7 +36,7 @@ struct Node {
 }
 
 impl Tree {
-    /// Makes the tree of all points.
+    /// Builds the tree of all points.
     pub fn fill(&mut self, points: &[Point]) {
         self.order.clear();
         self.order.extend(0..points.len() as u32);
@@ -95,8 +95,7 @@ impl Tree {
         }
     }
 
-    /// Whether a point lies in a triangle that runs counter-clockwise, or on its edge. Points equal to one of its corners do not
-    /// count.
+    /// Whether a point lies in a counter-clockwise triangle or on its edge; false for points equal to a corner.
     pub fn has_point_in(&self, points: &[Point], triangle: &[Point; 3]) -> bool {
         self.search(points, triangle, 0, 0, self.order.len())
     }
@@ -137,7 +136,7 @@ fn edges(&[a, b, c]: &[Point; 3]) -> impl Iterator<Item = [Point; 2]> {
     [[a, b], [b, c], [c, a]].into_iter()
 }
 
-/// Whether a box lies on the outer side of an edge of the triangle, or beside the triangle's own box.
+/// Whether a box lies on the outer side of an edge of the triangle, or outside of the triangle's bounding box.
 fn is_outside(corners: &[Point; 4], triangle: &[Point; 3]) -> bool {
     let [low, .., high] = corners;
     let beside = |axis: usize| {

@@ -1,4 +1,4 @@
-//! Tests of the full start: LiteX's BIOS on the verilated SoC, and the back door to DDR3 against accesses of the CPU.
+//! Tests of the full start: LiteX's BIOS on the verilated SoC, and back-door accesses to DDR3 compared with accesses of the CPU.
 
 use virtual_board::{Start, VirtualBoard};
 
@@ -63,7 +63,7 @@ fn the_bios_boots_and_the_back_door_is_coherent_with_the_cpu() {
 }
 
 fn both_see_the_same_memory(board: &mut VirtualBoard) {
-    // One address in each of the eight banks of the DDR3, and two in other rows, the second in the last row.
+    // One address in each of the eight banks of the DDR3, and two addresses in other rows, the second in the last row.
     let banks = (0..8).map(|bank| 0x4010_0000 + bank * 0x800 + 0x7f0);
     for (number, address) in banks.chain([0x4200_0000, 0x47ff_fff0]).enumerate() {
         let written: Vec<u8> = (0..16).map(|i| (number * 16 + i) as u8 ^ 0xa5).collect();
@@ -110,7 +110,7 @@ fn ranges_cross_banks_and_rows_in_order(board: &mut VirtualBoard) {
 fn a_cached_line_is_read_anew(board: &mut VirtualBoard) {
     let address = 0x4020_0040;
     board.ddr_write(address, &[0x11; 16]).expect("main RAM");
-    // The first read fills the data cache line that the second one hits.
+    // The first read fills the data cache line that the second read hits.
     assert_eq!(mem_read(board, address), [0x11; 16]);
     assert_eq!(mem_read(board, address), [0x11; 16]);
     board.ddr_write(address, &[0x22; 16]).expect("main RAM");

@@ -1,4 +1,4 @@
-//! Tests of the firmware's console: its output, word for word, and its behaviour on noise and long input.
+//! Tests of the firmware's console: its output, word for word, and its behaviour with noise and long input.
 
 use std::path::{Path, PathBuf};
 
@@ -62,7 +62,7 @@ pub fn committed() -> (PathBuf, String) {
     (path, text)
 }
 
-/// Sends the text after each prompt of `script` to a board that has printed `said`, and returns all output without times.
+/// Sends the text after each prompt of `script` to a board that has printed `said`, and returns all output without time-dependent values.
 fn replayed((mut board, said): (impl Console, String), script: &str) -> String {
     let mut transcript = said;
     for line in script.lines().filter_map(|line| line.strip_prefix(PROMPT)) {
@@ -78,7 +78,7 @@ fn replayed((mut board, said): (impl Console, String), script: &str) -> String {
     lasting(end, board.clock())
 }
 
-/// Compares a transcript with the committed one, line by line.
+/// Compares a transcript with the committed transcript, line by line.
 fn check(found: &str, path: &Path, expected: &str) {
     for (number, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {
         assert_eq!(found, expected, "line {} of {}", number + 1, path.display());
@@ -87,7 +87,7 @@ fn check(found: &str, path: &Path, expected: &str) {
     assert_eq!(found, expected, "lines of {}", path.display());
 }
 
-/// Replays the committed transcript. With `GLINT_UPDATE` in the environment it rewrites the transcript.
+/// Replays the committed transcript. With `GLINT_UPDATE` in the environment, rewrites the transcript.
 #[test]
 fn console_output_matches_the_transcript() {
     let (path, expected) = committed();
@@ -99,8 +99,8 @@ fn console_output_matches_the_transcript() {
     check(&found, &path, &expected);
 }
 
-/// Keys of lines that differ on the emulated board: it names itself, and does not count the groups of pixels that the engine's walk over a
-/// triangle visits in vain.
+/// Keys of lines that differ on the emulated board: it has its own name, and does not count groups of pixels that the engine's walker
+/// visits without coverage.
 const GATEWARE: [&str; 3] = ["board ", "cycles_walking ", "cycles_empty "];
 
 #[test]
@@ -137,7 +137,7 @@ fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
         answer.ends_with("\r\nerror: line: expected at most 640 bytes\r\nglint> "),
         "{answer:?}"
     );
-    // Twenty commands in one write are all answered.
+    // Twenty commands in one write all get a reply.
     board.uart_write(b"buttons\r".repeat(20).as_slice());
     for _ in 0..20 {
         let answer = board.read_until(PROMPT, LIMIT).expect("an answer");
@@ -165,7 +165,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
     let (mut board, _) = started(&image());
     command(&mut board, "camera 3 10 80");
     command(&mut board, "render");
-    // Fills both frame buffers and the depth buffer with a pattern, which shows later which of them were not drawn to.
+    // Fills both frame buffers and the depth buffer with a pattern, to detect later which of them were not drawn to.
     let windows = [0x4100_0000, 0x4120_0000, 0x4140_0000];
     for window in windows {
         board
@@ -177,7 +177,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
         board.ddr_read(window, &mut bytes).expect("main RAM");
         bytes.iter().all(|byte| *byte == 0xa5)
     };
-    // The same camera again must not start a frame; the wait is longer than a frame takes.
+    // An unchanged camera must not start a frame; the wait is longer than the drawing of a frame.
     command(&mut board, "camera 3 10 80");
     board.run(1_500_000);
     assert!(
@@ -186,7 +186,7 @@ fn a_still_scene_renders_nothing_and_a_change_is_rendered_once() {
             .iter()
             .all(|untouched| *untouched)
     );
-    // A new camera starts a frame in the frame buffer that is not shown. Depths are written only on request, so not now.
+    // A new camera starts a frame in the frame buffer that is not shown. Depths are not written, because they were not requested.
     command(&mut board, "camera 3 11 80");
     board.run(2_500_000);
     let [a, b, depth] = windows.map(|window| untouched(&mut board, window));

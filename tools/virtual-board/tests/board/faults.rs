@@ -27,7 +27,7 @@ fn gateware_of_another_build_is_reported_and_the_console_works() {
         )),
         "{info}"
     );
-    // The firmware now uses no registers except those of the console: `render` works on the CPU, and commands for devices
+    // The firmware now only uses the registers of the console: `render` works on the CPU, and commands for devices
     // fail.
     assert!(command(&mut board, "render").contains("triangles_drawn 6\r\n"));
     assert!(command(&mut board, "leds 1").contains("error: "));

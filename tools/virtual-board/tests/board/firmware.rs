@@ -1,4 +1,4 @@
-//! Helpers for tests of the firmware: its image, and boards that run it, virtual or emulated.
+//! Helpers for tests of the firmware: the firmware's image, and virtual or emulated boards that run it.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use virtual_board::{Start, VirtualBoard};
 /// Prompt of the firmware's console.
 pub const PROMPT: &str = "glint> ";
 
-/// Time-out of a command in cycles. It is longer than the time-out of a bus access, a million cycles.
+/// Time-out of a command in cycles. This is longer than the time-out of a bus access, a million cycles.
 pub const LIMIT: u64 = 30_000_000;
 
 /// Reads the firmware's image.
@@ -44,7 +44,7 @@ pub fn address(parts: &[&str]) -> u32 {
     u32::try_from(symbol.address()).expect("32 bits")
 }
 
-/// Replaces words of the image, from `address` on as the CPU sees it.
+/// Replaces words of the image, from the CPU's address `address` on.
 pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
     let offset = (address - MAIN_RAM.base) as usize;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
@@ -62,11 +62,11 @@ pub trait Console {
     /// Runs until the board has sent `expected`; returns the output up to the end of `expected`.
     ///
     /// # Panics
-    /// If `expected` has not come within [`LIMIT`]; the message names `what` was done.
+    /// If `expected` has not come within [`LIMIT`]; the message contains `what`, the test's action.
     fn expect(&mut self, expected: &str, what: &str) -> String;
 }
 
-/// Implements [`Console`] by the methods of a board, which have the same names on both.
+/// Implements [`Console`] by the methods of equal names of a board.
 macro_rules! console_of {
     ($board:ty) => {
         impl Console for $board {

@@ -1,5 +1,5 @@
-//! The emulated CPU against the verilated one. Random programs leave their registers, memory and traps in main memory, and both boards
-//! must leave the same. The firmware executes the same instructions with the same results.
+//! Compares the emulated CPU with the verilated CPU. Random programs store their registers, memory and traps in main memory, which must be
+//! equal on both boards. The firmware must execute the same instructions with equal results.
 
 use std::fmt::Write;
 
@@ -16,27 +16,28 @@ use crate::firmware::{PROMPT, image};
 const BODY: usize = 64;
 /// Number of programs in an image.
 const PROGRAMS: usize = 1500;
-/// Random instructions of the test, unless `GLINT_LOCKSTEP` states another number: one image.
+/// Default number of random instructions of the test, one image; `GLINT_LOCKSTEP` overrides it.
 const INSTRUCTIONS: usize = BODY * PROGRAMS;
 
-/// Addresses: the trap handler, the first program, 32 words for each program, four words for each trap, a window of data.
+/// Addresses of the trap handler, the first program, the results (32 words per program), the traps (four words per trap), and the data
+/// window.
 const HANDLER: u32 = MAIN_RAM.base + 0x200;
 const FIRST: u32 = MAIN_RAM.base + 0x400;
 const RESULTS: u32 = 0x4600_0000;
 const TRAPS: u32 = 0x4700_0000;
 const DATA: u32 = 0x47f0_0000;
-/// The word after the last program's results, which the end of all programs sets.
+/// The word after the last program's results, which is set after the end of all programs.
 const DONE: u32 = RESULTS + 128 * PROGRAMS as u32;
 
-/// Number of bytes of the data window, which loads and stores reach from its middle.
+/// Number of bytes of the data window, which loads and stores address relative to its middle.
 const WINDOW: u32 = 4096;
-/// Longest run of an image in cycles.
+/// Time-out for the run of an image, in cycles.
 const LIMIT: u64 = 100_000_000;
 
 /// Registers with a fixed purpose, which random instructions do not write.
 const REGISTERS: u32 = 26;
 const FAST: u32 = 27;
-/// Start of the present program, for indirect jumps.
+/// Start of the current program, for indirect jumps.
 const START: u32 = 28;
 const TRAP: u32 = 29;
 const RESULT: u32 = 30;
@@ -50,8 +51,8 @@ const MSTATUS: u32 = 0x300;
 const MTVEC: u32 = 0x305;
 const MIP: u32 = 0x344;
 
-/// Control registers that random instructions access, some of which do not exist. Not those that count time, nor those of the traps'
-/// handler and of the implementation.
+/// Control registers that random instructions access, some of which do not exist. Registers that count time, of the trap handler, or of
+/// the implementation are not included.
 const CSRS: [u32; 19] = [
     MSTATUS, 0x301, 0x304, MSCRATCH, MEPC, MCAUSE, MTVAL, 0xbc0, 0xfc0, 0xcc0, 0xf11, 0xf12, 0xf14,
     0x180, 0x306, 0x7c0, 0xc01, 0xf15, 0x105,
@@ -99,7 +100,7 @@ fn csrr(rd: u32, csr: u32) -> u32 {
     i(csr, 0, 2, rd, 0x73)
 }
 
-/// Constants in all registers, the handler of traps, and a jump over it.
+/// Constants in all registers, the trap handler, and a jump over the handler.
 fn set_up(random: &mut Random) -> Vec<u32> {
     let mut code: Vec<u32> = (1..32).flat_map(|x| li(x, random.bits() as u32)).collect();
     for (x, value) in [
@@ -131,7 +132,7 @@ fn place(code: &mut Vec<u32>, address: u32) {
     code.resize(length, 0);
 }
 
-/// Stores cause, value and place of a trap and continues with the next instruction.
+/// Stores cause, value and address of a trap and continues with the next instruction.
 fn handler() -> Vec<u32> {
     let stored = [MCAUSE, MTVAL, MSTATUS, MEPC]
         .into_iter()
@@ -172,7 +173,7 @@ fn immediate(random: &mut Random) -> u32 {
     random.bits() as u32 & 0xfff
 }
 
-/// One of the registers that hold an address of memory, and an offset; or the scratch register of the SoC's controller.
+/// An operand address: a register that holds a memory address, and an offset; or the scratch register of the SoC's controller.
 fn operand(random: &mut Random) -> (u32, u32) {
     let offset = immediate(random);
     match number(random, 8) {
@@ -188,7 +189,7 @@ fn illegal(random: &mut Random) -> u32 {
         0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
     ];
     match number(random, 4) {
-        // `ebreak`, which this CPU does not have.
+        // `ebreak`, which this CPU does not implement.
         0 => 0x0010_0073,
         1 => 0,
         _ => loop {
@@ -254,7 +255,7 @@ fn instruction(code: &mut Vec<u32>, start: usize, random: &mut Random) {
             4 * (1 + number(random, 8)) + 2 * u32::from(number(random, 8) == 0),
         ),
         88..90 => {
-            // Forward too; the lowest bit of the target is ignored.
+            // Also forward; the lowest bit of the target is ignored.
             let offset = 4 * (code.len() - start) as u32 + 4 + 4 * number(random, 8);
             i(offset + number(random, 4), START, funct3 & 1, rd, 0x67)
         }
@@ -262,7 +263,7 @@ fn instruction(code: &mut Vec<u32>, start: usize, random: &mut Random) {
             let csr = CSRS[number(random, CSRS.len() as u32) as usize];
             match number(random, 8) {
                 0 => csrr(rd, MIP),
-                // Writes of zero, and results for no register.
+                // Writes of zero, and instructions without a destination register.
                 1 => i(csr, 0, funct3, rd, 0x73),
                 2 => i(csr, rs1, funct3, 0, 0x73),
                 _ => i(csr, rs1, funct3, rd, 0x73),
@@ -273,12 +274,12 @@ fn instruction(code: &mut Vec<u32>, start: usize, random: &mut Random) {
         97 => 0x0000_0073,
         _ => illegal(random),
     };
-    // The only instructions of the group of `ecall` that are requested above.
+    // The only generated instructions with the opcode of `ecall`.
     let is_system = one & 0x707f == 0x73 && ![0x73, 0x0010_0073].contains(&one);
     code.push(if is_system { 0x73 } else { one });
 }
 
-/// Appends a random program, which ends with its registers at the address in the register `RESULT`.
+/// Appends a random program, which finally stores its registers at the address in the register `RESULT`.
 fn program(code: &mut Vec<u32>, random: &mut Random) {
     let start = code.len();
     // `auipc`
@@ -313,7 +314,7 @@ impl Left {
     }
 }
 
-/// Runs programs on both boards, from a random seed, and compares what they leave.
+/// Runs programs from a random seed on both boards, and compares their results in memory.
 fn compare(seed: u64) {
     let mut random = Random(seed);
     let mut code = set_up(&mut random);
@@ -390,14 +391,14 @@ fn random_programs_leave_the_same_on_both_boards() {
     }
 }
 
-/// Number of cycles of the firmware that are compared, unless `GLINT_LOCKSTEP_CYCLES` states another number.
+/// Default number of firmware cycles that are compared; `GLINT_LOCKSTEP_CYCLES` overrides it.
 const CYCLES: u64 = 3_000_000;
 
 /// Number of cycles between two comparisons.
 const SLICE: u64 = 100_000;
 
-/// Compares each instruction of the firmware: its start, and the commands of the console's transcript. `GLINT_LOCKSTEP_CYCLES=50000000`
-/// in the environment compares 50 million cycles.
+/// Compares each instruction of the firmware, from its start through the commands of the console's transcript.
+/// `GLINT_LOCKSTEP_CYCLES=50000000` in the environment compares 50 million cycles.
 #[test]
 fn the_firmware_executes_the_same_instructions() {
     let cycles = std::env::var("GLINT_LOCKSTEP_CYCLES").ok();
@@ -416,7 +417,7 @@ fn the_firmware_executes_the_same_instructions() {
         .lines()
         .filter_map(|line| line.strip_prefix(PROMPT));
     let (mut instructions, mut output, mut sent, mut executed) = (vec![], vec![], 0, 0_u64);
-    // The boards have different programs in their ROMs, which jump to the firmware: two instructions on this one.
+    // The ROMs of the boards have different programs that jump to the firmware; this board's program has two instructions.
     emulated.run(2);
     while verilated.cycles() < cycles {
         verilated.run(SLICE);

@@ -1,6 +1,6 @@
 //! Tests of the virtual board: the verilated SoC with its BIOS, firmware, or small programs, and the models of its peripherals.
 //!
-//! One test program has them all, so that short tests run beside the longest.
+//! All tests are in one program, so that short tests run in parallel with the longest.
 
 mod bios;
 mod console;

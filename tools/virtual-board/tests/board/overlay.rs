@@ -1,4 +1,4 @@
-//! Tests of the text over the picture.
+//! Tests of the text overlay.
 
 use std::convert::Infallible;
 
@@ -98,7 +98,7 @@ fn text(frame: &[u16], line: usize) -> String {
     cells.collect()
 }
 
-/// The value of a line of an answer.
+/// The value in a line of a reply.
 fn value(answer: &str, key: &str) -> u64 {
     let mut lines = answer.lines();
     let value = lines.find_map(|line| line.strip_prefix(key)?.strip_prefix(' '));
@@ -108,7 +108,7 @@ fn value(answer: &str, key: &str) -> u64 {
 #[test]
 fn the_overlay_says_what_is_shown_and_goes_again() {
     let (mut board, _) = emulated(&image());
-    // A ground that is neither black nor white, the colours of the text.
+    // A background that is neither black nor white, the colours of the text.
     command(&mut board, "field box:0.5,0.5,0.5");
     command(&mut board, "background sky");
     command(&mut board, "render");
@@ -116,7 +116,7 @@ fn the_overlay_says_what_is_shown_and_goes_again() {
     command(&mut board, "overlay on");
     let stats = command(&mut board, "render");
     let (cycles, hertz) = (value(&stats, "cycles"), u64::from(board.clock_hz()));
-    // Twice, so that both frame buffers have the text.
+    // Drawn twice, so that both frame buffers have the text.
     for _ in 0..2 {
         let over = frame(&mut board);
         assert_eq!(text(&over, 0), "box:0.5,0.5,0.5");

@@ -1,4 +1,4 @@
-//! Tests of the preloaded start, the pins, and the back door against a program whose data are in the CPU's caches.
+//! Tests of the preloaded start, the pins, and back-door accesses to data in the CPU's caches.
 
 use crate::program;
 use litex_pac::{buttons, digits, leds, switches};
@@ -11,7 +11,7 @@ const WORD: u32 = 0x4012_3450;
 const ROUND: u64 = 500;
 
 fn board() -> VirtualBoard {
-    // SAFETY: only addresses of registers are taken; nothing is accessed.
+    // SAFETY: only computes addresses of registers, without an access.
     let (buttons, switches, leds) = unsafe {
         (
             buttons::Buttons::steal(),
@@ -53,9 +53,9 @@ fn the_program_reads_buttons_and_switches_and_sets_the_leds() {
 #[test]
 fn the_back_door_reaches_what_the_caches_hold() {
     let mut board = board();
-    // The many writes meet the program at every point of its loop. In 16 of 32 rounds of the loop, the program displaces the
-    // word from the cache and loads it again. If such a load brought data from before a write, the LEDs would continue to show
-    // them, because the word then stays in the cache for 16 rounds.
+    // The many writes occur at every point of the program's loop. In 16 of 32 iterations, the program evicts the word from the cache and
+    // loads it again. If such a load brought data from before a write, the LEDs would continue to show them, because the word then stays
+    // in the cache for 16 iterations.
     for i in 0..600_u16 {
         let value = (i * 7) & 15;
         board.ddr_write(WORD, &[value as u8]).expect("main RAM");
@@ -76,7 +76,7 @@ fn the_back_door_reaches_what_the_caches_hold() {
 
 #[test]
 fn the_back_door_sees_what_the_program_has_stored() {
-    // SAFETY: only the address of a register is taken; nothing is accessed.
+    // SAFETY: only computes the address of a register, without an access.
     let leds = unsafe { leds::Leds::steal() }.out().address() as u32;
     let mut board = program::started("stores", &[("WORD", WORD), ("LEDS_OUT", leds)]);
     board.run(2000);
@@ -95,7 +95,7 @@ fn the_back_door_sees_what_the_program_has_stored() {
 
 #[test]
 fn the_digits_show_their_registers_from_left_to_right() {
-    // SAFETY: only addresses of registers are taken; nothing is accessed.
+    // SAFETY: only computes addresses of registers, without an access.
     let digits = unsafe { digits::Digits::steal() };
     let mut board = program::started(
         "digits",
@@ -106,7 +106,7 @@ fn the_digits_show_their_registers_from_left_to_right() {
             ("RIGHT_SHOWN", 0x7f07_7d6d),
         ],
     );
-    // Slightly more than the time in which each digit is lit once.
+    // Slightly more than one refresh cycle of the digits.
     board.run(70_000);
     assert_eq!(
         board.digits(),

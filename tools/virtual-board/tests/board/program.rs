@@ -1,4 +1,4 @@
-//! Small programs for the soft core, assembled when a test runs.
+//! Small programs for the soft core, assembled at the run of a test.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

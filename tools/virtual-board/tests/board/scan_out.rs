@@ -1,4 +1,4 @@
-//! Tests of scan-out to the monitor through the whole SoC: all scales, a flip to another frame, and memory traffic of the CPU.
+//! Tests of scan-out in the whole SoC with the monitor: all scales, a flip to another frame, and memory traffic of the CPU.
 
 use crate::program;
 use litex_pac::{leds, scanout};
@@ -25,10 +25,10 @@ fn bytes(frame: &[u16]) -> Vec<u8> {
     frame.iter().flat_map(|pixel| pixel.to_le_bytes()).collect()
 }
 
-/// Shows a frame, requests a flip to another, and checks that the monitor shows the first one, then the second one for the rest of
-/// `frames` video frames.
+/// Shows a frame, requests a flip to a second frame, and checks that the monitor shows the first frame, then the second frame for the rest
+/// of `frames` video frames.
 fn shows_and_flips(scale: usize, frames: u64) {
-    // SAFETY: only addresses of registers are taken; nothing is accessed.
+    // SAFETY: only computes addresses of registers, without an access.
     let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };
     let base = scanout::Scanout::BASE;
     let mut board = program::started(

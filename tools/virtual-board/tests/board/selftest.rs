@@ -1,5 +1,5 @@
-//! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong. The virtual board takes it in a test
-//! of `glint`, which runs alone from its flash.
+//! Tests of the command `selftest`: it finds plugged sensors, and reports faults. For the virtual board, a test of `glint` runs the
+//! command, on a board that starts from its flash.
 
 use crate::firmware::{address, command, emulated, image, patch};
 use crate::sensor::{emulated_with_sensor, sensor};
@@ -25,7 +25,7 @@ const PARTS: [&str; 15] = [
     "underflow",
 ];
 
-/// The verdict on the part `name`.
+/// The result for the part `name`.
 fn verdict<'a>(answer: &'a str, name: &str) -> &'a str {
     let key = format!("selftest {name} ");
     let mut lines = answer.lines();
@@ -34,7 +34,7 @@ fn verdict<'a>(answer: &'a str, name: &str) -> &'a str {
         .unwrap_or_else(|| panic!("no {name} in {answer}"))
 }
 
-/// Checks that every part passes: sensors have the verdict `sensors`, and the gateware of the standard build has no smooth shading.
+/// Checks that every part passes, except that the results of sensors are `sensors`, and that the standard gateware has no smooth shading.
 fn check(answer: &str, sensors: &str) {
     for part in PARTS {
         let expected = match part {

@@ -16,7 +16,7 @@ fn millisecond(clock_hz: u32) -> u64 {
 }
 
 pub fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
-    // The noise of a typical sensor, without the errors that would need a calibration.
+    // The noise of a typical sensor, without errors that require calibration.
     let imperfections = Imperfections {
         noise: 0.005,
         accel_noise: 0.0004,
@@ -31,7 +31,7 @@ pub fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
 
 #[test]
 fn a_program_reads_the_sensor_through_the_pins() {
-    // SAFETY: only addresses of registers are taken; nothing is accessed.
+    // SAFETY: only computes addresses of registers, without an access.
     let (i2c, leds) = unsafe { (i2c::I2c::steal(), leds::Leds::steal()) };
     let mut board = program::started(
         "i2c",
@@ -64,7 +64,7 @@ fn a_program_reads_the_sensor_through_the_pins() {
 /// Angle in degrees of [`turn`].
 const TURNED: f64 = 22.5;
 
-/// Motion that is at rest except for a turn to the left, which starts at 0.02 s and takes 0.025 s.
+/// Motion at rest, except for a turn to the left that starts at 0.02 s and takes 0.025 s.
 fn turn(time: f64) -> State {
     let turns = (0.02..0.045).contains(&time);
     State {
@@ -89,7 +89,7 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().expect("a number")).collect()
 }
 
-/// Returns a sensor that is already set up, since a reset of the sensor would take a tenth of a second.
+/// Returns a sensor that is already set up, because a reset of the sensor would take a tenth of a second.
 fn ready_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
     let mut sensor = sensor(motion);
     for (register, value) in [
@@ -140,7 +140,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     assert!((45..57).contains(&samples), "{status}");
     let angles = numbers(line(&status, "angles"));
     assert!((angles[0] - TURNED).abs() < ANGLE, "{status}");
-    // The camera takes over the attitude with the next frame.
+    // The camera follows the attitude in the next frame.
     board.run(35 * millisecond);
     let view = command(&mut board, "view");
     let view = numbers(line(&view, "view"));
@@ -148,8 +148,8 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     for (found, expected) in view[9..12].iter().zip([-sine, cosine, 0.0]) {
         assert!((found - expected).abs() < ANGLE.to_radians(), "{view:?}");
     }
-    // While the sensor is unplugged, the attitude is held. The first failure depends on where the transfer was; the search
-    // for the sensor, 30 ms later, finds no device.
+    // While the sensor is unplugged, the attitude is held. The first error depends on the state of the transfer; the search for the
+    // sensor, 30 ms later, finds no device.
     let sensor = board.unplug().expect("the sensor");
     board.run(40 * millisecond);
     let status = command(&mut board, "imu");
@@ -204,9 +204,9 @@ impl Part {
         }
     }
 
-    /// Returns the state at `time` in a part of duration `length`, both in s. The three numbers are: the turn so far, as the
-    /// time in s that it would take at the rate `rate`; the current rate as a multiple of `rate`; and the current shake as a
-    /// multiple of `shake`. The rate starts and ends smoothly, as sampling requires.
+    /// Returns the state at `time` in a part of duration `length`, both in s. The three numbers are: the rotation so far, as the time in s
+    /// that it would take at the rate `rate`; the current rate as a multiple of `rate`; and the current acceleration as a multiple of
+    /// `shake`. The rate starts and ends smoothly, as sampling requires.
     fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
         if self.swings > 0.0 {
             let turns = std::f64::consts::TAU * self.swings / length;
@@ -227,7 +227,7 @@ const RESTING: f64 = 0.035;
 
 const SCRIPT: [Part; 6] = [
     Part::turn("yaw", 0.05, [0.0, 0.0, 900.0]),
-    // From level up through the vertical, to 9° beyond it.
+    // Pitches up from level through the vertical, to 9° beyond it.
     Part::turn("pitch through 90°", 0.104, [950.0, 0.0, 0.0]),
     Part::turn("roll", 0.05, [0.0, -900.0, 0.0]),
     Part::turn("tumble", 0.06, [600.0, -800.0, 500.0]),
@@ -274,7 +274,7 @@ fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     ]
 }
 
-/// Returns the rotation that the parts of `SCRIPT` have made until `time`, and the sensor's motion at that time. `stretch`
+/// Returns the total rotation of `SCRIPT` until `time`, and the sensor's motion at that time. `stretch`
 /// multiplies the duration of each part and divides its rate.
 fn script(time: f64, stretch: f64) -> (Rotation, State) {
     let mut turned = rotation([0.0; 3], 0.0);
@@ -301,7 +301,7 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
 }
 
 /// The camera follows the sensor's motion as computed in f64, even where the pitch passes 90°. The motion takes 0.6 s of
-/// board time; with `GLINT_IMU_MOTION` in the environment it has a seventh of the speed and takes 2.6 s.
+/// board time; with `GLINT_IMU_MOTION` in the environment it is seven times slower and takes 2.6 s.
 #[test]
 fn the_camera_follows_a_script() {
     let is_slow = std::env::var_os("GLINT_IMU_MOTION").is_some();
@@ -317,7 +317,7 @@ fn the_camera_follows_a_script() {
     let mut end = BEGIN;
     for part in &SCRIPT {
         end += part.time * stretch + RESTING;
-        // Runs until just before the next part. By then the delay of the sensor's filter and a frame have passed.
+        // Runs until just before the next part. This leaves time for the delay of the sensor's filter and for a frame.
         let until = ((end - 0.005) * 1e3 * millisecond as f64) as u64;
         board.run(until.saturating_sub(board.cycles()));
         let (turned, _) = script(end, stretch);
@@ -354,7 +354,7 @@ fn every_fault_is_reported_and_recovered() {
         (failure, number("failures"), number("samples"))
     };
     let gone = "i2c: no device acknowledged the address";
-    // A read that is in progress ends without its last bytes, any other one without an acknowledgement.
+    // A read in progress ends without its last bytes, any other transfer without an acknowledgement.
     let vanished = "the sensor vanished within a sample";
     // For each case: the fault, the time-out of its report in ms, the time-out of its end in ms, and the texts that may report it.
     let faults: [(Option<Fault>, u64, u64, &[&str]); 8] = [
@@ -395,7 +395,7 @@ fn every_fault_is_reported_and_recovered() {
             250,
             &["WHO_AM_I is 0x12: expected 0x68"],
         ),
-        // A short loss of the sensor's supply.
+        // A short loss of the sensor's supply voltage.
         (None, 25, 250, &[gone]),
     ];
     for (fault, until_told, until_over, texts) in faults {

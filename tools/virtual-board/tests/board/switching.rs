@@ -1,21 +1,21 @@
-//! Tests of what the monitor shows while scenes follow one another.
+//! Tests of the monitor's pictures during changes of scenes.
 
 use emulated_board::{EmulatedBoard, Frame};
 
 use crate::firmware::{LIMIT, PROMPT, command, emulated, image};
 
-/// Scenes of different sizes, engines and cameras, without anything that moves.
+/// Scenes of different sizes, engines and cameras, without motion.
 const SCENES: [&str; 3] = ["default", "menger", "spheres"];
 
-/// Video frames within which the last scene is shown.
+/// Maximum number of video frames until the last scene is shown.
 const FRAMES: usize = 40;
 
 fn is_black(frame: &Frame) -> bool {
     frame.pixels.iter().all(|colour| *colour == 0)
 }
 
-/// Checks video frames: each is one of the `whole` pictures, or black, as it may be while the size changes; and the picture `last` comes
-/// after another one.
+/// Checks video frames: each is one of the `whole` pictures, or black, which is allowed while the size changes; and the picture `last`
+/// comes after another picture.
 fn check(board: &mut EmulatedBoard, whole: &[Frame], last: usize) {
     let mut seen = Vec::new();
     for number in 0..FRAMES {

@@ -1,4 +1,4 @@
-//! Loads and stores at unused addresses: the emulated board counts and waits as the verilated SoC does.
+//! Loads and stores at unused addresses: the emulated board counts bus errors and waits like the verilated SoC.
 
 use emulated_board::EmulatedBoard;
 use litex_pac::ctrl;
@@ -7,21 +7,21 @@ use virtual_board::{Start, VirtualBoard};
 
 use crate::program::assemble;
 
-/// Where the program leaves its results.
+/// Address of the program's results.
 const RESULTS: u32 = MAIN_RAM.base + 0x1000;
 /// Number of accesses.
 const ACCESSES: usize = 4;
-/// Number of words that the program leaves: two before the first access, two after each, and one at the end.
+/// Number of words of results: two before the first access, two after each access, and one at the end.
 const WORDS: usize = 2 * ACCESSES + 3;
 
 /// Clock cycles until the bus answers an access.
 const TIMEOUT: u32 = 1_000_000;
-/// Number of cycles between two looks at the results.
+/// Number of cycles between two polls of the results.
 const SLICE: u64 = 500_000;
 /// Maximum number of cycles until the results are complete.
 const LIMIT: u64 = 40_000_000;
 
-/// For each access the errors that the bus has counted, and the number of time-outs that it took. `run` runs a board for some cycles and
+/// For each access, the bus's count of errors, and the duration in time-outs. `run` runs a board for some cycles and
 /// reads the results.
 fn counts(mut run: impl FnMut(u64, &mut [u8])) -> Vec<[u32; 2]> {
     let mut bytes = [0; 4 * WORDS];
@@ -50,7 +50,7 @@ fn accesses_to_unused_addresses_count_and_wait_alike() {
                 ctrl::Ctrl::BASE as u32 + ctrl::offset::BUS_ERRORS,
             ),
             ("RESULTS", RESULTS),
-            // The data cache has the first of these, and not the second.
+            // The first of these addresses is in the data cache, the second is not.
             ("UNUSED", 0x2000_0000),
             ("UNUSED_IO", 0x9000_0000),
         ],

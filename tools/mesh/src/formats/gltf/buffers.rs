@@ -1,4 +1,4 @@
-//! Buffers of a glTF, and the values in them.
+//! Buffers of a glTF, and their values.
 
 use crate::error::{FormatError, MAX_FILE, quote};
 use crate::polygons::Vector;
@@ -8,17 +8,17 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::{Accessor, Document};
 use std::borrow::Cow;
 
-/// Reads a file of the folder of the glTF; `None` if that is not possible.
+/// Reads a file in the folder of the glTF; `None` if it cannot be read.
 pub type Beside<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;
 
 /// The buffers of a file.
 pub struct Buffers<'a>(Vec<Cow<'a, [u8]>>);
 
 impl<'a> Buffers<'a> {
-    /// Reads all buffers. `binary` is the binary chunk of a `.glb`; `beside` reads a file of the same folder.
+    /// Reads all buffers. `binary` is the binary chunk of a `.glb`; `beside` reads a file in the same folder.
     ///
     /// # Errors
-    /// A buffer cannot be read or is too short, or all are longer than [`MAX_FILE`] together.
+    /// A buffer cannot be read or is too short, or all buffers together are longer than [`MAX_FILE`].
     pub fn read(
         document: &Document,
         binary: &'a [u8],
@@ -47,10 +47,10 @@ impl<'a> Buffers<'a> {
         Ok(Self(buffers))
     }
 
-    /// The values of an accessor: of one of these dimensions, and as many as `count`, if that is given.
+    /// The values of an accessor, which must have one of these dimensions, and `count` values if given.
     ///
     /// # Errors
-    /// The values are others, sparse, or not within their buffer.
+    /// The values have another type or count, are sparse, or are not within their buffer.
     pub fn values(
         &self,
         accessor: &Accessor,
@@ -107,7 +107,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Reads a buffer that is given by its address: within the file, or a file beside it.
+/// Reads a buffer by its URI: data within the file, or a file in the same folder.
 fn load(uri: &str, beside: Beside) -> Result<Vec<u8>, FormatError> {
     let refuse = |expected: &str| FormatError::whole(expected, quote(uri.as_bytes()));
     match uri.strip_prefix("data:") {
@@ -132,7 +132,7 @@ pub struct Values<'a> {
     /// Number of values.
     pub count: usize,
     kind: DataType,
-    /// Whether integers stand for parts of their type's largest value.
+    /// Whether integers are fractions of their type's largest value.
     pub normalised: bool,
 }
 
@@ -144,7 +144,7 @@ impl Values<'_> {
             .map(|bytes| number(bytes, self.kind, self.normalised))
     }
 
-    /// The first three numbers of a value that is present.
+    /// The first three numbers of an existing value.
     pub fn vector(&self, index: usize) -> Vector {
         let mut vector = [0.0; 3];
         for (c, number) in vector.iter_mut().zip(self.numbers(index)) {
@@ -153,7 +153,7 @@ impl Values<'_> {
         vector
     }
 
-    /// The first number of a value that is present, as an index.
+    /// The first number of an existing value, as an index.
     pub fn index(&self, index: usize) -> usize {
         self.numbers(index).next().unwrap_or(0.0) as usize
     }

@@ -1,4 +1,4 @@
-//! A file for tests and fuzzing.
+//! An example file for tests and fuzzing.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -6,7 +6,7 @@ use base64::prelude::BASE64_STANDARD;
 /// A glTF of two meshes, with its buffer in base64.
 pub const TWO_MESHES: &str = include_str!("two-meshes.gltf");
 
-/// A glTF with one buffer in base64 as `.glb`, and that buffer.
+/// Converts a glTF with one buffer in base64 to `.glb`; returns the `.glb` and the buffer.
 pub fn as_binary(gltf: &str) -> Option<(Vec<u8>, Vec<u8>)> {
     let (start, rest) = gltf.split_once("\"uri\": \"data:application/octet-stream;base64,")?;
     let (data, end) = rest.split_once("\", ")?;

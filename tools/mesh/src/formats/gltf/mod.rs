@@ -1,7 +1,7 @@
 //! glTF 2.0, as JSON (`.gltf`) or binary (`.glb`).
 //!
-//! The crate `gltf` parses and validates the JSON. Its own reading of values panics on offsets that are out of range, so that is
-//! done here.
+//! The crate `gltf` parses and validates the JSON. Its functions to read values panic on offsets out of range, so this module reads the
+//! values.
 
 mod buffers;
 pub mod example;
@@ -18,10 +18,10 @@ use gltf::{Document, Error, Glb, Material, Node, Primitive, Semantic};
 use serde::Deserialize;
 use std::borrow::Cow;
 
-/// Maximum number of bytes of JSON outside of strings. They bound the memory: three of them can stand for an object of some hundred
-/// bytes. Data within the file are strings.
+/// Maximum number of bytes of JSON outside of strings. This bounds the memory, because three such bytes can become an object of some
+/// hundred bytes. Buffers within the file are strings.
 const MAX_STRUCTURE: usize = 4 << 20;
-/// Maximum length of a message of the crate in an error.
+/// Maximum length in an error of a message of the crate.
 const MAX_MESSAGE: usize = 200;
 
 /// Columns of an affine map: the images of the axes, and the translation.
@@ -29,12 +29,12 @@ type Affine = [Vector; 4];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
 
-/// Parses a glTF. The meshes of its first scene are joined, each with the transforms of its nodes. Colours are those of materials and
-/// of vertices, converted from linear intensities to sRGB. Textures, skins and animations are ignored with a remark. `beside` reads a
-/// file of the same folder.
+/// Parses a glTF. The meshes of the first scene are merged, each with the transforms of its nodes. Colours come from materials and
+/// vertices, converted from linear intensities to sRGB. Textures, skins and animations are ignored with a remark. `beside` reads a file in
+/// the same folder.
 ///
 /// # Errors
-/// The first violation of the format, a required extension, sparse values, or a file of a buffer that cannot be read.
+/// The first violation of the format, a required extension, sparse values, or a buffer file that cannot be read.
 pub fn parse(file: &[u8], beside: Beside) -> Result<Polygons, FormatError> {
     let (json, binary) = split(file)?;
     let structure = structure(&json);
@@ -104,7 +104,7 @@ fn structure(json: &[u8]) -> usize {
     count
 }
 
-/// Fields of every version of the format.
+/// Fields that exist in every version of the format.
 #[derive(Deserialize)]
 struct Head {
     asset: Asset,
@@ -117,8 +117,8 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Checks that the file is of version 2, and that a reader of version 2.0 reads it: later minor versions are compatible. A file that does
-/// not state its version is for the crate to refuse.
+/// Checks that the file has version 2, and that a reader of version 2.0 can read it: later minor versions are compatible. The crate
+/// rejects a file without a version.
 fn check_version(json: &[u8]) -> Result<(), FormatError> {
     let Ok(Head { asset }) = serde_json::from_slice(json) else {
         return Ok(());
@@ -140,7 +140,7 @@ fn check_version(json: &[u8]) -> Result<(), FormatError> {
     }
 }
 
-/// Checks what the crate's validation uses before it is checked.
+/// Checks values that the crate's validation uses before it checks them.
 fn check_positions(root: &Root) -> Result<(), FormatError> {
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let positions = primitives.filter_map(|primitive| {
@@ -179,7 +179,7 @@ fn add_scene(
         .default_scene()
         .or_else(|| document.scenes().next());
     let scene = scene.ok_or_else(|| FormatError::whole("a scene", "none"))?;
-    // Without this check a few nodes could repeat a mesh endlessly.
+    // Without this check a few nodes could multiply a mesh exponentially.
     let mut visited = vec![false; document.nodes().count()];
     let mut waiting: Vec<(Node, Affine)> = scene.nodes().map(|node| (node, IDENTITY)).collect();
     while let Some((node, parent)) = waiting.pop() {
@@ -236,7 +236,7 @@ fn add_primitive(
         &[Dimensions::Vec3, Dimensions::Vec4],
     )?;
     if let Some(colours) = &mut colours {
-        // Integers of colours are always normalised.
+        // Integer colours are always normalised.
         colours.normalised = true;
     }
     let indices = primitive.indices();
@@ -263,7 +263,7 @@ fn add_primitive(
         polygons.point_colours.push(colour.unwrap_or(Rgb8::DEFAULT));
         if let Some(normals) = &normals {
             let normal = apply(&turned, normals.vector(i));
-            // Without a direction the normal follows from the faces.
+            // A normal of length 0 is computed from the faces instead.
             let valid = normal.iter().all(|c| c.is_finite());
             polygons.add_normal(if valid { normal } else { [0.0; 3] }, Location::Whole)?;
         }
@@ -306,7 +306,7 @@ fn add_primitive(
     Ok(())
 }
 
-/// The colour of a material, as linear intensities; `None` for the default material without colours of vertices.
+/// The colour of a material, as linear intensities; `None` for the default material without vertex colours.
 fn base_colour(polygons: &mut Polygons, material: &Material, has_colours: bool) -> Option<Vector> {
     if material.index().is_none() && !has_colours {
         return None;
@@ -334,7 +334,7 @@ fn srgb(linear: Vector) -> Rgb8 {
     }))
 }
 
-/// The map of a node to its parent.
+/// The map from a node to its parent.
 fn local(node: &Node) -> Affine {
     let matrix = node.transform().matrix();
     matrix.map(|[x, y, z, _]| [x, y, z].map(f64::from))
@@ -369,7 +369,7 @@ fn determinant(map: &Affine) -> f64 {
     multiplied(cross(x, y), z).iter().sum()
 }
 
-/// The map of normals: the inverse transpose, times the magnitude of the determinant.
+/// The map for normals: the inverse transpose, times the magnitude of the determinant.
 fn turn_of_normals(map: &Affine) -> Affine {
     let [x, y, z, _] = *map;
     let sign = determinant(map).signum();

@@ -1,5 +1,5 @@
-//! Tests with a file of two meshes under a node: one turned by 90° about z, with a material and indices, one mirrored, a strip with
-//! colours of vertices.
+//! Tests with a file of two meshes under a node: one mesh rotated by 90° about z, with a material and indices; the other mesh mirrored, a
+//! strip with vertex colours.
 
 use super::example::{TWO_MESHES, as_binary};
 use super::*;
@@ -35,15 +35,15 @@ fn transforms_colours_and_strips() {
     assert_eq!(
         faces(&polygons),
         [
-            // The strip, mirrored: the other way around.
+            // The strip, mirrored, so with reversed winding.
             vec![[10, 0, 0], [10, 2, 0], [8, 0, 0]],
             vec![[10, 2, 0], [8, 2, 1], [8, 0, 0]],
-            // The indexed triangles, turned.
+            // The indexed triangles, rotated.
             vec![[10, 0, 0], [10, 2, 0], [8, 0, 0]],
             vec![[10, 2, 0], [8, 2, 1], [8, 0, 0]],
         ]
     );
-    // 0.214 is half of the intensity on a screen.
+    // The linear intensity 0.214 is half of the full sRGB value.
     let material = Rgb8([127, 255, 0]);
     assert_eq!(polygons.faces[3].colour, Some(material));
     assert_eq!(polygons.faces[0].colour, None);
@@ -52,7 +52,7 @@ fn transforms_colours_and_strips() {
         [[255, 0, 0], [0, 255, 0], [0, 0, 255]].map(Rgb8)
     );
     assert_eq!(polygons.point_colours[4], material);
-    // Turned about z, a normal along z stays.
+    // A rotation about z does not change a normal along z.
     assert!(polygons.normals.iter().all(|n| (n[2] - 1.0).abs() < 1e-6));
     assert_eq!(polygons.remarks, ["points and lines are ignored"]);
 }
@@ -150,7 +150,7 @@ fn memory_is_bounded() {
         error.starts_with("expected at most 4194304 bytes of JSON outside of strings"),
         "{error}"
     );
-    // Strings, such as data in base64, do not count.
+    // Strings, such as data in base64, are not counted.
     assert_eq!(structure(br#"{"a\"{{{": "}}}\\"}"#), 8);
 }
 

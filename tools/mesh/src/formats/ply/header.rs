@@ -3,7 +3,7 @@
 use crate::error::{FormatError, Location, MAX_REMARKS, quote};
 use crate::formats::text::{Line, Lines};
 
-/// Maximum number of elements in a header, and of properties in an element; files in use have fewer.
+/// Maximum number of elements in a header, and of properties in an element; real files have fewer.
 const MAX_DECLARED: usize = 64;
 
 /// Encoding of the values after the header.
@@ -93,7 +93,7 @@ impl Scalar {
         self.range().map_or(1.0, |(_, high)| high)
     }
 
-    /// Name of the type with its article, for messages.
+    /// Name of the type with an article, for messages.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Int8 => "an int8",
@@ -108,7 +108,7 @@ impl Scalar {
     }
 }
 
-/// Type of a property: one value, or a list that is preceded by its length.
+/// Type of a property: one value, or a list preceded by its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// One value.
@@ -131,7 +131,7 @@ pub struct Property {
     pub kind: Kind,
 }
 
-/// An element of a PLY: a table in the file, such as that of the vertices, with one row (an instance) for each of them.
+/// An element of a PLY: a table in the file, such as the table of vertices, with one row (instance) for each item.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Element {
     /// Name of the element.
@@ -140,7 +140,7 @@ pub struct Element {
     pub count: u32,
     /// Properties of each instance.
     pub properties: Vec<Property>,
-    /// Place of the element's declaration in the header.
+    /// Position of the element's declaration in the header.
     pub place: Location,
 }
 
@@ -151,7 +151,7 @@ pub struct Header {
     pub encoding: Encoding,
     /// Elements in file order.
     pub elements: Vec<Element>,
-    /// Remarks on lines that start with no keyword; they are skipped.
+    /// Remarks on skipped lines, which start with no keyword.
     pub remarks: Vec<String>,
 }
 

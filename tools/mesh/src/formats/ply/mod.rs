@@ -1,7 +1,7 @@
 //! PLY (the Stanford polygon format), ASCII and binary of both byte orders.
 //!
-//! Own parser instead of `ply-rs` or `ply-rs-bw`: they need 2 GB for a header of 70 bytes that declares 30 million elements
-//! without properties, and their errors in binary files have no offset.
+//! This parser replaces `ply-rs` and `ply-rs-bw`, which need 2 GB for a header of 70 bytes that declares 30 million elements without
+//! properties, and whose errors in binary files have no offset.
 
 mod header;
 mod source;
@@ -38,7 +38,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     for element in &header.elements {
-        // An element without properties takes no bytes in the file, whatever its count.
+        // An element without properties takes no bytes in the file, for any count.
         if element.properties.is_empty() {
             continue;
         }
@@ -117,7 +117,7 @@ impl Slot {
     }
 }
 
-/// Whether the properties of an element set all three of x, y and z, or of red, green and blue, which `kind` selects.
+/// Whether the properties of an element set x, y and z, or red, green and blue, as selected by `kind`.
 fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
     (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
 }
@@ -233,7 +233,7 @@ fn read_faces(
     }
     remark_lists(element, is_indices, polygons);
     let with_colour = has_colour(&slots);
-    // Faces use the vertices' normals if the vertices come first, as in every known file.
+    // Faces use the normals of the vertices only if the vertices come first, as in every known file.
     let with_normal = !polygons.normals.is_empty();
     let mut corners = Vec::new();
     for _ in 0..element.count {

@@ -6,13 +6,13 @@ use crate::formats::text::{Lines, any_number};
 
 /// The values of a PLY's elements in file order.
 pub trait Source {
-    /// Starts the next instance of an element: a row of its table.
+    /// Starts the next instance of an element, a row of its table.
     fn start(&mut self) -> Result<(), FormatError>;
     /// Reads the next value of the instance.
     fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
-    /// Ends the instance. In an ASCII file the line must have no further word.
+    /// Ends the instance. Ends an instance: in an ASCII file the line must have no further word.
     fn end(&mut self) -> Result<(), FormatError>;
-    /// The place of the next value.
+    /// The position of the next value.
     fn place(&self) -> Location;
 }
 
