@@ -1,6 +1,6 @@
 //! Root mean square (RMS) and maximum of a set of errors.
 
-/// Accumulates errors, and gives their root mean square and their maximum.
+/// Accumulator of errors, for their root mean square and maximum.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
     /// Largest magnitude among the errors.
@@ -10,7 +10,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Adds an error, of either sign.
+    /// Adds an error of either sign.
     pub fn add(&mut self, error: f64) {
         self.max = self.max.max(error.abs());
         self.squares += error * error;

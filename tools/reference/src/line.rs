@@ -1,14 +1,14 @@
 //! Exact pixels of a segment between snapped end points, by the diamond-exit rule of OpenGL and Vulkan.
 //!
 //! Each pixel is decided independently: it belongs to the segment if the segment intersects the open diamond |x| + |y| < 1/2 pixel about
-//! the pixel's centre, and the second end point is not in the diamond. Both end points are first moved by (−ε, −ε²), to avoid end points
-//! on, and segments along, the border of a diamond. ε is so small that any smaller ε gives the same pixels.
+//! the pixel's centre, and the second end point is not in the diamond. Both end points are first moved by (−ε, −ε²), which moves all end
+//! points and parallel segments off the borders of diamonds. ε is so small that any smaller ε gives the same pixels.
 
 use crate::triangle::exact::{DEPTH_STEPS, ExactDepth, SUBPIXELS, SnappedVertex};
 
 /// Steps per subpixel: positions are computed in 2^-46 subpixel.
 const STEPS: i128 = 1 << 46;
-/// ε and ε² in these steps: 2^-23 and 2^-46 subpixel. Every decision is the sign of i + j·ε + k·ε² with integers i, j and k,
+/// ε and ε² in units of 1/`STEPS`: 2^-23 and 2^-46 subpixel. Every decision is the sign of i + j·ε + k·ε² with integers i, j and k,
 /// where |j|, |k| ≤ 2^22: a factor of ε is the sum of two differences of end points, of 21 bits each.
 const EPSILON: [i128; 2] = [1 << 23, 1];
 
@@ -62,7 +62,7 @@ impl ExactSegment {
         if NORMALS.iter().all(|&normal| distance(self.end, normal) > 0) {
             return false;
         }
-        // The open interval (low, high) of the path within the diamond, in 2^-46 of the path's length.
+        // The open interval (low, high) of the path's parameter within the diamond, in units of 2^-46.
         let mut low = Fraction(-STEPS, 1);
         let mut high = Fraction(2 * STEPS, 1);
         for normal in NORMALS {

@@ -1,4 +1,4 @@
-//! Solids given by signed distance fields, in f64, and two independent methods for a ray's hit on a solid.
+//! Solids as signed distance fields in f64, and two independent methods to find a ray's hit on a solid.
 //!
 //! - [`Field::distance`]: the distance of a point from a solid.
 //! - [`Field::traced`]: hits by sphere tracing, which uses only the distance.

@@ -1,4 +1,4 @@
-//! Segments in screen coordinates: random ones, edge cases, and those that measure the rate of the line engine.
+//! Segments in screen coordinates: random segments, edge cases, and segments for measurements of the line engine's rate.
 
 use glint_core::colour::Rgb565;
 use glint_model::line::{LineDepth, Segment};

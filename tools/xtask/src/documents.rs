@@ -97,7 +97,7 @@ fn a_claim_needs_a_link_to_the_report_in_its_block() {
 fn every_claim_is_linked_to_the_report() {
     let mut claims = Vec::new();
     for (path, page) in pages_of_users() {
-        // The changelog may state the figures of the time of a change.
+        // The changelog may state figures measured at the time of a change.
         if is_report(&path) || path == Path::new("CHANGELOG.md") {
             continue;
         }

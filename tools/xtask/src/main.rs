@@ -103,7 +103,7 @@ enum Task {
         /// Place and route on an ECP5 instead: clock rates of the blocks and of VexRiscv
         #[arg(long)]
         route: bool,
-        /// Print the sizes of the instances in the blocks [default: soc] instead, largest first
+        /// Print only the sizes of the instances in the blocks [default: soc], largest first
         #[arg(long, conflicts_with = "route")]
         tree: bool,
         /// Depth of the printed tree of instances

@@ -137,7 +137,7 @@ enum Page {
         /// Run only cases whose name or subject contains TEXT, and write no page
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
-        /// Run the cases of the virtual board instead, which take minutes
+        /// Run only the cases of the virtual board, which take minutes
         #[arg(long = "virtual")]
         on_virtual_board: bool,
     },
@@ -332,7 +332,7 @@ fn measure_quality(
     Ok(())
 }
 
-/// Runs all long runs, or only the table `study`.
+/// Makes all long runs, or only the run of the table `study`.
 fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Result<()> {
     let is_selected = |name: &str| study.is_none_or(|study| study == name);
     let (turns, hours) = if quick { (4, 0.24) } else { (400, hours) };

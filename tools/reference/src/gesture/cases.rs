@@ -9,9 +9,9 @@ use super::path::{AREA, angles, between};
 
 /// Number of frames per second.
 const RATE: f64 = 60.0;
-/// Start and end of the fault in seconds.
+/// Start and end times of the fault in seconds.
 const FAULT: [f64; 2] = [2.0, 3.0];
-/// End of a case in seconds.
+/// End time of a case in seconds.
 const END: f64 = 5.0;
 
 /// Content of the frames during a case's fault.

@@ -18,7 +18,7 @@ pub enum Filter {
     LowPass(f64),
     /// α-β filter with tracking index λ (Kalata, 1984).
     AlphaBeta(f64),
-    /// 1€ filter: corner frequencies at rest and of the speed in Hz, and slope in Hz per turn per second.
+    /// 1€ filter: corner frequency at rest and of the speed's low pass in Hz, and slope in Hz per turn per second.
     OneEuro([f64; 3]),
     /// The firmware's filter: 1€ filter and dead zone with the firmware's constants.
     Shipped,

@@ -71,7 +71,7 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Makes a hand of `area` pixels with its centre of mass at a position.
+    /// Makes a hand of `area` pixels with its centre of mass at `centre`.
     pub fn new(shape: Shape, centre: [f64; 2], area: f64) -> Self {
         let (unit, offset) = shape.area_and_centre();
         let radius = (area / unit).sqrt();

@@ -228,8 +228,7 @@ impl Estimator {
     }
 }
 
-/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds, it returns the mean of all inputs
-/// so far instead.
+/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds it returns the mean of all inputs so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Butterworth {
     age: f64,

@@ -16,8 +16,8 @@ use crate::errors::Errors;
 /// Time constant of the firmware's tilt correction, in seconds.
 pub const TAU: f64 = TIME_CONSTANT as f64 * 1e-6;
 
-/// Makes the firmware's attitude tracker for a sensor, with the sensor's true bias rounded to 1/256 LSB. `tilt` says whether
-/// it uses the accelerometer.
+/// Makes the firmware's attitude tracker for a sensor, with the sensor's true bias rounded to 1/256 LSB. `tilt` selects whether
+/// the tracker uses the accelerometer.
 ///
 /// # Panics
 /// When the firmware does not support the sensor's units.
@@ -46,7 +46,7 @@ pub struct Largest {
 }
 
 /// Compares the firmware's attitude with the same method in f64, on the same samples of a motion of `seconds` seconds. `tilt`
-/// says whether the accelerometer is used.
+/// selects whether both use the accelerometer.
 pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> Largest {
     let mut tracker = tracker(&sensor, tilt);
     let filter = if tilt {
@@ -136,7 +136,7 @@ pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, second
 /// When the firmware's calibration refuses a sample.
 ///
 /// # Panics
-/// When the samples end before the calibration does.
+/// When the samples end before the calibration is complete.
 pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError> {
     let mut calibration = Calibration::new(Units::MPU_6050, SAMPLES);
     for sample in sensor.samples(motion, u64::from(SAMPLES) + 1, 3) {

@@ -9,7 +9,7 @@ use glint_core::orientation::{LONGEST_CURVE, MOST_STRETCH};
 pub enum Method {
     /// Integrates the rates about the body's axes directly as yaw, pitch and roll.
     Angles,
-    /// Replaces the attitude q by q + q·ω·dt/2, normalised, where The rate ω is the newest sample.
+    /// Replaces the attitude q by q + q·ω·dt/2, normalised, with the newest sample's rate ω.
     FirstOrder,
     /// Rotates by the newest sample's rate times dt, through the quaternion exponential.
     Newest,
@@ -21,8 +21,8 @@ pub enum Method {
     Parabola,
     /// Integrates the cubic through the last four samples, with the firmware's coning term.
     Cubic,
-    /// As `Cubic`, but with the exact coefficient of the coning term for the cubic. The firmware's coefficient is another one,
-    /// with a smaller error.
+    /// As `Cubic`, but with the exact coefficient of the coning term for the cubic. The firmware's coefficient differs, for a
+    /// smaller error.
     PlainCubic,
 }
 
@@ -138,7 +138,7 @@ impl Integrator {
 
     /// Computes the rotation vector of a step of `step` seconds with the rate `rate` at its end.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
-        // The firmware compares whole microseconds. Here, steps that differ by less than a nanosecond count as equal.
+        // The firmware compares step lengths in whole microseconds. Here, steps that differ by less than a nanosecond count as equal.
         let within = |longest: f64| step <= longest + 1e-9;
         let curved = within(f64::from(LONGEST_CURVE) * 1e-6)
             && (self.steps == 0 || within(f64::from(MOST_STRETCH) * self.ages[0]));

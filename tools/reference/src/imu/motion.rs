@@ -29,7 +29,7 @@ fn slope(waves: &[Wave], t: f64) -> f64 {
 /// A motion of the sensor. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// The sensor does not move.
+    /// The sensor is at rest.
     Rest,
     /// A constant rate in °/s about each axis.
     Spin(Vector),

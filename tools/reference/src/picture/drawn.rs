@@ -57,7 +57,7 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
         for (place, (x, y)) in places.enumerate() {
             for (eye, seen) in seen[place].iter_mut().enumerate().take(eyes) {
                 let (surface, code) = surface(setup, &mut rays, eye, x, y);
-                // At equal depths the field hides the triangle.
+                // At equal depths, the field is in front of the triangle.
                 if code >= buffer.depth[place] && surface != Seen::Background {
                     *seen = surface;
                 }

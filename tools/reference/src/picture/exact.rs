@@ -29,7 +29,7 @@ pub struct Exact {
     pub colours: Vec<Vector>,
 }
 
-/// A pixel of one eye.
+/// A pixel of an eye's picture.
 #[derive(Clone, Copy)]
 struct Pixel {
     seen: Seen,

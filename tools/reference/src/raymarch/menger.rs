@@ -1,7 +1,8 @@
 //! Hits of rays on the Menger sponge, by traversal of its cells.
 //!
-//! A cell of the last level has an index along each axis, from 0 to 3^depth − 1. In base 3, each digit of the index is the position (0, 1
-//! or 2) of the enclosing cell of one level within that of the previous level. A cell with the digit 1 along two or three axes is a hole.
+//! A cell of the last level has an index along each axis, from 0 to 3^depth − 1. In base 3, each digit of the index is the
+//! position (0, 1 or 2) of the enclosing cell of a level within the enclosing cell of the previous level. A cell with the digit 1
+//! along two or three axes is a hole.
 
 use super::solids::Slabs;
 use super::surface::Hit;

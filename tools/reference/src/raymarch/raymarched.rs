@@ -18,7 +18,7 @@ pub struct RenderedRay {
     /// Result of the ray. The depth of a hit (its distance along the camera's n, in world units) is computed from the ray's
     /// parameter t.
     pub outcome: RayOutcome,
-    /// Depth of a hit in world units, computed from the depth code. `None` if there is no hit, or if the code gives no depth.
+    /// Depth of a hit in world units, computed from the depth code. `None` without a hit, or if the code has no depth.
     pub coded: Option<f64>,
     /// Number of evaluations of the field by the ray.
     pub steps: u32,

@@ -20,7 +20,7 @@ pub struct Plane {
     pub offset: f64,
 }
 
-/// Kind of surface at a hit.
+/// Kind of a hit surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// A plane perpendicular to an axis.

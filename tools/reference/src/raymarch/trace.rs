@@ -14,7 +14,7 @@ const STEP: f64 = 1e-6;
 /// Step limit, which is sufficient unless the ray runs close and nearly parallel to a face.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// The error of a trace without end after 2^20 steps, because the ray runs close and nearly parallel to a surface.
+/// Error: the trace did not end within 2^20 steps, because the ray runs close and nearly parallel to a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unconverged {
     /// Parameter of the ray at the last step.

@@ -32,7 +32,7 @@ pub const GROWTH_STEPS: u32 = 64;
 pub struct Method {
     /// Norm of the distance to the sponge.
     pub distance: Norm,
-    /// Norm in which the length of a step equals the distance. If equal to `distance`, steps are as long as the distance allows.
+    /// Norm in which the length of a step equals the distance. With the norm of `distance`, steps have the maximum safe length.
     /// With distances in the maximum norm, Euclidean steps are shorter. Euclidean distances require Euclidean steps.
     pub rays: Norm,
     /// Constant part of the threshold, in world units. A ray hits where its distance from the sponge is below the threshold.
@@ -114,7 +114,7 @@ pub fn entry(ray: &Ray) -> f64 {
 /// Sample points of the distance for an estimate of the normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taps {
-    /// The point, and one neighbour along each axis.
+    /// The point itself, and a neighbour along each axis.
     Forward,
     /// The corners of a tetrahedron around the point.
     Tetrahedron,

@@ -7,8 +7,8 @@ use glint_testbench::raymarch::{
 };
 use glint_testbench::{Counters, Module, Port};
 
-/// The raymarcher's SystemVerilog module, built with all kinds of fields. It never stalls: every band (strip of lines) may be
-/// drawn immediately, and every pixel is accepted immediately.
+/// The raymarcher's SystemVerilog module, built with all kinds of fields. The environment never stalls it: every band (strip of
+/// lines) may be drawn immediately, and every pixel is accepted immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],

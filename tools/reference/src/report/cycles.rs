@@ -12,11 +12,11 @@ use super::workspace;
 /// Cycles per call of a kernel (a measured function of the firmware), in clocks of the soft core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
-    /// Number of cycles of the fastest call.
+    /// Cycles of the fastest call.
     pub min: u64,
     /// Median of the calls' cycles.
     pub median: u64,
-    /// Number of cycles of the slowest call.
+    /// Cycles of the slowest call.
     pub max: u64,
 }
 
@@ -71,7 +71,7 @@ pub fn parse(console: &str) -> Result<Cycles> {
 
 /// The console's prompt.
 const PROMPT: &str = "glint> ";
-/// Limit in cycles for the firmware's start, and for the run of all kernels. Both need only a fraction of the limit.
+/// Limit in cycles for the firmware's start, and for the run of all kernels. Each takes only a fraction of the limit.
 const LIMIT: u64 = 500_000_000;
 
 /// Command-line arguments for the source of the cycles: a run on the virtual board, or a transcript.

@@ -17,9 +17,9 @@ use super::truth::{Image, OCTANT, SinCos, TURN};
 pub struct Kernel {
     /// Name of the kernel, as in the firmware's `bench sine`.
     pub name: &'static str,
-    /// Name of the line of the kernel and its variants in the work-precision diagram.
+    /// Name of the kernel's line in the work-precision diagram, shared by its variants.
     pub family: &'static str,
-    /// Name of the variant of the kernel, for example the order of its series.
+    /// Name of the kernel's variant, for example the order of the series.
     pub config: &'static str,
     /// Number format of the outputs.
     pub format: &'static str,
@@ -41,7 +41,7 @@ pub struct Kernel {
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Kernel {
-    /// Makes a kernel outside Glint with inputs other than phases. The labels are name, family, config and format.
+    /// Makes a kernel that Glint does not use, with inputs other than phases. `labels` are name, family, config and format.
     fn new(
         [name, family, config, format]: [&'static str; 4],
         ulp: f64,

@@ -85,7 +85,7 @@ pub struct Triangle {
     pub oriented: Oriented,
     /// The light at each vertex.
     pub lit: [Lit; 3],
-    /// Whether the triangle is from the clipper.
+    /// Whether the clipper made the triangle.
     pub clipped: bool,
     /// Width and height of the picture, in pixels.
     pub size: (u32, u32),
@@ -146,9 +146,9 @@ impl Triangle {
 /// Counts and errors over the triangles of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
-    /// Number of triangles on the screen: unclipped triangles, and triangles from the clipper.
+    /// Number of triangles on the screen: unclipped triangles, and triangles made by the clipper.
     pub triangles: u64,
-    /// Number of triangles on the screen from the clipper.
+    /// Number of triangles on the screen made by the clipper.
     pub clipped: u64,
     /// Number of triangles on the screen with a visible back face.
     pub back: u64,

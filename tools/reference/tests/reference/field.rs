@@ -18,8 +18,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Distance from the surface at which a trace ends, in world units.
 const TRACE: f64 = 1e-9;
 
-/// Tolerance at edges, in world units. The two methods may disagree for a ray if the geometric result of a ray moved by this
-/// distance agrees with the trace.
+/// Tolerance at edges, in world units. The two methods may disagree on a ray if geometry and trace agree on the ray moved by this distance.
 const BESIDE: f64 = 1e-6;
 
 fn ball(centre: Vector, radius: f64) -> Field {
@@ -323,7 +322,7 @@ fn smooth_unions_are_hit_where_their_distance_changes_its_sign() {
                     hits += 1;
                 }
                 (None, None) => {}
-                // `bisected` may miss a crossing of the solid shorter than its step.
+                // `bisected` may miss a crossing that is shorter than a step.
                 (None, Some(hit)) => {
                     let cosine = dot(ray.direction, hit.normal) / length(ray.direction);
                     assert!(cosine.abs() < 0.01, "{}", context());

@@ -44,8 +44,8 @@ fn a_still_hand_holds_the_camera_still_and_a_moving_one_is_followed() {
 #[test]
 fn stiff_cases_have_their_stated_outcomes() {
     use Presence::{Absent, Tracked};
-    // Presence after half a second, reason for not using frames, and largest rotations of the camera in degrees during the case
-    // and in a frame.
+    // For each case: presence after half a second, reason for not using frames, and the camera's largest rotation in degrees
+    // during the case and per frame.
     for (fault, presence, doubt, moved, step) in [
         (Fault::Nothing, Absent, Some(Doubt::Few), 0.0, 0.1),
         (Fault::OnePixel, Absent, Some(Doubt::Few), 0.0, 0.1),

@@ -280,7 +280,7 @@ fn sponges_keep_the_lanes_busy() {
         let setup = setup(&mut random, &SPONGES);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
         println!("frame {frame}: {}", taken.busy(&bench));
-        // Below 8 evaluations per ray the ray generator limits the speed instead of the lanes.
+        // Below 8 evaluations per ray, the ray generator limits the speed, not the lanes.
         let share = taken.stats.evaluations as f64 / (taken.counters[0] * bench.lanes) as f64;
         assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }

@@ -75,7 +75,7 @@ pub struct Stiff {
     pub moved: f64,
     /// Time in ms from the end of the case until the hand steers the camera again.
     pub back: f64,
-    /// Largest rotation of the camera in a frame, in degrees.
+    /// Largest rotation of the camera between two frames, in degrees.
     pub step: f64,
     /// Angle in degrees between the directions of camera and hand two seconds after the case.
     pub end: f64,
@@ -106,7 +106,7 @@ struct Compared {
     region: fn(&Region) -> Region,
     /// Minimum length of a counted run, in pixels.
     least_run: u8,
-    /// Whether the firmware uses this setting for a hand at rest.
+    /// Whether this is the firmware's setting for a hand at rest.
     shipped: bool,
 }
 
@@ -256,8 +256,8 @@ pub fn stiff() -> Vec<Stiff> {
     rows.collect()
 }
 
-/// Collects the figures that have a requirement. `centres` and `recordings` are results of the functions above, `cycles` is the
-/// result of the console command `bench gesture`.
+/// Collects the figures with a requirement. `centres` and `recordings` are results of the functions above, `cycles` is the result
+/// of the console command `bench gesture`.
 ///
 /// # Errors
 /// When the shipped setting is missing in `centres`.

@@ -17,7 +17,7 @@ use crate::report::provenance::Provenance;
 /// Error and cost of one configuration of a kernel: a line of `kernels.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
-    /// Function of the kernel.
+    /// Family: the function computed by the kernel.
     pub family: String,
     /// Name of the kernel; its name in the firmware's `bench kernels` if it has cycles.
     pub kernel: String,
@@ -27,19 +27,19 @@ pub struct Row {
     pub shipped: bool,
     /// Largest error, in the unit of the family.
     pub max_err: f64,
-    /// Root of the mean of the squared errors.
+    /// Root mean square of the errors.
     pub rms: f64,
     /// Input with the largest error.
     pub argmax: String,
     /// Number of inputs.
     pub samples: u64,
-    /// Number of bits of a stored number, if the bits are the cost.
+    /// Number of bits of a stored number, for kernels with bits as cost.
     pub bits: Option<u32>,
-    /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    /// Cycles of the fastest call on the soft core; `None` if not measured.
     pub cycles_min: Option<u64>,
     /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Number of cycles of the slowest call on the soft core.
+    /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit of the measurement.
     pub commit: String,
@@ -50,7 +50,7 @@ pub struct Row {
 /// Name of a family, and the function that measures its trials for a thinning of the inputs.
 type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 
-/// Measures all configurations, or only one family. `thinning` is 1 for all inputs of a kernel, and n for every n-th. `cycles` is the
+/// Measures all configurations, or only one family. A `thinning` of n measures every n-th input of a kernel. `cycles` is the
 /// result of the console command `bench kernels`.
 ///
 /// # Errors

@@ -74,7 +74,7 @@ impl Variant {
         Size::ALL.into_iter().flat_map(of_size).collect()
     }
 
-    /// The quality with this size and precision.
+    /// The quality with this size and this precision of the rays.
     fn quality(self) -> Option<Quality> {
         let mut qualities = Quality::ALL.into_iter();
         qualities.find(|quality| {
@@ -95,7 +95,7 @@ impl Variant {
     }
 }
 
-/// The built-in scenes with their own pictures whose names contain `only`.
+/// The built-in scenes with a picture of their own, restricted to names that contain `only`.
 pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     let scenes = NAMES.into_iter().filter_map(built_in);
     scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))

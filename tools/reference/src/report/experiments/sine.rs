@@ -20,9 +20,9 @@ const SAMPLE: u64 = 1 << 15;
 pub struct Row {
     /// Name of the kernel in the console's `bench sine`.
     pub kernel: String,
-    /// Name of the diagram's line of the kernel and its variants.
+    /// Name of the kernel's line in the diagram, shared by its variants.
     pub family: String,
-    /// Name of the variant of the kernel, for example the order of its series.
+    /// Name of the kernel's variant, for example the order of the series.
     pub config: String,
     /// Number format of the outputs.
     pub word_length: String,
@@ -49,11 +49,11 @@ pub struct Row {
     /// Number of phases (inputs as fractions of a turn) that violate a symmetry of the circle in any bit. `None` if the inputs
     /// are not phases.
     pub asymmetric: Option<u64>,
-    /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    /// Cycles of the fastest call on the soft core; `None` if not measured.
     pub cycles_min: Option<u64>,
     /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Number of cycles of the slowest call on the soft core.
+    /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit of the measurement.
     pub commit: String,

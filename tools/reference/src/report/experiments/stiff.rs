@@ -54,7 +54,7 @@ pub fn errors(measured: &[Measured]) -> Vec<Row> {
     measured.iter().filter_map(error).collect()
 }
 
-/// A part of the catalogue, run together.
+/// The parts of the catalogue, each run separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The cases on this host and on the emulated board.

@@ -41,7 +41,7 @@ struct Case {
     target: Target,
 }
 
-/// Half width of the picture in world units at distance 1, by which a sphere of diameter 1 at distance 2 fills 96 % of the
+/// Half width of the picture in world units at distance 1, for a sphere of diameter 1 at distance 2 that fills 96 % of the
 /// picture's height.
 const FILLING: f64 = 0.4781;
 
@@ -184,7 +184,7 @@ pub struct Row {
     pub cycles_geometry: u64,
     /// Cycles of the raster pass of a frame drawn alone.
     pub cycles_raster: u64,
-    /// Mean cycles of a frame of many drawn back to back.
+    /// Mean cycles per frame of many frames drawn back to back.
     pub cycles_frame: f64,
     /// Mean cycles of the geometry pass of a frame drawn back to back. Another frame's raster pass uses the memory at the same time.
     pub cycles_geometry_together: f64,
@@ -200,7 +200,7 @@ pub struct Row {
     pub other: f64,
     /// Fraction of `cycles_geometry` spent waiting for writes to memory.
     pub geometry_writes: f64,
-    /// Measured value of the quantity with the requirement.
+    /// Measured value of the required quantity.
     pub measured: f64,
     /// Unit of `measured`.
     pub unit: String,
@@ -221,7 +221,7 @@ pub struct Row {
 pub struct CpuRow {
     /// Name of the scene.
     pub scene: String,
-    /// Number of cycles of a frame.
+    /// Cycles of a frame.
     pub cycles: u64,
     /// Commit of the measurement.
     pub commit: String,
@@ -235,7 +235,7 @@ pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
     measure_cases(only, CASES.iter(), Backend::Gateware, measure_engine)
 }
 
-/// Name of the model not drawn by the soft core, because each frame takes minutes on the virtual board.
+/// Name of the model that the soft core does not draw, because a frame takes minutes on the virtual board.
 const FOR_THE_ENGINE_ALONE: &str = "scan:59";
 
 /// Measures frames drawn by the soft core, of the scenes of [`measure`].

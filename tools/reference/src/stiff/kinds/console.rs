@@ -15,8 +15,8 @@ pub fn kinds() -> Vec<Kind> {
     vec![Kind::new("console", console), Kind::new("upload", uploaded)]
 }
 
-/// Outcome of a command: the reply, or the reason of the firmware's refusal. Only lines of the reply with a key of `counted`
-/// count, or all lines if `counted` is empty.
+/// Outcome of a command: the reply, or the reason of the firmware's refusal. The outcome has only the reply's lines with a key of
+/// `counted`, or all lines if `counted` is empty.
 pub fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Result<Outcome> {
     let counts = |line: &String| {
         let word = line.split(' ').next().unwrap_or_default();
@@ -42,7 +42,7 @@ pub struct Session {
     /// Run time in ms before the last command.
     #[serde(default)]
     pub wait: u64,
-    /// Keys of the last reply's counted lines; by default all lines count.
+    /// Keys of the last reply's lines that are part of the outcome, by default all lines.
     #[serde(default)]
     pub lines: Vec<String>,
 }
@@ -141,7 +141,7 @@ struct Upload {
     length: Option<usize>,
     /// The command after the upload.
     then: String,
-    /// Keys of the counted lines of the command's reply; by default all lines count.
+    /// Keys of the reply's lines that are part of the outcome, by default all lines.
     #[serde(default)]
     lines: Vec<String>,
 }

@@ -66,8 +66,8 @@ struct Deep {
     cubes: [f64; 2],
 }
 
-/// Draws a cube at the near plane beside the middle of the picture, and two cubes in the middle. States the visible cube of the
-/// two, and the depth codes of both planes.
+/// Draws a cube at the near plane beside the middle of the picture, and two cubes in the middle. States which of these two cubes
+/// is visible, and the depth codes of both planes.
 fn deep_volume(Deep { near, far, cubes }: Deep) -> Result<Outcome> {
     let bytes = Model::cube(8192).encoded();
     let cube = |place: [f64; 3], size: f64, colour| -> Result<Object<'_>> {

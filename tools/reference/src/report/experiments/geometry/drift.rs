@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::report::provenance::Provenance;
 use crate::wireframe::{Drift, Form, Session, drift};
 
-/// Numbers of steps before the measurements of the errors.
+/// Numbers of steps at which the errors are measured.
 const STEPS: [u32; 5] = [1, 10, 100, 1_000, 10_000];
 
 /// Errors of the corners of a cube of side 4 after some rotations: a line of `geometry-drift.csv`.

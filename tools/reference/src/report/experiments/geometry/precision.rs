@@ -25,15 +25,15 @@ pub struct Row {
     pub shipped: bool,
     /// Largest error: of an entry of a matrix, of a component of a normal, or of a position in 1/256 pixel.
     pub max_err: f64,
-    /// Root of the mean of the squared errors.
+    /// Root mean square of the errors.
     pub rms: f64,
     /// Number of errors.
     pub samples: u64,
-    /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    /// Cycles of the fastest call on the soft core; `None` if not measured.
     pub cycles_min: Option<u64>,
     /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Number of cycles of the slowest call on the soft core.
+    /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit of the measurement.
     pub commit: String,
@@ -275,7 +275,7 @@ fn positions(reciprocal: fn(u32) -> u32) -> Errors {
     let mut errors = Errors::default();
     for m in 1 << 23..1 << 24 {
         let pixels = random.random_range(-HALF_WIDTH..HALF_WIDTH);
-        // X' has 11 fraction bits at the mantissa 2^23.
+        // X' (docs/formats/triangle.md) has 11 fraction bits at the mantissa 2^23.
         let x = (pixels * f64::from(m) / 4096.0).round() as i64;
         let found = (x * i64::from(reciprocal(m)) + (1 << 26)) >> 27;
         errors.add(found as f64 - x as f64 * 2f64.powi(20) / f64::from(m));

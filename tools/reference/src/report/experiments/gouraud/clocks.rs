@@ -21,7 +21,7 @@ pub struct Row {
     pub pixels: u64,
     /// Number of groups with a covered pixel.
     pub groups: u64,
-    /// Number of clocks of all bands.
+    /// Clocks of all bands.
     pub clocks: u64,
     /// Whether the clocks were measured. Computed clocks are the sum over the bands of the larger of the measured clocks with
     /// flat triangles and the sum of the groups' clocks.

@@ -60,11 +60,11 @@ pub struct Cost {
     pub division_lut: u32,
     /// DSP48 slices of the instances that divide light by depth.
     pub division_dsp: u32,
-    /// Commit whose engine was measured.
+    /// Commit of the measured engine.
     pub commit: String,
 }
 
-/// Yosys's numbers of cells of a module by kind, and the length of the longest path.
+/// Output of Yosys for a module: numbers of cells by kind, and length of the longest path.
 #[derive(Deserialize)]
 struct Cells {
     logic: u32,
@@ -97,7 +97,7 @@ pub fn today() -> Result<Vec<Cost>> {
 /// Synthesises the earlier engines, from the gateware of their commits, and returns their resources.
 ///
 /// # Errors
-/// When a commit is missing in git, or the synthesis fails.
+/// When git does not have a commit, or the synthesis fails.
 pub fn earlier() -> Result<Vec<Cost>> {
     let mut rows = Vec::new();
     for (engine, commit) in EARLIER {

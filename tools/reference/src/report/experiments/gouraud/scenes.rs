@@ -10,9 +10,9 @@ use crate::triangle::smooth::{Measured, scenes};
 pub struct Row {
     /// Description of the scene.
     pub scene: String,
-    /// Number of drawn triangles: unclipped triangles, and triangles from the clipper.
+    /// Number of drawn triangles: unclipped triangles, and triangles made by the clipper.
     pub triangles: u64,
-    /// Number of drawn triangles from the clipper.
+    /// Number of drawn triangles made by the clipper.
     pub clipped: u64,
     /// Number of drawn triangles with a visible back face.
     pub back_faces: u64,

@@ -8,7 +8,7 @@ use crate::imu::method::Method;
 use crate::report::cycles::Cycles;
 use crate::report::provenance::Provenance;
 
-/// Sample rates at which the methods are compared, in samples per second.
+/// Sample rates of the comparison, in samples per second.
 pub const RATES: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];
 
 /// Error of a method at one sample rate: a line of `imu-methods.csv`.
@@ -26,13 +26,13 @@ pub struct Trial {
     pub error: f64,
     /// Observed order p of the method (error proportional to step^p), from this and the next lower sample rate.
     pub order: Option<f64>,
-    /// Median of the cycles per sample on the soft core; `None` for methods outside the firmware.
+    /// Median of the cycles per sample on the soft core; `None` for methods that the firmware does not have.
     pub cycles: Option<u64>,
     /// Commit of the measurement.
     pub commit: String,
 }
 
-/// Returns the name of a method in the console command `bench attitude`; `None` for methods outside the firmware.
+/// Returns the name of a method in the console command `bench attitude`; `None` for methods that the firmware does not have.
 fn kernel(method: Method) -> Option<&'static str> {
     match method {
         Method::Angles => Some("angles"),

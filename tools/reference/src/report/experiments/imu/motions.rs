@@ -1,4 +1,4 @@
-//! Motions of several experiments.
+//! Motions used in several experiments.
 
 use crate::imu::motion::Motion;
 

@@ -19,7 +19,7 @@ pub struct StiffCase {
     pub other: String,
     /// Result of Glint's method.
     pub glint: String,
-    /// Short statement of the outcome.
+    /// Short summary of the outcome.
     pub outcome: String,
 }
 
@@ -79,7 +79,7 @@ fn gains() -> Vec<StiffCase> {
         .into()
 }
 
-/// Estimates a bias of 1 LSB by running means with accumulators of different numbers of fraction bits.
+/// Estimates a bias of 1 LSB by running means, with accumulators of several word lengths.
 fn words(part: f64) -> Vec<StiffCase> {
     [10, 100, 1000]
         .map(|time_constant: u32| {

@@ -30,8 +30,8 @@ pub struct Target {
     pub tools: String,
 }
 
-/// Measures the errors during a rotation at one count of the gyroscope for this fraction of a day. This motion takes longer than
-/// all others together.
+/// Measures the errors during a rotation at one count of the gyroscope for this fraction of a day. This measurement takes longer
+/// than all others.
 pub fn one_count(part: f64) -> Largest {
     against_f64(Sensor::ideal(1000.0), COUNT, part * DAY, false)
 }

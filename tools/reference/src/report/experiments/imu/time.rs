@@ -28,7 +28,7 @@ pub struct ErrorsAtTime {
     pub floor: f64,
 }
 
-/// Measures the errors during a hand motion of this duration, at times about 5 % apart.
+/// Measures the errors during a hand motion of this duration, at times that grow by about 5 %.
 pub fn measure(seconds: f64) -> Vec<ErrorsAtTime> {
     let motion = Motion::Hand;
     let ideal = Sensor::ideal(1000.0);

@@ -10,14 +10,14 @@ pub struct Trial {
     pub config: String,
     /// Whether Glint uses the configuration.
     pub shipped: bool,
-    /// Number of bits of a stored number, where these are the cost.
+    /// Number of bits of a stored number, for kernels with bits as cost.
     pub bits: Option<u32>,
     /// Errors at all inputs.
     pub errors: Errors,
 }
 
 impl Trial {
-    /// The errors of a kernel with cycles as cost.
+    /// Makes the trial of a kernel with cycles as cost.
     pub fn of<I, O>(kernel: &Kernel<I, O>, errors: Errors) -> Self {
         Self {
             kernel: kernel.name,
@@ -34,7 +34,7 @@ impl Trial {
 pub struct Errors {
     /// Largest magnitude.
     pub largest: f64,
-    /// Sum of the squares.
+    /// Sum of the squared errors.
     pub squares: f64,
     /// Number of errors.
     pub count: u64,

@@ -17,9 +17,9 @@ use crate::report::provenance::Provenance;
 /// Number of frames of a turn.
 pub const FRAMES: u32 = 2_500;
 
-/// Azimuth and polar angle in degrees of the first camera, the camera after the start of the board.
+/// Azimuth and polar angle in degrees of the first camera, as set at the start of the board.
 const START: [u32; 2] = [40, 65];
-/// Distance of the first camera, the camera after the start of the board.
+/// Distance of the first camera, as set at the start of the board.
 const DISTANCE: &str = "2.5";
 
 /// The camera and the pictures after some turns: a line of `long-orbit.csv`.
@@ -51,7 +51,7 @@ pub fn measure(turns: u32, frames: u32) -> Result<Vec<Row>> {
     let commit = Provenance::find().commit;
     let mut board = start()?;
     command(&mut board, "scene cube")?;
-    // Frames wait for the vertical blanking, from the first displayed frame on.
+    // From the first displayed frame on, drawing waits for the vertical blanking.
     let wait = cycles(&mut board, 100);
     board.inner().run(wait);
     let bar = bar(turns.into())?.with_message("orbit");

@@ -44,7 +44,7 @@ impl Path {
     /// Both paths.
     pub const ALL: [Self; 2] = [Self::Rest, Self::Turning];
 
-    /// Name of the path and of its study.
+    /// Name of the path and of the study.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -103,13 +103,13 @@ pub struct Row {
     pub commit: String,
 }
 
-/// Number of the last measurements with stored times: more than the firmware's backlog.
+/// Number of stored measurement times, more than the firmware's backlog.
 const KNOWN: usize = 64;
 
-/// Number of status polls: at least one should find the firmware without backlog.
+/// Number of status polls, enough to find the firmware without backlog at least once.
 const POLLS: u32 = 24;
 
-/// The chip's number of measurements, and the times of the last ones.
+/// The chip's number of measurements, and the times of the last [`KNOWN`].
 struct Measured {
     count: u64,
     times: [f64; KNOWN],
@@ -128,7 +128,7 @@ struct Bench {
     path: Path,
     board: Emulated,
     measured: Arc<Mutex<Measured>>,
-    /// Number of the chip's measurements minus number of the firmware's samples.
+    /// Excess of the chip's measurements over the firmware's samples.
     ahead: u64,
     /// The rotation about the vertical at the start of the motion.
     heading: f64,
@@ -234,7 +234,7 @@ impl Bench {
         })
     }
 
-    /// Number of the chip's measurements minus the samples of a new status.
+    /// Excess of the chip's measurements over the samples of a new status.
     fn excess(&self, status: &Status) -> Result<u64> {
         Ok(self.count()?.saturating_sub(status.samples))
     }

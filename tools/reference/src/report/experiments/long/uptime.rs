@@ -31,7 +31,7 @@ pub struct Row {
     pub commit: String,
 }
 
-/// Commands with time-independent replies, and the keys of the compared lines; no key means all lines.
+/// Commands with constant replies, and the keys of the compared lines (all lines if empty).
 const QUESTIONS: [(&str, &[&str]); 7] = [
     ("echo still", &[]),
     ("info", &["firmware_id", "scene", "size", "uart_lost"]),

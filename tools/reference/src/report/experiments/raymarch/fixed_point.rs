@@ -14,7 +14,7 @@ pub const MODEL_FRACTION: u32 = 12;
 /// Twice the number of field units per world unit. The sponge's half side is 1 world unit or 40.5 field units.
 const TWICE_SCALE: i64 = 81;
 
-/// The constants of a picture of the sponge, for a chosen number of fraction bits.
+/// The constants of a picture of the sponge for a number of fraction bits.
 pub struct FixedPoint {
     /// The model's constants of the picture, the source of the ray directions.
     setup: FieldSetup,

@@ -18,8 +18,8 @@ use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 
-/// Minimum cycles of a measurement of frames back to back. The first frame takes up to 7,600 cycles more than each other frame,
-/// which raises the mean by at most 0.3 %.
+/// Minimum duration of a measurement of frames back to back, in cycles. The first frame takes up to 7,600 cycles more than each
+/// other frame, which raises the mean by at most 0.3 %.
 const LEAST_CYCLES: u64 = 3_000_000;
 
 /// A verilated build of the SoC, in a folder of `target/gateware`.
@@ -51,7 +51,7 @@ pub struct Case {
     pub prepass: bool,
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// The SoC build for the field.
+    /// The SoC build that draws the field.
     pub build: Build,
     cameras: fn() -> Vec<(&'static str, Camera)>,
     /// Returns the rotations of each camera, in degrees. Each rotation is a measured pose.
@@ -65,7 +65,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Whether a row belongs to this case.
+    /// Whether a row is a measurement of this case.
     pub fn contains(&self, row: &Row) -> bool {
         self.field == row.field
             && self.stereo == row.stereo.as_deref()
@@ -191,7 +191,7 @@ pub struct Row {
     pub evaluations: u64,
     /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end.
     pub cycles_alone: u64,
-    /// Mean cycles of a frame of several drawn back to back. Measured only for the slowest pose of a view.
+    /// Mean cycles per frame of several frames drawn back to back. Measured only for the slowest pose of a view.
     pub cycles_frame: Option<f64>,
     /// Clock of the requirement in MHz.
     pub clock: f64,

@@ -1,4 +1,4 @@
-//! Requirements on raymarched pictures, and goals beyond them. Each pair of numbers is the requirement, then the goal.
+//! Requirements on raymarched pictures, and stricter goals. A pair of numbers is the requirement and the goal.
 
 use crate::raymarch::metrics::Accuracy;
 

@@ -35,7 +35,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// Runs all studies, or only the study `only`. Calls `finished` with the name and trials of each completed study.
 ///
 /// # Errors
-/// When no study has the name, or `finished` fails.
+/// When no study has the name `only`, or `finished` fails.
 pub fn measure(
     only: Option<&str>,
     finished: impl Fn(&str, &[Trial]) -> Result<()> + Sync,
@@ -147,8 +147,8 @@ fn thresholds(views: &Views) -> Vec<Trial> {
     trials.collect()
 }
 
-/// Runs a family of trials with five thresholds. `change` converts Glint's method in f64 to the family's method; `exact_entry` is
-/// as in `Views::variant`.
+/// Runs a family of trials with five thresholds. `change` converts Glint's method in f64 to the family's method; for
+/// `exact_entry` see `Views::variant`.
 fn by_threshold(
     views: &Views,
     family: &str,

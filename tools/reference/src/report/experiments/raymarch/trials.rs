@@ -17,7 +17,7 @@ use crate::raymarch::verilated::Raymarcher;
 /// Errors and cost of a configuration of the parameters: a line of a study's CSV file.
 #[derive(Serialize, Deserialize)]
 pub struct Trial {
-    /// Name of the diagram's line of related configurations.
+    /// Name of the line of related configurations in the diagram.
     pub family: String,
     /// Value of the varied parameter.
     pub config: String,
@@ -37,7 +37,7 @@ pub struct Trial {
     pub wrong_faces: f64,
     /// Mean number of evaluations of the field's distance per ray.
     pub evaluations: f64,
-    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations outside the gateware.
+    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations that exist only in software.
     pub cycles: Option<f64>,
     /// Names of the missed requirements.
     pub failed: String,
