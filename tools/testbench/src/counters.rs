@@ -1,4 +1,4 @@
-//! Counts of a module's events. The module's output port is a packed struct with the increments of the counters in the current clock.
+//! Event counters of a module. The module's output port is a packed struct with the increments of the counters in the current clock.
 
 use crate::{Bits, Module, Port};
 

@@ -116,7 +116,7 @@ impl Layout {
         }
     }
 
-    /// Describes the type for error messages.
+    /// Describes the type in error messages.
     pub(crate) fn describe(&self) -> String {
         match &*self.shape {
             Shape::Array { count, element, .. } => {

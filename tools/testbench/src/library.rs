@@ -20,7 +20,7 @@ const VERSION: u32 = 1;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file is missing or not a library, or a function is missing.
+    /// The file is missing or is not a library, or the library lacks a function.
     #[error("{}: {source}", path.display())]
     Library {
         /// The file.
@@ -61,7 +61,7 @@ pub(crate) struct PortDescription {
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Description {
     pub ports: Vec<PortDescription>,
-    /// The types of all packages, by their names `package::type`.
+    /// The types of all SystemVerilog packages, by their names `package::type`.
     pub types: BTreeMap<String, Layout>,
 }
 

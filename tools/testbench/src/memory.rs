@@ -169,7 +169,7 @@ impl WritePort {
         }
     }
 
-    /// Drives the port for the next clock: accepts or stalls commands, and accepts or stalls the data of earlier commands.
+    /// Drives the port for the next clock: accepts or stalls commands, and data of earlier commands.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));

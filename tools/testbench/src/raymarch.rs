@@ -98,8 +98,8 @@ impl Kind {
     }
 }
 
-/// End of a ray or cone: the result from a lane. Unused members are 0: `surface` and `slope` if nothing was hit, `t` of an
-/// undecided ray, `face` if a pure sphere was hit, `direction` if no sphere was hit.
+/// End of a ray or cone: the result from a lane. Unused members are 0: `surface` and `slope` without a hit, `t` of an undecided
+/// ray, `face` at a hit on a pure sphere, `direction` without a hit on a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Whether the ray missed, hit or stayed undecided.
@@ -398,7 +398,7 @@ pub struct Pixel {
 }
 
 impl Pixel {
-    /// Names of the payload's ports in a stream of pixels, in the order of the items of [`from`](Self::from).
+    /// Names of the payload's ports in a stream of pixels, in the order of the argument of [`from`](Self::from).
     pub const PAYLOAD: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
 }
 

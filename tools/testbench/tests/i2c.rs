@@ -191,7 +191,7 @@ impl Bench {
         self.push(commands);
     }
 
-    /// Runs for `clocks` clocks; returns the times of start conditions, in clocks.
+    /// Runs for `clocks` clocks; returns the clocks of start conditions.
     fn starts(&mut self, clocks: u64) -> Vec<u64> {
         let [_, scl_out, _, sda_out] = self.ports.wires;
         let mut starts = Vec::new();

@@ -6,14 +6,14 @@ use glint_core::fixed::{Q2_23, Q32_32, U4_28, U8_28};
 use crate::math::{cross, dot, normalised};
 use crate::random::Random;
 
-/// A camera before it is rounded to the fixed-point formats of a `View`.
+/// A camera before rounding to the fixed-point formats of a `View`.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     /// Position in the world.
     pub eye: [f64; 3],
     /// Unit vector to the right of the picture.
     pub u: [f64; 3],
-    /// Unit vector to the bottom of the picture.
+    /// Unit vector downwards in the picture.
     pub v: [f64; 3],
     /// Unit vector in the viewing direction.
     pub n: [f64; 3],
@@ -24,8 +24,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Camera at `eye` that shows the direction `towards` at the point (a, b) of the image plane at distance 1. The
-    /// rotation of the camera about this direction is random.
+    /// Camera at `eye` that sees the direction `towards` at the point (a, b) of the image plane at distance 1. The rotation of
+    /// the camera about this direction is random.
     pub fn aimed(
         random: &mut Random,
         eye: [f64; 3],

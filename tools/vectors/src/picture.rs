@@ -19,7 +19,7 @@ pub struct Picture {
     pub depth: Vec<u32>,
     /// The model's counts of triangles and pixels.
     pub stats: Stats,
-    /// The triangles that reached the walker (the stage that finds pixels), in the order of drawing.
+    /// The triangles that reached the walker (the stage that enumerates pixels), in drawing order.
     pub drawn: Vec<DrawnTriangle>,
 }
 
@@ -41,7 +41,7 @@ impl Picture {
         }
     }
 
-    /// Borrows the picture as the frame buffer that the renderer draws into.
+    /// Borrows the picture as the renderer's frame buffer.
     pub fn target(&mut self) -> FrameBuffer<'_> {
         FrameBuffer {
             width: self.width,
@@ -118,7 +118,7 @@ impl Picture {
         self.depth.iter().map(|&code| code != 0).collect()
     }
 
-    /// Number of pixels that are covered by a triangle.
+    /// Number of pixels covered by a triangle.
     #[must_use]
     pub fn covered(&self) -> usize {
         self.depth.iter().filter(|&&code| code != 0).count()

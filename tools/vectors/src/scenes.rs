@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::camera::Camera;
 use crate::meshes::{self, Triangle, ahead, at};
 
-/// A scene: its name, the bytes of its mesh, the camera, and whether back faces are culled.
+/// A scene: name, bytes of the mesh, camera, and whether back faces are culled.
 pub type Scene = (&'static str, Vec<u8>, View, bool);
 
 /// A wide-angle view from near the middle of a model.
@@ -24,7 +24,7 @@ pub fn inside() -> View {
     camera.rounded()
 }
 
-/// A fan of `parts` front faces around a common corner, in the plane at `y`. The plane is y + 2 in front of the camera `ahead`.
+/// A fan of `parts` front faces around a common corner, in the plane at `y`. The plane's distance from the camera `ahead` is y + 2.
 fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
     let rim = |part: usize| {
         let (sin, cos) = (std::f64::consts::TAU * part as f64 / parts as f64).sin_cos();

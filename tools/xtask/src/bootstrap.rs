@@ -24,7 +24,7 @@ const PACKAGES: [(&str, &str); 8] = [
     ("make", "builds the LiteX BIOS"),
     (
         "python3-venv",
-        "provides the environment of the Python packages",
+        "creates the environment of the Python packages",
     ),
 ];
 
@@ -190,7 +190,7 @@ pub fn python_environment() -> Result<()> {
 mod tests {
     use super::*;
 
-    /// The tests run after the set-up, so every program must be found: an unrecognised one would be installed at each run.
+    /// The tests run after the set-up, so every program must be found; otherwise its package would be installed at each run.
     #[test]
     fn no_package_is_missing_after_the_setup() {
         for (package, _) in PACKAGES {

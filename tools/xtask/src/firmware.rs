@@ -51,7 +51,7 @@ pub struct Image {
     pub code: u64,
     /// Constants.
     pub constants: u64,
-    /// Variables: the initialised ones, which are also in the image, and the ones that start at 0.
+    /// Variables: initialised variables, which are also in the image, and zeroed variables.
     pub variables: u64,
     /// Address range of the stack, which grows down from the end.
     pub stack: Range<u64>,

@@ -198,7 +198,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
-            // ccache, because LiteX compiles the same C library again in another folder for each BIOS.
+            // Caches objects, because LiteX compiles the same C library again in another folder for each BIOS.
             .env("CCACHE", "ccache")
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
@@ -342,7 +342,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Whether the file `stamp` has the fingerprint `inputs`, that is, the last build had the same inputs.
+/// Whether the file `stamp` has the fingerprint `inputs`, so that the last build had the same inputs.
 fn is_current(stamp: &Path, inputs: &str) -> bool {
     fs::read_to_string(stamp).is_ok_and(|last| last == inputs)
 }

@@ -154,7 +154,7 @@ fn main() -> Result<()> {
             let options = options.arguments()?;
             let options: Vec<_> = options.iter().map(String::as_str).collect();
             if board == gateware::Board::Ulx3s {
-                // The set-up installs all tools of this build.
+                // The set-up installs all tools of the ULX3S build.
                 bootstrap::bootstrap()?;
             }
             gateware::build_with(board, &options)?;

@@ -98,7 +98,7 @@ type Segments = Vec<String>;
 /// An item: the defining module and the name, which ends with `!` for a macro.
 type Item = (Segments, String);
 
-/// Imports in progress of a lookup: modules and paths.
+/// The imports visited in a lookup: modules and paths.
 type Seen = BTreeSet<(Segments, Segments)>;
 
 /// Reads the text of a source file; `None` if no such file exists.
@@ -174,7 +174,7 @@ impl Crate {
     }
 
     /// The item that `path` names in `module` below `level` inline modules. `None` for names of other crates and of modules.
-    /// `seen` has the imports of the lookup so far, because imports may be circular.
+    /// `seen` has the imports visited so far, because imports may be circular.
     fn item(
         &self,
         module: &[String],
@@ -262,7 +262,7 @@ impl Crate {
         dependencies
     }
 
-    /// The dependencies within cycles, and on paths between cycles.
+    /// The dependencies within cycles, or on a path between cycles.
     fn cycles(&self) -> Vec<String> {
         let mut dependencies = self.dependencies();
         loop {
@@ -355,7 +355,7 @@ impl Module {
                     if next.is_some_and(|token| is_punct(token, '!')) {
                         path.last_mut().expect("it has a name").push('!');
                     }
-                    // A single name may be a variable: skip it unless its form shows an item.
+                    // A single name may be a variable, so it counts only if its form shows an item.
                     let is_call = matches!(next, Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
                     let is_item = path.len() > 1
                         || is_call

@@ -91,7 +91,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     let folder = paths::target().join("report");
     let folder = folder.join(if quick { "quick" } else { "whole" });
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
-    // An own lock, because a killed Snakemake leaves its lock.
+    // A separate lock, because a killed Snakemake leaves its own lock behind.
     let lock = File::create(folder.join("lock")).context("creating the lock of the report")?;
     ensure!(
         lock.try_lock().is_ok(),
@@ -136,7 +136,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the checksums of the jobs' programs and sources to a file, an input of the jobs.
+/// Writes the checksums of the jobs' programs and sources to a file, which is an input of the jobs.
 fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     let target = paths::target();
     let mut files = vec![

@@ -38,8 +38,8 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Returns the cargo command of a check. The build is not incremental: a clean build only loses time and space by it. It has no
-/// debug information, which takes a tenth of the time: panics name their lines without it.
+/// Returns the cargo command of a check. The build is not incremental: a clean build only loses time and space by it. It omits
+/// debug information, which takes a tenth of the time and is not needed for the line numbers of panics.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
     command

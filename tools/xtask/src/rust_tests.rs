@@ -17,14 +17,15 @@ use crate::{paths, run};
 /// Number of programs that run at a time.
 const AT_A_TIME: usize = 3;
 
-/// Options of cargo for little optimisation of the references. Full optimisation, as for the report, takes more time than it
+/// Options of cargo for little optimisation of the references. Full optimisation, as for the report, would take more time than it
 /// saves in the tests.
 const QUICK_BUILD: [&str; 2] = [
     "--config",
     "profile.dev.package.glint-reference.opt-level=1",
 ];
 
-/// The longest-running programs, by package and target, longest first. They start first, so that no long program runs alone at the end.
+/// The longest-running programs, by package and target, longest first. They start first, because a long program would otherwise
+/// run alone at the end.
 const LONGEST: [(&str, &str); 6] = [
     ("glint", "board"),
     ("glint", "soc"),
@@ -156,7 +157,7 @@ struct Results {
     passed: u32,
     /// Output of the failed tests.
     output: Vec<String>,
-    /// The error of each program that failed.
+    /// The error of each failed program.
     failed: Vec<String>,
 }
 

@@ -85,7 +85,7 @@ pub fn test_at_clock(megahertz: &str) -> Result<()> {
     Ok(())
 }
 
-/// Numbers of passed checks, and the errors of failed ones.
+/// Number of passed checks, and the errors of failed checks.
 #[derive(Default)]
 struct CheckResults {
     passed: AtomicU32,

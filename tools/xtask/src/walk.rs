@@ -25,7 +25,7 @@ const ONLY: &str = "only-";
 /// The builds of a test run, one of each kind: for a scene, and with a single block.
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
-/// A command of each part of the firmware that has commands. `field sphere:1` needs both `FIELD` and `SPHERES`.
+/// A command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
 const COMMANDS: [(Feature, &str); 19] = [
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),

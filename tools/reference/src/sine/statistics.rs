@@ -27,21 +27,21 @@ const OCTAVES: u64 = 64;
 
 /// Statistics of the absolute errors of sine and cosine together.
 ///
-/// Each input is weighted by the represented part of the circle. So means are uniform over the angle, even where inputs are
+/// Each input is weighted by the part of the circle that it represents. So means are uniform over the angle, even where inputs are
 /// dense, such as floats near zero.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// Number of inputs. Each input adds two errors, of the sine and of the cosine.
+    /// Number of inputs. Each input contributes two errors, of the sine and of the cosine.
     pub inputs: u64,
     /// The largest error of an output.
     pub max: f64,
-    /// The bits of an input with the largest error, as an integer.
+    /// The bits, as an integer, of an input with the largest error.
     pub worst_input: u64,
     /// The output with the largest error.
     pub worst_function: Function,
     /// The largest value of |sin² + cos² − 1|, from the two outputs of an input.
     pub max_norm: f64,
-    /// Number of inputs whose outputs differ from those of their image in the first octant by more than signs and order.
+    /// Number of inputs that violate the symmetry: their outputs differ from the first octant's by more than signs and order.
     pub asymmetric: u64,
     weight: f64,
     sum_of_squares: f64,

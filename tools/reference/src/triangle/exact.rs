@@ -59,7 +59,7 @@ impl Edge {
     }
 }
 
-/// Returns twice the signed area of the triangle with the vertices a, b and c. It is positive if they run clockwise on the
+/// Returns twice the signed area of the triangle with the vertices a, b and c. The area is positive for clockwise vertices on the
 /// screen, where y points down.
 fn orientation(a: SnappedVertex, b: SnappedVertex, c: SnappedVertex) -> i128 {
     let (abx, aby) = (i128::from(b.x - a.x), i128::from(b.y - a.y));

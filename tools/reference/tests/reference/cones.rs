@@ -20,7 +20,7 @@ struct Seen {
     helped: usize,
     /// Largest distance of a ray's start behind its hit surface, in field units.
     behind: f64,
-    /// Number of rays with another kind of result (hit, miss or undecided) with the prepass.
+    /// Number of rays whose kind of result (hit, miss or undecided) changes with the prepass.
     changed: usize,
     /// Mean number of evaluations per ray without a prepass, and with a prepass including its cones.
     cost: [f64; 2],

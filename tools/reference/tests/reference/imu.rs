@@ -98,7 +98,7 @@ fn the_method_is_as_near_to_the_truth_as_it_should_be() {
     let coning = method_error(Method::Cubic, CONING, 20.0, 200.0);
     println!("tumble {tumble:.1e}°, coning {coning:.1e}°");
     assert!(tumble <= 0.01 && coning <= 0.05, "{tumble:e} {coning:e}");
-    // The exact coefficient of the coning term has more than five times the error of the firmware's coefficient.
+    // With the exact coefficient of the coning term, the error is more than five times the error with the firmware's coefficient.
     let plain = method_error(Method::PlainCubic, CONING, 20.0, 200.0);
     assert!(plain > 5.0 * coning, "{plain:e} {coning:e}");
 }

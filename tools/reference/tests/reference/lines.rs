@@ -110,7 +110,7 @@ fn vertex(random: &mut Pcg64Mcg, [x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
-/// A random segment: up to 3, 50 or 300 pixels long from a position in or near the rectangle, or anywhere in the guard band. Its ends are
+/// A random segment: up to 3, 50 or 300 pixels long, from a position in or near the rectangle or anywhere in the guard band. Its ends are
 /// anywhere, or on multiples of 1/16, 1/4, 1/2 or 1 pixel, where they touch centres and borders of diamonds and cause ties.
 fn segment(random: &mut Pcg64Mcg, rectangle: [i32; 4]) -> [ScreenVertex; 2] {
     let grid = [1, 1, 16, 64, 128, 256][random.random_range(0..6usize)];
@@ -240,7 +240,7 @@ fn pairs(places: &[i32]) -> impl Iterator<Item = [i32; 2]> {
         .flat_map(|&x| places.iter().map(move |&y| [x, y]))
 }
 
-/// Depth codes increase with the depth value, saturate, and include the bias.
+/// Depth codes follow the depth, saturate, and include the bias.
 #[test]
 fn codes_are_rounded_and_saturate() {
     let pixel = |depth| LinePixel {

@@ -55,7 +55,7 @@ impl Seen {
         self
     }
 
-    /// Checks that the depth's errors have at most this median and this 99th percentile, in world units.
+    /// Checks upper bounds of the median and the 99th percentile of the depth errors, in world units.
     fn near(self, median: f64, p99: f64) -> Self {
         let depth = self.found.depth.expect("a hit");
         assert!(

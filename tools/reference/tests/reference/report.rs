@@ -1,4 +1,4 @@
-//! Tests of the report. They check that a quick run writes its files, that the committed tables agree with the current code
+//! Tests of the report. The tests check that a quick run writes its files, that the committed tables agree with the current code
 //! (where the check is cheap), and that the committed pages agree with the committed tables.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -379,7 +379,7 @@ fn the_committed_cycles_of_pictures_hold() {
     let shipped = rows.iter().find(|row| row.shipped);
     let cycles = shipped.and_then(|row| row.cycles).expect("Glint's cycles");
     let now = clocks as f64 / subjects.len() as f64;
-    // The previous picture determines the lane of a picture's first ray. This can change the picture's cycles by one.
+    // The previous picture determines which lane gets a picture's first ray. This can change the picture's cycles by one.
     assert!(
         (cycles - now).abs() <= 1.0,
         "raymarch-cap.csv: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"

@@ -22,7 +22,7 @@ fn the_motion_in_place_drifts() {
     let last = |form, session| drift(form, session, &[STEPS])[0];
     for session in Session::ALL {
         let error = last(Form::Nearest, session);
-        // Upper bound: half a unit of 2^−11 in two coordinates at each step. Steps in different directions never reach it.
+        // Upper bound: half a unit of 2^−11 in two coordinates at each step. Steps in different directions stay below the bound.
         assert!(error.distance < 0.2, "{session:?}: {error:?}");
         let error = last(Form::Truncated, session);
         assert!(error.distance > 0.2, "{session:?}: {error:?}");

@@ -12,7 +12,7 @@ use glint_reference::report::workspace;
 
 /// Console output with the cycles of the kernels measured in these tests.
 const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
-/// Jobs run in these tests. The contents of the pages are covered by the pages' tests.
+/// Jobs of the workflow that these tests run. The contents of the pages are covered by the pages' tests.
 const TABLES: [&str; 2] = ["tables/sine", "tables/raymarch-pictures"];
 
 /// A run of the workflow in a separate folder, with jobs that need no board.

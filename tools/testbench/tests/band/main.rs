@@ -29,7 +29,7 @@ fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     }
 }
 
-/// Makes a random band at one of three positions of the picture, most of them a repeated position.
+/// Makes a random band at one of three positions of the picture: most bands repeat a position.
 fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     Band {
         base: random.random_range(0..1 << 22),
@@ -334,12 +334,12 @@ fn a_restart_ends_whatever_goes_on() {
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
         // The restart comes during the flush of a band and the drawing of the next band. With few rows, the clearing after the
-        // restart soon reaches the last drawn rows.
+        // restart reaches the last drawn rows early.
         let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);
         bench.stride = stride;
-        // These lines are outside the interrupted band, so the module still has their drawn ranges.
+        // These lines are outside the interrupted band, so the module still knows their drawn ranges.
         bench.draw(
             (0..rows / 2).map(|row| full_group(row, 9)),
             Band {

@@ -32,7 +32,7 @@ impl Clocks {
 /// The build with short time-outs and with sums of products.
 pub const HASTY: &str = "gesture_engine_hasty";
 
-/// Settings by which every pixel of a frame of this size is marked as a hand's.
+/// Settings that mark every pixel of a frame of this size as a hand's.
 pub const fn settings(size: [u16; 2]) -> Settings {
     const ALL: Window = window(0, 255);
     Settings {
@@ -66,7 +66,7 @@ pub struct Bench {
     counters: Counters,
     now: u64,
     next_sys: u64,
-    /// Number of clocks with `latched`.
+    /// Number of clocks with `latched` high.
     pub latches: u32,
 }
 
@@ -78,7 +78,7 @@ impl Bench {
         bench
     }
 
-    /// Makes a bench of the build `name`. The engine is enabled before the first VSYNC.
+    /// Makes a bench of the build `name`, in the middle of a frame. The engine is enabled before the first VSYNC.
     pub fn new(
         name: &str,
         clocks: Clocks,

@@ -181,7 +181,7 @@ fn vga_at_60_frames_a_second() {
     takes(slow, [640, 480]);
 }
 
-/// 320x240 pixels 120 times a second need less than half of the VGA pixel clock, used here.
+/// 320x240 pixels 120 times a second need less than half of VGA's pixel clock, which the test uses.
 #[test]
 fn qvga_at_120_frames_a_second() {
     takes(Clocks::URBANA, [320, 240]);

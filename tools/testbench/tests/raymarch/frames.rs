@@ -209,7 +209,7 @@ fn frames_of_all_fields_with_stalls() {
     for text in further_kinds() {
         draw_in_short(&mut bench, &mut random, &[text]);
     }
-    // Pixels not taken block the ends of rays, and these block the rays.
+    // Back-pressure of pixels blocks the ends of rays, which in turn block the rays.
     assert!(bench.counters.get("cycles_stalled") > 0);
 }
 

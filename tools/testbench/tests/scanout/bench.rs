@@ -78,7 +78,7 @@ pub struct Bench {
     driven: Settings,
     /// Settings that the module latched at the last vertical blanking.
     in_force: Settings,
-    /// Settings of the frame of the current or last fetched line.
+    /// Settings of the frame whose line is fetched or was fetched last.
     fetched_from: Settings,
     was_fetching: bool,
     counted: Counted,
@@ -104,8 +104,8 @@ impl Bench {
             software: None,
             raster,
             clocks,
-            // In units of time in which a period of sys_clk is `clocks.pix` and a period of pix_clk is `clocks.sys`; each clock
-            // has a random phase.
+            // The unit of time makes a period of sys_clk `clocks.pix` units and a period of pix_clk `clocks.sys` units; each
+            // clock has a random phase.
             next_sys: 1 + random.random_range(0..clocks.pix),
             next_pix: 1 + random.random_range(0..clocks.sys),
             random,
@@ -167,7 +167,7 @@ impl Bench {
         }
     }
 
-    /// Asserts or releases the reset of the side in the domain of `sys_clk` (memory and registers).
+    /// Asserts or releases the reset of the `sys_clk` domain (memory and registers).
     pub fn reset_sys(&mut self, on: bool) {
         self.module.set_value(self.ports.sys_rst, u64::from(on));
         // A vertical blanking during the reset is reported after the reset, so its time is not checked.
@@ -188,7 +188,7 @@ impl Bench {
         }
     }
 
-    /// Asserts or releases the reset of the side in the domain of `pix_clk` (video).
+    /// Asserts or releases the reset of the `pix_clk` domain (video).
     pub fn reset_pix(&mut self, on: bool) {
         self.module.set_value(self.ports.pix_rst, u64::from(on));
         if on {

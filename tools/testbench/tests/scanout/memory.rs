@@ -142,7 +142,7 @@ impl Memory {
         module.is_high(self.rdata[0])
     }
 
-    /// Drives the port: chooses `ready` at random, and delivers a due word, or invalid random data.
+    /// Drives the port: chooses `ready` at random, and delivers a due word, otherwise random data that are not valid.
     pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
         let manners = self.manners;
         if cycle >= self.paused_until && chance(random, manners.pause) {

@@ -29,8 +29,8 @@ impl Raster {
         border: 0,
     };
 
-    /// The timing of the module `scanout_small`: frames 200 times as short as those of `scanout`, but as many pixel clocks per
-    /// memory word in the active part of a line.
+    /// The timing of the module `scanout_small`: a frame takes 1/200 of the time of a frame of `scanout`, with as many pixel
+    /// clocks per memory word in the active part of a line.
     pub const SMALL: Self = Self {
         h_active: 160,
         h_front: 8,

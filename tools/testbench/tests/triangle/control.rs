@@ -64,7 +64,7 @@ fn regions_are_wholly_in_memory() {
     println!("{cases} cases");
 }
 
-/// A build for 32 MB of memory and two sizes refuses regions and sizes beyond.
+/// A build for 32 MB of memory and two picture sizes refuses regions beyond this memory, and other sizes.
 #[test]
 fn a_build_has_less_memory_and_fewer_sizes() {
     const MEMORY: u64 = 32 << 20;

@@ -101,7 +101,7 @@ fn visible(corner: ScreenVertex) -> ScreenVertex {
     }
 }
 
-/// Draws each triangle alone, unhidden by other triangles.
+/// Draws each triangle alone, not hidden by other triangles.
 #[test]
 fn difficult_triangles() {
     let far = f64::from(GUARD) / 256.0;

@@ -112,7 +112,7 @@ fn random_cameras_and_vertices() {
     let mut random = Random(1);
     let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.95, 0.0]];
     let mut benches = [0, 1, 2, 3].map(|seed| Bench::new(seed, shares[seed as usize]));
-    // Numbers of tested vertices before the near plane, beyond the guard band, and visible.
+    // Numbers of tested vertices nearer than the near plane, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];
@@ -137,7 +137,7 @@ fn random_cameras_and_vertices() {
     assert!(seen.iter().all(|&count| count > 2000));
 }
 
-/// Tests frame constants by which near plane, depth scale or translation put a vertex at a limit.
+/// Tests frame constants whose near plane, depth scale or translation puts a vertex at a limit.
 #[test]
 fn edges() {
     let mut random = Random(2);
@@ -151,7 +151,7 @@ fn edges() {
         let at = position(&mut random);
         let z = transform(&frame, at).z;
 
-        // Puts the near plane through the vertex, one unit in the last place before and behind it, and farther away.
+        // Puts the near plane at the vertex, one unit in the last place nearer and farther, and at larger distances from the vertex.
         if (least + 1..1 << 38).contains(&z) {
             near_planes += 1;
             for off in [-1, 0, 1, -(1 << 20), 1 << 20] {

@@ -38,7 +38,7 @@ struct Bench {
     /// Fetches still expected: chunk and index of the vertex.
     expected_fetches: VecDeque<(u32, u16)>,
     latency: u64,
-    /// Number of clocks between two output vertices of the vertex stage.
+    /// Number of clocks between two vertices output by the vertex stage.
     pace: u64,
     clear: Port,
     idle: Port,
@@ -174,7 +174,7 @@ fn triangles_come_in_order_with_their_own_vertices() {
     }
 }
 
-/// A chunk hits no vertex of earlier chunks, even when the epochs, the cache's tags of chunks, wrap around.
+/// A chunk hits no vertex of earlier chunks, even when the cache's epoch counter, the tag of a chunk, wraps around.
 #[test]
 fn every_chunk_begins_empty() {
     let mut bench = Bench::new(20, [0.0; 4], 5, 1);

@@ -103,7 +103,7 @@ impl Page {
         page
     }
 
-    /// Ends the current block: adds it if it has text.
+    /// Ends the current block; adds the block if it has text.
     fn finish(&mut self, block: &mut Block) {
         let block = std::mem::take(block);
         if !block.text.trim().is_empty() {

@@ -102,7 +102,7 @@ struct Fitted {
     angle: Option<f64>,
 }
 
-/// The camera fitted to a whole cube.
+/// Fits a camera to a whole cube.
 fn fit(input: Fitted) -> Result<Outcome> {
     let bytes = Model::cube(input.half).encoded();
     let place = Matrix::translation(input.place.map(number))?;

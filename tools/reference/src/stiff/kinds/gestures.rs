@@ -208,7 +208,7 @@ fn calibration(shown: Shown) -> Result<Outcome> {
     ))
 }
 
-/// The presence of a hand at rest after each frame; the input has the times between frames in µs.
+/// The presence of a hand at rest after each frame, for these times between frames in µs.
 fn pauses(gaps: Vec<u64>) -> Result<Outcome> {
     let hand = Statistics {
         size: [320, 240],

@@ -36,7 +36,7 @@ pub fn kinds() -> Vec<Kind> {
 struct Ends {
     /// The end points, in 1/256 pixel.
     ends: [[i64; 2]; 2],
-    /// Bounds of a square picture: first column and row, and one past the last.
+    /// Bounds of a square picture in columns and rows: the first, and one past the last.
     square: [i32; 2],
 }
 
@@ -63,7 +63,7 @@ fn along_axis(turned: impl Fn([i64; 2]) -> [i64; 2]) -> Outcome {
         // The border between two pixels belongs to the first pixel.
         let row = (across - 1) / 256;
         let expected = (0..640).map(|along| turned([along, row]));
-        // From a quarter of a pixel before the picture to a quarter after it.
+        // From a quarter of a pixel before the picture to a quarter of a pixel after it.
         let [a, b] = [-64, 640 * 256 + 64].map(|along| turned([along, across]));
         let is_forward = pixels([a, b], [0, 640]).into_iter().eq(expected.clone());
         let is_backward = pixels([b, a], [0, 640]).into_iter().eq(expected.rev());

@@ -29,7 +29,7 @@ enum Step {
     CloseGaps,
 }
 
-/// A memory of at most four regions: the result of each step, and the gaps at the end.
+/// Runs steps on a memory of at most four regions; states the result of each step, and the final gaps.
 fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
     let mut memory = Regions::<4>::new(length);
     let mut kept: Vec<Region> = Vec::new();

@@ -1,4 +1,4 @@
-//! The kinds of cases: a function for each, which runs the code on the case's input and states the outcome.
+//! The kinds of cases: for each kind a function that runs the code on a case's input and states the outcome.
 
 mod attitudes;
 mod cameras;

@@ -49,7 +49,7 @@ fn quaternion(parts: [i32; 4]) -> Result<Quaternion> {
     Quaternion::new(parts.map(Q2_30::from_bits)).context("expected an attitude")
 }
 
-/// The sample clock's time stamps in µs for reads, each with a time in µs and whether it has a new sample.
+/// The sample clock's time stamps in µs for a sequence of reads, each with its time in µs and whether it returns a new sample.
 fn sample_times(reads: Vec<(u64, bool)>) -> Result<Outcome> {
     let mut pace = Pace::new(glint_core::mpu6050::PERIOD);
     let times = reads.into_iter().map(|(time, found)| {
@@ -59,7 +59,7 @@ fn sample_times(reads: Vec<(u64, bool)>) -> Result<Outcome> {
     Ok(Outcome::exact(times.collect::<Vec<_>>().join(" ")))
 }
 
-/// The times in µs of a log's samples, from the low words in its records.
+/// The times in µs of a log's samples, reconstructed from the low words in the records.
 fn log_times(words: Vec<u32>) -> Result<Outcome> {
     let mut time = log::START;
     let times = words.into_iter().map(|word| {

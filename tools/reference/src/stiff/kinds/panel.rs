@@ -1,4 +1,4 @@
-//! Digits, the demo's turns, and buttons.
+//! Displays of digits, the demo's sequence of scenes, and buttons.
 
 use anyhow::{Result, bail};
 use glint_core::demo::{Demo, Move};

@@ -1,4 +1,4 @@
-//! Segments of the wireframe simulator, from the program to the picture.
+//! The wireframe simulator's segments, from the program to the picture.
 
 use anyhow::{Context, Result};
 use glint_core::choice::Choice;

@@ -23,7 +23,7 @@ pub enum Form {
 pub struct Inverse {
     /// Number of bits of the depth's mantissa for the index of an entry.
     pub index: u32,
-    /// Whether a Newton step follows the table lookup. Its result has 17 bits.
+    /// Whether a Newton step follows the table lookup. The Newton step's result has 17 bits.
     pub newton: bool,
 }
 
@@ -44,7 +44,7 @@ impl Inverse {
         if !self.newton {
             return (inverse, bits);
         }
-        // y·(2 − m·y), with 17 fraction bits.
+        // Newton step y·(2 − m·y), with 17 fraction bits.
         let error = (2 << (31 + bits)) - u64::from(m) * inverse;
         let product = u128::from(inverse) * u128::from(error);
         let cut = 31 + 2 * bits - 17;

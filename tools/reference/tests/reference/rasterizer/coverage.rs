@@ -1,6 +1,6 @@
 //! Checks the model's pixels of single triangles. Coverage and depth are compared with the exact rasterizer, with the model's
-//! snapped vertices. Coverage is also compared with the unsnapped triangle: pixels more than a tolerance inside it must be drawn,
-//! and pixels more than a tolerance outside must not (see `surface::Class`).
+//! snapped vertices. Coverage is also compared with the unsnapped triangle: pixels inside by more than a tolerance must be drawn,
+//! pixels outside by more than a tolerance must not (see `surface::Class`).
 
 use glint_reference::camera::{Camera, Size};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};

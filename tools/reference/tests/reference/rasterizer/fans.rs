@@ -36,8 +36,8 @@ impl Cut {
         }
     }
 
-    /// Cuts a random triangle into three at a lattice point inside it, if any. The first vertex of each part, from which the
-    /// model computes the depth plane, is random.
+    /// Cuts a random triangle into three at an inner lattice point, if any. The first vertex of each part, from which the model
+    /// computes the depth plane, is random.
     fn cut(&mut self, random: &mut Pcg64) {
         let chosen = random.random_range(0..self.triangles.len());
         let [a, b, c] = self.triangles[chosen];

@@ -35,7 +35,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a vertex at the nearest Q2.14 position to `point`, and returns the vertex's index.
+    /// Adds a vertex at `point`, rounded to Q2.14, and returns the vertex's index.
     pub fn vertex(&mut self, point: Vector) -> u32 {
         self.positions.push(point.map(|x| (x * ONE).round() as i16));
         self.positions.len() as u32 - 1
@@ -106,7 +106,7 @@ pub struct Case {
 /// A function that makes a random scene and a camera for it.
 type Kind = fn(&mut Pcg64) -> (Scene, Camera);
 
-/// Name and function of each kind of random case. Each kind is a different difficulty for a rasterizer.
+/// Name and function of each kind of random case. Each kind tests a different difficulty of rasterization.
 const KINDS: [(&str, Kind); 8] = [
     ("a cloud of small triangles", cloud),
     ("triangles larger than the picture", large),

@@ -57,7 +57,7 @@ fn covered(renderer: &mut Renderer, case: &Case) -> usize {
 fn triangles_without_area_draw_nothing() {
     let point = [0.1, 0.2, 0.3];
     let triangles = [
-        // A single point, a line forth and back, three points of a line, and a triangle seen edge-on.
+        // Degenerate triangles: a point, a line back and forth, three points of a line, and a triangle seen edge-on.
         [point; 3],
         [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
         [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],

@@ -22,7 +22,7 @@ struct Tally {
 /// Largest allowed error of the depth in depth codes, without the effect of displaced vertices on a slope.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Gives every triangle a unique colour, and a normal towards the camera to exclude shading.
+/// Gives every triangle a unique colour, and a normal towards the camera, which leaves the colour unshaded.
 fn colour_by_number(case: &mut Case) {
     let camera = &case.camera;
     for (i, [a, b, c]) in case.scene.all_corners().into_iter().enumerate() {

@@ -17,7 +17,7 @@ pub enum State {
     Runs(u64),
 }
 
-/// Whether the engine can start a pass: from the clock in `Since` on; not with `Waits`, until it is ready again after a cancel.
+/// Whether the engine can start a pass: with `Since`, from this clock on; with `Waits`, not until it is ready again after a cancel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
@@ -113,13 +113,13 @@ impl Bench {
             counts: [[0; 3]; 2],
             clocks: 0,
         };
-        // Runs one clock with the engine ready, before which no pass can start.
+        // Runs one clock with the engine ready, after which passes can start.
         bench.clock(Events::default());
         bench
     }
 
     /// Requests the pass `which` with several values of the port `count`, in units of `item` bytes. The region at the address on
-    /// the port `region` must be accepted if it ends at the end of memory, and refused one word beyond.
+    /// the port `region` must be accepted if it ends at the end of memory, and refused if it ends one word beyond.
     pub fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
         const MOST: u64 = (1 << 20) - 1;
         let counts: &[u64] = if item == 1 {

@@ -20,7 +20,7 @@ pub const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
 /// Logarithm to base 2 of the words per list.
 pub const LIST_SHIFT: u32 = 11;
-/// Number of words after a picture that must not change: more than the size of a bank of the band buffer.
+/// Number of words after a picture that are checked to be unchanged: more than the size of a bank of the band buffer.
 const BEHIND: usize = 4096;
 /// Largest number of exceptions (triangles left to the clipper) that the engine may write. The descriptor area has the size of
 /// this number of flat descriptors, of three words each; a smooth descriptor takes six words.
@@ -31,8 +31,8 @@ fn bytes(word: u32) -> u64 {
     u64::from(word) * 16
 }
 
-/// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading
-/// that the engine was built for.
+/// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading supported
+/// by the engine's build.
 fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
     let rows = band_rows(expected.size.0);
     let mut lists = vec![Vec::new(); 64];
@@ -66,7 +66,7 @@ pub struct Bench {
     writes: [WritePort; 4],
     /// Whether frames are drawn, and compared, with depths.
     pub with_depth: bool,
-    /// Index of the frame buffer to draw in.
+    /// Index of the drawn frame buffer.
     pub slot: usize,
     /// For each frame buffer, the size and clear colour of its last frame; `None` before the first frame, which the engine always
     /// writes whole.

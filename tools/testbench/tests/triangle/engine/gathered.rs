@@ -77,8 +77,8 @@ impl Bench {
         self.set("geometry_flags.lines", 1);
     }
 
-    /// Runs the configured geometry pass, with enough memory for all its descriptors, and returns its clocks. Appends its
-    /// descriptors and lists to `gathered`.
+    /// Runs the configured geometry pass, whose descriptors must all fit, and returns its clocks. Appends its descriptors and
+    /// lists to `gathered`.
     pub fn gather(&mut self, name: &str, gathered: &mut Gathered) -> u64 {
         self.wait_for("status.ready");
         self.pulse("geometry_start");

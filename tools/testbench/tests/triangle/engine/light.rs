@@ -32,13 +32,13 @@ fn expected_lit(
     expected_with(options, mesh, view, size)
 }
 
-/// Draws each scene with flat and smooth shading, in changing light.
+/// Draws each scene with flat and with smooth shading, each time in another light.
 #[test]
 fn scenes_in_any_light() {
     let mut random = Pcg64Mcg::new(9);
     let mut bench = Bench::smooth(6, 0.0);
     for (name, mesh, view, cull) in scenes(generated) {
-        // Skips large meshes, which take long and test nothing more.
+        // Skips large meshes, which take long and add no coverage.
         if mesh.len() > 1 << 20 {
             continue;
         }

@@ -66,7 +66,7 @@ fn ten_thousand_segments_of_50_pixels() {
 
 /// A drawing step of a frame.
 enum Step {
-    /// A rectangle parallel to the picture plane: distance from the eye, and colour.
+    /// A rectangle parallel to the image plane: distance from the eye, and colour.
     Face(f64, u16),
     /// Segments.
     Lines(Vec<Segment>),

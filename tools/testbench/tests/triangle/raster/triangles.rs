@@ -42,7 +42,7 @@ impl Triangle {
     }
 }
 
-/// Sets up and numbers the triangles with an area inside the picture.
+/// Sets up and numbers the triangles that have an area and lie in the picture.
 pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for corners in all {
@@ -56,7 +56,7 @@ pub fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     ScreenVertex { x, y, w }
 }
 
-/// Makes a triangle's corners from positions in pixels, each corner with another depth.
+/// Makes a triangle's corners from positions in pixels, with three different depths.
 pub fn pixels(corners: [[f64; 2]; 3]) -> Corners {
     let mut w = 0;
     corners.map(|place| {
