@@ -5,7 +5,7 @@
 //!    ├── geometry (passes of the meshes, clipping)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
-//!    ├── rendered (what the drawing took)
+//!    ├── rendered (result and cost of a frame)
 //!    └── fallback (reasons to draw, or to make descriptors, by the CPU)
 //! eyes ── renderer (stereo pictures with meshes)
 //! ```

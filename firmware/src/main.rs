@@ -10,7 +10,7 @@
 //! error
 //! machine (state) ─┬─ renderer, gateware, picture, models, objects, shapes, arena, memory
 //!                  ├─ transfer, terminal
-//!                  ├─ panel (what switches, LEDs and digits mean), demo, scenes (built in and in the flash)
+//!                  ├─ panel (switches, LEDs, digits), demo, scenes (built in and in the flash)
 //!                  ├─ sensor, gesture, replay
 //!                  └─ interrupts
 //! panic (traps, panics)    bench (kernels)

@@ -19,7 +19,7 @@ pub struct Drawn {
     pub cycles: u64,
     /// Counts of triangles, rays and pixels.
     pub stats: FrameStats,
-    /// Which renderer drew the frame.
+    /// The renderer that drew the frame.
     pub by: RenderedBy,
     /// Whether the frame's depth codes are in memory.
     pub has_depth: bool,
@@ -70,7 +70,7 @@ struct Content {
     mark: Option<Mark>,
 }
 
-/// The last picture, and requests for the next one.
+/// The last picture, and requests for the next picture.
 #[derive(Default)]
 pub struct Picture {
     /// The contents of the last picture; `None` if a new picture was requested.

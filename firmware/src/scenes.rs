@@ -26,7 +26,7 @@ pub fn named(name: &str) -> Option<&'static BuiltIn> {
 pub enum Found {
     /// A scene or list of the flash.
     Flash(Item<'static>),
-    /// A built-in one.
+    /// A built-in scene or list.
     BuiltIn(&'static BuiltIn),
 }
 

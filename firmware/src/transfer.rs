@@ -241,7 +241,7 @@ impl Line {
     }
 }
 
-/// The sender of downloads. Each transfer has a session number, one more than that of the previous transfer, modulo 256.
+/// The sender of downloads. Each transfer has a session number, the previous transfer's number plus one, modulo 256.
 #[derive(Default)]
 pub struct Downloads {
     session: u8,
@@ -272,7 +272,7 @@ impl Downloads {
         self.send(copy, terminal)
     }
 
-    /// Takes the memory for copies back.
+    /// Takes back the memory for copies.
     pub fn give_back(&mut self, copy: Loan) {
         self.copy = copy;
     }

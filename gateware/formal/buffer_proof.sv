@@ -1,5 +1,5 @@
 // Proof that a buffer follows the stream protocol and keeps the order of its items, with any pattern of valid and ready on its input
-// and output. The buffer is the skid buffer, a FIFO of DEPTH places, or a pipeline of FLIGHT clocks that ends in a credit_fifo.
+// and output. The buffer is the skid buffer, a FIFO of depth DEPTH, or a pipeline of FLIGHT clocks that ends in a credit_fifo.
 
 `default_nettype none
 

@@ -72,7 +72,7 @@ class Ulx3sSoC(GlintSoC):
 
     # The flash of this board is not configured for four data lines: the FPGA loads from it on one line.
     possible_blocks = GlintSoC.possible_blocks - {"flash"}
-    # With the raymarcher, nextpnr takes twice as long, and the result does not reach the clock frequency (see docs/boards.md).
+    # With the raymarcher, nextpnr takes twice as long, and reaches a lower clock frequency (see docs/boards.md).
     default_blocks = possible_blocks - {"raymarch"}
 
     def __init__(self, build_id, blocks, smooth=False, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):

@@ -11,7 +11,7 @@ pub struct FrameBuffer<'a> {
     pub height: u32,
     /// Colours in RGB565, one per pixel.
     pub colour: &'a mut [u16],
-    /// Depth codes, one per pixel: u18, larger is nearer, 0 is clear.
+    /// Depth codes, one per pixel: u18, larger is nearer, 0 for an empty pixel.
     pub depth: &'a mut [u32],
 }
 

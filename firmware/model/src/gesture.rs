@@ -45,7 +45,7 @@ impl Channel {
 /// The channels of a colour, in the order of [`Channel::ALL`].
 ///
 /// Full-range luma and chroma of ITU-R BT.601, with factors of 10 fraction bits, rounded to nearest, ties down. All channels fit in 8
-/// bits, because the factors of luma add up to 1 and those of chroma to 0, and a chroma's positive factor is 1/2.
+/// bits, because the factors of luma add up to 1 and the factors of chroma to 0, and a chroma's positive factor is 1/2.
 #[must_use]
 pub const fn channels(colour: Rgb565) -> [u8; 6] {
     let [r, g, b] = colour.to_rgb888();

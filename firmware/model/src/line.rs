@@ -1,8 +1,8 @@
 //! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats/line.md, "Lines").
 //!
 //! A line has one pixel in each column if its end points are further apart horizontally than vertically, otherwise one in each row. The
-//! horizontal or vertical axis along which it has one pixel per step is its *major* axis, the other axis its *minor* axis. The
-//! diamond-exit rule selects its pixels: a pixel is drawn if the path from the first to the second end point leaves the pixel's diamond,
+//! axis along which it is longer is its *major* axis, the other axis its *minor* axis. The diamond-exit rule selects its pixels: a pixel
+//! is drawn if the path from the first to the second end point leaves the pixel's diamond,
 //! |x| + |y| < 1/2 about its centre. [`Line::new`] is the set-up, [`Line::pixels`] iterates over the pixels in a rectangle, and [`draw`]
 //! writes them. The engine cuts lines into [`Piece`]s.
 
@@ -174,7 +174,7 @@ struct Coordinate {
 }
 
 impl Coordinate {
-    /// Splits a coordinate, rounded towards 0. `!x` is −1 − x.
+    /// Splits x − 1, or −x if the coordinate is mirrored, into pixel and position in the pixel.
     const fn new(x: i32, backward: bool) -> Self {
         let x = if backward { !(x - 1) } else { x - 1 };
         Self {
@@ -326,7 +326,7 @@ fn passed(v: &ScreenVertex, at: [Coordinate; 2]) -> bool {
     at[0].place >= 128 && distance >= 128
 }
 
-/// The pixels of a line in a rectangle, from the first end point to the second one.
+/// The pixels of a line in a rectangle, from the first end point to the second end point.
 #[derive(Clone, Debug)]
 pub struct LinePixels {
     /// The remaining line from the next pixel on.

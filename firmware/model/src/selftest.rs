@@ -39,7 +39,7 @@ pub enum TestPicture {
     Stereo,
 }
 
-/// The mesh of the pictures that have one.
+/// The mesh of all pictures with a mesh.
 pub const MESH_SHAPE: Shape = Shape::Torus;
 
 impl TestPicture {

@@ -1,6 +1,6 @@
 //! Stereo: the frames of two eyes, and the composition of their pictures (docs/formats/camera.md, "Stereo").
 //!
-//! The rays of a field alone are cast for both eyes in one frame. Other subjects are drawn as two frames of one eye each.
+//! For a field without a mesh, one frame casts the rays of both eyes. Other subjects are drawn as two frames of one eye each.
 
 use core::iter;
 use core::ops::Add;

@@ -53,7 +53,7 @@ pub fn measure<I: Copy, O>(
     input: impl Fn(u32) -> I,
     kernel: impl Fn(I) -> O,
 ) {
-    // Multiples of 2^32 divided by the golden ratio fill the full circle evenly, in an order without a pattern.
+    // Multiples of 2^32 divided by the golden ratio fill the full circle evenly, in a pseudo-random order.
     let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
     let timers: [fn(&_, I) -> u32; 2] = [timed::<0, _, I, O>, timed::<1, _, I, O>];
     let noise = |timer: &fn(&_, I) -> u32| {

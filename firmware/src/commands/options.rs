@@ -1,4 +1,4 @@
-//! Options of the scene, and the queries about the board that setting an option makes.
+//! Options of the scene, and the properties of the board on which they depend.
 
 use glint_core::console::{Executor, ObjectAction, OptionName, Setting};
 use glint_core::feature::Feature;
@@ -18,7 +18,7 @@ struct ThisBoard<'m> {
     models: &'m mut Models,
 }
 
-/// Answers the queries of scenes about this board.
+/// The properties of this board on which scenes depend.
 pub const fn board<'m>(renderer: &'m Renderer, models: &'m mut Models) -> impl Board + 'm {
     ThisBoard { renderer, models }
 }

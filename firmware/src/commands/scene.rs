@@ -236,7 +236,7 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> O
             }
             let started = command.execute(machine);
             if started.is_err() && !is_stated {
-                // Without a sensor the scene stays.
+                // If a sensor is missing, the scene stays.
                 machine.scene.backend = backend;
             }
             motion = Some(started?);

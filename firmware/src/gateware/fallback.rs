@@ -105,7 +105,7 @@ pub enum Unsupported {
     Winding,
     /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
-    /// Memory for a copy of the object's mesh with transformed normals. Objects count from 1.
+    /// Memory for a copy of the object's mesh with transformed normals. Objects are numbered from 1.
     Normals {
         /// Number of the object.
         object: usize,

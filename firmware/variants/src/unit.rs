@@ -70,7 +70,7 @@ fn divided<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
         return q;
     };
-    // The largest component gets 31 bits, and the sum of the squares has at most 64.
+    // The largest component gets 31 bits, and the sum of the squares has at most 64 bits.
     let size = size.map(|x| u64::from(x) << 31 >> (lead + 1));
     let length = size.map(|x| x * x).iter().sum::<u64>().isqrt();
     [0, 1, 2].map(|i| {
@@ -87,7 +87,7 @@ pub fn unit_32<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
         return q;
     };
-    // The largest component gets 15 bits, and the sum of the squares has at most 32.
+    // The largest component gets 15 bits, and the sum of the squares has at most 32 bits.
     let size = size.map(|x| {
         if lead < 14 {
             x << (14 - lead)

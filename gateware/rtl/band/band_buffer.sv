@@ -113,8 +113,8 @@ module band_buffer #(
     always_ff @(posedge clk) begin
         closing <= band_valid && !swap && !clearing;
         if (swap) drawn <= !drawn;
-        // `open` is the register of !clearing && !closing && !flush_reads_depth, and rises one clock later after clearing and after a
-        // flush of depths.
+        // `open` is !clearing && !closing && !flush_reads_depth, registered; after clearing and after a flush of depths it rises one clock
+        // later.
         open    <= !(clearing || flush_reads_depth || rst || restart || (swap ? band_with_depth : band_valid));
 
         if (rst || restart) closing <= 1'b0;

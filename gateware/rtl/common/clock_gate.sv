@@ -1,4 +1,4 @@
-// Gates a clock: Clock gate: `gated` stops while `enable` is low, without glitches, because the gate changes at the falling edge. For
+// Clock gate: `gated` stops while `enable` is low, without glitches, because the gate changes at the falling edge. For
 // simulation only; an FPGA has cells for this purpose.
 
 `default_nettype none

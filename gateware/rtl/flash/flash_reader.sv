@@ -1,7 +1,7 @@
 // Reads words of 32 bits from a SPI flash with four data lines.
 //
-// The command is 0x6b, fast read with quad output: command and address go out on line 0, eight clocks pass, and the bytes come in on all
-// four lines, the high half first. The flash continues with the next address while it is selected, so a request for the word after the
+// The command is 0x6b, fast read with quad output: command and address go out on line 0, eight clocks pass, and the bytes are received on
+// all four lines, the high half first. The flash continues with the next address while it is selected, so a request for the word after the
 // last word gets its data at once:
 //
 //   cs_n  ‾‾‾‾‾‾‾╲_______________________________________________ … stays low

@@ -255,7 +255,8 @@ module ray_generator #(
     delay #(.WIDTH(1), .CLOCKS(9)) eye_waits (.clk, .enable(1'b1), .in(STEREO && place_0.eye), .out(eye_9));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable(1'b1), .in(part_10), .out(part_18));
 
-    // For each axis: the distance outside of the box, and the first t of the entry into it, by clock (the suffix of a name).
+    // For each axis: the distance outside of the box, and the first estimate of t at the entry into the box, by clock (the suffix of a
+    // name).
     logic [2:0][23:0] outside_9, outside_16;
     logic [2:0][22:0] t_13, t_19;
 
@@ -276,9 +277,9 @@ module ray_generator #(
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable(1'b1), .in(direction_7[i][17]), .out(backwards_9));
         assign negative_9 = eye_9 ? origins[1][i][24] : origins[0][i][24];
 
-        // By clock (the suffix of a name): 12 outside·inverse; 13 the same, saturated, which is a first t; 16 t·(|d| + 1), the
-        // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse, plus the first t;
-        // 21 the same, saturated, which is the entry into the box.
+        // By clock (the suffix of a name): 12 outside·inverse; 13 this product, saturated, as a first estimate of t; 16 t·(|d| + 1), the
+        // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse, plus the first estimate;
+        // 21 this sum, saturated: t at the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [24:0]        left_17;
         logic signed [41:0] product_12, gone_16;
@@ -300,7 +301,7 @@ module ray_generator #(
         multiply_add #(.BITS(42)) covered (
             .clk, .enable(1'b1), .a({2'b0, t_13[i]}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
         );
-        // A negative distance is from inside of the box: nothing is added.
+        // A negative distance means a point inside of the box: nothing is added.
         multiply_add #(.BITS(43)) rest (
             .clk, .enable(1'b1), .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17 & {17{!left_17[24]}}}), .c({11'b0, t_19[i], 9'b0}),
             .p(sum_20)

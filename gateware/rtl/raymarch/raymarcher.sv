@@ -119,7 +119,7 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     raymarch_pkg::ray_t       ray;
 
-    // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone stands for a block of 2^`block`
+    // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone represents a block of 2^`block`
     // by 2^`block` pixels, and `fine` means CONES_ACROSS blocks in a line instead of half as many. `cleared` is the depth from
     // which the rays of block `number` start.
     logic        cones, fine, generate_rays;

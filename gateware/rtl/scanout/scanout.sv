@@ -10,7 +10,7 @@
 // and pulses `vblank`. The pix side does not request line 0 before that, so all lines of a picture come from one frame in memory.
 // The video timing never stalls: a late line is replaced by the previous line, and counted as an underflow.
 //
-// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 4 pix_clk from scanout_timing to the video
+// Throughput: one pixel per pix_clk, at most one memory word per sys_clk. Latency: 4 pix_clk from scanout_timing to the video
 // outputs; a source line (a line of the frame in memory) is requested one to `scale` output lines before its first use. Clock
 // domain crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
 // written and read at different times under the control of scanout_lines.

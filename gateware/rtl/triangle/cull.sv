@@ -122,7 +122,7 @@ module cull #(
         end
     end
 
-    // `area` is 2A = x10·y20 + x20·y01, twice the signed area, one product a clock in phases 0 and 1. For a tall triangle the first turn
+    // `area` is 2A = x10·y20 + x20·y01, twice the signed area, one product per clock in phases 0 and 1. For a tall triangle the first turn
     // uses the highest four bits of y20 and y01, the second turn their low 17 bits. The sum is valid in phases 1 and 2 of a triangle's
     // last 3 clocks.
     logic signed [24:0] a;

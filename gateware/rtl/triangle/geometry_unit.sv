@@ -138,7 +138,7 @@ module geometry_unit #(
 
         assign half_ready = !has_first || segment_ready;
 
-        // The first half is stored here until the second half, which stays at the input, is used.
+        // Stores the first half of a segment; the second half is used directly from the input.
         always_ff @(posedge clk) begin
             if (in_lines && word_valid && half_ready) has_first <= !has_first;
             if (!has_first) {segment.colour, segment.a_w, segment.a_y, segment.a_x}

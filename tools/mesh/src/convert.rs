@@ -59,7 +59,7 @@ pub struct Report {
     pub error_max_lsb: f64,
     /// `error_rms` in units of 2^-14.
     pub error_rms_lsb: f64,
-    /// Remarks for the user, such as damage in the file.
+    /// Remarks for the user, such as a warning that the file may be damaged.
     pub remarks: Vec<String>,
 }
 

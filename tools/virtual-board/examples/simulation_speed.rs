@@ -1,4 +1,4 @@
-//! Compares the speed of the virtual board with that of the bare model: [`VirtualBoard::run`] with the monitor off and on,
+//! Compares the speeds of the virtual board and of the bare model: [`VirtualBoard::run`] with the monitor off and on,
 //! and a C++ loop that only advances the clocks, in cycles per second. Measurements of the three kinds alternate.
 //!
 //! `cargo run -p virtual-board --example simulation_speed`

@@ -309,7 +309,7 @@ impl VirtualBoard {
         self.soc.uart_queued()
     }
 
-    /// Moves the unread serial output of the SoC to the end of `output`.
+    /// Appends the unread serial output of the SoC to `output`.
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         output.append(&mut self.uart);
     }

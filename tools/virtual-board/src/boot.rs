@@ -9,7 +9,7 @@ const ZERO: u32 = 0;
 
 /// Returns ROM contents: a program that gives the controller access to the DDR3 and jumps to the start of main RAM.
 ///
-/// A real DDR3 would first need setting of its mode registers and training of the PHY; the model needs neither.
+/// A real DDR3 would first require set-up of its mode registers and training of the PHY; the model requires neither.
 pub(crate) fn stub() -> Vec<u8> {
     // SAFETY: only computes the address of a register, without an access.
     let control = unsafe { litex_pac::sdram::Sdram::steal() }

@@ -1,17 +1,17 @@
 //! The digit displays, whose digits the SoC lights one at a time.
 
-/// Number of cycles for which a digit looks lit after it was: twice the cycles in which the SoC lights each digit once.
+/// Number of cycles for which a digit appears lit after it was lit: two refresh cycles of the digits.
 const SEEN: u64 = 2 << 16;
 
-/// The digits as an eye sees them.
+/// The digits as perceived by an eye.
 #[derive(Default)]
 pub(crate) struct Digits {
-    /// Segments of each digit from left to right when it was last lit, and the cycle after which it looks dark.
+    /// Segments of each digit from left to right when it was last lit, and the cycle after which it appears dark.
     digits: [(u8, u64); 8],
 }
 
 impl Digits {
-    /// Looks at the pins of both displays in a cycle: the lit digits of each, one bit each, and its lit segments.
+    /// Processes the pins of both displays in a cycle: for each display its lit digits, one bit each, and its lit segments.
     pub fn look(&mut self, cycle: u64, displays: [[u8; 2]; 2]) {
         for (digits, [lit, segments]) in self.digits.chunks_mut(4).zip(displays) {
             for (place, digit) in digits.iter_mut().enumerate() {

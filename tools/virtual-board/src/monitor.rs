@@ -70,9 +70,9 @@ impl fmt::Display for Pins {
 pub struct TimingError {
     /// Number of whole frames before the error.
     pub frame: u64,
-    /// Line, 0 being the first of vsync.
+    /// Line number; line 0 is the first line of vsync.
     pub line: usize,
-    /// Tick in the line, 0 being the first of hsync.
+    /// Tick in the line; tick 0 is the first tick of hsync.
     pub tick: usize,
     /// Expected control pins (vsync, hsync, de), packed as in the video samples of `soc.h`.
     pub expected: u32,

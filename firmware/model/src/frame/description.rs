@@ -39,8 +39,7 @@ pub struct Frame<'a> {
 pub enum Subject<'a> {
     /// A mesh.
     Mesh(MeshSubject<'a>),
-    /// The edges of a mesh: [`Frame::draw`] draws only the faces, and [`Frame::draw_edges`] the edges. [`Subject::edges`]
-    /// makes it.
+    /// The edges of a mesh: [`Frame::draw`] draws only the faces, and [`Frame::draw_edges`] the edges. Made by [`Subject::edges`].
     Edges(MeshSubject<'a>, Edges),
     /// A distance field.
     Field(FieldSubject<'a>),
@@ -285,7 +284,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The lighting of the meshes: the frame's, or for a mesh in a field that of the field's appearance.
+    /// The lighting of the meshes: of the frame, or for a mesh in a field of the field's appearance.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {

@@ -14,7 +14,7 @@ pub struct Polarity {
     pub vsync_low: bool,
     /// HREF is low during a line.
     pub href_low: bool,
-    /// The first byte of a pixel is the low one.
+    /// The first byte of a pixel is the low byte.
     pub swap: bool,
 }
 

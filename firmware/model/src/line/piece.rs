@@ -53,8 +53,8 @@ impl Piece {
         [pixel.column, pixel.row]
     }
 
-    /// Draws the piece in its band, up to the last pixel in the band. Calls `visit` with each pixel, and returns the
-    /// number of those that passed the depth test.
+    /// Draws the piece in its band, up to the last pixel in the band. Calls `visit` with each pixel, and returns the number of pixels that
+    /// passed the depth test.
     pub fn draw(
         &self,
         band: &Bounds,

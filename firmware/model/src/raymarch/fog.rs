@@ -65,8 +65,8 @@ fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
     (((u128::from(density.to_bits()) << 36) / units) >> setup.exponent) as u64
 }
 
-/// Computes e^−x with 62 fraction bits for an x with 32 fraction bits, as (1 − x/2^20)^(2^20). The result is below the
-/// exact value by a part of x²/2^21; for x ≥ 16 it is 0.
+/// Computes e^−x with 62 fraction bits for an x with 32 fraction bits, as (1 − x/2^20)^(2^20). The result is below the exact value by a
+/// relative x²/2^21; for x ≥ 16 it is 0.
 fn faded(x: u64) -> u64 {
     if x >= 16 << 32 {
         return 0;

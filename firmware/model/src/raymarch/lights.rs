@@ -8,14 +8,14 @@ use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, whole};
 pub struct Light {
     /// Direction to the light, s1.16, of length 1 at most.
     pub direction: [i32; 3],
-    /// Colour of the light, eight bits a channel.
+    /// Colour of the light, eight bits per channel.
     pub colour: Rgb,
 }
 
 /// The lights of a frame, and the materials of the spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lights {
-    /// Ambient light, eight bits a channel.
+    /// Ambient light, eight bits per channel.
     pub ambient: Rgb,
     /// Lights; the first `count` entries are valid.
     pub list: [Light; MAX_LIGHTS],

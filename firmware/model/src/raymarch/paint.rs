@@ -7,7 +7,7 @@ use super::palette::Palette;
 use super::ray::{Ray, RayResult, State};
 use super::setup::FieldSetup;
 
-/// The colour of a ray's end, eight bits a channel.
+/// The colour of a ray's end, eight bits per channel.
 pub fn paint(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) -> [u8; 3] {
     let (colour, light, fog) = match outcome.state {
         State::Undecided => return palette.undecided,

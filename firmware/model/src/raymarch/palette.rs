@@ -6,8 +6,8 @@ use glint_core::light::{Background, Lighting, Material};
 
 use super::lights::{Light, Lights};
 
-/// The colours of a frame, computed from materials and lights; eight bits a channel. With two eyes the colours are grey: all channels have
-/// the luminance.
+/// The colours of a frame, computed from materials and lights; eight bits per channel. With two eyes the colours are grey: all channels
+/// have the luminance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
     /// Lit colours of the faces, by [`Surface::face`](glint_core::field::Surface::face): six perpendicular to the axes,

@@ -25,7 +25,7 @@ const fn inverses() -> [u32; 1024] {
 }
 
 /// Lower bounds of 1/√q for numbers q in (0, 1). The index i is the first ten fraction bits of q. The entry is
-/// √(2^10/(i + 1)), reduced by a part of at least 2^−16 to cover later rounding up: u8.9, 15 bits.
+/// √(2^10/(i + 1)), reduced by a relative 2^−16 at least, to allow for later rounding up: u8.9, 15 bits.
 pub const ROUND_INVERSE: [u32; 1024] = round_inverses();
 
 const fn round_inverses() -> [u32; 1024] {
@@ -278,7 +278,7 @@ fn in_range(x: i32) -> i32 {
 }
 
 /// Returns gap and slope of a hit on a face perpendicular to an axis (see the fields of these names in `RayResult`).
-/// `distance` is the distance at the last point, and `positive` tells whether the face's normal points along the axis.
+/// `distance` is the distance at the last point, and `positive` states whether the face's normal points along the axis.
 fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     let part = ray.direction[usize::from(axis) % 3];
     let comes = (part < 0) == positive;

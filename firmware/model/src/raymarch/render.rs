@@ -14,7 +14,7 @@ use crate::triangle::reciprocal::Reciprocal;
 pub struct FieldStats {
     /// Rays: one per pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field by rays and cones. A step in a scene with several spheres counts one for each sphere.
+    /// Evaluations of the field by rays and cones. In a scene with several spheres, a step counts as one evaluation per sphere.
     pub evaluations: u64,
     /// Number of rays that hit a surface.
     pub hits: u32,

@@ -42,7 +42,7 @@ pub struct FieldSetup {
     pub beside: Option<Beside>,
     /// Field units per world unit: 2 to 256.
     pub scale: Q32_32,
-    /// Half the sides of the bounding box about the origin, u12.12; the largest value along an unbounded axis.
+    /// Half side lengths of the bounding box about the origin, u12.12; the largest value along an unbounded axis.
     pub bounds: [u32; 3],
     /// The left and the right eye; the second is unused without stereo.
     pub eyes: [Eye; 2],
@@ -189,7 +189,7 @@ impl FieldSetup {
         eyes.iter().any(is_inside)
     }
 
-    /// The distance of [`sample`](Self::sample) alone.
+    /// Returns only the distance of [`sample`](Self::sample).
     pub fn distance(&self, point: [i32; 3]) -> i32 {
         match &self.beside {
             Some(_) => self.sample(point).distance,

@@ -32,7 +32,7 @@ impl<'a> Path<'a> {
 /// Whether all vertices lie beyond the same side of the picture.
 #[inline]
 fn off_screen(frame: &MeshSetup, [a, b, c]: [&ScreenVertex; 3]) -> bool {
-    // The bitwise and is negative if all values are negative.
+    // The bitwise AND of numbers is negative if all of them are negative.
     let off = |[a, b, c]: [i32; 3], size: u32| {
         let last = (size << 8) as i32 - 1;
         a & b & c < 0 || (last - a) & (last - b) & (last - c) < 0

@@ -330,7 +330,7 @@ impl<A: Accumulator> End<A> {
     }
 }
 
-/// Whether no value is negative: the bitwise or is negative if one of the values is.
+/// Whether no value is negative: the bitwise OR is negative if any value is.
 fn passes<A: Accumulator>([a, b]: [A; 2]) -> bool {
     a | b >= A::default()
 }

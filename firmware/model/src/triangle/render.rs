@@ -300,7 +300,7 @@ struct Renderer<'a, 'b> {
 }
 
 impl Renderer<'_, '_> {
-    /// Makes the triangles that need no clipping, and counts those that do.
+    /// Makes the triangles that need no clipping, and counts the others.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         for chunk in mesh.chunks() {

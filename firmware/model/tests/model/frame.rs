@@ -1,4 +1,4 @@
-//! Frames: their constants, drawing in one call, and the band lists of their clipped triangles.
+//! Tests of frames: constants, drawing in one call, and the band lists of clipped triangles.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;

@@ -232,7 +232,7 @@ fn lines_meet_depths() {
     }
 }
 
-/// The depth slope of a face along an axis of the screen, 0 for x, in codes a pixel.
+/// The depth slope of a face along an axis of the screen, 0 for x, in codes per pixel.
 fn slope(corners: [ScreenVertex; 3], axis: usize) -> f64 {
     let [a, b, c] = corners.map(|v| [v.x, v.y, v.w as i32].map(f64::from));
     let from_a = |v: [f64; 3], i: usize| v[i] - a[i];

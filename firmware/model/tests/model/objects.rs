@@ -307,14 +307,14 @@ fn objects_share_one_depth() {
         };
         assert!(expected, "pixel {i}: {colour:#x}");
     }
-    // The same position: every pixel has the colour of the later object.
+    // At equal positions every pixel has the colour of the later object.
     let twice = of(
         &[object(at(0.0, 0.0), red), object(at(0.0, 0.0), blue)],
         view,
     );
     assert!(twice.colour.iter().all(|colour| colour & 0xF800 == 0));
     assert_eq!(twice.stats.triangles_in, 24);
-    // No object: an empty picture.
+    // Without objects the picture is empty.
     let empty = of(&[], view);
     assert!(empty.colour.iter().all(|&x| x == 0) && empty.covered() == 0);
 }

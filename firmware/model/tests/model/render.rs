@@ -31,7 +31,7 @@ fn a_sphere_is_a_disc_without_holes() {
             let span: Vec<usize> = (0..row.len()).filter(|&i| row[i]).collect();
             assert!(span.windows(2).all(|pair| pair[1] == pair[0] + 1), "a hole");
         }
-        // The outline of the sphere is a disc, whose border is where lines from the eye touch the sphere; the mesh
+        // The outline of the sphere is a disc, bounded by the lines of sight tangent to the sphere; the mesh
         // approximates it by 24 rings.
         let distance: f64 = (9.0f64 + 0.09 + 0.04).sqrt();
         let radius = f64::from(size.0) / 2.0 / 0.9 * 0.5 / (distance * distance - 0.25).sqrt();

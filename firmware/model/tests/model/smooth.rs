@@ -1,4 +1,4 @@
-//! Exact properties of smooth shading. The errors of smooth shading are measured by `tools/reference`.
+//! Tests of exact properties of smooth shading. `tools/reference` measures the errors of smooth shading.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::clip::clip;

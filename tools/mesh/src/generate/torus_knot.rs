@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Quads along the knot.
 const LENGTH: usize = 240;
-/// Quads round the tube.
+/// Quads around the tube.
 const GIRTH: usize = 16;
 const TUBE_RADIUS: f64 = 0.42;
 

@@ -31,7 +31,7 @@ pub struct Tree {
 struct Node {
     low: Point,
     high: Point,
-    /// Number of points that are not removed.
+    /// Number of remaining points.
     count: u32,
 }
 

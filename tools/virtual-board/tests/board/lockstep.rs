@@ -51,8 +51,8 @@ const MSTATUS: u32 = 0x300;
 const MTVEC: u32 = 0x305;
 const MIP: u32 = 0x344;
 
-/// Control registers that random instructions access, some of which do not exist. Registers that count time, of the trap handler, or of
-/// the implementation are not included.
+/// Control registers that random instructions access, some of which do not exist. Registers for time, for the trap handler and for the
+/// implementation are excluded.
 const CSRS: [u32; 19] = [
     MSTATUS, 0x301, 0x304, MSCRATCH, MEPC, MCAUSE, MTVAL, 0xbc0, 0xfc0, 0xcc0, 0xf11, 0xf12, 0xf14,
     0x180, 0x306, 0x7c0, 0xc01, 0xf15, 0x105,

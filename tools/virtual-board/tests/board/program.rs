@@ -1,4 +1,4 @@
-//! Small programs for the soft core, assembled at the run of a test.
+//! Small programs for the soft core, which tests assemble.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
