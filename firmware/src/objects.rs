@@ -44,7 +44,7 @@ struct Copy {
 }
 
 impl Objects {
-    /// No objects. Makes an empty list of objects; `memory` is for copies of meshes with transformed normals.
+    /// Makes an empty list of objects; `memory` is for copies of meshes with transformed normals.
     pub const fn new(memory: Arena) -> Self {
         Self {
             sources: Vec::new(),

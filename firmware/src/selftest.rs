@@ -105,7 +105,7 @@ impl fmt::Display for Failure {
             Self::Sensor(error) if IMU.is_built => error.fmt(f),
             Self::NoSample => write!(f, "no sample for {} ms", whole_millis(SAMPLE)),
             Self::ImageSensor(error) if GESTURE.is_built => error.fmt(f),
-            // Stand-in for the failure type of a part that this build does not include.
+            // Failures of parts that this build does not include never occur.
             Self::Sensor(_) | Self::ImageSensor(_) => Ok(()),
         }
     }

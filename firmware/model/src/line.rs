@@ -79,7 +79,7 @@ impl Segment {
     }
 
     /// The segment with these [`words`](Self::words) in memory, of which bits beyond the fields have no effect. A segment without a depth
-    /// test has one in memory, but the same pixels.
+    /// test is read as one with a depth test that draws the same pixels.
     #[must_use]
     pub fn from_words(words: [u32; Self::WORDS]) -> Self {
         let [first, second] = [0, segment_end::BITS].map(|start| {

@@ -140,7 +140,7 @@ impl TestPicture {
         }
     }
 
-    /// Makes a field from its name on the console.
+    /// The field in the notation of the console; `None` for a picture without a field.
     const fn field(self) -> Option<&'static str> {
         match self {
             Self::Sponge => Some("menger:3"),

@@ -65,7 +65,7 @@ fn by_inverse<const STEPS: u32>(x: u32) -> u64 {
 #[inline(never)]
 fn bit_by_bit(square: u32) -> u16 {
     let (mut rest, mut root, mut bit) = (square, 0, 1 << 30);
-    // The number of iterations depends on the input, so that the compiler does not unroll the second loop into sixteen copies.
+    // The number of iterations depends on the input, so that the compiler does not unroll the loops into sixteen copies.
     while bit > square {
         bit >>= 2;
     }

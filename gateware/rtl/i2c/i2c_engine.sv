@@ -99,7 +99,7 @@ module i2c_engine #(
     logic [PHASE_BITS-1:0] phase;
     logic                  held, expired, waiting;
     logic [STRETCH_BITS:0] stretched;
-    // `started`: Set by a start condition, after which SDA is low. In LOW without a start condition, the engine clocks a device that pulls
+    // `started`: set by a start condition, after which SDA is low. In LOW without a start condition, the engine clocks a device that pulls
     // SDA low.
     logic                  last_byte, ninth, started;
     logic                  again, due, late, begins;

@@ -41,7 +41,7 @@ pub enum Start<'a> {
     /// Like a real board: the BIOS in ROM tests the memory and waits for a serial boot.
     #[default]
     Full,
-    /// Preloaded: Preloaded: `firmware` is in main RAM, and the ROM jumps to it.
+    /// Preloaded: `firmware` is in main RAM, and the ROM jumps to it.
     Fast {
         /// The firmware's image.
         firmware: &'a [u8],

@@ -183,7 +183,7 @@ pub struct Chip {
     answers: u64,
     /// Whether a transfer is between its start and its stop. The data registers do not change during a transfer.
     is_addressed: bool,
-    /// I2C address: The I2C address: [`ADDRESS`], or [`ADDRESS`] + 1 with AD0 high.
+    /// I2C address: [`ADDRESS`], or [`ADDRESS`] + 1 with AD0 high.
     pub address: u8,
     /// Current fault.
     pub fault: Option<Fault>,

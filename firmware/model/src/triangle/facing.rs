@@ -17,7 +17,7 @@ pub enum Facing {
 }
 
 impl Facing {
-    /// The other side.
+    /// Returns the other side.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {

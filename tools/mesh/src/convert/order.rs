@@ -60,7 +60,7 @@ struct Fans {
     /// Number of triangles about each vertex that are not drawn yet.
     left: Vec<u32>,
     is_drawn: Vec<bool>,
-    /// For each vertex, the total number of fetches after its last fetch.
+    /// For each vertex, the value of the fetch counter after its last fetch.
     fetched: Vec<usize>,
     fetches: usize,
     /// Vertices of the drawn triangles, the latest last.

@@ -10,7 +10,7 @@ pub trait Source {
     fn start(&mut self) -> Result<(), FormatError>;
     /// Reads the next value of the instance.
     fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
-    /// Ends the instance. Ends an instance: in an ASCII file the line must have no further word.
+    /// Ends the instance. In an ASCII file the line must have no further word.
     fn end(&mut self) -> Result<(), FormatError>;
     /// The position of the next value.
     fn place(&self) -> Location;
