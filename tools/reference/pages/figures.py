@@ -68,8 +68,9 @@ def timeline(frames, lanes):
 
 
 def qualities(errors, cycles):
-    """Errors and cycles of frames, and whether a frame is on the Pareto front of its scene: no other frame has no more of cycles and errors,
-    and less of one of them. Cycles that differ by less than 0.5 % are equal, because scan-out reads memory at another time."""
+    """Errors and cycles of frames, and whether a frame is on its scene's Pareto front in cycles, wrong pixels and colour error.
+
+    Cycles within 0.5 % count as equal, because the times of scan-out's memory reads vary."""
     frames = errors.merge(cycles.drop(columns="commit"), "left")
 
     def is_beaten(frame):
