@@ -6,10 +6,9 @@ import os
 import sys
 from pathlib import Path
 
-from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
-from . import description, packages, register_map
+from . import packages, register_map
 from .raymarch import build
 from .register_map import OPTIONAL_BLOCKS
 
@@ -48,8 +47,7 @@ def main():
     # LiteX asks git for LiteX's own version. Without this limit git would return the version of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
-    full = make_soc("virtual", 0)
-    full.finalize()
+    full = packages.full_soc()
     build_id = register_map.build_id(full)
     for path in packages.stale(full):
         parser.error(f"{path} differs from the descriptions: `{packages.WRITER}` writes it")
@@ -74,10 +72,8 @@ def main():
         # The FPGA tools run separately: through `gateware/ecp5`, or by hand on a computer with the vendor's tools.
         compile_gateware=False)
     builder.build()
-    # The SVD and CSV files that the builder writes contain the build time, so equal SoCs would give different files.
+    # The file contains the build time, so equal SoCs would give different files.
     (output / "csr.csv").unlink()
-    description.write(soc, output / "description.json")
-    (output / "soc.svd").write_text(export.get_csr_svd(soc, vendor="glint", name="glint", description="The Glint SoC"))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Numbers that gateware, firmware and host share.
 
-`gateware/tests/run.py --packages` writes them as the SystemVerilog packages `picture_pkg`, `band_pkg` and `list_pkg`, and
+`cargo xtask pac` writes them as the SystemVerilog packages `picture_pkg`, `band_pkg` and `list_pkg`, and
 as `firmware/core/src/machine.rs`. Numbers of a single block are in the description of that block.
 """
 

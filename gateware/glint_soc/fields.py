@@ -1,6 +1,6 @@
 """The flat fields of the raymarcher, with one description for each.
 
-`gateware/tests/run.py --packages` generates `rtl/raymarch/fields_pkg.sv` (numbers, latency, kind of faces) and
+`cargo xtask pac` generates `rtl/raymarch/fields_pkg.sv` (numbers, latency, kind of faces) and
 `rtl/raymarch/flat_fields.sv` (instances, delays, choice) from the descriptions. The descriptions also determine the values of
 `solid.kind` and the bits of `caps.flat`, with the PAC and the driver's checks; the builds; and the variants that are tested
 and whose size is measured. docs/adding-a-field.md lists the steps to add a field.

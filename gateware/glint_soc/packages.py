@@ -1,17 +1,27 @@
-"""Files generated from the shared constants and records, and from the blocks' descriptions."""
+"""Writes the files that follow from the descriptions of blocks, records and shared numbers: `python -m glint_soc.packages`."""
 
-from . import constants, fields, records, register_map
+import argparse
+import logging
+import sys
+
+from migen import Constant
+
+from . import constants, fields, pac, records, register_map
 from .register_map import OPTIONAL_BLOCKS, PINNED
 from .rtl import RTL
 from .virtual import VirtualSoC
 
-WRITER = ".venv/bin/python gateware/tests/run.py --packages"
+WRITER = "cargo xtask pac"
 """Shell command that writes the files."""
 
 
 def full_soc():
-    """Returns the SoC with all blocks, not finalized."""
-    return VirtualSoC(0, OPTIONAL_BLOCKS)
+    """Returns the finalized SoC with all blocks."""
+    soc = VirtualSoC(0, OPTIONAL_BLOCKS)
+    soc.finalize()
+    # The addresses of the registers follow only now.
+    soc.identity.build_id.status.reset = Constant(register_map.build_id(soc))
+    return soc
 
 
 def stale(soc):
@@ -24,13 +34,24 @@ def stale(soc):
         **fields.files(),
         **records.files(),
         **register_map.files(),
+        **pac.files(soc),
     }
     return {path: text for path, text in texts.items() if not path.exists() or path.read_text() != text}
 
 
-def write(soc):
-    """Writes the generated files that are not up to date with the full SoC `soc`, and returns their paths."""
-    texts = stale(soc)
+def main():
+    """Parses the command line, and writes the files that are not up to date."""
+    parser = argparse.ArgumentParser(prog="python -m glint_soc.packages", description=__doc__)
+    parser.add_argument("--check", action="store_true", help="write nothing; fail if a file is not up to date")
+    check = parser.parse_args().check
+    logging.disable(logging.INFO) # LiteX describes all it does
+    texts = stale(full_soc())
     for path, text in texts.items():
-        path.write_text(text)
-    return list(texts)
+        if not check:
+            path.write_text(text)
+        print(f"{path} is out of date: `{WRITER}` writes it" if check else path)
+    return 1 if check and texts else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

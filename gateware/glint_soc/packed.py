@@ -2,7 +2,7 @@
 
 A description builds each `Struct` from the signals of its registers. `Package` writes the SystemVerilog type of each struct
 to a package in the block's RTL folder, so that positions and widths of members are never written by hand.
-`gateware/tests/run.py --packages` writes the packages of all blocks.
+`cargo xtask pac` writes the packages of all blocks.
 """
 
 from migen import Cat, Signal
@@ -140,7 +140,7 @@ def number(name, value, text=""):
 
 def generated(mark, source):
     """Returns the comment that a file is generated from `source`; `mark` begins a comment."""
-    return f"{mark} Generated from gateware/glint_soc/{source} by `gateware/tests/run.py --packages`. Do not edit."
+    return f"{mark} Generated from gateware/glint_soc/{source} by `cargo xtask pac`. Do not edit."
 
 
 def _comment(text):

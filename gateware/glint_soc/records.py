@@ -1,6 +1,6 @@
 """Records in memory that gateware, firmware and host share: meshes, segments, descriptors, flash images.
 
-`gateware/tests/run.py --packages` writes them as the SystemVerilog package `records_pkg`, as the module `records` of glint-core, and
+`cargo xtask pac` writes them as the SystemVerilog package `records_pkg`, as the module `records` of glint-core, and
 as docs/formats/records.md. All three name the fields, so no offset or width is written anywhere else.
 
 To add an optional attribute of a mesh's vertices, add its element to `ATTRIBUTES`.

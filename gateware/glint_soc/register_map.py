@@ -64,6 +64,11 @@ OPTIONAL_BLOCKS = {name: bit for bit, name in enumerate(BLOCKS)}
 CSR_MAP = {name: location.window for name, location in PINNED.items()}
 
 
+def access(csr):
+    """Returns whether software may write a register, `rw`, or not, `ro`. LiteX has no write-only registers."""
+    return "ro" if isinstance(csr, CSRStatus) and not hasattr(csr, "r") else "rw"
+
+
 def registers(soc):
     """Returns the register map of a finalized SoC without its board-specific parts, as plain data in address order."""
     regions = {}
@@ -77,8 +82,7 @@ def registers(soc):
         for csr in region.obj:
             fields = [[f.name, f.offset, f.size] for f in getattr(csr, "fields", None).fields] \
                 if getattr(csr, "fields", None) else []
-            read_only = isinstance(csr, CSRStatus) and not hasattr(csr, "r")
-            rows.append([offset, csr.name, csr.size, "ro" if read_only else "rw", fields])
+            rows.append([offset, csr.name, csr.size, access(csr), fields])
             offset += 4 * -(-csr.size // region.busword)
         regions[name] = {"origin": region.origin, "irq": soc.irq.locs.get(name), "registers": rows}
     return regions

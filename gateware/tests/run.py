@@ -4,9 +4,6 @@
     python gateware/tests/run.py --models [NAME ...]
                                            builds the models for the tests in tools/testbench instead, all or only those of
                                            the named modules
-    python gateware/tests/run.py --packages
-                                           writes the SystemVerilog packages, Rust modules and pages that follow from the
-                                           descriptions of blocks, records and shared numbers instead
     python gateware/tests/run.py --size NAME
                                            prints what a module, or `soc`, costs on the FPGA instead, as JSON:
                                            `cargo xtask resources` makes tables of it
@@ -39,7 +36,6 @@ import size  # noqa: E402
 import tables  # noqa: E402
 import ulx3s  # noqa: E402
 import urbana  # noqa: E402
-from glint_soc import packages  # noqa: E402
 from modules import MODULES  # noqa: E402
 from tools import ToolError  # noqa: E402
 from verilate import module as verilated_module  # noqa: E402
@@ -135,13 +131,6 @@ def build_models(names):
     return run_all(build for module in chosen for build in model_builds(module))
 
 
-def write_packages():
-    """Writes the generated files that differ from the descriptions. Returns False, for no failure."""
-    for path in packages.write(packages.full_soc()):
-        print(path, flush=True)
-    return False
-
-
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group()
@@ -149,13 +138,10 @@ if __name__ == "__main__":
     what.add_argument("--route", metavar="NAME", help="print clock rates by place and route instead")
     what.add_argument("--models", nargs="*", metavar="NAME", choices=[module.top for module in MODULES],
                       help="build what the tests in tools/testbench need instead, or only these modules of it")
-    what.add_argument("--packages", action="store_true", help="write the files generated from the descriptions instead")
     parser.add_argument("--seeds", metavar="N", type=int, nargs="+", help="seeds of the placer for --route")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
-    if arguments.packages:
-        failed = write_packages()
-    elif arguments.size:
+    if arguments.size:
         failed = print_measured(size.measure, arguments.size)
     elif arguments.route:
         failed = print_measured(partial(route.measure, seeds=arguments.seeds or route.SEEDS), arguments.route)

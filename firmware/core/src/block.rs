@@ -1,5 +1,5 @@
 //! The optional blocks of a gateware.
-// Generated from gateware/glint_soc/register_map.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/register_map.py by `cargo xtask pac`. Do not edit.
 
 use crate::choice::choices;
 

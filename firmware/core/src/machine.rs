@@ -1,5 +1,5 @@
 //! Numbers that gateware, firmware and host share.
-// Generated from gateware/glint_soc/constants.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/constants.py by `cargo xtask pac`. Do not edit.
 
 /// A picture size of the gateware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

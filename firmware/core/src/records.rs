@@ -1,5 +1,5 @@
 //! Records in memory (docs/formats/records.md).
-// Generated from gateware/glint_soc/records.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/records.py by `cargo xtask pac`. Do not edit.
 
 use core::ops::Range;
 

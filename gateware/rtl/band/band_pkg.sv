@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/constants.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/constants.py by `cargo xtask pac`. Do not edit.
 // Bands of a picture: at most 15,360 pixels each, a row of the band buffer for eight of them.
 
 `default_nettype none

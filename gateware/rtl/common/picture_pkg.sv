@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/constants.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/constants.py by `cargo xtask pac`. Do not edit.
 // Sizes of pictures. Code s is the first size times 2^s.
 
 `default_nettype none

@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/records.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/records.py by `cargo xtask pac`. Do not edit.
 // Records in memory. docs/formats/records.md explains the fields.
 
 `default_nettype none

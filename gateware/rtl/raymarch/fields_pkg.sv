@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/fields.py by `cargo xtask pac`. Do not edit.
 // Properties of the flat fields, by number.
 
 `default_nettype none

@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/fields.py by `cargo xtask pac`. Do not edit.
 // The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
 //
 // FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single instance needs no choice.

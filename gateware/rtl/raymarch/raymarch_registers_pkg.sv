@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/raymarch.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/raymarch.py by `cargo xtask pac`. Do not edit.
 // Numbers and types of the block's ports. docs/registers.md describes the registers.
 
 `default_nettype none

@@ -1,4 +1,4 @@
-// Generated from gateware/glint_soc/constants.py by `gateware/tests/run.py --packages`. Do not edit.
+// Generated from gateware/glint_soc/constants.py by `cargo xtask pac`. Do not edit.
 // Places of the band lists in memory, in words of 16 bytes (docs/formats/triangle.md): behind the table of their lengths,
 // and apart by their length and a row of a memory bank, so that the lists of eight bands lie in eight banks, which stay
 // open. LiteDRAM puts BANK_WORDS neighbours into a row of a bank, and the next ones into the next bank.

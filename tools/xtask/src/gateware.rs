@@ -1,6 +1,6 @@
 //! `cargo xtask gateware`: the SoC of a board, and the virtual board's library.
 //!
-//! LiteX writes Verilog, the BIOS and the SoC's description to `target/gateware/BOARD`. For the virtual board, `gateware/verilate`
+//! LiteX writes Verilog, the BIOS and the list of registers to `target/gateware/BOARD`. For the virtual board, `gateware/verilate`
 //! makes `libglint_soc.so` of the Verilog; for the ULX3S, `gateware/ecp5` makes a bitstream. Each part is skipped if its inputs
 //! have not changed.
 
@@ -9,7 +9,6 @@ use std::ffi::OsStr;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
@@ -171,7 +170,7 @@ pub fn build_with_waveforms() -> Result<()> {
     verilate(&folder, Library::Waveforms)
 }
 
-/// Runs LiteX if its inputs have changed since its last run. It writes Verilog, the BIOS, `csr.json` and `soc.svd` to `folder`.
+/// Runs LiteX if its inputs have changed since its last run. It writes Verilog, the BIOS and `csr.json` to `folder`.
 fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     let root = paths::root();
     let gateware = root.join("gateware");
@@ -193,8 +192,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             "SoC and BIOS ({})",
             [&[board.name()], options].concat().join(" ")
         ),
-        Command::new(paths::venv_program("python"))
-            .args(["-m", "glint_soc", "--board", board.name(), "--output"])
+        run::python(&["-m", "glint_soc", "--board", board.name(), "--output"])
             .arg(folder)
             .args(options)
             .current_dir(folder)
@@ -202,11 +200,22 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .env("CCACHE", "ccache")
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
-            .env("CCACHE_NOHASHDIR", "1")
-            .env("PYTHONPATH", gateware),
+            .env("CCACHE_NOHASHDIR", "1"),
     )
     .context("running the gateware generator (`cargo xtask bootstrap` installs its packages)")?;
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
+}
+
+/// Writes the committed files that follow from the descriptions of blocks, records and shared numbers. With `check` nothing is written:
+/// the files must be up to date.
+///
+/// # Errors
+/// A description is wrong, or (with `check`) a file is stale.
+pub fn write_generated(check: bool) -> Result<()> {
+    run::foreground(
+        "the generator of the committed files",
+        run::python(&["-m", "glint_soc.packages"]).args(check.then_some("--check")),
+    )
 }
 
 /// Compiler options for the library of the virtual board.
@@ -229,12 +238,10 @@ fn verilate(folder: &Path, library: Library) -> Result<()> {
     };
     run::step(
         name,
-        Command::new(paths::venv_program("python"))
-            .args(["-m", "verilate"])
+        run::python(&["-m", "verilate"])
             .arg(folder)
             .args(options)
-            .current_dir(folder)
-            .env("PYTHONPATH", paths::root().join("gateware")),
+            .current_dir(folder),
     )
 }
 
@@ -267,11 +274,9 @@ fn make_bitstream(folder: &Path) -> Result<()> {
 fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
     run::step(
         name,
-        Command::new(paths::venv_program("python"))
-            .args(["-m", "ecp5", step])
+        run::python(&["-m", "ecp5", step])
             .arg(folder)
-            .current_dir(folder)
-            .env("PYTHONPATH", paths::root().join("gateware")),
+            .current_dir(folder),
     )
 }
 

@@ -12,7 +12,6 @@ mod firmware;
 mod gateware;
 mod generated;
 mod modules;
-mod pac;
 mod paths;
 mod report;
 mod resources;
@@ -51,7 +50,7 @@ enum Task {
         #[arg(long, conflicts_with_all = ["scene", "smooth", "no_depths", "fields", "lanes", "clock", "blocks"])]
         waveforms: bool,
     },
-    /// Generate the register access crate and the register map from the SoC's description
+    /// Generate what follows from the gateware's descriptions: register access crate, register map, packages of the RTL, records
     Pac {
         /// Write nothing; fail if a generated file is stale
         #[arg(long)]
@@ -163,7 +162,10 @@ fn main() -> Result<()> {
             }
             Ok(())
         }
-        Task::Pac { check } => pac::generate(check),
+        Task::Pac { check } => {
+            bootstrap::python_environment()?;
+            gateware::write_generated(check)
+        }
         Task::Scenes { check } => scenes::generate(check),
         Task::Firmware {
             board,

@@ -50,6 +50,16 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command
 }
 
+/// Returns the command that runs a module or a program of the gateware in the Python environment.
+pub fn python(arguments: &[&str]) -> Command {
+    let mut command = Command::new(paths::venv_program("python"));
+    command
+        .args(arguments)
+        .env("PYTHONPATH", paths::root().join("gateware"))
+        .current_dir(paths::root());
+    command
+}
+
 /// Runs `command` as the step `name`: shows its latest line of output while it runs, writes all output to `target/log`, and
 /// prints one line with the run time at the end.
 ///

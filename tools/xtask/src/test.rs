@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board, Library};
 use crate::rust_tests::{self, Programs};
-use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, walk, web};
+use crate::{bootstrap, firmware, modules, paths, resources, run, scenes, walk, web};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
@@ -57,7 +57,6 @@ pub fn test() -> Result<()> {
         results.add(linted("rustdoc", &documentation));
         let tests = Programs::build(&[])?;
         gateware_builds.recv().expect("the builds do not panic")?;
-        results.add(pac::generate(true).map(|()| 1));
         scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)).map(|()| 1)));
         models.recv().expect("the gateware's checks do not panic");
         results.add(tests.run(&[]));
