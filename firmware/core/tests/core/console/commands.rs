@@ -1,22 +1,16 @@
 //! Tests of every command with its arguments.
 
 use glint_core::camera::{Projection, View};
-use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::console::{
-    Command, GestureAction, ImuAction, LINE_MAX, ObjectAction, OptionName, Setting,
-};
+use glint_core::colour::Rgb565;
+use glint_core::console::{Command, GestureAction, LINE_MAX, ObjectAction, Setting};
 use glint_core::field::{Field, Menger};
 use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
 use glint_core::follow::{Direction, Mounting};
-use glint_core::imu::Follow;
-use glint_core::light::{Background, Light, Material};
+use glint_core::light::{Light, Material};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::object::Place;
-use glint_core::picture::{Backend, Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
-use glint_core::wire::Manifest;
-use glint_core::wireframe::Key;
 use glint_core::words::Words;
 use proptest::prelude::*;
 
@@ -87,29 +81,139 @@ fn a_blank_line_is_no_command() {
     }
 }
 
+/// Lines, and the Debug forms of the commands they are.
+const SIMPLE: &str = r#"
+help => Help { command: None }
+help view => Help { command: Some("view") }
+info => Info { key: None }
+info frame => Info { key: Some("frame") }
+scene => Scene { name: None }
+  scene   menger  => Scene { name: Some("menger") }
+object => Show(Object)
+object list => Set(Object { action: List })
+object remove 16 => Set(Object { action: Remove(Some(16)) })
+object remove all => Set(Object { action: Remove(None) })
+field => Show(Field)
+field off => Set(Field { field: None })
+stereo => Show(Stereo)
+stereo off => Set(Stereo { eyes: None })
+mesh => Show(Mesh)
+mesh on => Set(Mesh { on: true })
+material => Show(Material)
+light => Show(Light)
+light default => Set(Light { light: None })
+ambient => Show(Ambient)
+ambient default => Set(Ambient { colour: None })
+ambient 00ff7f => Set(Ambient { colour: Some([0, 255, 127]) })
+background => Show(Background)
+background default => Set(Background { background: None })
+background white => Set(Background { background: Some(White) })
+background sky => Set(Background { background: Some(Sky) })
+background 102030 => Set(Background { background: Some(Colour([16, 32, 48])) })
+fog => Show(Fog)
+fog off => Set(Fog { density: None })
+occlusion => Show(Occlusion)
+occlusion off => Set(Occlusion { on: false })
+undecided on => Set(Undecided { on: true })
+echo x-1 => Echo { word: "x-1" }
+view => Show(View)
+clip off => Set(Clip { far: None })
+winding screen => Set(Winding { rule: Screen })
+edges => Show(Edges)
+edges hidden => Set(Edges { edges: Some(Hidden) })
+edges off => Set(Edges { edges: None })
+fit => Set(Fit { lens: None })
+fit y => Set(Fit { lens: Some((Y, None)) })
+imu => Imu { action: None }
+imu calibrate => Imu { action: Some(Calibrate(8192)) }
+imu calibrate 100 => Imu { action: Some(Calibrate(100)) }
+imu stream => Imu { action: Some(Stream(None)) }
+imu stream 5 => Imu { action: Some(Stream(Some(5))) }
+imu look => Imu { action: Some(Follow(Some(Look))) }
+imu orbit => Imu { action: Some(Follow(Some(Orbit))) }
+imu off => Imu { action: Some(Follow(None)) }
+imu recentre => Imu { action: Some(Recentre) }
+gesture => Gesture { action: None }
+mounting => Mounting { mounting: None }
+sensitivity => Sensitivity { gain: None }
+sensitivity 0.125 => Sensitivity { gain: Some(32) }
+sensitivity 2.5 => Sensitivity { gain: Some(640) }
+orbit => Orbit { frames: None }
+orbit 48 => Orbit { frames: Some(48) }
+quality => Show(Quality)
+size 320 180 => Set(Size { size: W320 })
+size 640 360 => Set(Size { size: W640 })
+size 1280 720 => Set(Size { size: W1280 })
+frame => Frame { depth: false }
+frame depth => Frame { depth: true }
+load 33554432 DEADbeef => Load { upload: Manifest { length: 33554432, crc32: 3735928559 }, name: None }
+load 16 0 icosphere:4 => Load { upload: Manifest { length: 16, crc32: 0 }, name: Some("icosphere:4") }
+load 0x10 0 => Load { upload: Manifest { length: 16, crc32: 0 }, name: None }
+models => Models
+unload teapot => Unload { name: "teapot" }
+program => Program { upload: None }
+program 256 0123abcd => Program { upload: Some(Manifest { length: 256, crc32: 19114957 }) }
+press up => Press { key: Up, rotate: false }
+press left rotate => Press { key: Left, rotate: true }
+replay => Replay { upload: None }
+replay 64 1f => Replay { upload: Some(Manifest { length: 64, crc32: 31 }) }
+render => Render { depth: false }
+render depth => Render { depth: true }
+cull on => Set(Cull { on: true })
+cull off => Set(Cull { on: false })
+overlay => Show(Overlay)
+overlay on => Set(Overlay { on: true })
+prepass on => Set(Prepass { on: true })
+prepass off => Set(Prepass { on: false })
+stats => Stats { json: false }
+stats json => Stats { json: true }
+shading => Show(Shading)
+shading flat => Set(Shading { shading: Flat })
+shading smooth => Set(Shading { shading: Smooth })
+backend => Show(Backend)
+backend cpu => Set(Backend { backend: Cpu })
+backend gateware => Set(Backend { backend: Gateware })
+bench => Bench { benchmark: None }
+bench sine => Bench { benchmark: Some(("sine", None)) }
+bench field 2 => Bench { benchmark: Some(("field", Some(2))) }
+selftest => SelfTest
+leds 65535 => Leds { value: 65535 }
+leds 0x00ff => Leds { value: 255 }
+buttons => Buttons
+reboot => Reboot
+"#;
+
 #[test]
-fn every_command_is_understood() {
-    let degrees = |x: i32| Turns::from_degrees(x.into());
-    assert_parses("help", Command::Help { command: None });
-    assert_parses(
-        "help view",
-        Command::Help {
-            command: Some("view"),
-        },
-    );
-    assert_parses("info", Command::Info { key: None });
-    assert_parses("info frame", Command::Info { key: Some("frame") });
-    assert_parses("scene", Command::Scene { name: None });
-    assert_parses(
-        "  scene   menger ",
-        Command::Scene {
-            name: Some("menger"),
-        },
-    );
-    assert_parses("object", Command::Show(OptionName::Object));
+fn simple_commands_are_understood() {
+    for (line, form) in SIMPLE.lines().filter_map(|line| line.split_once(" => ")) {
+        let command = Command::parse(line).map_err(|error| error.to_string());
+        assert_eq!(
+            format!("{command:?}"),
+            format!("Ok(Some({form}))"),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn names_of_variants_are_understood() {
+    for (name, material) in Material::NAMES.into_iter().zip(Material::ALL) {
+        assert_parses(&format!("material {name}"), Setting::Material { material });
+    }
+    for action in GestureAction::ALL {
+        let line = format!("gesture {action}");
+        let action = Some(action);
+        assert_parses(&line, Command::Gesture { action });
+    }
+    for quality in Quality::ALL {
+        assert_parses(&format!("quality {quality}"), Setting::Quality { quality });
+    }
+}
+
+#[test]
+fn commands_of_objects_are_understood() {
     let object = |line, action| assert_parses(line, Setting::Object { action });
     let place = |text| Place::parse(&mut Words::new(text)).expect("a place");
-    object("object list", ObjectAction::List);
     object(
         "object add teapot scale 0.5 rotate z 30 move 1,0,-2 colour ff8000",
         ObjectAction::Add {
@@ -129,69 +233,23 @@ fn every_command_is_understood() {
         let (number, next) = (3, place(next));
         object(line, ObjectAction::Change { number, next });
     }
-    object("object remove 16", ObjectAction::Remove(Some(16)));
-    object("object remove all", ObjectAction::Remove(None));
-    assert_parses("field", Command::Show(OptionName::Field));
-    assert_parses("field off", Setting::Field { field: None });
-    assert_parses(
-        "field menger:4",
-        Setting::Field {
-            field: Some(Field::from(Menger { depth: 4 })),
-        },
-    );
-    assert_parses("stereo", Command::Show(OptionName::Stereo));
-    assert_parses("stereo off", Setting::Stereo { eyes: None });
-    let stereo = Stereo {
+}
+
+#[test]
+fn numbers_and_angles_are_understood() {
+    let degrees = |x: i32| Turns::from_degrees(x.into());
+    let field = Some(Field::from(Menger { depth: 4 }));
+    assert_parses("field menger:4", Setting::Field { field });
+    let eyes = Some(Stereo {
         half_separation: Q32_32::lit("0.05"),
         zero_parallax: Q32_32::lit("3"),
         tint: Tint::RedCyan,
-    };
-    assert_parses(
-        "stereo 0.05,3,red-cyan",
-        Setting::Stereo { eyes: Some(stereo) },
-    );
-    assert_parses("mesh", Command::Show(OptionName::Mesh));
-    assert_parses("mesh on", Setting::Mesh { on: true });
-    assert_parses("material", Command::Show(OptionName::Material));
-    for (name, material) in Material::NAMES.into_iter().zip(Material::ALL) {
-        assert_parses(&format!("material {name}"), Setting::Material { material });
-    }
-    assert_parses("light", Command::Show(OptionName::Light));
-    assert_parses("light default", Setting::Light { light: None });
+    });
+    assert_parses("stereo 0.05,3,red-cyan", Setting::Stereo { eyes });
     let light = Light::new([1, -2, 3].map(Into::into), [0xFF, 0x80, 0x0A]).expect("a direction");
     assert_parses("light 1,-2,3,ff800a", Setting::Light { light: Some(light) });
-    assert_parses("ambient", Command::Show(OptionName::Ambient));
-    assert_parses("ambient default", Setting::Ambient { colour: None });
-    assert_parses(
-        "ambient 00ff7f",
-        Setting::Ambient {
-            colour: Some([0, 0xFF, 0x7F]),
-        },
-    );
-    assert_parses("background", Command::Show(OptionName::Background));
-    for (name, background) in [
-        ("default", None),
-        ("white", Some(Background::White)),
-        ("sky", Some(Background::Sky)),
-        ("102030", Some(Background::Colour([0x10, 0x20, 0x30]))),
-    ] {
-        assert_parses(
-            &format!("background {name}"),
-            Setting::Background { background },
-        );
-    }
-    assert_parses("fog", Command::Show(OptionName::Fog));
-    assert_parses("fog off", Setting::Fog { density: None });
-    assert_parses(
-        "fog 0.25",
-        Setting::Fog {
-            density: Some(U4_28::lit("0.25")),
-        },
-    );
-    assert_parses("occlusion", Command::Show(OptionName::Occlusion));
-    assert_parses("occlusion off", Setting::Occlusion { on: false });
-    assert_parses("undecided on", Setting::Undecided { on: true });
-    assert_parses("echo x-1", Command::Echo { word: "x-1" });
+    let density = Some(U4_28::lit("0.25"));
+    assert_parses("fog 0.25", Setting::Fog { density });
     let camera = Setting::Camera {
         r: Q32_32::lit("3.5"),
         theta: degrees(-90),
@@ -199,7 +257,6 @@ fn every_command_is_understood() {
     };
     assert_parses("camera 3.5 -90 60", camera);
     assert_parses("camera 3.5 270 60.0", camera);
-    let numbers = "0 0 3 1 0 0 0 -1 0 0 0 -1 0.9 0.1";
     let view = View::new_checked(
         [0, 0, 3].map(Into::into),
         [1, 0, 0].map(Q2_23::from_num),
@@ -207,14 +264,10 @@ fn every_command_is_understood() {
         [0, 0, -1].map(Q2_23::from_num),
         "0.9".parse().expect("a number"),
         "0.1".parse().expect("a number"),
-    );
-    assert_parses("view", Command::Show(OptionName::View));
-    assert_parses(
-        &format!("view {numbers}"),
-        Setting::View {
-            view: view.expect("a camera"),
-        },
-    );
+    )
+    .expect("a camera");
+    let line = "view 0 0 3 1 0 0 0 -1 0 0 0 -1 0.9 0.1";
+    assert_parses(line, Setting::View { view });
     let look = Setting::Look {
         yaw: degrees(10),
         pitch: degrees(-20),
@@ -231,189 +284,14 @@ fn every_command_is_understood() {
     assert_parses("lookat 3 0 1 -3 0 -1 0 1 0", Setting::LookAt { view });
     let far = Some(U8_28::lit("2.5"));
     assert_parses("clip 2.5", Setting::Clip { far });
-    assert_parses("clip off", Setting::Clip { far: None });
-    let rule = Winding::Screen;
-    assert_parses("winding screen", Setting::Winding { rule });
-    let edges = Some(Edges::Hidden);
-    assert_parses("edges hidden", Setting::Edges { edges });
-    assert_parses("edges off", Setting::Edges { edges: None });
-    assert_parses("edges", Command::Show(OptionName::Edges));
     let angle = degrees(150);
     assert_parses("fov 150", Setting::FieldOfView { angle });
     let factor = U8_28::from_num(1.5);
     assert_parses("zoom 1.5", Setting::Zoom { factor });
-    assert_parses("fit", Setting::Fit { lens: None });
-    let lens = Some((Axis::Y, None));
-    assert_parses("fit y", Setting::Fit { lens });
     let lens = Some((Axis::Y, Some(degrees(60))));
     assert_parses("fit y 60", Setting::Fit { lens });
     let width = U8_28::from_num(3.5);
     assert_parses("orthographic 3.5", Setting::Orthographic { width });
-    assert_parses("imu", Command::Imu { action: None });
-    let imu = |line, action| {
-        assert_parses(
-            line,
-            Command::Imu {
-                action: Some(action),
-            },
-        )
-    };
-    imu("imu calibrate", ImuAction::Calibrate(8_192));
-    imu("imu calibrate 100", ImuAction::Calibrate(100));
-    imu("imu stream", ImuAction::Stream(None));
-    imu("imu stream 5", ImuAction::Stream(Some(5)));
-    imu("imu look", ImuAction::Follow(Some(Follow::Look)));
-    imu("imu orbit", ImuAction::Follow(Some(Follow::Orbit)));
-    imu("imu off", ImuAction::Follow(None));
-    imu("imu recentre", ImuAction::Recentre);
-    assert_parses("gesture", Command::Gesture { action: None });
-    for action in GestureAction::ALL {
-        assert_parses(
-            &format!("gesture {action}"),
-            Command::Gesture {
-                action: Some(action),
-            },
-        );
-    }
-    assert_parses("mounting", Command::Mounting { mounting: None });
-    assert_parses(
-        "mounting -x z",
-        Command::Mounting {
-            mounting: Mounting::new(Direction::MinusX, Direction::Z),
-        },
-    );
-    assert_parses("sensitivity", Command::Sensitivity { gain: None });
-    assert_parses("sensitivity 0.125", Command::Sensitivity { gain: Some(32) });
-    assert_parses("sensitivity 2.5", Command::Sensitivity { gain: Some(640) });
-    assert_parses("orbit", Command::Orbit { frames: None });
-    assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
-    assert_parses("quality", Command::Show(OptionName::Quality));
-    for quality in Quality::ALL {
-        assert_parses(&format!("quality {quality}"), Setting::Quality { quality });
-    }
-    assert_parses("size 320 180", Setting::Size { size: Size::W320 });
-    assert_parses("size 640 360", Setting::Size { size: Size::W640 });
-    assert_parses("size 1280 720", Setting::Size { size: Size::W1280 });
-    assert_parses("frame", Command::Frame { depth: false });
-    assert_parses("frame depth", Command::Frame { depth: true });
-    assert_parses(
-        "load 33554432 DEADbeef",
-        Command::Load {
-            upload: Manifest {
-                length: 32 << 20,
-                crc32: 0xDEAD_BEEF,
-            },
-            name: None,
-        },
-    );
-    assert_parses(
-        "load 16 0 icosphere:4",
-        Command::Load {
-            upload: Manifest {
-                length: 16,
-                crc32: 0,
-            },
-            name: Some("icosphere:4"),
-        },
-    );
-    assert_parses("models", Command::Models {});
-    assert_parses("unload teapot", Command::Unload { name: "teapot" });
-    assert_parses(
-        "program 256 0123abcd",
-        Command::Program {
-            upload: Some(Manifest {
-                length: 256,
-                crc32: 0x0123_ABCD,
-            }),
-        },
-    );
-    assert_parses("program", Command::Program { upload: None });
-    assert_parses(
-        "press up",
-        Command::Press {
-            key: Key::Up,
-            rotate: false,
-        },
-    );
-    assert_parses(
-        "press left rotate",
-        Command::Press {
-            key: Key::Left,
-            rotate: true,
-        },
-    );
-    assert_parses(
-        "load 0x10 0",
-        Command::Load {
-            upload: Manifest {
-                length: 16,
-                crc32: 0,
-            },
-            name: None,
-        },
-    );
-    assert_parses("replay", Command::Replay { upload: None });
-    assert_parses(
-        "replay 64 1f",
-        Command::Replay {
-            upload: Some(Manifest {
-                length: 64,
-                crc32: 0x1F,
-            }),
-        },
-    );
-    assert_parses("render", Command::Render { depth: false });
-    assert_parses("render depth", Command::Render { depth: true });
-    assert_parses("cull on", Setting::Cull { on: true });
-    assert_parses("overlay", Command::Show(OptionName::Overlay));
-    assert_parses("overlay on", Setting::Overlay { on: true });
-    assert_parses("prepass on", Setting::Prepass { on: true });
-    assert_parses("prepass off", Setting::Prepass { on: false });
-    assert_parses("cull off", Setting::Cull { on: false });
-    assert_parses("stats", Command::Stats { json: false });
-    assert_parses("stats json", Command::Stats { json: true });
-    assert_parses("shading", Command::Show(OptionName::Shading));
-    assert_parses(
-        "shading flat",
-        Setting::Shading {
-            shading: Shading::Flat,
-        },
-    );
-    assert_parses(
-        "shading smooth",
-        Setting::Shading {
-            shading: Shading::Smooth,
-        },
-    );
-    assert_parses("backend", Command::Show(OptionName::Backend));
-    assert_parses(
-        "backend cpu",
-        Setting::Backend {
-            backend: Backend::Cpu,
-        },
-    );
-    assert_parses(
-        "backend gateware",
-        Setting::Backend {
-            backend: Backend::Gateware,
-        },
-    );
-    assert_parses("bench", Command::Bench { benchmark: None });
-    assert_parses(
-        "bench sine",
-        Command::Bench {
-            benchmark: Some(("sine", None)),
-        },
-    );
-    assert_parses(
-        "bench field 2",
-        Command::Bench {
-            benchmark: Some(("field", Some(2))),
-        },
-    );
-    assert_parses("selftest", Command::SelfTest {});
-    assert_parses("leds 65535", Command::Leds { value: 0xFFFF });
-    assert_parses("leds 0x00ff", Command::Leds { value: 0xFF });
-    assert_parses("buttons", Command::Buttons {});
-    assert_parses("reboot", Command::Reboot {});
+    let mounting = Mounting::new(Direction::MinusX, Direction::Z);
+    assert_parses("mounting -x z", Command::Mounting { mounting });
 }
