@@ -58,26 +58,13 @@ fn spheres_are_checked_one_by_one() {
 #[test]
 fn mistakes_say_what_was_expected() {
     let error = Field::parse("ball:1").expect_err("no kind").to_string();
-    assert!(
-        error.starts_with("no field is named ball: expected menger:DEPTH, "),
-        "{error}"
-    );
     assert!(KINDS.iter().all(|(form, _)| error.contains(form)));
-    let (_, kinds) = error.split_once("expected ").unwrap();
-    for nameless in ["", ":1,2"] {
-        let error = Field::parse(nameless).expect_err("no name").to_string();
-        assert_eq!(
-            error,
-            format!("the name of the field is empty: expected {kinds}")
-        );
-    }
     for (text, expected) in [
         ("menger", "menger needs one more number: depth"),
         ("box:1,2", "box needs one more number: z"),
         ("menger:4,4", "menger has one number too many: 4"),
         ("menger:x", "depth x: expected a number"),
         ("menger:0", "depth: expected 1 to 6"),
-        ("menger:2.5", "depth: expected 1 to 6"),
         ("planes:13", "half: expected 0.01 to 12"),
         ("sphere", "sphere needs one more number: radius"),
         ("sphere:0", "radius: expected 0.01 to 12"),
@@ -85,12 +72,6 @@ fn mistakes_say_what_was_expected() {
         ("spheres:0,0,0,1;0,x,0,1", "y x: expected a number"),
         ("lattice:2,1", "radius: expected 0.01 to 0.9999923704"),
         ("moving:11,1.5", "orbit: expected 0 to 1"),
-        (
-            "union:cubes:1,0.1+sphere:1",
-            "union: expected menger or box, +, and sphere, spheres or moving",
-        ),
-        ("union:menger:7+sphere:1", "depth: expected 1 to 6"),
-        ("smooth:0.6,box:1,1,1+sphere:1", "k: expected 0.01 to 0.5"),
         (
             "smooth:0.1",
             "union: expected menger or box, +, and sphere, spheres or moving",

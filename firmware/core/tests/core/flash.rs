@@ -1,8 +1,7 @@
 //! Tests of flash images: encoding, and detection of every kind of damage.
 
 use glint_core::flash::{
-    CONTENTS, Contents, EncodeError, FIRMWARE, FlashError, Image, Kind, MAX_BYTES, MAX_FIRMWARE,
-    MAX_ITEMS, Piece, encode,
+    CONTENTS, Contents, EncodeError, FIRMWARE, Image, Kind, MAX_BYTES, Piece, encode,
 };
 use glint_core::wire::crc32;
 
@@ -113,14 +112,6 @@ fn a_truncated_image_is_refused() {
     {
         assert!(Image::new_checked(&good[..length]).is_err(), "{length}");
     }
-    assert_eq!(
-        error(&good[..good.len() - 1]),
-        "flash byte 0x400004: expected at most 244 bytes of contents, as there are, found 245"
-    );
-    assert_eq!(
-        error(&[]),
-        "flash byte 0x0: expected at least 4194320 bytes, found 0"
-    );
 }
 
 #[test]
@@ -131,27 +122,12 @@ fn errors_name_place_and_expectation() {
         error(&bytes)
     };
     let crc = "expected the CRC-32 0x";
-    let least = "expected at least 32 bytes of firmware, found 31";
     let most = "expected at most 1048568 bytes of firmware, found 4294967295";
     let word = "expected an erased slot, or a bitstream with its word 0xaa995566, found 0xffffffff";
     for (place, new, at, message) in [
         (66, &[0][..], 0, word),
-        (FIRMWARE, &[31, 0], FIRMWARE, least),
         (FIRMWARE, &[0xff; 4], FIRMWARE, most),
-        (
-            CONTENTS,
-            b"X",
-            CONTENTS,
-            "expected \"GFC1\", found \"XFC1\"",
-        ),
-        (
-            CONTENTS + 8,
-            &[65],
-            CONTENTS + 8,
-            "expected at most 64 items, found 65",
-        ),
         (FIRMWARE + 8, &[1], FIRMWARE + 4, crc),
-        (CONTENTS + 32, b"Z", CONTENTS + 12, crc),
     ] {
         let message = format!("flash byte {at:#x}: {message}");
         let found = damaged(place, new);
@@ -174,34 +150,9 @@ fn parts_that_the_format_refuses_are_not_encoded() {
         let message = one(piece(Kind::List, name, b""));
         assert!(message.contains("expected a name of 1 to 24"), "{message}");
     }
-    let message = one(piece(Kind::Scene, "x", b"size 1\x07"));
-    assert!(
-        message.contains("expected ASCII text") && message.ends_with("found 0x07"),
-        "{message}"
-    );
-    let message = one(piece(Kind::Scene, "x", &[b'x'; 641]));
-    assert!(
-        message.contains("expected at most 640 bytes in a line, found 641"),
-        "{message}"
-    );
     assert_eq!(
         encode(&vec![0; FIRMWARE + 1], &firmware(), &[]),
         Err(EncodeError::Long("bitstream", FIRMWARE, FIRMWARE + 1))
-    );
-    let long = vec![0; MAX_FIRMWARE as usize + 1];
-    assert_eq!(
-        encode(&[], &long, &[]),
-        Err(EncodeError::Long("firmware", long.len() - 1, long.len()))
-    );
-    assert!(encode(&[], &long[1..], &[]).is_ok());
-    assert!(matches!(
-        encode(&[], &[0; 31], &[]),
-        Err(EncodeError::Part(FlashError { found: 31, .. }))
-    ));
-    let many = vec![piece(Kind::Mesh, "x", &[]); MAX_ITEMS as usize + 1];
-    assert_eq!(
-        encode(&[], &firmware(), &many),
-        Err(EncodeError::Items(64, 65))
     );
     let large = piece(Kind::Mesh, "x", &vec![0; MAX_BYTES - CONTENTS]);
     assert!(one(large).contains("expected at most 16777216 bytes"));

@@ -2,8 +2,8 @@
 
 use glint_core::fixed::{Q4_28, Q32_32, Turns, U16_16};
 use glint_core::gesture::{
-    Backlash, Blob, Control, Doubt, OneEuro, PATIENCE, POLE, Presence, Region, Setting, Statistics,
-    Step, Tuning, target,
+    Blob, Control, Doubt, OneEuro, PATIENCE, POLE, Presence, Region, Setting, Statistics, Step,
+    Tuning, target,
 };
 use proptest::prelude::*;
 
@@ -103,58 +103,6 @@ fn the_centre_is_the_mean_of_the_pixels() {
 }
 
 #[test]
-fn frames_without_a_hand_are_refused() {
-    let good = hand(100, 100, 12);
-    let with = |change: fn(&mut Statistics)| {
-        let mut statistics = good;
-        change(&mut statistics);
-        statistics
-    };
-    let few = |statistics: &mut Statistics| {
-        (statistics.count, statistics.sums) = (700, [70_000; 2]);
-    };
-    for (what, statistics, doubt) in [
-        ("faulty", with(|it| it.is_whole = false), Doubt::Faulty),
-        ("no pixel", EMPTY, Doubt::Few),
-        ("one pixel", rectangle([7, 9], [7, 9]), Doubt::Few),
-        ("all pixels", rectangle([0, 0], [319, 239]), Doubt::Most),
-        (
-            "sums too large",
-            with(|it| it.sums = [u32::MAX; 2]),
-            Doubt::Contradiction,
-        ),
-        (
-            "centre outside",
-            with(|it| it.sums = [0; 2]),
-            Doubt::Contradiction,
-        ),
-        ("bounds too small", with(few), Doubt::Contradiction),
-        (
-            "no frame",
-            with(|it| it.size = [0; 2]),
-            Doubt::Contradiction,
-        ),
-        (
-            "huge frame",
-            with(|it| it.size = [u16::MAX; 2]),
-            Doubt::Contradiction,
-        ),
-    ] {
-        assert_eq!(statistics.blob(), Err(doubt), "{what}");
-    }
-    // Two hands, or noise, fill only a small part of their bounds.
-    let scattered = Statistics {
-        bounds: Region {
-            first: [10, 20],
-            last: [310, 230],
-        },
-        ..good
-    };
-    assert_eq!(scattered.blob().map(|blob| blob.confidence(SIZE)), Ok(0));
-    assert_eq!(Run::new().frame(&scattered), Err(Doubt::Scattered));
-}
-
-#[test]
 fn place_and_width_become_a_place_on_the_sphere() {
     let at = |statistics: &Statistics| {
         let blob = statistics.blob().expect("a hand");
@@ -220,23 +168,6 @@ fn steps_are_followed_without_overshoot_to_the_end() {
             last = output;
         }
         assert!(last >= Q4_28::lit("7.4999"), "{micros} µs: {last}");
-    }
-}
-
-#[test]
-fn a_dead_zone_is_drawn_along() {
-    let zone = Q4_28::lit("0.25");
-    let mut backlash = Backlash::new(Q4_28::ZERO);
-    for (input, output) in [
-        ("0.2", "0"),
-        ("-0.25", "0"),
-        ("1", "0.75"),
-        ("0.6", "0.75"),
-        ("0.25", "0.5"),
-        ("-8", "-7.75"),
-    ] {
-        let read = |text: &str| text.parse::<Q4_28>().expect("a number");
-        assert_eq!(backlash.next(read(input), zone), read(output), "{input}");
     }
 }
 
@@ -335,30 +266,6 @@ fn a_jump_of_the_area_holds_until_it_lasts() {
     assert!((before[2] - held[2]).abs() < 0.2, "{before:?} {held:?}");
     run.frames(240, &hand(160, 120, 12));
     assert!((run.pose()[2] - (5.0 - 8.0 * (25.0 / 76_800_f64.sqrt() - 0.0625))).abs() < 0.01);
-}
-
-#[test]
-fn a_pause_of_the_frames_ends_tracking() {
-    let after = |pause: u64| {
-        let mut run = Run::new();
-        run.frames(20, &hand(60, 60, 20));
-        let held = run.pose();
-        assert!(run.frame_after(pause, &hand(60, 60, 20)).is_ok());
-        (run.control.presence(), run.pose() == held)
-    };
-    let patience = u64::from(PATIENCE);
-    assert_eq!(after(patience).0, Presence::Tracked);
-    // Pauses of 2^32 cycles at 81.25 MHz, and pauses whose low 32 bits are small.
-    for pause in [
-        patience + 1,
-        2 * patience,
-        (1 << 32) * 4 / 325 + 1_000,
-        1 << 32,
-        (1 << 32) + u64::from(FRAME),
-        1 << 62,
-    ] {
-        assert_eq!(after(pause), (Presence::Appearing, true), "{pause} µs");
-    }
 }
 
 fn statistics() -> impl Strategy<Value = Statistics> {

@@ -85,23 +85,6 @@ fn a_calibration_ends_when_it_moves_fails_or_has_no_sensor() {
     assert_eq!(absent.calibration(), Some(Err(CalibrationError::Absent)));
 }
 
-/// A sensor that turns was unplugged for 2^32 µs and a millisecond: the attitude stays, as for every pause.
-#[test]
-fn a_pause_of_2_to_the_32_us_does_not_turn_the_attitude() {
-    let turning = Measurement {
-        gyro: [0, 0, 16_400],
-        ..rest(0)
-    };
-    let mut imu = running();
-    imu.on_sample(0, &rest(0));
-    imu.on_sample(1_000, &rest(1));
-    let before = imu.attitude();
-    imu.on_sample((1 << 32) + 2_000, &turning);
-    assert_eq!(imu.attitude(), before);
-    let counts = imu.counts();
-    assert_eq!((counts.steps, counts.gaps), (1, 1));
-}
-
 #[test]
 fn the_camera_follows_and_can_be_recentred() {
     let mut imu = running();

@@ -144,11 +144,9 @@ fn lights_and_colours_are_read() {
         "1,2",
         "1,2,x",
         "1,2,3,",
-        "1,2,3,fff",
         "1,2,3,+fffff",
         "1,2,3,ffffff,",
         "camera,",
-        "camera,1,2,3",
         "cameras",
     ] {
         let error = Light::parse(text).expect_err(text);
@@ -158,8 +156,6 @@ fn lights_and_colours_are_read() {
             format!("{text}: expected X,Y,Z[,RRGGBB] or camera[,RRGGBB]")
         );
     }
-    let error = Light::parse("0,-0,0").expect_err("nowhere").to_string();
-    assert_eq!(error, "direction 0,0,0: expected a non-zero direction");
     assert_eq!(parse_rgb("0102ff"), Some([1, 2, 255]));
     assert_eq!(parse_rgb("\u{e9}\u{e9}\u{e9}"), None);
 }

@@ -242,58 +242,15 @@ fn the_checksum_covers_every_byte() {
     assert_eq!((stated_checksum(&short), &short[..]), (None, &good[..31]));
 }
 
-/// Returns the error of the small mesh after a change of its bytes.
-fn error(change: impl FnOnce(&mut Vec<u8>)) -> String {
-    let mut bytes = small();
-    change(&mut bytes);
-    Mesh::new_checked(&bytes).expect_err("spoilt").to_string()
-}
-
+/// The small mesh with a 32-bit word at a place is refused, with this message; the stiff cases have more of them.
 #[test]
 fn every_field_is_checked() {
-    let radius = Mesh::new_checked(&small()).expect("a good mesh").radius();
     assert_eq!(small().len(), 144);
     for (at, word, expected) in [
-        (0, 0x4D4C_4743, r#"0: expected "GLM2", found "CGLM""#),
-        (0, 0x394D_4C47, r#"0: expected "GLM2", found "GLM9""#),
-        (0, 0x324D_4CFF, r#"0: expected "GLM2", found "\xffLM2""#),
-        (4, 128, "4: expected 144 bytes in all, found 128"),
-        (8, 0, "8: expected at least 1 chunks, found 0"),
-        (
-            8,
-            2,
-            "144: expected at least 16 bytes for a chunk's header, found 0",
-        ),
-        (
-            8,
-            u32::MAX,
-            "144: expected at least 16 bytes for a chunk's header, found 0",
-        ),
-        (
-            12,
-            5,
-            "12: expected 4 vertices, as the chunks have, found 5",
-        ),
         (
             16,
             1,
             "16: expected 2 triangles, as the chunks have, found 1",
-        ),
-        (
-            20,
-            56_757,
-            "20: expected at most 56756 radius in 2^-14, found 56757",
-        ),
-        (28, 1 << 31, "28: expected 0 (reserved), found 2147483648"),
-        (
-            32,
-            0,
-            "32: expected at least 1 vertices in a chunk, found 0",
-        ),
-        (
-            32,
-            65_536,
-            "32: expected at most 65535 vertices in a chunk, found 65536",
         ),
         (
             32,
@@ -307,59 +264,25 @@ fn every_field_is_checked() {
         ),
         (
             36,
-            u32::MAX,
-            "36: expected at least 4294967295 records for the chunk's triangles, found 2",
-        ),
-        (
-            36,
             1,
             "128: expected 0 bytes after the last chunk, found 16",
         ),
         (40, 9, "40: expected 0 (reserved), found 9"),
+        (60, 1 << 16, "62: expected 0 (reserved), found 1"),
+        (124, 1 << 24, "126: expected 0 (reserved), found 256"),
     ] {
-        let set = |bytes: &mut Vec<u8>| bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
-        assert_eq!(error(set), format!("mesh byte {expected}"));
-    }
-    let index = "expected less than the 4 vertices of the chunk, as an index, found";
-    for (at, byte, expected) in [
-        (48 + 14, 1, "62: expected 0 (reserved), found 1".to_owned()),
-        (48 + 64, 4, format!("112: {index} 4")),
-        (48 + 64 + 21, 1, format!("132: {index} 259")),
-        (
-            48 + 64 + 15,
-            1,
-            "126: expected 0 (reserved), found 256".to_owned(),
-        ),
-    ] {
-        let set = |bytes: &mut Vec<u8>| bytes[at] = byte;
-        assert_eq!(error(set), format!("mesh byte {expected}"));
+        let mut bytes = small();
+        let field = &mut bytes[at..at + 4];
+        let found = u32::from_le_bytes([field[0], field[1], field[2], field[3]]);
+        let word: u32 = if at < 48 { word } else { found | word };
+        field.copy_from_slice(&word.to_le_bytes());
+        let error = Mesh::new_checked(&bytes).expect_err(expected).to_string();
+        assert_eq!(error, format!("mesh byte {expected}"));
     }
     let most = 32 << 20;
-    for (length, expected) in [
-        (
-            0,
-            "expected at least 32 bytes of header, found 0".to_owned(),
-        ),
-        (
-            31,
-            "expected at least 32 bytes of header, found 31".to_owned(),
-        ),
-        (40, "expected a multiple of 16 bytes, found 40".to_owned()),
-        (145, "expected a multiple of 16 bytes, found 145".to_owned()),
-        (
-            most + 16,
-            format!("expected at most {most} bytes, found {}", most + 16),
-        ),
-    ] {
-        let cut = |bytes: &mut Vec<u8>| bytes.resize(length, 0);
-        assert_eq!(error(cut), format!("mesh byte 0: {expected}"));
-    }
-    let near = error(|bytes| bytes[20..24].copy_from_slice(&(radius - 1).to_le_bytes()));
-    let expected = format!(
-        "expected at most {} (radius) from the origin, found {radius}",
-        radius - 1
-    );
-    assert!(near.ends_with(&expected), "{near}");
+    let error = Mesh::new_checked(&vec![0; most + 16]).expect_err("too long");
+    let expected = format!("expected at most {most} bytes, found {}", most + 16);
+    assert_eq!(error.to_string(), format!("mesh byte 0: {expected}"));
 }
 
 #[test]

@@ -83,13 +83,6 @@ fn q30_is_within_one_ulp() {
 }
 
 #[test]
-#[ignore = "minutes: all 2^32 phases"]
-fn q30_is_within_one_ulp_for_every_phase() {
-    let errors = Errors::measure(30, 0..=u32::MAX, q30);
-    assert!(errors.max < 0.68, "{}", errors.max);
-}
-
-#[test]
 fn lower_orders_are_as_far_off_as_their_remainder_says() {
     let one = 2f64.powi(30);
     // The error limit for order n is d^(n + 1)/(n + 1)! with d = π/512, plus one unit for rounding.

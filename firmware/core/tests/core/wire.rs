@@ -2,9 +2,7 @@
 
 use std::collections::VecDeque;
 
-use glint_core::wire::{
-    Failure, MAX_FRAME, Manifest, Reason, Receiver, Sender, State, Timing, crc32,
-};
+use glint_core::wire::{Failure, MAX_FRAME, Manifest, Reason, Receiver, Sender, State, Timing};
 use proptest::prelude::*;
 
 /// Time in µs that a byte takes on the line at 115200 baud, 8N1.
@@ -361,11 +359,6 @@ fn the_host_keeps_the_text_that_follows() {
     assert_eq!(receiver.state(), State::Done);
     let text = to_host.rsplit(|&byte| byte == 0).next();
     assert_eq!(text, Some(&b"ok\r\n"[..]));
-}
-
-#[test]
-fn crc32_is_the_common_one() {
-    assert_eq!(crc32(b"123456789"), 0xCBF4_3926);
 }
 
 proptest! {

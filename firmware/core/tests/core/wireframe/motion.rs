@@ -67,17 +67,6 @@ fn directions() {
     moves(Key::Left, 0, -1.0);
 }
 
-#[test]
-fn pans_end_at_16() {
-    let mut motion = Motion::default();
-    let right = Key::Right.step(false);
-    assert_eq!((0..1_000).filter(|_| motion.apply(right)).count(), 256);
-    let stopped = motion;
-    assert!(!motion.apply(right));
-    assert_eq!(motion, stopped);
-    assert!(motion.apply(inverse(right)));
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
 

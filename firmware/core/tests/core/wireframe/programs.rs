@@ -2,7 +2,7 @@
 
 use glint_core::fixed::Q5_11;
 use glint_core::wireframe::text::{assemble, parse_line};
-use glint_core::wireframe::{Instruction, MAX_SEGMENTS, Program, WORD_BYTES, Window};
+use glint_core::wireframe::{Instruction, Program, WORD_BYTES, Window};
 use proptest::prelude::*;
 
 use super::{point, q, viewing};
@@ -254,27 +254,4 @@ fn refused_words() {
         let error = Program::new_checked(&bytes).expect_err(message).to_string();
         assert_eq!(error, format!("wireframe program, {message}"));
     }
-}
-
-#[test]
-fn at_most_65_535_segments() {
-    let head: String = TEXT
-        .lines()
-        .filter(|line| !line.starts_with("segment") && *line != "end")
-        .map(|line| format!("{line}\n"))
-        .collect();
-    let text = |count| head.clone() + &"segment 0 0 0 1 1 1\n".repeat(count) + "end\n";
-    let most = assemble(&text(MAX_SEGMENTS as usize)).expect("a good program");
-    let program = Program::new_checked(&most).expect("a good program");
-    assert_eq!(
-        (program.segment_count(), program.segments().count()),
-        (MAX_SEGMENTS, MAX_SEGMENTS as usize)
-    );
-    let error = assemble(&text(MAX_SEGMENTS as usize + 1))
-        .expect_err("one too many")
-        .to_string();
-    assert_eq!(
-        error,
-        "wireframe program, line 65541: expected at most 65535 segments, found more"
-    );
 }
