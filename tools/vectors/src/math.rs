@@ -16,10 +16,32 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
+/// The difference a − b.
+#[must_use]
+pub fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// The sum a + b·factor.
+#[must_use]
+pub fn add_scaled(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
+    [
+        a[0] + b[0] * factor,
+        a[1] + b[1] * factor,
+        a[2] + b[2] * factor,
+    ]
+}
+
+/// Length of a vector.
+#[must_use]
+pub fn length(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
 /// Unit vector in the direction of `v`.
 #[must_use]
 pub fn normalised(v: [f64; 3]) -> [f64; 3] {
-    let length = dot(v, v).sqrt();
+    let length = length(v);
     v.map(|x| x / length)
 }
 

@@ -57,6 +57,20 @@ impl Picture {
     /// If the bytes are not a valid mesh, or if the renderer's statistics contradict each other.
     #[must_use]
     pub fn of_bytes(bytes: &[u8], view: &View, size: (u32, u32), cull: bool) -> Self {
+        let options = Options {
+            cull,
+            clear: CLEAR,
+            ..Options::default()
+        };
+        Self::with_options(bytes, view, size, &options)
+    }
+
+    /// Renders a mesh with these options.
+    ///
+    /// # Panics
+    /// As [`Self::of_bytes`].
+    #[must_use]
+    pub fn with_options(bytes: &[u8], view: &View, size: (u32, u32), options: &Options) -> Self {
         let mesh = Mesh::new_checked(bytes).unwrap();
         let mut scratch =
             vec![Projected::Behind; mesh.chunks().map(|c| c.vertex_count()).max().unwrap()];
@@ -65,17 +79,12 @@ impl Picture {
         picture.colour.fill(0xDEAD);
         picture.depth.fill(0xDEAD);
         let mut drawn = Vec::new();
-        let options = Options {
-            cull,
-            clear: CLEAR,
-            ..Options::default()
-        };
         let stats = trace(
             &mesh,
             view,
             &mut picture.target(),
             &mut scratch,
-            &options,
+            options,
             |t| drawn.push(*t),
         )
         .unwrap();

@@ -61,28 +61,6 @@ fn what_is_inside_is_never_cut() {
     );
 }
 
-/// Two triangles with a common edge traverse the edge in opposite directions and cut it at the same vertices.
-#[test]
-fn neighbours_cut_their_edge_alike() {
-    let mut random = Random(11);
-    let mut cuts = 0;
-    for _ in 0..100_000 {
-        let frame = random_frame(&mut random);
-        let [a, b, c, d] = [0; 4].map(|_| random_vertex(&mut random, &frame));
-        // Clips the edge alone, as a degenerate triangle: both neighbours must contain its remaining vertices.
-        let edge = clip(&frame, [a, b, b]);
-        let (left, right) = (clip(&frame, [a, b, c]), clip(&frame, [b, a, d]));
-        for end in edge.vertices() {
-            assert!(
-                left.vertices().contains(end) && right.vertices().contains(end),
-                "{end:?}"
-            );
-            cuts += u32::from(*end != a && *end != b);
-        }
-    }
-    assert!(cuts > 10_000, "{cuts}");
-}
-
 /// The picture of a clipped triangle does not depend on its first vertex.
 #[test]
 fn clipping_does_not_depend_on_the_first_vertex() {

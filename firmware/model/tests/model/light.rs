@@ -3,10 +3,10 @@
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::fixed::Q32_32;
 use glint_core::light::{Light, MeshLighting};
-use glint_core::mesh::{IndexedTriangle, Mesh, Vertex, encode};
+use glint_core::mesh::{IndexedTriangle, Vertex, encode};
 use glint_model::triangle::shade::Lit;
-use glint_model::{DrawnTriangle, FrameBuffer, MeshLight, Options, Projected, trace};
-use glint_vectors::{Camera, Random};
+use glint_model::{DrawnTriangle, MeshLight, Options, SIZES};
+use glint_vectors::{Camera, Picture, Random};
 
 fn any_light(random: &mut Random) -> MeshLighting {
     let mut colour = || {
@@ -95,20 +95,8 @@ fn equal_vertices_are_lit_as_flat_triangles() {
             ..Options::default()
         };
         let drawn = |shading: Shading| -> Vec<DrawnTriangle> {
-            let mesh = Mesh::new_checked(&bytes).unwrap();
-            let (mut colour, mut depth) = (vec![0; 320 * 180], vec![0; 320 * 180]);
-            let mut target = FrameBuffer {
-                width: 320,
-                height: 180,
-                colour: &mut colour,
-                depth: &mut depth,
-            };
-            let mut scratch = vec![Projected::Behind; mesh.largest_chunk()];
             let options = Options { shading, ..options };
-            let mut drawn = Vec::new();
-            let mut show = |triangle: &DrawnTriangle| drawn.push(*triangle);
-            trace(&mesh, &view, &mut target, &mut scratch, &options, &mut show).unwrap();
-            drawn
+            Picture::with_options(&bytes, &view, SIZES[0], &options).drawn
         };
         let (flat, smooth) = (drawn(Shading::Flat), drawn(Shading::Smooth));
         assert_eq!(flat.len(), smooth.len());

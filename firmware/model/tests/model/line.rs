@@ -1,7 +1,5 @@
 //! Tests of lines with triangles, other lines and depths; `glint-reference` tests the exact pixels of single segments.
 
-use std::collections::BTreeMap;
-
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
 use glint_model::line::{Line, LineDepth, LinePixel, draw};
@@ -29,47 +27,6 @@ fn place(random: &mut Random) -> [i64; 2] {
     let grid = [1, 64, 128, 256][random.integer(0, 3) as usize];
     [SIZE.0, SIZE.1]
         .map(|size| random.integer(-256 * 30, 256 * (i64::from(size) + 30)) / grid * grid)
-}
-
-/// Between its ends, a line covers the same pixels as two triangles that form a parallelogram about it, one pixel high or wide: ties are
-/// resolved equally.
-#[test]
-fn a_line_is_a_parallelogram_of_one_pixel() {
-    let mut random = Random(1);
-    let mut compared = 0;
-    for _ in 0..2000 {
-        let [a, b] = [place(&mut random), place(&mut random)];
-        let x_major = (a[0] - b[0]).abs() >= (a[1] - b[1]).abs();
-        let [right, down] = if x_major { [0, 128] } else { [128, 0] };
-        let corner = |[x, y]: [i64; 2], side: i64| at([x + side * right, y + side * down]);
-        let mut picture = Picture::blank(SIZE);
-        for triangle in [
-            [corner(a, -1), corner(b, -1), corner(a, 1)],
-            [corner(b, -1), corner(a, 1), corner(b, 1)],
-        ] {
-            if let Some((_, setup)) = set_up(triangle, SIZE) {
-                raster::draw(&setup, Rgb565::WHITE, &mut picture.target());
-            }
-        }
-        // The diamond rule determines both end pixels, so they are not compared.
-        let axis = usize::from(!x_major);
-        let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
-        let between = |i: i64| 256 * i > low && 256 * i + 256 < high;
-        let covered: Vec<bool> = picture.coverage();
-        let mut line = vec![false; covered.len()];
-        for pixel in pixels([at(a), at(b)], PICTURE) {
-            line[(pixel.row * SIZE.0 as i32 + pixel.column) as usize] = true;
-        }
-        for (i, (line, covered)) in line.into_iter().zip(covered).enumerate() {
-            let [column, row] = [i % SIZE.0 as usize, i / SIZE.0 as usize].map(|i| i as i64);
-            if between(if x_major { column } else { row }) {
-                assert_eq!(line, covered, "({column}, {row}) of {a:?} to {b:?}");
-                compared += u32::from(line);
-            }
-        }
-    }
-    println!("{compared} pixels");
-    assert!(compared > 50_000);
 }
 
 /// Consecutive segments with the same major axis and direction have one pixel in each column or row.
@@ -113,43 +70,6 @@ fn a_polyline_has_its_joints_once() {
     }
 }
 
-/// A segment and its reverse differ by at most one pixel at each end.
-#[test]
-fn a_reversed_segment_differs_only_at_its_ends() {
-    let mut random = Random(3);
-    for _ in 0..5000 {
-        let ends = [at(place(&mut random)), at(place(&mut random))];
-        let [a, b] = ends;
-        let is_wide = (a.x - b.x).abs() >= (a.y - b.y).abs();
-        let by_step = |ends| -> BTreeMap<i32, i32> {
-            let step = |p: LinePixel| {
-                if is_wide {
-                    (p.column, p.row)
-                } else {
-                    (p.row, p.column)
-                }
-            };
-            pixels(ends, PICTURE).into_iter().map(step).collect()
-        };
-        let (there, back) = (by_step([a, b]), by_step([b, a]));
-        let differ = there
-            .keys()
-            .filter(|&step| !back.contains_key(step))
-            .count()
-            + back
-                .keys()
-                .filter(|&step| !there.contains_key(step))
-                .count();
-        assert!(differ <= 2, "{ends:?}");
-        assert!(
-            there
-                .iter()
-                .all(|(step, i)| back.get(step).is_none_or(|j| i == j)),
-            "{ends:?}"
-        );
-    }
-}
-
 /// The pieces of a line in all bands of a picture have the pixels and depths of the whole line.
 #[test]
 fn bands_leave_a_line_as_it_is() {
@@ -181,18 +101,11 @@ fn bands_leave_a_line_as_it_is() {
     }
 }
 
-/// Positions outside of their format give no line; corners of the format give the longest lines.
+/// Outside of the format of positions there is no line.
 #[test]
-fn the_whole_range_of_positions_is_drawn() {
-    let everywhere = Bounds {
-        left: -2048,
-        right: 2048,
-        top: -2048,
-        bottom: 2048,
-    };
+fn positions_have_a_range() {
     let (low, high) = (-(1 << 19), (1 << 19) - 1);
-    let across = pixels([at([low, low]), at([high, high])], everywhere);
-    assert_eq!(across.len(), 4096);
+    assert!(Line::new(&[at([low, low]), at([high, high])]).is_some());
     assert!(Line::new(&[at([low, low]), at([high + 1, 0])]).is_none());
     assert!(Line::new(&[at([0, low - 1]), at([0, 0])]).is_none());
 }

@@ -17,12 +17,10 @@ use glint_model::{
 use glint_vectors::math::{dot, normalised, world};
 use glint_vectors::{Camera, Model, Picture, Random};
 
+use crate::{applied, error, number, object};
+
 /// Radius of a mesh that fills a box of 1×1×1 world units, 14 fraction bits.
 const RADIUS: u32 = 14_190;
-
-fn number(x: f64) -> Q8_24 {
-    Q8_24::from_num(x)
-}
 
 /// A random matrix: rotations, a scale of each axis within `scales` with either sign, and a translation within `reach` of the origin.
 fn random_matrix(random: &mut Random, scales: [f64; 2], same: bool, reach: f64) -> Matrix {
@@ -48,12 +46,6 @@ fn random_matrix(random: &mut Random, scales: [f64; 2], same: bool, reach: f64) 
             return matrix;
         }
     }
-}
-
-fn applied(matrix: &Matrix, point: [f64; 3]) -> [f64; 3] {
-    let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
-    let place = matrix.place().map(Q8_24::to_num::<f64>);
-    [0, 1, 2].map(|i| dot(rows[i], point) + place[i])
 }
 
 /// Compares positions and depth codes of the vertices of objects with f64, for sizes from 1/100 to 8.
@@ -96,9 +88,7 @@ fn vertices_of_objects_against_f64() {
                 if !(0.0..f64::from(width)).contains(&x) || !(0.0..f64::from(height)).contains(&y) {
                     continue;
                 }
-                let error = (f64::from(found.x) - 256.0 * x)
-                    .abs()
-                    .max((f64::from(found.y) - 256.0 * y).abs());
+                let error = error(found, [x, y, z]);
                 // The bound of docs/formats/camera.md.
                 let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
                 let length = dot(world(position), world(position)).sqrt();
@@ -176,14 +166,6 @@ fn light_on_objects_against_f64() {
         worst[0], worst[1]
     );
     assert!(worst.iter().all(|&worst| worst <= 0.53));
-}
-
-fn object(mesh: Mesh, matrix: Matrix) -> Object {
-    Object {
-        subject: MeshSubject::new(mesh),
-        placement: Placement::new(matrix),
-        colour: None,
-    }
 }
 
 fn of(objects: &[Object], view: View) -> Picture {

@@ -4,7 +4,7 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
 use glint_core::field::Field;
-use glint_core::fixed::{Q8_24, Turns, U8_28};
+use glint_core::fixed::{Turns, U8_28};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -14,27 +14,17 @@ use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::shade::Lit;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{
-    Clip, FieldSubject, Frame, MeshSetup, MeshSubject, Object, Placement, Projected, RenderError,
-    SIZES, ScreenVertex, Subject,
+    Clip, FieldSubject, Frame, MeshSetup, MeshSubject, Object, Projected, RenderError, SIZES,
+    ScreenVertex, Subject,
 };
 use glint_vectors::math::{dot, world};
 use glint_vectors::triangles::{SIZE, random_triangle};
 use glint_vectors::{Camera, Model, Picture, Random};
 
+use crate::{applied, error, number, object};
+
 /// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
-
-fn number(x: f64) -> Q8_24 {
-    Q8_24::from_num(x)
-}
-
-fn object(mesh: Mesh, matrix: Matrix) -> Object {
-    Object {
-        subject: MeshSubject::new(mesh),
-        placement: Placement::new(matrix),
-        colour: None,
-    }
-}
 
 /// A camera at (0, −`distance`, 0) that looks along y, with a picture `width` world units wide.
 fn along_y(distance: f64, width: f64) -> View {
@@ -110,10 +100,8 @@ fn places_and_depths_against_f64() {
                 let Projected::Visible(found) = project(&frame, &vertex) else {
                     panic!("{point:?} in {view:?}")
                 };
-                let [x, y, z] = projected(&view, world(point), size);
-                let error = (f64::from(found.x) - 256.0 * x)
-                    .abs()
-                    .max((f64::from(found.y) - 256.0 * y).abs());
+                let exact = projected(&view, world(point), size);
+                let error = error(found, exact);
                 let distance = dot(world(point), world(point)).sqrt();
                 share = share.max(error / bound(&frame, distance));
                 let worst = if half_width < 0.05 {
@@ -122,7 +110,7 @@ fn places_and_depths_against_f64() {
                     &mut worst
                 };
                 *worst = worst.max(error);
-                depth = depth.max((f64::from(found.w) - 64.0 * code(&frame, z)).abs());
+                depth = depth.max((f64::from(found.w) - 64.0 * code(&frame, exact[2])).abs());
                 count += 1;
             }
             println!(
@@ -261,20 +249,16 @@ fn objects_against_f64() {
         halved += u32::from(setup.near < camera.near);
         for _ in 0..8 {
             let position = [0; 3].map(|_| random.integer(-8192, 8192) as i16);
-            let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
-            let point = [0, 1, 2]
-                .map(|i| dot(rows[i], world(position)) + matrix.place()[i].to_num::<f64>());
-            let [x, y, z] = projected(&view, point, size);
+            let point = applied(&matrix, world(position));
+            let exact = projected(&view, point, size);
             let Projected::Visible(found) = project(&setup, &transform(&setup, position)) else {
                 continue;
             };
-            let error = (f64::from(found.x) - 256.0 * x)
-                .abs()
-                .max((f64::from(found.y) - 256.0 * y).abs());
+            let error = error(found, exact);
             let [length, far] = [world(position), point].map(|p| dot(p, p).sqrt());
             share = share.max(error / (bound(&setup, length) + bound(camera, far + 0.001)));
             worst = worst.max(error);
-            depth = depth.max((f64::from(found.w) - 64.0 * code(camera, z)).abs());
+            depth = depth.max((f64::from(found.w) - 64.0 * code(camera, exact[2])).abs());
             count += 1;
         }
     }

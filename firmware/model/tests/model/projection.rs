@@ -7,6 +7,8 @@ use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_vectors::{Camera, Random, math::world};
 
+use crate::error;
+
 /// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
 
@@ -25,10 +27,8 @@ struct Worst {
 }
 
 impl Worst {
-    fn note(&mut self, place: ScreenVertex, [x, y, _]: [f64; 3], (width, height): (u32, u32)) {
-        let error = (f64::from(place.x) - 256.0 * x)
-            .abs()
-            .max((f64::from(place.y) - 256.0 * y).abs());
+    fn note(&mut self, place: ScreenVertex, exact: [f64; 3], (width, height): (u32, u32)) {
+        let (error, [x, y, _]) = (error(place, exact), exact);
         let on_screen =
             (0.0..=f64::from(width)).contains(&x) && (0.0..=f64::from(height)).contains(&y);
         if on_screen {
