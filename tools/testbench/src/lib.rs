@@ -12,7 +12,9 @@ mod layout;
 mod library;
 mod memory;
 mod module;
+mod rasterizer;
 pub mod raymarch;
+mod raymarcher;
 mod record;
 mod stream;
 
@@ -22,5 +24,7 @@ pub use layout::Layout;
 pub use library::{Instance, LoadError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};
+pub use rasterizer::Rasterizer;
+pub use raymarcher::{Raymarcher, Taken};
 pub use record::Record;
 pub use stream::{Pipe, Sink, Source, Stalls, exchange, step};

@@ -31,12 +31,15 @@ fn converted(name: &str, options: convert::Options) -> Vec<u8> {
     converted.expect("a mesh").0
 }
 
-/// Draws every scene at one size, in a random frame buffer. The smallest size is drawn with and without depths, larger sizes
-/// alternately with or without, because writing depths triples the time.
+/// Draws every scene at one size, in either frame buffer: at the smallest size with depths and without, at a larger one with or without
+/// them in turn, because writing depths triples the time, and without large meshes, whose geometry pass is the same in all sizes.
 fn all_scenes(size: (u32, u32)) {
     let mut bench = Bench::new(size.0, 0.0);
     let mut random = Pcg64Mcg::new(size.0.into());
     for (number, (name, mesh, view, cull)) in scenes(generated).into_iter().enumerate() {
+        if size != SIZES[0] && mesh.len() > 1 << 20 {
+            continue;
+        }
         let expected = expected(&mesh, &view, size, cull);
         for with_depth in [true, false] {
             if size != SIZES[0] && with_depth == (number % 2 == 0) {
@@ -71,57 +74,30 @@ fn scenes_at_1280x720() {
     all_scenes(SIZES[2]);
 }
 
-/// Draws frames alternately in orthographic and perspective projection, with and without memory stalls.
+/// Draws frames alternately in orthographic and perspective projection, with memory stalls.
 #[test]
 fn scenes_in_orthographic_projection() {
     let (mut pixels, mut clipped) = (0, 0);
-    for (number, stalls) in (0..).zip([0.0, 0.4]) {
-        let mut bench = Bench::new(30 + number, stalls);
-        for (name, mesh, view, cull) in scenes(generated) {
-            // Skips large meshes, which take long and add no coverage.
-            if mesh.len() > 1 << 20 {
-                continue;
-            }
-            for projection in Projection::ALL {
-                let view = view.with_projection(projection);
-                let frame = expected(&mesh, &view, SIZES[0], cull);
-                bench.with_depth = projection == Projection::Orthographic;
-                bench.slot ^= 1;
-                bench.draw(&format!("{name}, {projection}"), &mesh, &frame);
-                if bench.with_depth {
-                    pixels += frame.stats.pixels_covered;
-                    clipped += frame.stats.clipped;
-                }
+    let mut bench = Bench::new(30, 0.4);
+    for (name, mesh, view, cull) in scenes(generated) {
+        // Skips large meshes, which take long and add no coverage.
+        if mesh.len() > 1 << 20 {
+            continue;
+        }
+        for projection in Projection::ALL {
+            let view = view.with_projection(projection);
+            let frame = expected(&mesh, &view, SIZES[0], cull);
+            bench.with_depth = projection == Projection::Orthographic;
+            bench.slot ^= 1;
+            bench.draw(&format!("{name}, {projection}"), &mesh, &frame);
+            if bench.with_depth {
+                pixels += frame.stats.pixels_covered;
+                clipped += frame.stats.clipped;
             }
         }
     }
     println!("{clipped} clipped, {pixels} pixels in orthographic projection");
     assert!(clipped > 20 && pixels > 100_000);
-}
-
-/// Draws frames alternately with smooth and flat shading, with and without memory stalls.
-#[test]
-fn scenes_with_smooth_shading() {
-    for stalls in [0.0, 0.4] {
-        let mut bench = Bench::smooth(5, stalls);
-        for (name, mesh, view, cull) in scenes(generated) {
-            // Skips large meshes, which take long and add no coverage.
-            if mesh.len() > 1 << 20 {
-                continue;
-            }
-            let flat = expected(&mesh, &view, SIZES[0], cull);
-            let smooth = expected_smooth(&mesh, &view, SIZES[0], cull);
-            bench.with_depth = true;
-            let clocks = bench.draw(name, &mesh, &smooth);
-            bench.with_depth = false;
-            bench.slot ^= 1;
-            bench.draw(&format!("{name}, flat"), &mesh, &flat);
-            println!(
-                "{name}: {} clocks for the geometry, {} for the raster, {} clipped, {} pixels",
-                clocks.geometry, clocks.raster, smooth.stats.clipped, smooth.stats.pixels_covered
-            );
-        }
-    }
 }
 
 /// Draws random lists of triangles with random memory stalls, on which a frame must not depend. The environment variable

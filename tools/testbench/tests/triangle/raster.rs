@@ -3,14 +3,10 @@
 mod bench;
 mod triangles;
 
-use glint_core::camera::View;
 use glint_core::colour::Rgb565;
-use glint_core::fixed::{Q32_32, Turns, U8_28};
-use glint_core::mesh::Mesh;
-use glint_mesh::{convert, generate};
 use glint_model::triangle::shade::Lit;
 use glint_model::triangle::vertex::GUARD;
-use glint_model::{FrameBuffer, Options, Projected, ScreenVertex, trace};
+use glint_model::{ScreenVertex, Shading};
 
 use crate::raster::bench::Bench;
 use crate::raster::triangles::{LARGE, MIDDLE, Random, SMALL, Triangle, numbered, pixels};
@@ -19,7 +15,7 @@ use crate::raster::triangles::{LARGE, MIDDLE, Random, SMALL, Triangle, numbered,
 fn random_triangles() {
     for (seed, source_stalls, sink_stalls) in [(1, 0.0, 0.0), (2, 0.5, 0.2), (3, 0.1, 0.7)] {
         let mut random = Random::new(seed.into());
-        let mut bench = Bench::new(seed, [source_stalls, sink_stalls]);
+        let mut bench = Bench::new(Shading::Flat, seed, [source_stalls, sink_stalls]);
         let triangles = (0..250).map(|_| random.triangle(SMALL));
         let triangles = numbered(SMALL, triangles);
         let counts = bench.check("random", SMALL, &triangles);
@@ -33,7 +29,7 @@ fn random_triangles() {
 fn random_triangles_smooth() {
     for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
         let mut random = Random::new(seed.into());
-        let mut bench = Bench::smooth(seed, [source_stalls, sink_stalls]);
+        let mut bench = Bench::new(Shading::Smooth, seed, [source_stalls, sink_stalls]);
         for (name, size, count) in [("small", SMALL, 120), ("large", LARGE, 36)] {
             let triangles = (0..count).map(|_| random.triangle(size).map(visible));
             let triangles: Vec<Triangle> = numbered(size, triangles.collect::<Vec<_>>())
@@ -54,7 +50,7 @@ fn random_triangles_smooth() {
 #[test]
 fn extreme_light() {
     let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
-    let mut bench = Bench::smooth(7, [0.0, 0.3]);
+    let mut bench = Bench::new(Shading::Smooth, 7, [0.0, 0.3]);
     let white = Lit::new(Rgb565::WHITE, [256; 3]);
     let dark = Lit::default();
     let any = Lit::new(Rgb565(0x5AA5), [77; 3]);
@@ -203,7 +199,7 @@ fn difficult_triangles() {
             pixels([[310.0, 1.0], [1.0, 4.0], [318.0, 9.0]]),
         ),
     ];
-    let mut bench = Bench::new(11, [0.3, 0.3]);
+    let mut bench = Bench::new(Shading::Flat, 11, [0.3, 0.3]);
     for (name, corners) in shapes {
         // Draws each triangle with three orders of its corners (both orientations), and mirrored left to right.
         let [a, b, c] = corners;
@@ -222,7 +218,7 @@ fn difficult_triangles() {
 #[test]
 fn extreme_depths() {
     let near = ((1 << 18) - 4) * 64;
-    let mut bench = Bench::new(12, [0.0, 0.3]);
+    let mut bench = Bench::new(Shading::Flat, 12, [0.0, 0.3]);
     let triangles = [
         [near, 0, 0],
         [0, near, 0],
@@ -247,7 +243,7 @@ fn whole_pictures() {
         [-2047.0, 2047.0],
     ];
     let [a, b, c, d] = corners;
-    let mut bench = Bench::new(14, [0.0, 0.0]);
+    let mut bench = Bench::new(Shading::Flat, 14, [0.0, 0.0]);
     for size in [MIDDLE, LARGE] {
         let triangles = numbered(size, [pixels([a, b, c]), pixels([a, c, d])]);
         let counts = bench.check("all of it", size, &triangles);
@@ -271,7 +267,7 @@ fn whole_pictures() {
 /// The rasterizer drops a triangle without a line in the band, and draws the next triangle.
 #[test]
 fn triangles_outside_of_the_band() {
-    let mut bench = Bench::new(15, [0.0, 0.0]);
+    let mut bench = Bench::new(Shading::Flat, 15, [0.0, 0.0]);
     let at = |[top, bottom]: [f64; 2]| pixels([[10.0, top], [60.0, top + 1.0], [10.0, bottom]]);
     for y0 in [0, 45, 90, 135] {
         let (above, below) = (f64::from(y0), f64::from(y0 + 45));
@@ -285,77 +281,5 @@ fn triangles_outside_of_the_band() {
         let last = triangles.len() as u64 - 1;
         assert!(!groups.is_empty());
         assert!(groups.iter().all(|group| group[3].element(16, 0) == last));
-    }
-}
-
-fn mesh(name: &str) -> Vec<u8> {
-    let polygons = generate::named(name).unwrap();
-    convert::convert(&polygons, convert::Options::default())
-        .unwrap()
-        .0
-}
-
-/// Makes a camera from which the mesh's bounding sphere fills 96 % of the picture's height.
-fn filling(mesh: &Mesh) -> View {
-    let degrees = |degrees| Turns::from_degrees(Q32_32::from_num(degrees));
-    let camera = View::spherical(Q32_32::from_num(3), degrees(30), degrees(60)).unwrap();
-    let radius = f64::from(mesh.radius()) / 16384.0;
-    let half_width = radius / (9.0 - radius * radius).sqrt() / 0.96 * 16.0 / 9.0;
-    View::new_checked(
-        camera.eye(),
-        camera.u(),
-        camera.v(),
-        camera.n(),
-        U8_28::from_num(half_width),
-        camera.near(),
-    )
-    .unwrap()
-}
-
-/// Measures the pixels per walking clock of the rasterizer on a sphere of small triangles.
-#[test]
-fn a_sphere_is_walked_efficiently() {
-    for (frequency, size, least) in [(6, SMALL, 3.3), (12, LARGE, 4.5)] {
-        let bytes = mesh(&format!("icosphere:{frequency}"));
-        let mesh = Mesh::new_checked(&bytes).unwrap();
-        let mut scratch = vec![Projected::Behind; 4096];
-        let mut corners = Vec::new();
-        let pixels = (size.0 * size.1) as usize;
-        let mut target = FrameBuffer {
-            width: size.0,
-            height: size.1,
-            colour: &mut vec![0; pixels],
-            depth: &mut vec![0; pixels],
-        };
-        let options = Options::default();
-        trace(
-            &mesh,
-            &filling(&mesh),
-            &mut target,
-            &mut scratch,
-            &options,
-            |triangle| {
-                corners.push(triangle.vertices);
-            },
-        )
-        .unwrap();
-        let triangles = numbered(size, corners);
-        let counts = Bench::new(16, [0.0, 0.0]).check("sphere", size, &triangles);
-        let rate = |clocks: u64| counts.pixels as f64 / clocks as f64;
-        println!(
-            "icosphere:{frequency} at {size:?}: {} triangles, {} in bands, {} pixels; {} groups walked, {} of them empty; \
-             {} candidates, {} of them empty; {:.2} pixels a group, {:.2} a walked group, {:.2} a clock",
-            triangles.len(),
-            counts.entries,
-            counts.pixels,
-            counts.walked,
-            counts.empty,
-            counts.walked - counts.empty,
-            counts.walked - counts.empty - counts.groups,
-            rate(counts.groups),
-            rate(counts.walked),
-            rate(counts.clocks),
-        );
-        assert!(rate(counts.clocks) > least);
     }
 }

@@ -1,9 +1,9 @@
 //! Test bench of the rasterizer: draws band after band, and composes the picture from the output groups.
 
-use glint_model::triangle::descriptor::{Descriptor, band_rows};
+use glint_model::triangle::descriptor::band_rows;
 use glint_model::triangle::raster::draw;
 use glint_model::{FrameBuffer, Shading};
-use glint_testbench::{Bits, Pipe, Port};
+use glint_testbench::{Bits, Port, Rasterizer};
 
 use crate::raster::triangles::{LANES, Triangle};
 
@@ -29,36 +29,20 @@ pub struct Counts {
 }
 
 pub struct Bench {
-    pipe: Pipe,
-    band: [Port; 3],
-    idle: Port,
+    module: Rasterizer,
     walking: Port,
     empty: Port,
     pub counts: Counts,
 }
 
 impl Bench {
-    /// Creates a bench of the module variant for flat triangles, identified by their colours.
-    pub fn new(seed: u32, stalls: [f64; 2]) -> Self {
-        Self::of("triangle_raster", seed, stalls)
-    }
-
-    /// Creates a bench of the module variant for flat and smooth triangles.
-    pub fn smooth(seed: u32, stalls: [f64; 2]) -> Self {
-        Self::of("triangle_raster_smooth", seed, stalls)
-    }
-
-    fn of(name: &str, seed: u32, stalls: [f64; 2]) -> Self {
-        let payload = ["row", "mask", "codes", "colours", "line", "column"];
-        let input = ("triangle", &["descriptor", "planes"][..]);
-        let pipe = Pipe::new(name, seed, input, ("group", &payload), stalls);
-        let port = |name| pipe.module.port(name);
+    /// Creates a bench of a module variant. Flat triangles are identified by their colours.
+    pub fn new(shading: Shading, seed: u32, stalls: [f64; 2]) -> Self {
+        let module = Rasterizer::new(shading, seed, stalls);
         Self {
-            band: ["triangle_y0", "rows", "stride"].map(port),
-            idle: port("idle"),
-            walking: port("events.cycles_walking"),
-            empty: port("events.cycles_empty"),
-            pipe,
+            walking: module.port("events.cycles_walking"),
+            empty: module.port("events.cycles_empty"),
+            module,
             counts: Counts::default(),
         }
     }
@@ -66,26 +50,21 @@ impl Bench {
     /// Draws a band until the rasterizer is idle; returns the band's groups.
     pub fn band<'a>(
         &mut self,
-        [y0, rows, stride]: [u32; 3],
+        settings: [u32; 3],
         triangles: impl Iterator<Item = &'a Triangle>,
     ) -> Vec<Vec<Bits>> {
-        let Self { pipe, counts, .. } = self;
-        assert!(pipe.module.is_high(self.idle));
-        for (port, value) in self.band.into_iter().zip([y0, rows, stride]) {
-            pipe.module.set(port, u64::from(value));
-        }
-        for triangle in triangles {
-            let descriptor = Descriptor::new(&triangle.setup, triangle.colour);
-            let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
-            let item = [first, planes].map(Bits::from_words);
-            pipe.source.push(item.to_vec());
-            counts.entries += 1;
-        }
-        counts.clocks += pipe.drain(2_000_000, self.idle, |pipe| {
-            counts.walked += pipe.module.value(self.walking);
-            counts.empty += pipe.module.value(self.empty);
+        let counts = &mut self.counts;
+        let [mut walked, mut empty] = [0; 2];
+        let triangles = triangles.map(|triangle| (&triangle.setup, triangle.colour));
+        let triangles = triangles.inspect(|_| counts.entries += 1);
+        let (clocks, groups) = self.module.band(settings, triangles, |pipe| {
+            walked += pipe.module.value(self.walking);
+            empty += pipe.module.value(self.empty);
         });
-        pipe.sink.take()
+        counts.clocks += clocks;
+        counts.walked += walked;
+        counts.empty += empty;
+        groups
     }
 
     /// Draws triangles in all their bands, and compares the picture with the model's.
