@@ -5,7 +5,6 @@
 mod cameras;
 mod coverage;
 mod fans;
-mod llvmpipe;
 mod renderer;
 mod scenes;
 mod shade;
