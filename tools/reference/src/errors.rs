@@ -6,7 +6,8 @@ pub struct Errors {
     /// Largest magnitude among the errors.
     pub max: f64,
     squares: f64,
-    count: u64,
+    /// Number of errors.
+    pub count: u64,
 }
 
 impl Errors {

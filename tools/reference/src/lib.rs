@@ -3,7 +3,7 @@
 //! - [`emulated`]: the emulated board with the built firmware.
 //! - [`errors`]: RMS and maximum of errors.
 //! - [`basis`]: the deviation of a camera's basis from an orthonormal basis.
-//! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
+//! - [`camera`]: projection, rays, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
 //! - [`gesture`]: camera frames with a hand, and the errors of the camera's control by the hand.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions with known true attitudes.
@@ -18,7 +18,6 @@
 #![forbid(unsafe_code)]
 
 pub mod basis;
-pub mod camera;
 pub mod emulated;
 pub mod errors;
 pub mod gesture;
@@ -31,3 +30,5 @@ pub mod sine;
 pub mod stiff;
 pub mod triangle;
 pub mod wireframe;
+
+pub use glint_vectors::camera;

@@ -4,10 +4,9 @@
 //! - [`Field::traced`]: hits by sphere tracing, which uses only the distance.
 //! - [`Field::hit`]: hits computed from each solid's geometry, exact up to the rounding of f64.
 //! - [`views`]: cameras that look at the Menger sponge.
-//! - [`metrics`]: errors of a picture compared with the reference.
-//! - [`raymarched`]: pictures of Glint's raymarcher as input of `metrics`.
-//! - [`variant`]: other marching methods, for comparisons of cost.
-//! - [`verilated`]: clocks and distance evaluations of the verilated raymarcher for a picture.
+//! - [`metrics`]: errors of a picture against the reference.
+//! - [`raymarched`]: pictures of Glint's raymarcher, in the form that `metrics` compares.
+//! - [`variant`]: other marching methods, for comparisons of their cost.
 //!
 //! For a ray that only touches a solid, or lies in the plane of one of its faces, both a hit and a miss are correct.
 
@@ -20,7 +19,6 @@ mod solids;
 mod surface;
 mod trace;
 pub mod variant;
-pub mod verilated;
 pub mod views;
 
 pub use surface::{Face, Hit, Plane, Sphere};

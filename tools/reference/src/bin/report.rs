@@ -13,6 +13,7 @@ use glint_reference::report::experiments::{
     constants, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
     timeline, triangle,
 };
+use glint_reference::report::provenance::{Commit, Provenance};
 use glint_reference::report::table::write_csv;
 use glint_reference::report::workspace;
 use serde::Serialize;
@@ -165,12 +166,36 @@ impl Page {
 }
 
 /// The output folder.
-struct Folder(PathBuf);
+struct Folder {
+    path: PathBuf,
+    provenance: Provenance,
+}
 
 impl Folder {
-    /// Writes a table as soon as it is complete, because the next table may take minutes to measure.
+    /// Writes a table of rows with the commit and the tools.
     fn write<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<()> {
-        let path = self.0.join(name).with_extension("csv");
+        self.write_with(name, rows, &self.provenance)
+    }
+
+    /// Writes a table of rows with the commit.
+    fn write_with_commit<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<()> {
+        let commit = self.provenance.commit.clone();
+        self.write_with(name, rows, &Commit { commit })
+    }
+
+    fn write_with<T: Serialize>(
+        &self,
+        name: &str,
+        rows: &[T],
+        provenance: &impl Serialize,
+    ) -> Result<()> {
+        let rows: Vec<_> = rows.iter().map(|row| (row, provenance)).collect();
+        self.write_alone(name, &rows)
+    }
+
+    /// Writes a table as soon as it is complete, because the next table may take minutes to measure.
+    fn write_alone<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<()> {
+        let path = self.path.join(name).with_extension("csv");
         write_csv(rows, &path)?;
         eprintln!("wrote {}: {} rows", path.display(), rows.len());
         Ok(())
@@ -182,7 +207,7 @@ impl Folder {
         let made = Command::new(&python)
             .arg(workspace::path("tools/reference/pages"))
             .arg("--out")
-            .arg(&self.0)
+            .arg(&self.path)
             .args(names)
             .status()
             .with_context(|| format!("{}: cannot start", python.display()))?;
@@ -201,7 +226,10 @@ fn main() -> Result<()> {
     let folder = arguments.out.unwrap_or_else(|| workspace::path(default));
     std::fs::create_dir_all(&folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-    let to = Folder(folder);
+    let to = Folder {
+        path: folder,
+        provenance: Provenance::find(),
+    };
     match arguments.page {
         Page::Sine { quick, cycles } => measure_sine(quick, &cycles, &to)?,
         Page::Triangle { quick, study, only } => {
@@ -247,7 +275,7 @@ fn main() -> Result<()> {
             }
         }
         Page::Pages => {
-            to.write("constants", &constants::all())?;
+            to.write_alone("constants", &constants::all())?;
             return to.make_pages(&[]);
         }
     }
@@ -264,7 +292,7 @@ fn measure_sine(quick: bool, cycles: &Source, to: &Folder) -> Result<()> {
     });
     let (rows, reference) = sine::measure(quick, &cycles)?;
     to.write("sine", &rows)?;
-    to.write("sine-reference", &[reference])
+    to.write_alone("sine-reference", &[reference])
 }
 
 /// Measures the engine and the soft core, or only the table `study`.
@@ -278,7 +306,7 @@ fn measure_triangle(
         to.write("triangle", &triangle::measure(only)?)?;
     }
     if study != Some("engine") && !quick {
-        to.write("triangle-cpu", &triangle::measure_cpu(only)?)?;
+        to.write_with_commit("triangle-cpu", &triangle::measure_cpu(only)?)?;
     }
     Ok(())
 }
@@ -289,11 +317,11 @@ fn measure_raymarch(quick: bool, study: Option<&str>, to: &Folder) -> Result<()>
         to.write("raymarch", &raymarch::pictures::measure(quick))?;
     }
     if study.map_or(!quick, |study| study == "rates") {
-        to.write("raymarch-rates", &raymarch::rates::measure()?)?;
+        to.write_with_commit("raymarch-rates", &raymarch::rates::measure()?)?;
     }
     if study.map_or(!quick, |study| !["pictures", "rates"].contains(&study)) {
         raymarch::studies::measure(study, |name, trials| {
-            to.write(&format!("raymarch-{name}"), trials)
+            to.write_with_commit(&format!("raymarch-{name}"), trials)
         })?;
     }
     Ok(())
@@ -301,8 +329,8 @@ fn measure_raymarch(quick: bool, study: Option<&str>, to: &Folder) -> Result<()>
 
 fn measure_gouraud(quick: bool, earlier: bool, to: &Folder) -> Result<()> {
     to.write("gouraud", &gouraud::scenes::measure())?;
-    to.write("gouraud-forms", &gouraud::forms::measure())?;
-    to.write("gouraud-clocks", &gouraud::clocks::measure()?)?;
+    to.write_with_commit("gouraud-forms", &gouraud::forms::measure())?;
+    to.write_with_commit("gouraud-clocks", &gouraud::clocks::measure()?)?;
     if quick {
         return Ok(());
     }
@@ -311,7 +339,7 @@ fn measure_gouraud(quick: bool, earlier: bool, to: &Folder) -> Result<()> {
         true => gouraud::engines::earlier()?,
         false => gouraud::engines::kept()?,
     });
-    to.write("gouraud-cost", &costs)
+    to.write_alone("gouraud-cost", &costs)
 }
 
 /// Measures errors and cycles, or only the table `study`.
@@ -323,11 +351,11 @@ fn measure_quality(
 ) -> Result<()> {
     let only = only.unwrap_or_default();
     if study != Some("cycles") {
-        let sizes = if quick { &Size::ALL[..1] } else { &Size::ALL };
-        to.write("quality", &quality::errors(only, sizes)?)?;
+        let wanted = |variant: quality::Variant| !quick || variant.size == Size::W320;
+        to.write("quality", &quality::errors(only, wanted)?)?;
     }
     if study != Some("errors") && !quick {
-        to.write("quality-cycles", &quality::cycles(only)?)?;
+        to.write_with_commit("quality-cycles", &quality::cycles(only)?)?;
     }
     Ok(())
 }
@@ -337,17 +365,17 @@ fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Re
     let is_selected = |name: &str| study.is_none_or(|study| study == name);
     let (turns, hours) = if quick { (4, 0.24) } else { (400, hours) };
     if is_selected("orbit") {
-        to.write(
+        to.write_with_commit(
             "long-orbit",
             &long::orbit::measure(turns, long::orbit::FRAMES)?,
         )?;
     }
     if is_selected("uptime") {
-        to.write("long-uptime", &long::uptime::measure(quick)?)?;
+        to.write_with_commit("long-uptime", &long::uptime::measure(quick)?)?;
     }
     for path in long::sensor::Path::ALL {
         if is_selected(path.name()) {
-            to.write(
+            to.write_with_commit(
                 &format!("long-{}", path.name()),
                 &long::sensor::measure(path, hours)?,
             )?;
@@ -378,7 +406,7 @@ fn measure_stiff(only: Option<&str>, on_virtual_board: bool, to: &Folder) -> Res
     );
     eprintln!("{} cases have the expected outcome", cases.len());
     match part == stiff::Part::Host && only.is_none() {
-        true => to.write("stiff", &stiff::errors(&cases)),
+        true => to.write_alone("stiff", &stiff::errors(&cases)),
         false => Ok(()),
     }
 }
@@ -387,17 +415,17 @@ fn measure_imu(quick: bool, source: &Source, to: &Folder) -> Result<()> {
     let part = if quick { 0.1 } else { 1.0 };
     let cycles = source.measure("attitude")?;
     let replays = imu::soft_core::replays(source, (100_000.0 * part) as u64)?;
-    to.write("imu-cycles", &imu::soft_core::kernels(&cycles)?)?;
-    to.write("imu-replay", &replays)?;
+    to.write_alone("imu-cycles", &imu::soft_core::kernels(&cycles)?)?;
+    to.write_alone("imu-replay", &replays)?;
     let count = imu::targets::one_count(part);
     to.write("imu", &imu::targets::measure(part, count))?;
-    to.write("imu-methods", &imu::methods::measure(&cycles))?;
-    to.write("imu-filters", &imu::filters::measure(part))?;
-    to.write(
+    to.write_with_commit("imu-methods", &imu::methods::measure(&cycles))?;
+    to.write_with_commit("imu-filters", &imu::filters::measure(part))?;
+    to.write_alone(
         "imu-stiff",
         &imu::stiff::measure(part, (!quick).then_some(count)),
     )?;
-    to.write("imu-time", &imu::time::measure(190.0 * part))
+    to.write_alone("imu-time", &imu::time::measure(190.0 * part))
 }
 
 fn measure_gesture(cycles: &Source, to: &Folder) -> Result<()> {
@@ -405,10 +433,10 @@ fn measure_gesture(cycles: &Source, to: &Folder) -> Result<()> {
     let recordings = gesture::recordings();
     to.write("gesture-filters", &gesture::filters(&recordings, &cycles))?;
     let centres = gesture::centres(50, false);
-    to.write(
+    to.write_with_commit(
         "gesture",
         &gesture::targets(&centres, &recordings, &cycles)?,
     )?;
-    to.write("gesture-centre", &centres)?;
-    to.write("gesture-stiff", &gesture::stiff())
+    to.write_with_commit("gesture-centre", &centres)?;
+    to.write_with_commit("gesture-stiff", &gesture::stiff())
 }

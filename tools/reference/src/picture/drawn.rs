@@ -7,7 +7,8 @@ use glint_core::light::MeshLighting;
 use glint_core::mesh::Rgb565;
 use glint_model::raymarch::{FieldSetup, Rays, State};
 use glint_model::triangle::raster;
-use glint_model::{Frame, FrameBuffer, MeshSubject, Object, Projected, Subject};
+use glint_model::{Frame, MeshSubject, Object, Projected, Subject};
+use glint_vectors::Picture;
 
 use super::seen::{Eyes, Seen};
 use crate::raymarch::Face;
@@ -17,7 +18,9 @@ use crate::raymarch::Face;
 /// # Errors
 /// The model cannot draw the frame, or it has meshes for two eyes or edges of a mesh.
 pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
-    let mut buffer = Buffer::new(frame);
+    let [width, height] = frame.size.pixels();
+    let mut buffer = Picture::blank((width, height));
+    buffer.colour.fill(0);
     if let Subject::Wireframe(_) = frame.subject {
         frame.draw(
             &frame.constants()?,
@@ -92,36 +95,8 @@ fn surface(setup: &FieldSetup, rays: &mut Rays, eye: usize, x: u32, y: u32) -> (
     (Seen::Surface { face, sphere }, code)
 }
 
-/// Colour and depth buffers of a picture.
-struct Buffer {
-    size: [u32; 2],
-    colour: Vec<u16>,
-    depth: Vec<u32>,
-}
-
-impl Buffer {
-    fn new(frame: &Frame) -> Self {
-        let count = frame.size.pixel_count();
-        Self {
-            size: frame.size.pixels(),
-            colour: vec![0; count],
-            depth: vec![0; count],
-        }
-    }
-
-    fn target(&mut self) -> FrameBuffer<'_> {
-        let [width, height] = self.size;
-        FrameBuffer {
-            width,
-            height,
-            colour: &mut self.colour,
-            depth: &mut self.depth,
-        }
-    }
-}
-
 /// Draws the triangles of a frame, with the index of each triangle in the returned list, from 1, as its colour.
-fn draw_triangles(frame: &Frame, buffer: &mut Buffer) -> Result<Vec<Seen>> {
+fn draw_triangles(frame: &Frame, buffer: &mut Picture) -> Result<Vec<Seen>> {
     ensure!(frame.stereo.is_none(), "expected meshes for one eye");
     let flat = |subject| MeshSubject {
         shading: Shading::Flat,

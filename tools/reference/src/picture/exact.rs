@@ -90,7 +90,7 @@ fn size() -> Size {
 }
 
 fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
-    let camera = Camera::from(&frame.view);
+    let camera = Camera::of(&frame.view);
     let background = Pixel {
         seen: Seen::Background,
         colour: full(frame.clear),

@@ -279,7 +279,7 @@ mod tests {
             height: 101,
         };
         let seen = |field: &Field, eye, target| {
-            let camera = Camera::looking_at(eye, target, 0.5, 0.01);
+            let camera = Camera::looking(eye, target, 0.5, 0.01);
             let ray = |pixel| camera.ray(pixel, size);
             expected(field, size, (camera.near, 100.0), ray)
         };

@@ -253,7 +253,7 @@ impl Subject {
             name: name.to_owned(),
             scene: scene.to_owned(),
             size,
-            camera: Camera::from(&view),
+            camera: Camera::of(&view),
             field: Field::of(&parsed),
             expected: vec![],
             parsed,
@@ -323,7 +323,7 @@ pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
         .into_iter()
         .flat_map(|scene| {
             views.map(|(name, eye, half_width)| {
-                let camera = Camera::looking_at(eye, target, half_width, 0.01);
+                let camera = Camera::looking(eye, target, half_width, 0.01);
                 Subject::new(name, scene, &camera, size)
             })
         })

@@ -29,7 +29,7 @@ pub fn views() -> [(&'static str, Vector, Vector); 4] {
 
 /// Returns the camera at `eye` that looks at `target`, with `HALF_WIDTH` and `NEAR`.
 pub fn camera(eye: Vector, target: Vector) -> Camera {
-    Camera::looking_at(eye, target, HALF_WIDTH, NEAR)
+    Camera::looking(eye, target, HALF_WIDTH, NEAR)
 }
 
 /// Returns rotations of a head that looks around for a second. Each rotation is yaw to the right, pitch downwards and roll, in
@@ -88,7 +88,7 @@ mod tests {
     }
     #[test]
     fn a_turned_camera_is_the_free_camera() {
-        let ahead = Camera::looking_at([0.0; 3], [0.0, 1.0, 0.0], HALF_WIDTH, NEAR);
+        let ahead = Camera::looking([0.0; 3], [0.0, 1.0, 0.0], HALF_WIDTH, NEAR);
         let path = path();
         assert_eq!((path.len(), path[0]), (8, [0.0; 3]));
         for angles in path {
@@ -96,7 +96,7 @@ mod tests {
                 angles.map(|angle| Turns::from_degrees(Q32_32::from_num(angle)));
             let free =
                 View::look([Q32_32::ZERO; 3], yaw, pitch, roll).expect("an eye at the origin");
-            let (free, turned) = (Camera::from(&free), ahead.turned(angles));
+            let (free, turned) = (Camera::of(&free), ahead.turned(angles));
             for (found, wanted) in [(turned.u, free.u), (turned.v, free.v), (turned.n, free.n)] {
                 for (a, b) in found.into_iter().zip(wanted) {
                     assert!((a - b).abs() < 1e-6, "{angles:?}: {found:?}, {wanted:?}");

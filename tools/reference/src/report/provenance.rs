@@ -2,9 +2,19 @@
 
 use std::process::Command;
 
+use serde::Serialize;
+
 use super::workspace;
 
-/// Commit and tools of a measurement.
+/// The commit with which rows were measured: the last column of their table.
+#[derive(Serialize)]
+pub struct Commit {
+    /// As in [`Provenance`].
+    pub commit: String,
+}
+
+/// Commit and tools with which rows were measured: the last columns of their table.
+#[derive(Clone, Serialize)]
 pub struct Provenance {
     /// The last commit that changed the measured source. `-dirty` is appended if the source has uncommitted changes.
     pub commit: String,

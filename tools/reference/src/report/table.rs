@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Writes rows to a CSV file.
+/// Writes rows to a CSV file. A row may be a tuple of structures, whose columns follow each other.
 ///
 /// # Errors
 /// When the file cannot be written.

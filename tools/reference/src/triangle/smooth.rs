@@ -3,22 +3,18 @@
 //!
 //! - [`forms`]: other forms of the interpolation.
 //! - [`scenes()`]: the measured scenes, from common to extreme ones.
-//! - [`verilated`]: clocks of the verilated rasterizer.
 
 pub mod forms;
 mod scenes;
-pub mod verilated;
 
 pub use scenes::scenes;
 
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
-use glint_core::mesh::Mesh;
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::Lit;
-use glint_model::{
-    DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Shading, trace, triangle::raster,
-};
+use glint_model::{Options, ScreenVertex, Shading, triangle::raster};
+use glint_vectors::Picture;
 
 use crate::errors::Errors;
 
@@ -121,22 +117,19 @@ impl Triangle {
 
     /// Draws the triangle on an empty picture and returns its pixels, row by row.
     pub fn pixels(&self, setup: &Setup) -> Vec<Pixel> {
-        let (width, height) = self.size;
-        let count = width as usize * height as usize;
-        let (mut colour, mut depth) = (vec![0; count], vec![0; count]);
-        let mut target = FrameBuffer {
-            width,
-            height,
-            colour: &mut colour,
-            depth: &mut depth,
-        };
-        raster::draw(setup, Rgb565(0), &mut target);
-        let covered = depth.iter().enumerate().filter(|&(_, &code)| code != 0);
+        let width = self.size.0 as i32;
+        let mut picture = Picture::blank(self.size);
+        raster::draw(setup, Rgb565(0), &mut picture.target());
+        let covered = picture
+            .depth
+            .iter()
+            .enumerate()
+            .filter(|&(_, &code)| code != 0);
         covered
             .map(|(place, &code)| Pixel {
-                column: place as i32 % width as i32,
-                row: place as i32 / width as i32,
-                colour: Rgb565(colour[place]),
+                column: place as i32 % width,
+                row: place as i32 / width,
+                colour: Rgb565(picture.colour[place]),
                 code,
             })
             .collect()
@@ -253,8 +246,13 @@ impl Scene {
                 size,
                 cull,
             } => {
-                let drawn = drawn(bytes, view, *size, *cull);
-                let triangles = drawn.iter().map(|drawn| Triangle {
+                let options = Options {
+                    cull: *cull,
+                    shading: Shading::Smooth,
+                    ..Options::default()
+                };
+                let picture = Picture::with_options(bytes, view, *size, &options);
+                let triangles = picture.drawn.iter().map(|drawn| Triangle {
                     oriented: Oriented {
                         facing: drawn.facing,
                         ..Oriented::new(drawn.vertices).expect("it was drawn")
@@ -267,32 +265,4 @@ impl Scene {
             }
         }
     }
-}
-
-/// Returns the triangles drawn by the model for an encoded mesh, after clipping.
-fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> Vec<DrawnTriangle> {
-    let mesh = Mesh::new_checked(bytes).expect("a scene's mesh is good");
-    let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
-    let pixels = width as usize * height as usize;
-    let options = Options {
-        cull,
-        shading: Shading::Smooth,
-        ..Options::default()
-    };
-    let mut drawn = Vec::new();
-    trace(
-        &mesh,
-        view,
-        &mut FrameBuffer {
-            width,
-            height,
-            colour: &mut vec![0; pixels],
-            depth: &mut vec![0; pixels],
-        },
-        &mut vec![Projected::Behind; vertices.unwrap_or(0)],
-        &options,
-        |triangle| drawn.push(*triangle),
-    )
-    .expect("a scene's size is one of the model's");
-    drawn
 }

@@ -129,7 +129,7 @@ fn no_ray_of_random_cameras_starts_behind_a_surface() {
         let reach = [0.9, 1.5, 3.0, 15.0][frame % 4];
         let eye = [0, 1, 2].map(|_| random(-reach, reach));
         let target = eye.map(|x| random(-0.8, 0.8) - 0.3 * x);
-        let camera = Camera::looking_at(
+        let camera = Camera::looking(
             eye,
             target,
             random(0.0, 1.0).powi(3) * 3.9 + 0.06,

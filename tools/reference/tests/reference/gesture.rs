@@ -1,9 +1,9 @@
 //! Tests of the camera's control by a hand, with synthetic frames.
 
-use glint_core::gesture::{Doubt, Presence};
-use glint_reference::gesture::cases::{Fault, outcome};
 use glint_reference::gesture::filters::{Filter, motion, quality};
-use glint_reference::report::experiments::gesture::{centres, recordings};
+use glint_reference::report::experiments::gesture::{Stiff, centres, recordings, stiff};
+use glint_reference::report::table::read_csv;
+use glint_reference::report::workspace;
 
 #[test]
 fn the_centre_of_a_noisy_hand_is_within_a_tenth_of_a_pixel() {
@@ -42,37 +42,8 @@ fn a_still_hand_holds_the_camera_still_and_a_moving_one_is_followed() {
 }
 
 #[test]
-fn stiff_cases_have_their_stated_outcomes() {
-    use Presence::{Absent, Tracked};
-    // For each case: presence after half a second, reason for not using frames, and the camera's largest rotation in degrees
-    // during the case and per frame.
-    for (fault, presence, doubt, moved, step) in [
-        (Fault::Nothing, Absent, Some(Doubt::Few), 0.0, 0.1),
-        (Fault::OnePixel, Absent, Some(Doubt::Few), 0.0, 0.1),
-        (Fault::Everything, Absent, Some(Doubt::Most), 0.0, 0.1),
-        (Fault::Border, Tracked, None, 112.0, 7.0),
-        (Fault::Elsewhere, Absent, Some(Doubt::Few), 0.0, 7.0),
-        (Fault::SecondFar, Tracked, None, 0.1, 0.1),
-        (Fault::SecondNear, Tracked, None, 40.0, 16.0),
-        (Fault::TwoAtStart, Absent, Some(Doubt::Scattered), 0.0, 4.0),
-        (Fault::LightLittle, Tracked, None, 0.1, 0.1),
-        (Fault::LightMuch, Absent, None, 0.1, 0.1),
-        (Fault::Faulty, Absent, Some(Doubt::Faulty), 0.0, 0.1),
-        (Fault::Stopped, Tracked, None, 0.0, 0.1),
-    ] {
-        let outcome = outcome(fault);
-        assert_eq!(
-            (outcome.presence, outcome.doubt),
-            (presence, doubt),
-            "{fault:?}"
-        );
-        assert!(
-            outcome.moved <= moved && outcome.step <= step,
-            "{fault:?}: {outcome:?}"
-        );
-        assert!(
-            outcome.back < 400.0 && outcome.end < 0.2,
-            "{fault:?}: {outcome:?}"
-        );
-    }
+fn stiff_cases_have_their_committed_outcomes() {
+    let path = workspace::path("docs/report/gesture-stiff.csv");
+    let committed: Vec<Stiff> = read_csv(&path).expect("a table");
+    assert_eq!(stiff(), committed, "run `cargo xtask report gesture`");
 }

@@ -1,13 +1,12 @@
 //! Tests of the references, and of the report that compares Glint with the references.
 //!
-//! All tests are in one program, because each program takes time to link.
+//! All tests are in one program, because linking further programs takes time.
 
 mod cones;
 mod field;
 mod gesture;
 mod imu;
 mod lines;
-mod picture;
 mod rasterizer;
 mod raymarched;
 mod report;

@@ -13,12 +13,11 @@ use glint_core::field::Field;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
-use glint_model::raymarch::FieldOptions;
+use glint_model::raymarch::{FieldOptions, Palette};
 use glint_reference::imu::measure::method_error;
 use glint_reference::imu::method::Method;
 use glint_reference::imu::motion::Motion;
 use glint_reference::raymarch::raymarched::{Measured, others, rounds, sponges};
-use glint_reference::raymarch::verilated::Raymarcher;
 use glint_reference::raymarch::views;
 use glint_reference::report::cycles::Cycles;
 use glint_reference::report::experiments::geometry::precision;
@@ -32,6 +31,7 @@ use glint_reference::report::workspace;
 use glint_reference::sine::kernels::kernels;
 use glint_reference::sine::sweep::sweep;
 use glint_reference::triangle::smooth::scenes;
+use glint_testbench::Raymarcher;
 use serde::de::DeserializeOwned;
 
 /// Transcript of the console in the firmware's form. The transcript replaces a board.
@@ -276,7 +276,7 @@ fn the_committed_errors_of_smooth_shading_hold() {
     );
     for scene in scenes.iter().filter(|scene| !scene.stiff) {
         let committed = rows.iter().filter(|row| row.scene == scene.name);
-        for (row, now) in committed.zip(forms::measure_scene(scene, "")) {
+        for (row, now) in committed.zip(forms::measure_scene(scene)) {
             assert_eq!((&row.form, row.pixels), (&now.form, now.pixels));
             let name = |column| format!("gouraud-forms.csv: {} of {}", column, row.form);
             assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
@@ -368,12 +368,16 @@ fn the_committed_frames_a_second_are_of_these_frames() {
 #[test]
 fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
-    let mut raymarcher = Raymarcher::new();
-    let options = FieldOptions::default();
+    let mut raymarcher = Raymarcher::new("raymarcher", 1);
+    let (options, palette) = (FieldOptions::default(), Palette::default());
     let subjects = sponges(size);
     let clocks: u64 = subjects
         .iter()
-        .map(|subject| raymarcher.draw(&subject.setup(&options)).clocks)
+        .map(|subject| {
+            raymarcher
+                .draw(None, &subject.setup(&options), &palette)
+                .clocks
+        })
         .sum();
     let rows: Vec<trials::Trial> = committed("raymarch-cap.csv");
     let shipped = rows.iter().find(|row| row.shipped);
@@ -386,7 +390,24 @@ fn the_committed_cycles_of_pictures_hold() {
     );
 }
 
-/// Draws the small pictures of raymarch.csv, and compares the errors with the committed errors.
+/// Bounds of the pictures of fields whose text starts with a word: false hits and misses, undecided rays, the median and the 99th
+/// percentile of the depth's error in world units, the share of wrong faces, the 99th percentile of the normal's error in degrees,
+/// and evaluations a ray. The first line that fits counts.
+const BOUNDS: [(&str, [f64; 7]); 8] = [
+    ("menger", [40.0, 0.0, 2e-4, 5e-4, 0.01, 0.0, 14.4]),
+    ("box:", [8.0, 0.0, 1e-5, 5e-3, 0.0, 0.0, 1.6]),
+    ("cubes:0.25", [0.0, 0.0, 1e-5, 3e-4, 2e-3, 0.0, 13.0]),
+    ("planes:12", [8.0, 0.0, 2e-3, 1.1e-2, 0.0, 0.0, 13.0]),
+    // Towards the horizon, rays run along faces. Some of these rays stay undecided, and some end at a face that the exact ray only
+    // passes. Spheres are smaller than a pixel there.
+    ("cubes:2", [30.0, 240.0, 2e-5, 0.5, 1.3e-2, 0.0, 35.0]),
+    ("planes:0.5", [0.0, 1150.0, 6e-4, 5e-2, 0.0, 0.0, 55.0]),
+    ("lattice", [40.0, 0.0, 3e-4, 6e-3, 0.01, 0.7, f64::INFINITY]),
+    ("", [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY]),
+];
+
+/// Draws the small pictures of raymarch.csv again, compares their errors with the committed ones, and checks the bounds of those
+/// without a prepass.
 #[test]
 fn the_committed_pictures_of_fields_hold() {
     let rows: Vec<pictures::Row> = committed("raymarch.csv");
@@ -413,6 +434,27 @@ fn the_committed_pictures_of_fields_hold() {
         let accuracy = measured.accuracy;
         let depth = accuracy.depth.expect("a visible field");
         let coded = measured.coded.expect("a visible field");
+        if !prepass {
+            let mut bounds = BOUNDS.into_iter();
+            let bounds = bounds.find(|(start, _)| subject.scene.starts_with(start));
+            let (_, bounds) = bounds.expect("every text starts with nothing");
+            let found = [
+                (accuracy.false_hit + accuracy.false_miss) as f64,
+                accuracy.undecided as f64,
+                depth.median,
+                depth.p99,
+                accuracy.wrong_faces,
+                // Some views show only flat faces, without normals of round surfaces to compare.
+                accuracy.normal.map_or(0.0, |normal| normal.p99),
+                measured.cost(),
+            ];
+            assert!(
+                found.iter().zip(bounds).all(|(&found, most)| found <= most),
+                "{}, {}: {measured:?}, at most {bounds:?}",
+                subject.scene,
+                subject.name
+            );
+        }
         for (name, committed, now) in [
             ("iou", Some(row.iou), accuracy.iou),
             (
@@ -430,6 +472,30 @@ fn the_committed_pictures_of_fields_hold() {
         ] {
             let what = format!("raymarch.csv: {name} of {} {}", subject.scene, subject.name);
             assert_close(committed.expect("a number"), now, 1e-6, &what);
+        }
+    }
+}
+
+/// Draws the frames of quality.csv that are small or of the exact quality again, and compares their errors with the committed ones. The
+/// exact ones differ from the reference along edges alone, and by the rounding of colours.
+#[test]
+fn the_committed_errors_of_qualities_hold() {
+    let rows: Vec<quality::Row> = committed("quality.csv");
+    let now = quality::errors("", |variant| {
+        variant.size == Size::W320 || variant.quality() == Some(Quality::Exact)
+    });
+    let now = now.expect("built-in scenes");
+    assert!(now.len() >= 2 * quality::scenes("").count());
+    for now in now {
+        let same = |row: &&quality::Row| {
+            (&row.scene, row.width, &row.rays) == (&now.scene, now.width, &now.rays)
+        };
+        let row = rows.iter().find(same).expect("a committed row");
+        let name = |column| format!("quality.csv: {column} of {} {}", row.scene, row.width);
+        assert_close(row.wrong, now.wrong, 1e-6, &name("wrong"));
+        assert_close(row.colour, now.colour, 1e-6, &name("colour"));
+        if row.quality.as_deref() == Some("exact") {
+            assert!(now.wrong < 0.01 && now.colour < 6.0, "{now:?}");
         }
     }
 }

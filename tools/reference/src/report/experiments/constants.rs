@@ -1,12 +1,12 @@
 //! Constants of the firmware, the gateware and the experiments for the text of the pages.
 
 use glint_model::raymarch::{DEFAULT_TUNING, ROUND_TUNING};
+use glint_testbench::Raymarcher;
 use serde::{Deserialize, Serialize};
 
 use super::raymarch::requirements::{FACES, IOU, LARGE_COST, MEDIAN, NORMALS, P99, SMALL_COST};
 use super::{gesture, timeline};
 use crate::imu::measure::LEFT_BIAS;
-use crate::raymarch::verilated::Raymarcher;
 
 /// A constant: a line of `constants.csv`.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -13,7 +13,6 @@ use crate::gesture::filters::{Filter, Recordings, motion, quality};
 use crate::gesture::frame::{Noise, SIZE, Shape, centre_errors};
 use crate::gesture::path::{Path, record};
 use crate::report::cycles::Cycles;
-use crate::report::provenance::Provenance;
 
 /// Frame rate of the comparison of filters, in frames per second.
 pub const RATE: f64 = 60.0;
@@ -33,8 +32,6 @@ pub struct Centre {
     pub p99: f64,
     /// The largest magnitude.
     pub max: f64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Errors and cycles of a filter: a line of `gesture-filters.csv`.
@@ -56,14 +53,10 @@ pub struct Row {
     pub largest: f64,
     /// Median of the soft core's cycles per channel and frame; `None` if not measured.
     pub cycles: Option<u64>,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// A stiff case: a line of `gesture-stiff.csv`.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stiff {
     /// Content of the frames for one second.
     pub case: String,
@@ -79,8 +72,6 @@ pub struct Stiff {
     pub step: f64,
     /// Angle in degrees between the directions of camera and hand two seconds after the case.
     pub end: f64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// A requirement: a line of `gesture.csv`.
@@ -94,8 +85,6 @@ pub struct Target {
     pub at_least: f64,
     /// Measured value; `None` if not measured.
     pub measured: Option<f64>,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// A setting of the engine for the comparison.
@@ -151,7 +140,6 @@ const SETTINGS: [Compared; 8] = [
 /// Measures the errors of the centre of discs and hands with 5 % of salt noise, at `places` positions each. `only_shipped`
 /// restricts the measurement to the firmware's setting for a hand at rest.
 pub fn centres(places: u32, only_shipped: bool) -> Vec<Centre> {
-    let commit = Provenance::find().commit;
     let noise = Noise {
         salt: 0.05,
         ..Noise::NONE
@@ -185,7 +173,6 @@ pub fn centres(places: u32, only_shipped: bool) -> Vec<Centre> {
                 rms: errors.rms(),
                 p99: sizes[sizes.len() * 99 / 100],
                 max: errors.max,
-                commit: commit.clone(),
             });
         }
     }
@@ -216,7 +203,6 @@ pub fn recordings() -> Recordings {
 
 /// Measures all filters. `cycles` is the result of the console command `bench gesture`.
 pub fn filters(recordings: &Recordings, cycles: &Cycles) -> Vec<Row> {
-    let Provenance { commit, tools } = Provenance::find();
     let rows = compared().into_iter().map(|filter| {
         let quality = quality(filter, recordings);
         Row {
@@ -228,8 +214,6 @@ pub fn filters(recordings: &Recordings, cycles: &Cycles) -> Vec<Row> {
             tracking: quality.tracking,
             largest: quality.largest,
             cycles: cycles.get(filter.kernel()).map(|figures| figures.median),
-            commit: commit.clone(),
-            tools: tools.clone(),
         }
     });
     rows.collect()
@@ -237,7 +221,6 @@ pub fn filters(recordings: &Recordings, cycles: &Cycles) -> Vec<Row> {
 
 /// Runs the stiff cases.
 pub fn stiff() -> Vec<Stiff> {
-    let commit = Provenance::find().commit;
     let rows = Fault::ALL.into_iter().map(|fault| {
         let outcome = outcome(fault);
         Stiff {
@@ -250,7 +233,6 @@ pub fn stiff() -> Vec<Stiff> {
             back: outcome.back,
             step: outcome.step,
             end: outcome.end,
-            commit: commit.clone(),
         }
     });
     rows.collect()
@@ -266,13 +248,11 @@ pub fn targets(
     recordings: &Recordings,
     cycles: &Cycles,
 ) -> Result<Vec<Target>> {
-    let commit = Provenance::find().commit;
     let target = |what: &str, unit: &str, at_least: f64, measured: Option<f64>| Target {
         what: what.to_owned(),
         unit: unit.to_owned(),
         at_least,
         measured,
-        commit: commit.clone(),
     };
     let centre = |hand: &str| {
         centres

@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use self::trial::Trial;
 use crate::report::cycles::Cycles;
 use crate::report::progress;
-use crate::report::provenance::Provenance;
 
 /// Error and cost of one configuration of a kernel: a line of `kernels.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -41,10 +40,6 @@ pub struct Row {
     pub cycles_median: Option<u64>,
     /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Name of a family, and the function that measures its trials for a thinning of the inputs.
@@ -56,7 +51,6 @@ type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 /// # Errors
 /// When the terminal refuses a progress bar, or a camera is invalid.
 pub fn measure(only: Option<&str>, thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
-    let provenance = Provenance::find();
     let families: [Family; 9] = [
         ("reciprocal", |thinning| {
             Ok(arithmetic::reciprocals(thinning))
@@ -87,16 +81,14 @@ pub fn measure(only: Option<&str>, thinning: u32, cycles: &Cycles) -> Result<Vec
                 kernel: trial.kernel.to_owned(),
                 config: trial.config,
                 shipped: trial.shipped,
-                max_err: errors.largest,
-                rms: (errors.squares / errors.count.max(1) as f64).sqrt(),
+                max_err: errors.all.max,
+                rms: errors.all.rms(),
                 argmax: errors.worst,
                 samples: errors.inputs,
                 bits: trial.bits,
                 cycles_min: cycles.map(|cycles| cycles.min),
                 cycles_median: cycles.map(|cycles| cycles.median),
                 cycles_max: cycles.map(|cycles| cycles.max),
-                commit: provenance.commit.clone(),
-                tools: provenance.tools.clone(),
             });
         }
         bar.inc(1);

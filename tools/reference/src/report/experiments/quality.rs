@@ -14,7 +14,6 @@ use serde::{Deserialize, Serialize};
 use crate::picture::exact::Exact;
 use crate::picture::{self, Measured};
 use crate::report::progress;
-use crate::report::provenance::Provenance;
 use crate::report::soc;
 
 /// Errors of a frame: a line of `quality.csv`.
@@ -32,10 +31,6 @@ pub struct Row {
     pub wrong: f64,
     /// RMS of the errors of a channel ([`Measured::colour`]).
     pub colour: f64,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Cycles of a frame: a line of `quality-cycles.csv`.
@@ -49,8 +44,6 @@ pub struct Cycles {
     pub rays: Option<String>,
     /// Cycles of the frame on the whole SoC, drawn alone.
     pub cycles: u64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// A frame to measure: a size, and the quality that sets the rays' thresholds.
@@ -75,7 +68,8 @@ impl Variant {
     }
 
     /// The quality with this size and this precision of the rays.
-    fn quality(self) -> Option<Quality> {
+    #[must_use]
+    pub fn quality(self) -> Option<Quality> {
         let mut qualities = Quality::ALL.into_iter();
         qualities.find(|quality| {
             quality.size() == self.size && self.rays.is_none_or(|rays| rays == *quality)
@@ -101,19 +95,15 @@ pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
 }
 
-/// Measures the errors of the scenes whose names contain `only`, in frames of these sizes.
+/// Measures the errors of the scenes whose names contain `only`, in the frames that are `wanted`.
 ///
 /// # Errors
 /// A scene cannot be drawn.
-pub fn errors(only: &str, sizes: &[Size]) -> Result<Vec<Row>> {
-    let Provenance { commit, tools } = Provenance::find();
+pub fn errors(only: &str, wanted: impl Fn(Variant) -> bool) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for scene in scenes(only) {
         let exact = scene::draw(&scene, &Changes::default(), Exact::new)??;
-        for variant in Variant::all(&scene) {
-            if !sizes.contains(&variant.size) {
-                continue;
-            }
+        for variant in Variant::all(&scene).into_iter().filter(|&one| wanted(one)) {
             let measure = |frame: &Frame| picture::measure(frame, &exact);
             let Measured { wrong, colour } = scene::draw(&scene, &variant.changes(), measure)??;
             rows.push(Row {
@@ -123,8 +113,6 @@ pub fn errors(only: &str, sizes: &[Size]) -> Result<Vec<Row>> {
                 quality: variant.quality().map(|quality| quality.name().to_owned()),
                 wrong,
                 colour,
-                commit: commit.clone(),
-                tools: tools.clone(),
             });
         }
     }
@@ -137,7 +125,6 @@ pub fn errors(only: &str, sizes: &[Size]) -> Result<Vec<Row>> {
 /// A board is not built, or a frame differs from the model's.
 pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
     let firmware = built_firmware(None)?;
-    let commit = Provenance::find().commit;
     let scenes: Vec<SceneFile> = scenes(only).collect();
     let frames = scenes.iter().map(|scene| Variant::all(scene).len() as u64);
     let bar = progress::bar(frames.sum())?;
@@ -158,7 +145,6 @@ pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
                 width: variant.size.width(),
                 rays: variant.rays_name(),
                 cycles,
-                commit: commit.clone(),
             });
         }
         Ok(rows)

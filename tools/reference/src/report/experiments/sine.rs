@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::report::cycles::{Cycles, Figures};
 use crate::report::progress;
-use crate::report::provenance::Provenance;
 use crate::sine::kernels::{self, Kernel};
 use crate::sine::statistics::Statistics;
 use crate::sine::sweep::sweep;
@@ -55,20 +54,10 @@ pub struct Row {
     pub cycles_median: Option<u64>,
     /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 impl Row {
-    fn new(
-        kernel: &Kernel,
-        stride: u64,
-        statistics: &Statistics,
-        cycles: Option<Figures>,
-        provenance: &Provenance,
-    ) -> Self {
+    fn new(kernel: &Kernel, stride: u64, statistics: &Statistics, cycles: Option<Figures>) -> Self {
         Self {
             kernel: kernel.name.into(),
             family: kernel.family.into(),
@@ -95,8 +84,6 @@ impl Row {
             cycles_min: cycles.map(|cycles| cycles.min),
             cycles_median: cycles.map(|cycles| cycles.median),
             cycles_max: cycles.map(|cycles| cycles.max),
-            commit: provenance.commit.clone(),
-            tools: provenance.tools.clone(),
         }
     }
 }
@@ -114,7 +101,6 @@ pub struct Reference {
 /// # Errors
 /// When the terminal refuses a progress bar.
 pub fn measure(quick: bool, cycles: &Cycles) -> Result<(Vec<Row>, Reference)> {
-    let provenance = Provenance::find();
     let kernels = kernels::kernels();
     let stride = |kernel: &Kernel| match quick {
         true => (kernel.steps() / SAMPLE) | 1,
@@ -132,7 +118,7 @@ pub fn measure(quick: bool, cycles: &Cycles) -> Result<(Vec<Row>, Reference)> {
             let stride = stride(kernel);
             let statistics = sweep(kernel, stride, &|steps| bar.inc(steps));
             let figures = cycles.get(kernel.name).copied();
-            Row::new(kernel, stride, &statistics, figures, &provenance)
+            Row::new(kernel, stride, &statistics, figures)
         })
         .collect();
     bar.set_message("the reference itself");

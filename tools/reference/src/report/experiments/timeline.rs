@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 use super::quality::scenes;
 use crate::report::progress;
-use crate::report::provenance::Provenance;
 use crate::report::soc;
 
 /// Lanes of the virtual board's raymarcher.
@@ -36,10 +35,6 @@ pub struct Row {
     pub words: u64,
     /// Evaluations of the field; `None` without a field.
     pub evaluations: Option<u64>,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Measures a frame of each scene whose name contains `only`, on two virtual boards at a time.
@@ -48,14 +43,13 @@ pub struct Row {
 /// A board is not built, or a frame differs from the model's.
 pub fn measure(only: &str) -> Result<Vec<Row>> {
     let firmware = built_firmware(None)?;
-    let provenance = Provenance::find();
     let scenes: Vec<SceneFile> = scenes(only).collect();
     let bar = progress::bar(scenes.len() as u64)?;
     let rows = soc::two_at_a_time(&scenes, |scene| {
         let name = scene.name();
         bar.set_message(format!("{name} on the SoC"));
         let stats = soc::frame(&firmware, scene, &Changes::default());
-        let row = stats.and_then(|stats| row(scene, &stats, &provenance));
+        let row = stats.and_then(|stats| row(scene, &stats));
         bar.inc(1);
         row.with_context(|| name.to_owned())
     })?;
@@ -63,7 +57,7 @@ pub fn measure(only: &str) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn row(scene: &SceneFile, stats: &Stats, provenance: &Provenance) -> Result<Row> {
+fn row(scene: &SceneFile, stats: &Stats) -> Result<Row> {
     let counter = |name: &str| stats.engine.get(name);
     Ok(Row {
         scene: scene.name().to_owned(),
@@ -75,7 +69,5 @@ fn row(scene: &SceneFile, stats: &Stats, provenance: &Provenance) -> Result<Row>
         refused: counter("cycles_stalled")?,
         words: counter("words_read")? + counter("words_written")?,
         evaluations: stats.rays.as_ref().map(|rays| rays.evaluations),
-        commit: provenance.commit.clone(),
-        tools: provenance.tools.clone(),
     })
 }

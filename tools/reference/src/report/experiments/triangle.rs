@@ -12,9 +12,11 @@ use glint::view;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
+use glint_model::SIZES;
 use serde::{Deserialize, Serialize};
 
-use crate::report::provenance::Provenance;
+use Target::{Clocks, Frames, Sustained};
+
 use crate::report::soc::{self, BackToBack, CLOCK};
 
 /// The requirement on the drawing speed of a scene. Most kinds of requirement also have a goal.
@@ -25,109 +27,71 @@ enum Target {
     /// Lower bound and goal of the pixels per clock, for frames drawn back to back.
     Sustained(f64, f64),
     /// Upper bound and goal of the clocks per triangle.
-    Triangle(f64, f64),
+    Clocks(f64, f64),
     /// Lower bound and goal of the frames per second at 81.25 MHz.
     Frames(f64, Option<f64>),
 }
 
+const SMALL: (u32, u32) = SIZES[0];
+const LARGE: (u32, u32) = SIZES[2];
+
 /// Number of frames back to back: large enough to make the first geometry pass, which overlaps no raster pass, a small part.
 const FRAMES: u32 = 8;
 
+/// A scene: one triangle over the whole screen, or the generated model that its name begins with.
 struct Case {
     name: &'static str,
-    mesh: fn() -> Result<Vec<u8>>,
     size: (u32, u32),
     half_width: f64,
     target: Target,
 }
 
-/// Half width of the picture in world units at distance 1, for a sphere of diameter 1 at distance 2 that fills 96 % of the
-/// picture's height.
-const FILLING: f64 = 0.4781;
+const SCREEN: &str = "one triangle over the whole screen";
+const FILE_ORDER: &str = "scan:59, order of its file";
 
 static CASES: [Case; 9] = [
     Case {
-        name: "one triangle over the whole screen",
-        mesh: screen,
-        size: (1280, 720),
         half_width: 0.5,
-        target: Target::Fill(8.0),
+        ..model(SCREEN, LARGE, Target::Fill(8.0))
     },
-    Case {
-        name: "icosphere:6",
-        mesh: || named("icosphere:6"),
-        size: (320, 180),
-        half_width: FILLING,
-        target: Target::Sustained(2.1, 2.6),
-    },
-    Case {
-        name: "icosphere:12",
-        mesh: || named("icosphere:12"),
-        size: (1280, 720),
-        half_width: FILLING,
-        target: Target::Sustained(3.9, 4.4),
-    },
-    Case {
-        name: "icosphere:32, small triangles",
-        mesh: || named("icosphere:32"),
-        size: (320, 180),
-        half_width: FILLING,
-        target: Target::Triangle(28.0, 10.0),
-    },
-    Case {
-        name: "scan:59, 69,620 triangles",
-        mesh: || named("scan:59"),
-        size: (320, 180),
-        half_width: FILLING,
-        target: Target::Triangle(5.0, 4.5),
-    },
-    Case {
-        name: "scan:59, order of its file",
-        mesh: || in_file_order("scan:59"),
-        size: (320, 180),
-        half_width: FILLING,
-        target: Target::Triangle(9.0, 8.0),
-    },
-    Case {
-        name: "icosphere:10, 2,000 triangles",
-        mesh: || named("icosphere:10"),
-        size: (320, 180),
-        half_width: FILLING,
-        target: Target::Frames(600.0, Some(1000.0)),
-    },
-    Case {
-        name: "icosphere:23, 10,580 triangles",
-        mesh: || named("icosphere:23"),
-        size: (1280, 720),
-        half_width: FILLING,
-        target: Target::Frames(60.0, None),
-    },
-    Case {
-        name: "icosphere:39, 30,420 triangles",
-        mesh: || named("icosphere:39"),
-        size: (1280, 720),
-        half_width: FILLING,
-        target: Target::Frames(60.0, None),
-    },
+    model("icosphere:6", SMALL, Sustained(2.1, 2.6)),
+    model("icosphere:12", LARGE, Sustained(3.9, 4.4)),
+    model("icosphere:32, small triangles", SMALL, Clocks(28.0, 10.0)),
+    model("scan:59, 69,620 triangles", SMALL, Clocks(5.0, 4.5)),
+    model(FILE_ORDER, SMALL, Clocks(9.0, 8.0)),
+    model(
+        "icosphere:10, 2,000 triangles",
+        SMALL,
+        Frames(600.0, Some(1000.0)),
+    ),
+    model("icosphere:23, 10,580 triangles", LARGE, Frames(60.0, None)),
+    model("icosphere:39, 30,420 triangles", LARGE, Frames(60.0, None)),
 ];
 
-fn named(name: &str) -> Result<Vec<u8>> {
-    generated(name, Options::default())
+/// A model at distance 2 on a picture in which a sphere of diameter 1 fills 96 % of the height.
+const fn model(name: &'static str, size: (u32, u32), target: Target) -> Case {
+    Case {
+        name,
+        size,
+        half_width: 0.4781,
+        target,
+    }
 }
 
-fn in_file_order(name: &str) -> Result<Vec<u8>> {
-    let options = Options {
-        keep_order: true,
-        ..Options::default()
-    };
-    generated(name, options)
-}
-
-fn generated(name: &str, options: Options) -> Result<Vec<u8>> {
-    let polygons = generate::named(name).map_err(|error| anyhow::anyhow!("{name}: {error}"))?;
-    Ok(convert::convert(&polygons, options)
-        .map_err(|error| anyhow::anyhow!("{name}: {error}"))?
-        .0)
+impl Case {
+    fn mesh(&self) -> Result<Vec<u8>> {
+        if self.name == SCREEN {
+            return screen();
+        }
+        let options = Options {
+            keep_order: self.name == FILE_ORDER,
+            ..Options::default()
+        };
+        let name = self.name.split(',').next().unwrap_or_default();
+        let made = generate::named(name).and_then(|model| convert::convert(&model, options));
+        let (mesh, _) = made.map_err(|error| anyhow::anyhow!("{name}: {error}"))?;
+        Ok(mesh)
+    }
 }
 
 /// Makes a mesh of one triangle. Seen from distance 1, it covers the whole screen within the guard band, so it is not clipped.
@@ -210,10 +174,6 @@ pub struct Row {
     pub aim: Option<f64>,
     /// Whether `measured` meets the required bound.
     pub met: bool,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Cycles of a frame drawn by the soft core: a line of `triangle-cpu.csv`.
@@ -223,8 +183,6 @@ pub struct CpuRow {
     pub scene: String,
     /// Cycles of a frame.
     pub cycles: u64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Measures the triangle engine in the scenes whose name contains `only`, or in all scenes.
@@ -249,7 +207,6 @@ pub fn measure_cpu(only: Option<&str>) -> Result<Vec<CpuRow>> {
         Ok(CpuRow {
             scene: case.name.to_owned(),
             cycles: shown.stats.cycles.context("no cycles")?,
-            commit: Provenance::find().commit,
         })
     })
 }
@@ -284,7 +241,7 @@ fn measure_cases<R: Send>(
         let mut console = Console::new(&mut board);
         console.greet()?;
         let mut renderer = BoardRenderer::new(console).with_backend(backend);
-        let mesh = (case.mesh)()?;
+        let mesh = case.mesh()?;
         let subject = Subject::mesh(Mesh::new_checked(&mesh)?);
         let size = Size::of(case.size.0, case.size.1).context("not the size of a picture")?;
         let frame = Frame::new(subject, ahead(case.half_width)?, size);
@@ -319,7 +276,6 @@ fn measure_engine(case: &Case, shown: &mut Shown) -> Result<Row> {
 }
 
 fn row(case: &Case, expected: &Stats, alone: &Stats, together: &BackToBack) -> Result<Row> {
-    let provenance = Provenance::find();
     let expected = expected.triangles();
     let pixels = expected.pixels_covered;
     let engine = |name| {
@@ -342,15 +298,15 @@ fn row(case: &Case, expected: &Stats, alone: &Stats, together: &BackToBack) -> R
                 fill >= least,
             )
         }
-        Target::Sustained(least, aim) => {
+        Sustained(least, aim) => {
             let rate = pixels as f64 / together.frame("cycles_busy")?;
             (rate, "pixels a clock", least, Some(aim), rate >= least)
         }
-        Target::Triangle(most, aim) => {
+        Clocks(most, aim) => {
             let clocks = cycles_frame / f64::from(expected.triangles_in);
             (clocks, "clocks a triangle", most, Some(aim), clocks <= most)
         }
-        Target::Frames(least, aim) => {
+        Frames(least, aim) => {
             let rate = CLOCK / cycles_frame;
             (
                 rate,
@@ -390,7 +346,5 @@ fn row(case: &Case, expected: &Stats, alone: &Stats, together: &BackToBack) -> R
         at_least,
         aim,
         met,
-        commit: provenance.commit,
-        tools: provenance.tools,
     })
 }

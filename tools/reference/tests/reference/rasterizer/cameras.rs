@@ -1,20 +1,12 @@
 //! Random cameras.
 
-use glint_core::camera::View;
-use glint_reference::camera::{Camera, Vector};
-use glint_vectors::math::{cross, normalised};
+use glint_reference::camera::{Camera, Vector, cross, normalised, subtract};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-/// Converts a camera to a view. Rounds each number to the nearest number of its fixed-point format.
-pub fn view(camera: &Camera) -> View {
-    let view = camera.view();
-    view.unwrap_or_else(|error| panic!("{camera:?}: {error}"))
-}
-
 /// Returns a camera at `eye` that looks at `target`, rolled by `roll` radians about its line of sight.
 pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
-    let n = normalised(minus(target, eye));
+    let n = normalised(subtract(target, eye));
     // An arbitrary direction that is not parallel to n.
     let aside = if n[2].abs() < 0.9 {
         [0.0, 0.0, 1.0]
@@ -63,8 +55,4 @@ pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
         .random_range(low.ln()..high.ln())
         .exp()
         .clamp(low, high)
-}
-
-pub fn minus(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i] - b[i])
 }

@@ -2,11 +2,12 @@
 //! snapped vertices. Coverage is also compared with the unsnapped triangle: pixels inside by more than a tolerance must be drawn,
 //! pixels outside by more than a tolerance must not (see `surface::Class`).
 
+use glint_model::DrawnTriangle;
 use glint_reference::camera::{Camera, Size};
+use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
+use glint_vectors::Picture;
 
-use super::cameras::view;
-use super::renderer::{Renderer, exact};
 use super::scenes::{Case, LARGE, Scene, random_case};
 
 /// Counts and largest errors of a comparison.
@@ -52,18 +53,27 @@ pub fn snap_limit(size: Size) -> f64 {
     }
 }
 
+/// Converts a drawn triangle to a triangle of the exact rasterizer, or returns `None` if its area is 0.
+fn exact(drawn: &DrawnTriangle) -> Option<ExactTriangle> {
+    ExactTriangle::new(drawn.vertices.map(|vertex| SnappedVertex {
+        x: vertex.x.into(),
+        y: vertex.y.into(),
+        w: vertex.w.into(),
+    }))
+}
+
 /// Draws each triangle of a case alone and compares all pixels with the exact rasterizer and with the unsnapped triangle.
-pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
-    let view = view(&case.camera);
-    let camera = Camera::from(&view);
+pub fn check(case: &Case) -> Tally {
+    let view = case.camera.rounded();
+    let camera = Camera::of(&view);
     let mut total = Tally::default();
     for triangle in 0..case.scene.triangles.len() {
         let scene = case.scene.only(triangle);
-        let stats = renderer.draw(&scene, &view, case.size, case.cull);
-        let mut tally = against_exact(renderer, case.size);
-        classify(renderer, &camera, &scene, case, &mut tally);
+        let picture = scene.draw(&view, case.size, case.cull);
+        let mut tally = against_exact(&picture, case.size);
+        classify(&picture, &camera, &scene, case, &mut tally);
         tally.triangles = 1;
-        tally.clipped = stats.clipped.into();
+        tally.clipped = picture.stats.clipped.into();
         let good = tally.missing + tally.extra + tally.class_missing + tally.class_extra == 0
             && tally.depth_error <= DEPTH_LIMIT;
         assert!(
@@ -72,18 +82,19 @@ pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
             case.name,
             case.scene.corners(triangle),
             case.size,
-            renderer.drawn,
+            picture.drawn,
         );
         total.add(tally);
     }
     total
 }
 
-/// Compares the renderer's last picture, of one triangle, with the exact coverage and depth of the triangle's clipped parts.
-fn against_exact(renderer: &Renderer, size: Size) -> Tally {
+/// Compares a picture that shows one triangle with the exact coverage and depth of the parts into which the
+/// model clipped the triangle.
+fn against_exact(picture: &Picture, size: Size) -> Tally {
     let mut tally = Tally::default();
-    let mut left = renderer.depth.clone();
-    for part in renderer.drawn.iter().filter_map(exact) {
+    let mut left = picture.depth.clone();
+    for part in picture.drawn.iter().filter_map(exact) {
         part.for_each_pixel(size.width, size.height, |column, row| {
             let code = &mut left[(row * size.width + column) as usize];
             if *code == 0 {
@@ -102,16 +113,16 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     tally
 }
 
-/// Compares the renderer's last picture, of one triangle, with the class of each pixel for the unsnapped triangle.
-fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, tally: &mut Tally) {
+/// Compares a picture that shows one triangle with the class of each pixel for the unsnapped triangle.
+fn classify(picture: &Picture, camera: &Camera, scene: &Scene, case: &Case, tally: &mut Tally) {
     let size = case.size;
     let triangle = ProjectedTriangle::new(camera, size, scene.corners(0));
     let hidden = case.cull && !triangle.front;
-    let mut drawn = renderer.depth.iter().filter(|&&code| code != 0).count() as u64;
+    let mut drawn = picture.covered() as u64;
     let [columns, rows] = triangle.bounds(size);
     for row in rows {
         for column in columns.clone() {
-            let is_drawn = renderer.depth[(row * size.width + column) as usize] != 0;
+            let is_drawn = picture.depth[(row * size.width + column) as usize] != 0;
             drawn -= u64::from(is_drawn);
             match triangle.classify(column, row, snap_limit(size)) {
                 Class::Full if hidden => tally.class_extra += u64::from(is_drawn),
@@ -130,10 +141,9 @@ fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, ta
 
 #[test]
 fn random_scenes_are_covered_exactly() {
-    let mut renderer = Renderer::default();
     let mut total = Tally::default();
     for seed in 0..240 {
-        total.add(check(&mut renderer, &random_case(seed)));
+        total.add(check(&random_case(seed)));
     }
     println!("240 random scenes: {total:?}");
     assert!(

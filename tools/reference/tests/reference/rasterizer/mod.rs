@@ -4,8 +4,6 @@
 
 mod cameras;
 mod coverage;
-mod fans;
-mod renderer;
 mod scenes;
 mod shade;
 mod smooth;

@@ -1,7 +1,9 @@
 //! Scenes of triangles, encoded as meshes, and random test cases.
 
+use glint_core::camera::View;
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex, encode};
 use glint_reference::camera::{Camera, Size, Vector};
+use glint_vectors::Picture;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -68,6 +70,11 @@ impl Scene {
             normals: self.normals.get(triangle).copied().into_iter().collect(),
             colours: self.colours.get(triangle).copied().into_iter().collect(),
         }
+    }
+
+    /// Draws the scene with the model.
+    pub fn draw(&self, view: &View, size: Size, cull: bool) -> Picture {
+        Picture::of_bytes(&self.encode(), view, (size.width, size.height), cull)
     }
 
     /// Encodes the scene as a mesh and returns its bytes.

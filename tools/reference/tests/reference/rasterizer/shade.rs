@@ -4,14 +4,14 @@ use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Rgb565;
-use glint_model::MeshLight;
 use glint_model::triangle::setup::Facing;
+use glint_model::{MeshLight, Options, SIZES};
+use glint_vectors::Picture;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::cameras::{direction, looking_at, view};
-use super::renderer::Renderer;
-use super::scenes::{ONE, SMALL, Scene};
+use super::cameras::{direction, looking_at};
+use super::scenes::{ONE, Scene};
 
 /// Returns the red, green and blue channel of an RGB565 colour, of 5, 6 and 5 bits.
 fn channels(colour: u16) -> [f64; 3] {
@@ -89,14 +89,12 @@ fn shades_of_any_light_are_within_one_step_of_the_exact_product() {
 }
 
 fn shades_are_exact(scenes: u64, light: impl Fn(&mut Pcg64, &View) -> (Option<MeshLight>, Exact)) {
-    let mut renderer = Renderer::default();
     let (mut shaded, mut worst): (u32, f64) = (0, 0.0);
     for seed in 0..scenes {
         let mut random = Pcg64::seed_from_u64(seed);
         let eye = direction(&mut random).map(|x| 3.0 * x);
-        let view = view(&looking_at(eye, [0.0; 3], 1.0, 0.9, 0.1));
+        let view = looking_at(eye, [0.0; 3], 1.0, 0.9, 0.1).rounded();
         let (light, exact) = light(&mut random, &view);
-        renderer.light = light;
         let mut scene = Scene::default();
         for _ in 0..60 {
             scene.triangle([(); 3].map(|()| direction(&mut random)));
@@ -107,8 +105,12 @@ fn shades_are_exact(scenes: u64, light: impl Fn(&mut Pcg64, &View) -> (Option<Me
                 .push(direction(&mut random).map(|x| (x * length).round() as i16));
             scene.colours.push(random.random_range(0..=u16::MAX));
         }
-        renderer.draw(&scene, &view, SMALL, false);
-        for drawn in &renderer.drawn {
+        let options = Options {
+            light: light.as_ref(),
+            ..Options::default()
+        };
+        let picture = Picture::with_options(&scene.encode(), &view, SIZES[0], &options);
+        for drawn in &picture.drawn {
             let (normal, Rgb565(found)) = (scene.normals[drawn.index as usize], drawn.colour);
             let intensity = intensity(normal, drawn.facing, exact.towards);
             let colour = channels(scene.colours[drawn.index as usize]);

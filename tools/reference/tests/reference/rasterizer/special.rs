@@ -4,9 +4,8 @@ use glint_reference::camera::{Camera, Vector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::cameras::{looking_at, view};
+use super::cameras::looking_at;
 use super::coverage::check;
-use super::renderer::Renderer;
 use super::scenes::{Case, LARGE, MIDDLE, ONE, SMALL, Scene};
 
 /// One step of a coordinate in Q2.14.
@@ -33,7 +32,6 @@ fn ahead() -> Camera {
 
 /// Checks a case at all sizes, with and without culling, and returns the number of pixels covered at 320x180 without culling.
 fn check_all(case: Case) -> usize {
-    let mut renderer = Renderer::default();
     let mut case = case;
     for (size, cull) in [
         (LARGE, false),
@@ -42,15 +40,17 @@ fn check_all(case: Case) -> usize {
         (SMALL, false),
     ] {
         (case.size, case.cull) = (size, cull);
-        check(&mut renderer, &case);
+        check(&case);
     }
-    covered(&mut renderer, &case)
+    covered(&case)
 }
 
 /// Counts the pixels covered by all triangles of a case drawn together.
-fn covered(renderer: &mut Renderer, case: &Case) -> usize {
-    renderer.draw(&case.scene, &view(&case.camera), case.size, case.cull);
-    renderer.depth.iter().filter(|&&code| code != 0).count()
+fn covered(case: &Case) -> usize {
+    let picture = case
+        .scene
+        .draw(&case.camera.rounded(), case.size, case.cull);
+    picture.covered()
 }
 
 #[test]
@@ -153,7 +153,6 @@ fn inside_a_cube_everything_is_covered() {
         .iter()
         .flat_map(|&[a, b, c, d]| [[a, b, c].map(corner), [a, c, d].map(corner)])
         .collect();
-    let mut renderer = Renderer::default();
     for (i, half_width) in [0.05, 0.9, 4.0].into_iter().enumerate() {
         for (j, target) in [
             [0.5, 0.4, 0.3],
@@ -167,9 +166,9 @@ fn inside_a_cube_everything_is_covered() {
             let eye = [0.1 * i as f64 - 0.1, 0.05 * j as f64, -0.1];
             let camera = looking_at(eye, target, 0.5 + i as f64, half_width, 0.01);
             let case = case("inside a cube", camera, &triangles);
-            check(&mut renderer, &case);
+            check(&case);
             assert_eq!(
-                covered(&mut renderer, &case),
+                covered(&case),
                 320 * 180,
                 "half_width {half_width}, towards {target:?}: a hole in the wall"
             );
@@ -204,9 +203,8 @@ fn half_pixel_grid_where_many_centres_lie_on_edges() {
         }));
     }
     let case = case("half-pixel grid", camera, &triangles);
-    let mut renderer = Renderer::default();
-    renderer.draw(&case.scene, &view(&camera), SMALL, false);
-    let mut vertices = renderer.drawn.iter().flat_map(|drawn| drawn.vertices);
+    let picture = case.scene.draw(&camera.rounded(), SMALL, false);
+    let mut vertices = picture.drawn.iter().flat_map(|drawn| drawn.vertices);
     assert!(
         vertices.all(|vertex| vertex.x % 128 == 0 && vertex.y % 128 == 0),
         "off the half-pixel grid"

@@ -1,12 +1,10 @@
 //! Checks the visible surface and depth in pictures of whole scenes, at all pixels where snapping the vertices cannot change the surface.
 
-use glint_reference::camera::Camera;
+use glint_reference::camera::{Camera, cross, dot, length, subtract};
 use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
-use glint_vectors::math::{cross, dot};
+use glint_vectors::picture::CLEAR;
 
-use super::cameras::{minus, view};
 use super::coverage::snap_limit;
-use super::renderer::Renderer;
 use super::scenes::{Case, ONE, random_case};
 
 /// Numbers of compared pixels, and the largest error of a depth.
@@ -26,7 +24,10 @@ const DEPTH_LIMIT: f64 = 2.0;
 fn colour_by_number(case: &mut Case) {
     let camera = &case.camera;
     for (i, [a, b, c]) in case.scene.all_corners().into_iter().enumerate() {
-        let front = dot(cross(minus(b, a), minus(c, a)), minus(a, camera.eye)) < 0.0;
+        let front = dot(
+            cross(subtract(b, a), subtract(c, a)),
+            subtract(a, camera.eye),
+        ) < 0.0;
         let towards = if front { -ONE } else { ONE };
         case.scene
             .normals
@@ -35,14 +36,14 @@ fn colour_by_number(case: &mut Case) {
     }
 }
 
-fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
-    let view = view(&case.camera);
-    let camera = Camera::from(&view);
+fn check(case: &Case, tally: &mut Tally) {
+    let view = case.camera.rounded();
+    let camera = Camera::of(&view);
     let corners = case.scene.all_corners();
     let radius = corners
         .iter()
         .flatten()
-        .map(|&p| dot(p, p).sqrt())
+        .map(|&p| length(p))
         .fold(0.0, f64::max);
     // A mesh stores its radius with 14 fraction bits, rounded up.
     let radius = (radius * ONE).ceil() / ONE;
@@ -51,10 +52,10 @@ fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
         pixels: snap_limit(case.size),
         inverse_depth: DEPTH_LIMIT / depth_scale,
     };
-    renderer.draw(&case.scene, &view, case.size, case.cull);
+    let picture = case.scene.draw(&view, case.size, case.cull);
     let expected = visible_surfaces(&camera, case.size, &corners, case.cull, tolerance);
     for (i, visible) in expected.iter().enumerate() {
-        let (colour, code) = (renderer.colour[i], renderer.depth[i]);
+        let (colour, code) = (picture.colour[i], picture.depth[i]);
         let place = || {
             let width = case.size.width as usize;
             format!(
@@ -69,7 +70,7 @@ fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
             Visible::Background => {
                 tally.stable += 1;
                 assert!(
-                    colour == 0 && code == 0,
+                    colour == CLEAR && code == 0,
                     "{}: triangle {colour} − 1 on the background",
                     place()
                 );
@@ -103,12 +104,11 @@ fn check(renderer: &mut Renderer, case: &Case, tally: &mut Tally) {
 
 #[test]
 fn the_right_surface_is_in_front_wherever_it_is_certain() {
-    let mut renderer = Renderer::default();
     let mut tally = Tally::default();
     for seed in 10_000..10_200 {
         let mut case = random_case(seed);
         colour_by_number(&mut case);
-        check(&mut renderer, &case, &mut tally);
+        check(&case, &mut tally);
     }
     println!("visible surfaces of 200 random scenes: {tally:?}");
     assert!(

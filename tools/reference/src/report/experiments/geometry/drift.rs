@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::report::provenance::Provenance;
 use crate::wireframe::{Drift, Form, Session, drift};
 
 /// Numbers of steps at which the errors are measured.
@@ -21,15 +20,10 @@ pub struct Row {
     pub max_err: f64,
     /// Relative growth of the corners' mean distance from the origin.
     pub growth: f64,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Measures all sessions with all implementations of the motion.
 pub fn measure() -> Vec<Row> {
-    let provenance = Provenance::find();
     let mut rows = Vec::new();
     for session in Session::ALL {
         for form in Form::ALL {
@@ -45,8 +39,6 @@ pub fn measure() -> Vec<Row> {
                     steps,
                     max_err: distance,
                     growth,
-                    commit: provenance.commit.clone(),
-                    tools: provenance.tools.clone(),
                 });
             }
         }

@@ -9,8 +9,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
+use crate::camera::{dot, length, normalised};
+use crate::errors::Errors;
 use crate::report::cycles::Cycles;
-use crate::report::provenance::Provenance;
 
 /// Error and cycles of a kernel: a line of `geometry-precision.csv`.
 #[derive(Debug, Serialize, Deserialize)]
@@ -35,10 +36,6 @@ pub struct Row {
     pub cycles_median: Option<u64>,
     /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Number of chains of matrices, and of transformed normals.
@@ -48,25 +45,8 @@ const CHAIN: u32 = 8;
 /// Half the width of the largest picture, in pixels.
 const HALF_WIDTH: f64 = 640.0;
 
-/// Statistics of errors.
-#[derive(Default)]
-struct Errors {
-    largest: f64,
-    squares: f64,
-    count: u64,
-}
-
-impl Errors {
-    fn add(&mut self, error: f64) {
-        self.largest = self.largest.max(error.abs());
-        self.squares += error * error;
-        self.count += 1;
-    }
-}
-
 /// Measures the errors of all kernels. `cycles` is the result of the console command `bench geometry`.
 pub fn measure(cycles: &Cycles) -> Vec<Row> {
-    let provenance = Provenance::find();
     let kernels = [
         (
             "matrix_10",
@@ -151,14 +131,12 @@ pub fn measure(cycles: &Cycles) -> Vec<Row> {
             kernel: kernel.to_owned(),
             config: config.to_owned(),
             shipped,
-            max_err: errors.largest,
-            rms: (errors.squares / errors.count as f64).sqrt(),
+            max_err: errors.max,
+            rms: errors.rms(),
             samples: errors.count,
             cycles_min: cycles.map(|cycles| cycles.min),
             cycles_median: cycles.map(|cycles| cycles.median),
             cycles_max: cycles.map(|cycles| cycles.max),
-            commit: provenance.commit.clone(),
-            tools: provenance.tools.clone(),
         }
     };
     kernels.into_iter().map(row).collect()
@@ -166,10 +144,6 @@ pub fn measure(cycles: &Cycles) -> Vec<Row> {
 
 fn bits(matrix: &Matrix) -> Rows<i32> {
     matrix.linear().map(|row| row.map(Q8_24::to_bits))
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// A matrix entry with `bits` fraction bits.
@@ -247,11 +221,10 @@ fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
             .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::Z, c)));
         let Ok(matrix) = matrix else { continue };
         let direction = [0; 3].map(|_| random.random_range(-1.0..1.0f64));
-        let length = dot(direction, direction).sqrt();
-        if !(0.1..1.0).contains(&length) {
+        if !(0.1..1.0).contains(&length(direction)) {
             continue;
         }
-        let normal = direction.map(|x| x / length);
+        let normal = normalised(direction);
         let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
         let at = |i: usize, j: usize| rows[i % 3][j % 3];
         let exact = [0, 1, 2].map(|i| {
@@ -259,10 +232,10 @@ fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
                 .map(|j| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1));
             dot(row, normal)
         });
-        let length = dot(exact, exact).sqrt();
+        let exact = normalised(exact);
         let found = turn(&matrix, normal.map(|x| (x * unit).round() as i16));
         for (found, exact) in found.into_iter().zip(exact) {
-            errors.add(f64::from(found) / unit - exact / length);
+            errors.add(f64::from(found) / unit - exact);
         }
     }
     errors

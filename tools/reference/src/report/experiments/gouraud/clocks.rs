@@ -1,12 +1,14 @@
 //! Experiment: clocks of smooth pictures on the verilated rasterizer, by the number of shaded pixels per clock.
 
 use anyhow::{Context, Result};
+use glint_core::colour::Rgb565;
+use glint_model::Shading;
+use glint_model::triangle::descriptor::{GROUP, band_rows};
 use glint_model::triangle::setup::Setup;
+use glint_testbench::Rasterizer;
 use serde::{Deserialize, Serialize};
 
-use crate::report::provenance::Provenance;
 use crate::triangle::smooth::scenes;
-use crate::triangle::smooth::verilated::{Band, Rasterizer};
 
 /// Clocks of the rasterizer for a picture: a line of `gouraud-clocks.csv`.
 #[derive(Serialize, Deserialize)]
@@ -26,8 +28,6 @@ pub struct Row {
     /// Whether the clocks were measured. Computed clocks are the sum over the bands of the larger of the measured clocks with
     /// flat triangles and the sum of the groups' clocks.
     pub measured: bool,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// The rate of Glint's rasterizer.
@@ -44,9 +44,8 @@ pub const ENDS: &str = "a division a clock";
 /// # Errors
 /// When a scene is missing.
 pub fn measure() -> Result<Vec<Row>> {
-    let commit = Provenance::find().commit;
     let scenes = scenes();
-    let mut rasterizer = Rasterizer::new();
+    let mut rasterizer = Rasterizer::new(Shading::Smooth, 1, [0.0; 2]);
     let mut rows = Vec::new();
     for name in [
         "icosphere:6 from 2",
@@ -70,8 +69,8 @@ pub fn measure() -> Result<Vec<Row>> {
                 ..*setup
             })
             .collect();
-        let shipped = rasterizer.draw(&smooth, size);
-        let groups = rasterizer.draw(&flat, size);
+        let shipped = draw(&mut rasterizer, &smooth, size);
+        let groups = draw(&mut rasterizer, &flat, size);
         let masks = || shipped.iter().flat_map(|band| &band.masks);
         let mut row = |rate: &str, clocks, measured| {
             rows.push(Row {
@@ -82,7 +81,6 @@ pub fn measure() -> Result<Vec<Row>> {
                 groups: masks().count() as u64,
                 clocks,
                 measured,
-                commit: commit.clone(),
             });
         };
         let sum = |bands: &[Band]| bands.iter().map(|band| band.clocks).sum();
@@ -101,6 +99,32 @@ pub fn measure() -> Result<Vec<Row>> {
         row(SHIPPED, computed(&groups, pixels), false);
     }
     Ok(rows)
+}
+
+/// A drawn band (strip of lines) of a picture.
+struct Band {
+    clocks: u64,
+    /// The covered pixels of each group; bit 0 is the leftmost pixel.
+    masks: Vec<u8>,
+}
+
+/// Draws a picture of this width and height band by band. A triangle whose setup has light is smooth, any other is flat.
+fn draw(rasterizer: &mut Rasterizer, setups: &[Setup], (width, height): (u32, u32)) -> Vec<Band> {
+    let rows = band_rows(width);
+    let bands = (0..height).step_by(rows as usize).map(|y0| {
+        let touched = setups.iter().filter(|setup| {
+            setup.bounds.top < (y0 + rows) as i32 && setup.bounds.bottom > y0 as i32
+        });
+        let triangles = touched.map(|setup| (setup, Rgb565::WHITE));
+        let settings = [y0, rows, width / GROUP as u32];
+        let (clocks, groups) = rasterizer.band(settings, triangles, |_| ());
+        let masks = groups.iter().map(|group| group[1].number() as u8);
+        Band {
+            clocks,
+            masks: masks.collect(),
+        }
+    });
+    bands.collect()
 }
 
 /// Computes the clocks of bands from the bands with flat triangles; `of` returns the clocks of a group.

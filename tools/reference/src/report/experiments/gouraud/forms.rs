@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::errors::Errors;
-use crate::report::provenance::Provenance;
 use crate::triangle::smooth::forms::{Form, Inverse, Light};
 use crate::triangle::smooth::{Interpolated, RANGES, Scene, scenes};
 
@@ -30,8 +29,6 @@ pub struct Row {
     pub steps: u32,
     /// Fraction of the channels with another value than the rounded exact colour.
     pub differing: f64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Families and names of all forms.
@@ -67,11 +64,10 @@ const fn table(index: u32) -> Form {
 
 /// Measures all forms in all scenes.
 pub fn measure() -> Vec<Row> {
-    let commit = Provenance::find().commit;
     let scenes = scenes();
     let rows = scenes.iter().flat_map(|scene| {
         eprintln!("{} …", scene.name);
-        measure_scene(scene, &commit)
+        measure_scene(scene)
     });
     rows.collect()
 }
@@ -84,11 +80,11 @@ struct Measured {
     differing: u64,
 }
 
-/// Measures all forms in a scene for the commit `commit`.
+/// Measures all forms in a scene.
 ///
 /// # Panics
 /// When the light of Glint's form differs from the model's.
-pub fn measure_scene(scene: &Scene, commit: &str) -> Vec<Row> {
+pub fn measure_scene(scene: &Scene) -> Vec<Row> {
     let mut measured = [Measured::default(); FORMS.len()];
     let mut pixels = 0;
     for triangle in scene.triangles() {
@@ -137,7 +133,6 @@ pub fn measure_scene(scene: &Scene, commit: &str) -> Vec<Row> {
             rms: measured.errors.rms(),
             steps: measured.steps,
             differing: measured.differing as f64 / (3 * pixels) as f64,
-            commit: commit.to_owned(),
         });
     rows.collect()
 }

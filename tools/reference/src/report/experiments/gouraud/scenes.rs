@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::report::provenance::Provenance;
 use crate::triangle::smooth::{Measured, scenes};
 
 /// Errors of a scene: a line of `gouraud.csv`. Errors are in steps of a colour channel of RGB565.
@@ -34,14 +33,10 @@ pub struct Row {
     pub affine_max_err: f64,
     /// RMS of the errors of colours interpolated linearly on the screen.
     pub affine_rms: f64,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 impl Row {
-    fn new(name: &str, bound: f64, measured: &Measured, provenance: &Provenance) -> Self {
+    fn new(name: &str, bound: f64, measured: &Measured) -> Self {
         Self {
             scene: name.to_owned(),
             triangles: measured.triangles,
@@ -56,17 +51,14 @@ impl Row {
             rounded_rms: measured.rounded.rms(),
             affine_max_err: measured.affine.max,
             affine_rms: measured.affine.rms(),
-            commit: provenance.commit.clone(),
-            tools: provenance.tools.clone(),
         }
     }
 }
 
 /// Measures the errors of all scenes.
 pub fn measure() -> Vec<Row> {
-    let provenance = Provenance::find();
     scenes()
         .iter()
-        .map(|scene| Row::new(scene.name, scene.bound, &scene.measure(), &provenance))
+        .map(|scene| Row::new(scene.name, scene.bound, &scene.measure()))
         .collect()
 }

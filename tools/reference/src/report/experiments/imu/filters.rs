@@ -6,7 +6,6 @@ use crate::imu::filter::Filter;
 use crate::imu::measure::{TAU, filter_inclination};
 use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
-use crate::report::provenance::Provenance;
 
 /// Errors of a filter: a line of `imu-filters.csv`. Each figure is the RMS of the errors of the inclination, in degrees.
 #[derive(Serialize, Deserialize)]
@@ -23,13 +22,10 @@ pub struct FilterErrors {
     pub nod: f64,
     /// Error during the motion of a walking person.
     pub walk: f64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Measures all filters. `part` is the fraction of the full duration of the motions; a motion lasts at least 30 s.
 pub fn measure(part: f64) -> Vec<FilterErrors> {
-    let commit = Provenance::find().commit;
     let seconds = (120.0 * part).max(30.0);
     let mahony = Filter::Mahony {
         proportional: 0.74,
@@ -59,7 +55,6 @@ pub fn measure(part: f64) -> Vec<FilterErrors> {
             hand: rms(Motion::Hand),
             nod: rms(Motion::Nod),
             walk: rms(Motion::Walk),
-            commit: commit.clone(),
         }
     })
     .into()

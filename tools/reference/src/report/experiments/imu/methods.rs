@@ -6,7 +6,6 @@ use super::motions::{CONING, TUMBLE};
 use crate::imu::measure::method_error;
 use crate::imu::method::Method;
 use crate::report::cycles::Cycles;
-use crate::report::provenance::Provenance;
 
 /// Sample rates of the comparison, in samples per second.
 pub const RATES: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];
@@ -28,8 +27,6 @@ pub struct Trial {
     pub order: Option<f64>,
     /// Median of the cycles per sample on the soft core; `None` for methods that the firmware does not have.
     pub cycles: Option<u64>,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Returns the name of a method in the console command `bench attitude`; `None` for methods that the firmware does not have.
@@ -47,7 +44,6 @@ fn kernel(method: Method) -> Option<&'static str> {
 
 /// Measures all methods at all sample rates. `cycles` is the result of the console command `bench attitude`.
 pub fn measure(cycles: &Cycles) -> Vec<Trial> {
-    let commit = Provenance::find().commit;
     let mut trials = Vec::new();
     for (name, motion) in [("tumble", TUMBLE), ("coning", CONING)] {
         for method in Method::ALL {
@@ -64,7 +60,6 @@ pub fn measure(cycles: &Cycles) -> Vec<Trial> {
                     error,
                     order,
                     cycles: kernel(method).and_then(|name| Some(cycles.get(name)?.median)),
-                    commit: commit.clone(),
                 });
             }
         }

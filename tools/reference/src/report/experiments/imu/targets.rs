@@ -7,7 +7,6 @@ use crate::imu::measure::{Largest, against_f64, calibrated, inclination, method_
 use crate::imu::method::Method;
 use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
-use crate::report::provenance::Provenance;
 
 /// An error with its requirement: a line of `imu.csv`.
 #[derive(Serialize, Deserialize)]
@@ -24,10 +23,6 @@ pub struct Target {
     pub measured: f64,
     /// Best bound met: `aim` (the goal), `at least` (only the requirement), or `missed` (neither).
     pub reached: String,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 /// Measures the errors during a rotation at one count of the gyroscope for this fraction of a day. This measurement takes longer
@@ -39,7 +34,6 @@ pub fn one_count(part: f64) -> Largest {
 /// Measures all errors with a requirement, except `count`, the result of [`one_count`]. `part` is the fraction of the full
 /// duration of long motions.
 pub fn measure(part: f64, count: Largest) -> Vec<Target> {
-    let Provenance { commit, tools } = Provenance::find();
     let mut rows = Vec::new();
     let mut norm = 0.0_f64;
     let mut add = |what: String, unit: &str, [at_least, aim]: [f64; 2], measured: f64| {
@@ -57,8 +51,6 @@ pub fn measure(part: f64, count: Largest) -> Vec<Target> {
                 "missed"
             }
             .to_owned(),
-            commit: commit.clone(),
-            tools: tools.clone(),
         });
     };
     let hour = 3600.0 * part;

@@ -28,7 +28,7 @@ fn case(random: &mut Pcg64Mcg) -> (Vector, Camera) {
     let direction = normalised([0; 3].map(|_| random.random_range(-1.0..1.0f64) + 1e-3));
     let distance = random.random_range(2.0..5.0);
     let eye = direction.map(|x| x * distance);
-    (vertex, Camera::looking_at(eye, [0.0; 3], 0.4781, 0.1))
+    (vertex, Camera::looking(eye, [0.0; 3], 0.4781, 0.1))
 }
 
 /// Errors of positions, in pixels of a picture 640 wide. `found` computes a position from a vertex and a camera.

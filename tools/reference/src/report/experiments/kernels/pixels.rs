@@ -75,7 +75,7 @@ pub fn depths(thinning: u32) -> Result<Vec<Trial>> {
 
 /// Calls `sweep` with the conversion of a depth to the vertex stage's code and back.
 fn shipped(near: f64, sweep: impl Fn(&dyn Fn(f64) -> f64) -> Trial) -> Result<Trial> {
-    let camera = Camera::looking_at([0.0, -1.0, 0.0], [0.0; 3], 1.0, near);
+    let camera = Camera::looking([0.0, -1.0, 0.0], [0.0; 3], 1.0, near);
     let frame = MeshSetup::new(&camera.view()?, 320, 180, 1 << 15)?;
     Ok(sweep(&|z| {
         let vertex = CameraVertex {

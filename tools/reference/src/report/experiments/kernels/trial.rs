@@ -2,6 +2,8 @@
 
 use glint_variants::kernel::Kernel;
 
+use crate::errors;
+
 /// Result for a configuration: names, cost in bits, and errors.
 pub struct Trial {
     /// Name of the kernel.
@@ -32,12 +34,8 @@ impl Trial {
 /// Statistics of errors, with the input of the largest error.
 #[derive(Default)]
 pub struct Errors {
-    /// Largest magnitude.
-    pub largest: f64,
-    /// Sum of the squared errors.
-    pub squares: f64,
-    /// Number of errors.
-    pub count: u64,
+    /// The errors, of all inputs together.
+    pub all: errors::Errors,
     /// Number of inputs, each with at least one error.
     pub inputs: u64,
     /// Input of the largest error.
@@ -48,13 +46,11 @@ impl Errors {
     /// Adds the errors of one input; `describe` returns the input's name.
     pub fn add(&mut self, errors: &[f64], describe: impl Fn() -> String) {
         self.inputs += 1;
-        for error in errors {
-            self.count += 1;
-            self.squares += error * error;
-            if error.abs() > self.largest {
-                self.largest = error.abs();
+        for &error in errors {
+            if error.abs() > self.all.max {
                 self.worst = describe();
             }
+            self.all.add(error);
         }
     }
 }

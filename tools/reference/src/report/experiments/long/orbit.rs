@@ -12,7 +12,6 @@ use crate::basis;
 use crate::camera::Vector;
 use crate::emulated::{Emulated, begin, command, cycles, start, view};
 use crate::report::progress::bar;
-use crate::report::provenance::Provenance;
 
 /// Number of frames of a turn.
 pub const FRAMES: u32 = 2_500;
@@ -39,8 +38,6 @@ pub struct Row {
     pub differing: u64,
     /// Number of turns since the previous row that did not end, bit for bit, at the first camera.
     pub displaced: u32,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Runs `turns` orbits of the camera in `frames` frames each.
@@ -48,7 +45,6 @@ pub struct Row {
 /// # Errors
 /// The firmware has not been built, or refuses a command.
 pub fn measure(turns: u32, frames: u32) -> Result<Vec<Row>> {
-    let commit = Provenance::find().commit;
     let mut board = start()?;
     command(&mut board, "scene cube")?;
     // From the first displayed frame on, drawing waits for the vertical blanking.
@@ -73,7 +69,6 @@ pub fn measure(turns: u32, frames: u32) -> Result<Vec<Row>> {
                 reference,
                 differing,
                 displaced,
-                commit: commit.clone(),
             });
             (differing, displaced) = (0, 0);
         }

@@ -13,7 +13,6 @@ use crate::emulated::{Emulated, command, cycles, start, view};
 use crate::imu::motion::Motion;
 use crate::imu::quaternion::Quaternion;
 use crate::report::progress::bar;
-use crate::report::provenance::Provenance;
 
 /// Start of the motion in s; before, the sensor rests and is calibrated.
 const BEGIN: f64 = 20.0;
@@ -99,8 +98,6 @@ pub struct Row {
     pub lost: u64,
     /// Number of gaps of more than half a second in the samples.
     pub gaps: u64,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Number of stored measurement times, more than the firmware's backlog.
@@ -146,7 +143,6 @@ struct Status {
 /// # Errors
 /// The firmware has not been built, or refuses a command.
 pub fn measure(path: Path, hours: f64) -> Result<Vec<Row>> {
-    let commit = Provenance::find().commit;
     let mut bench = Bench::new(path)?;
     let first = MINUTES.into_iter().map(|minutes| 60.0 * minutes);
     let later = (2..=hours.floor() as u32).map(|hour| 3600.0 * f64::from(hour));
@@ -156,7 +152,7 @@ pub fn measure(path: Path, hours: f64) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for time in times {
         bench.run_to(BEGIN + time, &bar);
-        rows.push(bench.row(time, &commit)?);
+        rows.push(bench.row(time)?);
     }
     bar.finish_and_clear();
     Ok(rows)
@@ -253,7 +249,7 @@ impl Bench {
         Ok((status, ahead))
     }
 
-    fn row(&mut self, seconds: f64, commit: &str) -> Result<Row> {
+    fn row(&mut self, seconds: f64) -> Result<Row> {
         let (status, ahead) = self.newest()?;
         let number = status.samples + ahead;
         let measured = self.measured.lock();
@@ -274,7 +270,6 @@ impl Bench {
             samples: status.samples,
             lost: ahead.saturating_sub(self.ahead),
             gaps: status.gaps,
-            commit: commit.to_owned(),
         })
     }
 

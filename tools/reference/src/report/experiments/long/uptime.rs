@@ -14,7 +14,6 @@ use virtual_board::virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 
 use crate::emulated::{Emulated, command, cycles, start, value, view};
 use crate::report::progress::bar;
-use crate::report::provenance::Provenance;
 
 /// A query to the board, with the expected and the measured reply: a line of `long-uptime.csv`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,8 +26,6 @@ pub struct Row {
     pub expected: String,
     /// The measured reply.
     pub measured: String,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Commands with constant replies, and the keys of the compared lines (all lines if empty).
@@ -54,7 +51,6 @@ const SHORT: u64 = 100;
 struct Bench {
     board: Emulated,
     rows: Vec<Row>,
-    commit: String,
     /// Progress in seconds of the board's time.
     bar: ProgressBar,
 }
@@ -69,7 +65,6 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
     let mut bench = Bench {
         board: start()?,
         rows: Vec::new(),
-        commit: Provenance::find().commit,
         bar: bar(seconds)?.with_message("uptime"),
     };
     bench.board.inner().plug(resting_sensor());
@@ -143,7 +138,6 @@ impl Bench {
             what,
             expected,
             measured,
-            commit: self.commit.clone(),
         });
     }
 

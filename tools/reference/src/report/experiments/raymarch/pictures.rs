@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::requirements::{LARGE, LARGE_COST, SMALL, SMALL_COST, missed};
 use crate::raymarch::Field;
 use crate::raymarch::raymarched::{self, Measured, Subject};
-use crate::report::provenance::Provenance;
 
 /// Errors of a picture and its number of evaluations of the field's distance: a line of `raymarch.csv`. Depths are in world
 /// units along the camera's n.
@@ -58,19 +57,10 @@ pub struct Row {
     pub missed: String,
     /// Names of the missed goals.
     pub not_reached: String,
-    /// Commit of the measurement.
-    pub commit: String,
-    /// Tool versions of the measurement.
-    pub tools: String,
 }
 
 impl Row {
-    fn new(
-        subject: &Subject,
-        setup: &FieldSetup,
-        measured: &Measured,
-        provenance: &Provenance,
-    ) -> Self {
+    fn new(subject: &Subject, setup: &FieldSetup, measured: &Measured) -> Self {
         let &Measured {
             accuracy, coded, ..
         } = measured;
@@ -118,15 +108,12 @@ impl Row {
             evaluations_max: measured.most,
             missed: list(0),
             not_reached: list(1),
-            commit: provenance.commit.clone(),
-            tools: provenance.tools.clone(),
         }
     }
 }
 
 /// Measures all pictures. `quick` skips pictures of 1280 × 720.
 pub fn measure(quick: bool) -> Vec<Row> {
-    let provenance = Provenance::find();
     let small: Vec<Subject> = [
         raymarched::sponges(SMALL),
         raymarched::others(SMALL),
@@ -150,7 +137,7 @@ pub fn measure(quick: bool) -> Vec<Row> {
                 };
                 let setup = subject.setup(&options);
                 let measured = Measured::new(&subject.expected, &raymarched::picture(&setup, 0));
-                Row::new(subject, &setup, &measured, &provenance)
+                Row::new(subject, &setup, &measured)
             }));
         }
     }

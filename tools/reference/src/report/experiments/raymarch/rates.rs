@@ -15,7 +15,6 @@ use serde::{Deserialize, Serialize};
 use crate::camera::{Camera, Vector};
 use crate::raymarch::views;
 use crate::report::progress;
-use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 
 /// Minimum duration of a measurement of frames back to back, in cycles. The first frame takes up to 7,600 cycles more than each
@@ -199,8 +198,6 @@ pub struct Row {
     pub at_least: f64,
     /// Goal above the requirement, in frames per second.
     pub aim: Option<f64>,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// Measures all cases, on two virtual boards at a time.
@@ -208,7 +205,6 @@ pub struct Row {
 /// # Errors
 /// When a board is not built, or a frame differs from that of the model.
 pub fn measure() -> Result<Vec<Row>> {
-    let commit = Provenance::find().commit;
     let firmware = built_firmware(None)?;
     let mut work = Vec::new();
     for case in &CASES {
@@ -221,8 +217,7 @@ pub fn measure() -> Result<Vec<Row>> {
         bar.set_message(format!("{} {view} on the SoC", case.field));
         let (width, height) = case.size;
         let name = format!("{} {view} at {width}x{height}", case.field);
-        let rows =
-            draw(&firmware, case, view, camera, &commit, &bar).with_context(|| name.clone())?;
+        let rows = draw(&firmware, case, view, camera, &bar).with_context(|| name.clone())?;
         let cycles = rows.iter().find_map(|row| row.cycles_frame);
         bar.suspend(|| eprintln!("{name}: {:.0} cycles", cycles.unwrap_or_default()));
         Ok(rows)
@@ -237,7 +232,6 @@ fn draw(
     case: &Case,
     view: &'static str,
     camera: &Camera,
-    commit: &str,
     bar: &ProgressBar,
 ) -> Result<Vec<Row>> {
     let mut board = soc::started(case.build.folder, firmware)?;
@@ -297,7 +291,6 @@ fn draw(
             clock: case.clock,
             at_least: case.at_least,
             aim: case.aim,
-            commit: commit.to_owned(),
         });
         last = Some(frame.view);
         bar.inc(1);

@@ -9,7 +9,6 @@ use super::trials::{Trial, Views, pixels};
 use crate::raymarch::metrics::RayOutcome;
 use crate::raymarch::raymarched::{self, Subject};
 use crate::raymarch::variant::{Method, Norm, Taps};
-use crate::report::provenance::Provenance;
 use crate::report::{progress, soc};
 
 /// Function that draws all configurations of a study and returns the trials.
@@ -49,11 +48,10 @@ pub fn measure(
             only.unwrap_or_default()
         );
     }
-    let commit = Provenance::find().commit;
     let bar = progress::bar(studies.len() as u64)?;
     soc::two_at_a_time(&studies, |(name, study)| {
         let subjects = subjects(name);
-        finished(name, &study(&Views::new(&subjects, bar.clone(), &commit)))?;
+        finished(name, &study(&Views::new(&subjects, bar.clone())))?;
         bar.inc(1);
         Ok(())
     })?;

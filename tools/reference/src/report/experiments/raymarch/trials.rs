@@ -2,7 +2,8 @@
 
 use std::cell::RefCell;
 
-use glint_model::raymarch::FieldOptions;
+use glint_model::raymarch::{FieldOptions, Palette};
+use glint_testbench::Raymarcher;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,6 @@ use crate::raymarch::Field;
 use crate::raymarch::metrics::{Expected, RayOutcome};
 use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
 use crate::raymarch::variant::{Method, entry};
-use crate::raymarch::verilated::Raymarcher;
 
 /// Errors and cost of a configuration of the parameters: a line of a study's CSV file.
 #[derive(Serialize, Deserialize)]
@@ -41,8 +41,6 @@ pub struct Trial {
     pub cycles: Option<f64>,
     /// Names of the missed requirements.
     pub failed: String,
-    /// Commit of the measurement.
-    pub commit: String,
 }
 
 /// The views of every trial with their reference pictures, and the raymarcher.
@@ -51,19 +49,17 @@ pub struct Views<'a> {
     expected: Vec<Expected>,
     raymarcher: RefCell<Raymarcher>,
     bar: ProgressBar,
-    commit: &'a str,
 }
 
 impl<'a> Views<'a> {
-    /// Prepares trials. `subjects` are the views, `bar` shows the running trial, and `commit` is a column of the trials' rows.
-    pub fn new(subjects: &'a [Subject], bar: ProgressBar, commit: &'a str) -> Self {
+    /// Collects what trials need. `subjects` are the views, and `bar` shows the running trial.
+    pub fn new(subjects: &'a [Subject], bar: ProgressBar) -> Self {
         let expected = subjects.iter().flat_map(|subject| &subject.expected);
         Self {
             subjects,
             expected: expected.copied().collect(),
-            raymarcher: RefCell::default(),
+            raymarcher: RefCell::new(Raymarcher::new("raymarcher", 1)),
             bar,
-            commit,
         }
     }
 
@@ -95,7 +91,6 @@ impl<'a> Views<'a> {
             evaluations: measured.cost() + (hits as f64 * f64::from(added)) / found.len() as f64,
             cycles: None,
             failed: missed(&accuracy, 0).join(" "),
-            commit: self.commit.to_owned(),
         }
     }
 
@@ -104,9 +99,14 @@ impl<'a> Views<'a> {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
         let mut raymarcher = self.raymarcher.borrow_mut();
+        let palette = Palette::default();
         let pictures = self.subjects.iter();
         let clocks: u64 = pictures
-            .map(|subject| raymarcher.draw(&subject.setup(options)).clocks)
+            .map(|subject| {
+                raymarcher
+                    .draw(None, &subject.setup(options), &palette)
+                    .clocks
+            })
             .sum();
         trial.cycles = Some(clocks as f64 / self.subjects.len() as f64);
         trial
