@@ -2,9 +2,10 @@
 
 import runpy
 
-import memory_crossbar
 from migen import Cat, Module, Signal
 from migen.fhdl import verilog
+
+from crossbar import connect
 
 
 class _Crossbar(Module):
@@ -12,7 +13,7 @@ class _Crossbar(Module):
     for each port or bank, the first one in the lowest bits. An address is {row, bank, column} of 1, 1 and 3 bits."""
 
     def __init__(self, crossbar):
-        self.submodules.crossbar, controller, ports = memory_crossbar.connect(
+        self.submodules.crossbar, controller, ports = connect(
             crossbar, ("both", "read", "write"), latencies=(1, 0), depth=5, bits=8, column_bits=3, bank_bits=1)
         banks = [controller.bank0, controller.bank1]
         inputs = {

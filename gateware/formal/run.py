@@ -23,7 +23,7 @@ sys.path[:0] = [str(FORMAL.parent), str(FORMAL.parent / "tests")]
 import generated  # noqa: E402
 import mutations  # noqa: E402
 from glint_soc import rtl  # noqa: E402
-from tools import GATEWARE, YOSYS_PROGRAM, ToolError, run  # noqa: E402
+from resources.tools import GATEWARE, YOSYS_PROGRAM, ToolError, run  # noqa: E402
 
 _BUILD = GATEWARE.parent / "target" / "gateware" / "formal"
 _PROGRAMS = Path(sys.executable).parent

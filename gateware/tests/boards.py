@@ -13,23 +13,12 @@ def check_pins(found, table, in_design):
     """
     with open(table, newline="") as file:
         rows = {row["signal"]: row for row in csv.DictReader(file)}
-    problems = []
-    for port, properties in found.items():
-        row = rows.get(port)
-        if row is None:
-            problems.append(f"{port} is in the constraints but not in {table.name}")
-            continue
-        expected = {"LOC": row["pin"], "IOSTANDARD": row["iostandard"]}
-        expected |= dict(item.split("=") for item in row["properties"].split())
-        if properties != expected:
-            problems.append(f"{port}: expected {expected}, the constraints have {properties}")
-    problems += [f"{port} is a port of the design without a pin" for port in in_design - found.keys()]
-    problems += [f"{port} has a pin but is no port of the design" for port in found.keys() - in_design]
-    pins = Counter(row["pin"] for row in rows.values())
-    problems += [f"pin {pin} is in the table {count} times" for pin, count in pins.items() if count > 1]
-    if not found:
-        problems.append("no pin found in the constraints")
-    return problems
+    expected = {signal: {"LOC": row["pin"], "IOSTANDARD": row["iostandard"], **dict(item.split("=") for item in row["properties"].split())}
+                for signal, row in rows.items()}
+    assert found
+    assert found == {port: expected.get(port) for port in found}, f"pins that differ from {table.name}"
+    assert found.keys() == in_design, "ports with a pin, and ports of the design"
+    assert max(Counter(row["pin"] for row in rows.values()).values()) == 1, f"uses of a pin in {table.name}"
 
 
 def ports(verilog, top):

@@ -4,7 +4,7 @@
 //! of the module (valid/ready), a [`Sink`] takes items from an output stream; sources and sinks stall at random. A valid payload
 //! must not change until it is taken: the source obeys this rule, and the sink checks it.
 //!
-//! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` builds them too.
+//! `pytest gateware/tests/test_modules.py` builds the modules; `cargo xtask test` builds them too.
 
 mod bits;
 mod counters;

@@ -55,7 +55,7 @@ impl Module {
         ));
         let mut instance = Instance::load(&folder.join(name).with_extension("so"), seed)
             .unwrap_or_else(|error| {
-                panic!("{error}; run `.venv/bin/python gateware/tests/run.py --models` to build it")
+                panic!("{error}; run `.venv/bin/pytest gateware/tests/test_modules.py` to build it")
             });
         for port in 0..instance.description().ports.len() {
             if !instance.port(port).output {

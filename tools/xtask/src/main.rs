@@ -95,29 +95,7 @@ enum Task {
     /// Check the sources: no circular dependencies between modules, no `#[path]`
     Modules,
     /// Measure the FPGA resources of the gateware; fail beyond the limits of gateware/budget.toml
-    Resources {
-        /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all; with `--route`, all
-        /// but those of other projects]
-        blocks: Vec<String>,
-        /// Place and route on an ECP5 instead: clock rates of the blocks and of VexRiscv
-        #[arg(long)]
-        route: bool,
-        /// Print only the sizes of the instances in the blocks [default: soc], largest first
-        #[arg(long, conflicts_with = "route")]
-        tree: bool,
-        /// Depth of the printed tree of instances
-        #[arg(long, requires = "tree", default_value_t = 3)]
-        depth: usize,
-        /// Measure the Urbana's build for each built-in scene and for all scenes, and the cycles of the scenes' frames
-        #[arg(long, conflicts_with_all = ["blocks", "route", "tree", "json"])]
-        scenes: bool,
-        /// Print JSON; progress goes to standard error
-        #[arg(long)]
-        json: bool,
-        /// Write docs/resources.md (with `--route`, cells and clock rates; with `--scenes`, docs/scene-builds.md instead)
-        #[arg(long, conflicts_with_all = ["blocks", "tree"])]
-        write: bool,
-    },
+    Resources(resources::Options),
     /// Build the virtual board for each scene and with each single block; fail if a board does not answer, or draws its scene
     /// differently or in more cycles than the complete build
     Walk {
@@ -186,22 +164,7 @@ fn main() -> Result<()> {
         Task::Test { clock: Some(clock) } => test::test_at_clock(&clock),
         Task::Modules => modules::check(),
         Task::Walk { builds } => walk::set_up_and_walk(&builds),
-        Task::Resources {
-            blocks,
-            route,
-            tree,
-            depth,
-            scenes,
-            json,
-            write,
-        } => resources::resources(&resources::Options {
-            blocks,
-            route,
-            tree: tree.then_some(depth),
-            scenes,
-            json,
-            write,
-        }),
+        Task::Resources(options) => resources::resources(&options),
         Task::Report {
             page: Some(page),
             quick,

@@ -65,9 +65,8 @@ fn build_parts(name: &str) -> Result<()> {
 fn model(module: &str) -> Result<()> {
     run::step(
         &format!("models of {module}"),
-        Command::new(paths::venv_program("python"))
-            .args(["gateware/tests/run.py", "--models", module])
-            .current_dir(paths::root()),
+        run::python(&["-m", "pytest", "gateware/tests/test_modules.py"])
+            .args(["-k", &format!("test_model and {module}")]),
     )
 }
 

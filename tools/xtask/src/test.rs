@@ -1,6 +1,5 @@
 //! `cargo xtask test`: sets up the machine, then runs every check.
 
-use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, mpsc};
 use std::thread;
@@ -10,7 +9,7 @@ use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board, Library};
 use crate::rust_tests::{self, Programs};
-use crate::{bootstrap, firmware, modules, paths, resources, run, scenes, walk, web};
+use crate::{bootstrap, firmware, modules, resources, run, scenes, walk, web};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
@@ -37,11 +36,13 @@ pub fn test() -> Result<()> {
             if !is_built {
                 return;
             }
-            results.add(gateware_check("gateware tests", "gateware/tests/run.py"));
+            results.add(gateware_check(
+                "gateware tests",
+                &["-m", "pytest", "gateware/tests"],
+            ));
             let _ = models_are_built.send(());
-            results.add(gateware_check("proofs", "gateware/formal/run.py"));
-            results.add(resources::check_own_blocks().map(|()| 1));
-            results.add(resources::check_clock_rates().map(|()| 1));
+            results.add(gateware_check("proofs", &["gateware/formal/run.py"]));
+            results.add(resources::check().map(|()| 1));
         });
         firmware::build(Board::Virtual, &[])?;
         web::build(None)?;
@@ -140,12 +141,7 @@ fn linted(name: &str, arguments: &[&str]) -> Result<u32> {
 }
 
 /// Runs a Python program as a check, such as the gateware tests or the proofs.
-fn gateware_check(name: &str, program: &str) -> Result<u32> {
-    run::step(
-        name,
-        Command::new(paths::venv_program("python"))
-            .arg(program)
-            .current_dir(paths::root()),
-    )?;
+fn gateware_check(name: &str, program: &[&str]) -> Result<u32> {
+    run::step(name, &mut run::python(program))?;
     Ok(1)
 }

@@ -26,7 +26,7 @@ const EARLIER: [(&str, &str); 3] = [
     (PLANES, "71b672ffed3a"),
 ];
 
-/// The shading modes of an engine, each with its module in `gateware/tests/run.py`.
+/// The shading modes of an engine, each with its module in `gateware/resources/modules.py`.
 const MODULES: [(&str, &str); 2] = [
     ("flat", "triangle_engine"),
     ("flat and smooth", "triangle_engine_smooth"),
@@ -91,7 +91,13 @@ struct Instance {
 /// # Errors
 /// When the synthesis fails.
 pub fn today() -> Result<Vec<Cost>> {
-    costs(TODAY, &Provenance::find().commit, &workspace::path(""))
+    let commit = &Provenance::find().commit;
+    costs(
+        TODAY,
+        commit,
+        &workspace::path(""),
+        &["-m", "resources.size"],
+    )
 }
 
 /// Synthesises the earlier engines, from the gateware of their commits, and returns their resources.
@@ -101,7 +107,8 @@ pub fn today() -> Result<Vec<Cost>> {
 pub fn earlier() -> Result<Vec<Cost>> {
     let mut rows = Vec::new();
     for (engine, commit) in EARLIER {
-        rows.extend(costs(engine, commit, &gateware_of(commit)?)?);
+        let program = ["gateware/tests/run.py", "--size"];
+        rows.extend(costs(engine, commit, &gateware_of(commit)?, &program)?);
     }
     Ok(rows)
 }
@@ -134,13 +141,13 @@ fn gateware_of(commit: &str) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// Synthesises both modules of the engine in the folder `root`.
-fn costs(engine: &str, commit: &str, root: &Path) -> Result<Vec<Cost>> {
+/// Synthesises both modules of the engine in the folder `root` by a Python program there.
+fn costs(engine: &str, commit: &str, root: &Path, program: &[&str]) -> Result<Vec<Cost>> {
     MODULES
         .into_iter()
         .map(|(shading, module)| {
             eprintln!("{engine}, {shading} …");
-            let cells = cells(module, root)?;
+            let cells = cells(module, root, program)?;
             let divides = |instance: &&Instance| {
                 let mut names = instance.path.iter();
                 names.any(|name| DIVISIONS.iter().any(|start| name.starts_with(start)))
@@ -162,9 +169,11 @@ fn costs(engine: &str, commit: &str, root: &Path) -> Result<Vec<Cost>> {
         .collect()
 }
 
-fn cells(module: &str, root: &Path) -> Result<Cells> {
+fn cells(module: &str, root: &Path, program: &[&str]) -> Result<Cells> {
     let output = run(Command::new(workspace::path(".venv/bin/python"))
-        .args(["gateware/tests/run.py", "--size", module])
+        .args(program)
+        .arg(module)
+        .env("PYTHONPATH", root.join("gateware"))
         .current_dir(root))?;
     let text = String::from_utf8_lossy(&output.stdout);
     serde_json::from_str(&text).with_context(|| format!("expected a size in JSON, found `{text}`"))

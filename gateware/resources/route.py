@@ -21,10 +21,11 @@ from pathlib import Path
 
 import pythondata_cpu_vexriscv
 
-import size
-from netlist import Netlist
-from tools import BUILD, NEXTPNR, TESTS, YOSYS, ToolError, run_nextpnr, run_yosys
 from verilate.programs import digest, is_current
+
+from . import size
+from .netlist import Netlist
+from .tools import BUILD, NEXTPNR, YOSYS, ToolError, run_nextpnr, run_yosys
 
 REFERENCE = "vexriscv"
 """The soft core in the SoC's variant: all ratios are relative to this block's rate."""
@@ -33,6 +34,7 @@ SEEDS = (1, 2, 3)
 """Seeds of the placer. The rate of a block is the median of their rates."""
 
 _FOLDER = BUILD.parent / "route"
+_CODE = [Path(__file__).with_name(name) for name in ("route.py", "netlist.py", "tools.py")]
 _VEXRISCV = Path(pythondata_cpu_vexriscv.data_location) / "VexRiscv_Full.v"
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6", "--freq", "100", "--timing-allow-fail", "--lpf-allow-unconstrained"]
 _CLOCK = re.compile(r"(\w+_)?clk(_\w+)?")
@@ -68,8 +70,7 @@ def measure(name, seeds=SEEDS):
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
     stamp, result = folder / "inputs", folder / "result.json"
-    code = [TESTS / file for file in ("route.py", "netlist.py", "tools.py")]
-    inputs = digest([*sources, *code], top, parameters, seeds, version(YOSYS), version(NEXTPNR))
+    inputs = digest([*sources, *_CODE], top, parameters, seeds, version(YOSYS), version(NEXTPNR))
     if not is_current(stamp, inputs, result):
         result.write_text(json.dumps(_measure(top, sources, parameters, seeds, folder)))
         stamp.write_text(inputs)
@@ -213,11 +214,11 @@ def worst_path(segments, netlist):
         delays["wire" if part["type"] == "routing" else "logic"] += part["delay"]
     levels = sum(part["type"] == "logic" and part["from"]["port"] not in _JOINED for part in segments)
     nets = [part["net"] for part in segments if part["type"] == "routing" and part["to"]["port"] not in _JOINED]
-    return {"from": _register(netlist, segments[0]["from"]), "to": _register(netlist, segments[-1]["to"]), "levels": levels,
+    return {"from": register(netlist, segments[0]["from"]), "to": register(netlist, segments[-1]["to"]), "levels": levels,
             **{kind: round(delay, 2) for kind, delay in sorted(delays.items())}, "nets": [_short(net) for net in nets]}
 
 
-def _register(netlist, end):
+def register(netlist, end):
     """The name of a register at an end of a path. A flip-flop of the wrapper represents a port of the module."""
     name = end["cell"]
     while name not in netlist.cells and "$" in name: # nextpnr adds a part to the names of cells that it splits
@@ -236,91 +237,3 @@ def _register(netlist, end):
 
 def _short(name):
     return name.removeprefix(_BLOCK)
-
-
-def check_products():
-    """Split products without their registers equal the products: proved for multipliers of 4 by 4 bits, tried at the ends of
-    all ranges and of all parts for those of 18 by 18 bits."""
-    problems = []
-    for (a, b, operand_bits), signed in itertools.product(((7, 4, 4), (9, 6, 4), (25, 18, 18), (33, 20, 18)), (False, True)):
-        folder = BUILD / "split_products" / f"{a}x{b}{'_signed' * signed}"
-        _write_both_products(folder, a, b, operand_bits, signed)
-        miter = "read_json both.json; miter -equiv -flatten product split miter;"
-        if operand_bits == 4:
-            run_yosys(f"{miter} sat -verify -prove trigger 0 miter", (), folder)
-            continue
-        (folder / "eval.txt").unlink(missing_ok=True)
-        tried = [f"tee -q -a eval.txt eval -set in_a {a}'d{x} -set in_b {b}'d{y} -show trigger miter"
-                 for x, y in itertools.product(_samples(a), _samples(b))]
-        run_yosys("; ".join([miter, *tried]), (), folder)
-        equal = (folder / "eval.txt").read_text().count("trigger = 1'0.")
-        if equal != len(tried):
-            problems.append(f"{folder.name}: {len(tried) - equal} of {len(tried)} products differ")
-    return problems
-
-
-def _write_both_products(folder, a, b, operand_bits, signed):
-    """Writes a netlist of two modules, a product and the product split into parts, with wires instead of registers."""
-    folder.mkdir(parents=True, exist_ok=True)
-    kind = "signed" if signed else "unsigned"
-    (folder / "product.sv").write_text(f"module product(input clk, input {kind} [{a - 1}:0] a, input {kind} [{b - 1}:0] b, "
-                                       f"output {kind} [{a + b - 1}:0] y);\nassign y = a * b;\nendmodule\n")
-    run_yosys("hierarchy -top product; proc; write_json product.json", [folder / "product.sv"], folder)
-    whole, split = (json.loads((folder / "product.json").read_text())["modules"]["product"] for _ in range(2))
-    split_products(split, operand_bits)
-    widths = [len(cell["connections"][pin]) for cell in split["cells"].values() if cell["type"] == "$mul" for pin in "AB"]
-    if max(widths) > operand_bits:
-        raise ToolError(f"{folder.name}: operands of {widths} bits")
-    for cell in split["cells"].values():
-        if cell["type"] == "$dff":
-            d, q = cell["connections"]["D"], cell["connections"]["Q"]
-            cell |= {"type": "$pos", "parameters": {"A_SIGNED": 0, "A_WIDTH": len(d), "Y_WIDTH": len(q)},
-                     "port_directions": {"A": "input", "Y": "output"}, "connections": {"A": d, "Y": q}}
-    (folder / "both.json").write_text(json.dumps({"modules": {"product": whole, "split": split}}))
-
-
-def _samples(bits):
-    """Extreme values of an operand and of its parts."""
-    ends = {0, 1, 2, 1 << 16, 1 << 17, 1 << 18, 1 << bits - 1}
-    return sorted({(sign * end - less) % (1 << bits) for end in ends for less in (0, 1) for sign in (1, -1)})
-
-
-def check_path():
-    """Names, levels and delays of a path: LUT, wide multiplexer, carry chain, from a port to a flip-flop."""
-    def part(kind, cell, pins, delay, **more):
-        (first, from_pin), (last, to_pin) = zip(cell.split(" "), pins.split(" "))
-        return {"type": kind, "from": {"cell": first, "port": from_pin}, "to": {"cell": last, "port": to_pin}, "delay": delay,
-                **more}
-    def flip_flop(d, q):
-        return {"type": "TRELLIS_FF", "port_directions": {"DI": "input", "Q": "output"}, "attributes": {},
-                "connections": {"DI": [d], "Q": [q]}}
-    def net(*bits):
-        return {"hide_name": 0, "bits": list(bits), "attributes": {}}
-    netlist = Netlist({
-        "cells": {"a_TRELLIS_FF_Q": flip_flop(2, 3), "sum_TRELLIS_FF_Q_1": flip_flop(4, 5), "block.table.0.1":
-                  {"type": "DP16KD", "connections": {}}},
-        "netnames": {"in_q": net(9, 3), "block.a": net(3), "block.part.sum": net(8, 5), "block.part.sum_TRELLIS_FF_Q_1_DI": net(4)}})
-    segments = [
-        part("clk-to-q", "a_TRELLIS_FF_Q a_TRELLIS_FF_Q", "Q Q", 0.5),
-        part("routing", "a_TRELLIS_FF_Q lut", "Q A", 1.25, net="block.a"),
-        part("logic", "lut lut", "A F", 0.25),
-        part("routing", "lut lut", "F F1", 0.0, net="inside"),
-        part("logic", "lut lut", "F1 OFX", 0.25),
-        part("routing", "lut add$CCU2_COMB0", "OFX A", 1.0, net="block.wide"),
-        part("logic", "add$CCU2_COMB0 add$CCU2_COMB0", "A FCO", 0.5),
-        part("routing", "add$CCU2_COMB0 add$CCU2_COMB1", "FCO FCI", 0.0, net="carry"),
-        part("logic", "add$CCU2_COMB1 add$CCU2_COMB1", "FCI F", 0.5),
-        part("routing", "add$CCU2_COMB1 sum_TRELLIS_FF_Q_1", "F DI", 0.25, net="block.part.sum_TRELLIS_FF_Q_1_DI"),
-        part("setup", "sum_TRELLIS_FF_Q_1 sum_TRELLIS_FF_Q_1", "DI DI", 0.0),
-    ]
-    expected = {"from": "port a", "to": "part.sum[1]", "levels": 2, "logic": 2.0, "wire": 2.5,
-                "nets": ["a", "wide", "part.sum_TRELLIS_FF_Q_1_DI"]}
-    found = worst_path(segments, netlist)
-    memory = _register(netlist, {"cell": "block.table.0.1$split", "port": "DOA2"})
-    return [f"expected {wanted}, got {got}" for wanted, got in ((expected, found), ("table (block RAM)", memory)) if wanted != got]
-
-
-CHECKS = {
-    "wide products split": check_products,
-    "worst path": check_path,
-}

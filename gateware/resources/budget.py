@@ -1,0 +1,124 @@
+"""Limits of the gateware's resources: `gateware/budget.toml`."""
+
+import tomllib
+from dataclasses import dataclass
+
+from verilate.programs import GATEWARE
+
+from .blocks import FLAT, FLAT_PARTS, ROWS, SOC
+from .route import REFERENCE
+from .tools import ToolError
+
+PATH = GATEWARE / "budget.toml"
+
+RESOURCES = {"lut": "LUT", "ff": "FF", "dsp48": "DSP48", "ramb36": "RAMB36", "carry4": "CARRY4", "path": "path",
+             "control_sets": "control sets", "slices": "slices"}
+"""Limited resources in the order of the tables, with their names in tables and messages. The last two are about placement."""
+
+
+def number(count):
+    """Formats a count with commas between its thousands, and a half as `.5`."""
+    return f"{int(count):,}{'.5' if count % 1 else ''}"
+
+
+def amounts(size):
+    """The amounts of the limited resources of a block, from its counts of cells; a half block RAM counts 0.5."""
+    sums = {"lut": size["logic"] + size["srl"] + size["lutram"], "ramb36": size["ramb36"] + size["ramb18"] / 2}
+    return {resource: sums.get(resource, size.get(resource)) for resource in RESOURCES}
+
+
+def with_flat_build(sizes):
+    """Sizes of blocks, with the sum `FLAT` if all its parts are there. The path of the sum is the longest of their paths. A control set
+    that several blocks have counts once for each of them."""
+    parts = [size for size in sizes if size["name"] in FLAT_PARTS]
+    if len(parts) != len(FLAT_PARTS):
+        return sizes
+    others = {cell for part in parts for cell in part["others"]}
+    fan_outs = [(f"{part['name']}.{net}", loads) for part in parts for net, loads in part["fan_outs"]]
+    counts = ("logic", "srl", "lutram", "ff", "dsp48", "ramb36", "ramb18", "carry4", "control_sets", "small_set_ff", "slices")
+    return [*sizes, {
+        "name": FLAT, "yosys": parts[0]["yosys"], **{count: sum(part[count] for part in parts) for count in counts},
+        "path": max(part["path"] for part in parts),
+        "others": {cell: sum(part["others"].get(cell, 0) for part in parts) for cell in sorted(others)},
+        "fan_outs": sorted(fan_outs, key=lambda net: -net[1])[:len(parts[0]["fan_outs"])], "instances": []}]
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The contents of the file: resources of the FPGA, which are the limits of the SoC; limits for every other block; limits of single
+    blocks, with `ratio`, the least ratio of the clock rate to the soft core's; the soft core's rate with the first seed of the placer,
+    which a version of nextpnr always finds."""
+
+    device: dict
+    own: dict
+    block: dict
+    reference: dict
+
+    def __post_init__(self):
+        for name, limits in {"device": self.device, "own": self.own, **self.block}.items():
+            known = {*RESOURCES, "ratio"} if name in self.block else {*RESOURCES}
+            for resource, limit in limits.items():
+                if resource not in known or limit < 0:
+                    raise ToolError(f"{PATH.name}: {resource} = {limit} of {name}: expected a positive number of {', '.join(sorted(known))}")
+        for name in self.block:
+            if name not in ROWS:
+                raise ToolError(f"{PATH.name}: unknown block {name}: expected one of {' '.join(ROWS)}")
+
+    @classmethod
+    def parse(cls, text):
+        """Reads the text of the file."""
+        try:
+            return cls(**tomllib.loads(text))
+        except TypeError as error:
+            raise ToolError(f"{PATH.name}: {error}") from error
+
+    @classmethod
+    def read(cls):
+        """Reads the file."""
+        return cls.parse(PATH.read_text())
+
+    def limits(self, block):
+        """The limits of a block. A limit of this single block replaces the default limit, which is the device's for the SoC."""
+        limits = (self.device if block == SOC else self.own) | self.block.get(block, {})
+        return {resource: limits[resource] for resource in RESOURCES if resource in limits}
+
+    def ratio(self, block):
+        """The least ratio of a block's clock rate to the soft core's, or None."""
+        return self.block.get(block, {}).get("ratio")
+
+    def routed(self):
+        """The blocks that have a least ratio."""
+        return sorted(name for name in self.block if self.ratio(name) is not None)
+
+    def excesses(self, sizes):
+        """Every resource of every block that is above its limit."""
+        return [{"block": size["name"], "resource": resource, "budget": limit, "measured": amounts(size)[resource]}
+                for size in sizes for resource, limit in self.limits(size["name"]).items() if amounts(size)[resource] > limit]
+
+    def shortfalls(self, rates, reference):
+        """The blocks below their least ratios to `reference`, the soft core's rate in MHz."""
+        return [{"block": rate["name"], "minimum": minimum, "measured": rate["mhz"] / reference}
+                for rate in rates if (minimum := self.ratio(rate["name"])) is not None and rate["mhz"] / reference < minimum]
+
+    def stale_reference(self, rates):
+        """Lines on the rates that do not fit the soft core's in the budget: that of another measurement, or by another nextpnr, without
+        which two rates cannot be compared."""
+        mhz, nextpnr = self.reference["mhz"], self.reference["nextpnr"]
+        for rate in rates:
+            if rate["name"] == REFERENCE and (rate["seeds"][0], rate["nextpnr"]) != (mhz, nextpnr):
+                yield (f"{REFERENCE}: the reference is {mhz} MHz by nextpnr {nextpnr}, expected the measured {rate['seeds'][0]} MHz by "
+                       f"nextpnr {rate['nextpnr']}")
+            elif rate["nextpnr"] != nextpnr:
+                yield (f"{rate['name']}: routed by nextpnr {rate['nextpnr']}, expected {nextpnr} as for the reference; `cargo xtask resources "
+                       f"--route {REFERENCE}` measures that again")
+
+    def problems(self, sizes, rates):
+        """A line for each resource above its limit, and for each rate below its limit. Without a rate of the soft core, that of the
+        budget counts."""
+        reference = next((rate["mhz"] for rate in rates if rate["name"] == REFERENCE), self.reference["mhz"])
+        return [
+            *(f"{excess['block']}: {RESOURCES[excess['resource']]}: budget {number(excess['budget'])}, measured "
+              f"{number(excess['measured'])}" for excess in self.excesses(sizes)),
+            *(f"{short['block']}: ratio to {REFERENCE}: at least {short['minimum']:.2f}, measured {short['measured']:.2f}"
+              for short in self.shortfalls(rates, reference)),
+            *self.stale_reference(rates)]

@@ -1,0 +1,27 @@
+"""The modules of the RTL: lint, whether Yosys reads them, and the models for the tests in `tools/testbench`."""
+
+import pytest
+
+from resources import size
+from resources.modules import MODULES
+from resources.tools import run_yosys
+from verilate import module as verilated_module
+from verilate.programs import run_verilator
+
+_BUILDS = [pytest.param(module, name, parameters, id=name) for module in MODULES for name, parameters in module.builds().items()]
+
+
+@pytest.mark.parametrize(("module", "name", "parameters"), _BUILDS)
+def test_model(module, name, parameters):
+    """Builds the model of a module, which checks all warnings of Verilator too, or checks these alone of one that is only measured."""
+    if name in module.measured:
+        run_verilator("--lint-only", "-Wall", "--top-module", module.top,
+                      *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)
+    else:
+        verilated_module.build(module.top, module.sources, name, parameters)
+
+
+@pytest.mark.parametrize(("module", "name", "parameters"), _BUILDS)
+def test_read_by_yosys(module, name, parameters):
+    """Checks that Yosys can read a module."""
+    run_yosys(f"{size.set_parameters(module.top, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
