@@ -21,6 +21,12 @@ fn with_camera(text: &str) -> SceneFile {
     parse(&format!("title = \"a\"\ncamera = \"3 30 60\"\n{text}")).unwrap()
 }
 
+/// The rows of a table: the lines of a file with `;` between them, and after `→` what they give.
+fn rows(table: &str) -> impl Iterator<Item = (String, &str)> {
+    let rows = table.lines().filter_map(|row| row.split_once('→'));
+    rows.map(|(lines, result)| (lines.trim().replace("; ", "\n"), result.trim()))
+}
+
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
@@ -140,245 +146,102 @@ fn refused_files() {
     const MODEL: &str = "title = \"a\"\nmodel = \"cube\"\ncamera = \"3 30 60\"\n";
     const FIELD: &str = "title = \"a\"\nfield = \"menger:4\"\ncamera = \"3 30 60\"\n";
     const PROGRAM: &str = "title = \"a\"\nprogram = \"cube\"\n";
-    for (start, text, expected) in [
-        ("", "", "a.toml: no title: expected the key title"),
+    let cases = [
         (
             "",
-            "title = 3",
-            "line 1: title: `3`: expected a text in quotation marks",
-        ),
-        ("", "title = \"a", "line 1: invalid basic string"),
-        (
-            "",
-            "title = \"a\"",
-            "nothing to show: expected one of the keys model, object",
-        ),
-        (
-            "",
-            "title = \"a\"\nmodel = \"cube\"",
-            "no camera: expected one of the keys camera",
+            r#"
+            → a.toml: no title: expected the key title
+            title = 3 → line 1: title: `3`: expected a text in quotation marks
+            title = "a → line 1: invalid basic string
+            title = "a" → nothing to show: expected one of the keys model, object
+            title = "a"; model = "cube" → no camera: expected one of the keys camera
+            title = "a"; program = "gear" → expected `cube`, the built-in program
+            title = "a"; scenes = [] → scenes: `[]`: expected at least one scene
+            title = "a"; scenes = ["demo"] → scenes: `demo`: expected one of cubes
+            title = "a"; scenes = ["cubes"]; fog = 1 → fog: `1`: expected no such key beside scenes
+        "#,
         ),
         (
             MODEL,
-            "sise = \"640 360\"",
-            "line 4: `sise`: expected a key, one of title, steer",
-        ),
-        (MODEL, "model = \"cube\"", "line 4: duplicate key"),
-        (
-            MODEL,
-            "quality = \"best\"",
-            "line 4: quality = `best`: quality: fast|balanced|exact is \"best\" (column 9): expected fast or balanced or exact",
-        ),
-        (
-            MODEL,
-            "quality = 1",
-            "quality = `1`: quality: fast|balanced|exact is \"1\"",
-        ),
-        (
-            MODEL,
-            "size = \"640 480\"",
-            "line 4: size = `640 480`: size: 640 x 480: expected 320 180, 640 360",
-        ),
-        (
-            MODEL,
-            "size = [\"640 360\"]",
-            "size: `[\"640 360\"]`: expected a text, a number, true or false",
-        ),
-        (MODEL, "size = \"\"", "expected a text, a number"),
-        (
-            MODEL,
-            "shading = \"gouraud\"",
-            "shading = `gouraud`: shading: flat|smooth is \"gouraud\" (column 9): expected flat or smooth",
-        ),
-        (MODEL, "cull = 2020-01-01", "cull: `2020-01-01`: expected"),
-        (
-            MODEL,
-            "cull = \"on ü\"",
-            "expected at most 640 visible ASCII",
-        ),
-        (
-            MODEL,
-            "fog = 0.1",
-            "line 4: fog: expected only beside field",
-        ),
-        (
-            MODEL,
-            "light = [\"camera\", \"1,2,3\"]",
-            "expected one light on meshes",
-        ),
-        (
-            MODEL,
-            "light = [[\"camera\"]]",
-            "light: `[\"camera\"]`: expected",
-        ),
-        (
-            MODEL,
-            "object = \"cube\"",
-            "line 2: model: expected only without object, found it in line 4",
-        ),
-        (
-            MODEL,
-            "lookat = \"1 1 1 0 0 0\"",
-            "camera: expected only without lookat",
-        ),
-        (
-            MODEL,
-            "lanes = 2",
-            "lanes: `2`: expected the key only beside field",
-        ),
-        (
-            MODEL,
-            "steer = \"buttons\"",
-            "expected buttons only beside program",
-        ),
-        (
-            MODEL,
-            "steer = \"imu off\"",
-            "steer: `\"imu off\"`: expected fixed, buttons, orbit FRAMES",
-        ),
-        (
-            MODEL,
-            "clock = -1",
-            "clock: `-1`: expected a number above 0",
-        ),
-        (MODEL, "clock = 1e999", "expected a number above 0"),
-        (
-            MODEL,
-            "[budget]\nluts = 3",
-            "line 5: budget: `luts`: expected one of lut, ff",
-        ),
-        (
-            MODEL,
-            "[budget]\nlut = \"3\"",
-            "budget.lut: `\"3\"`: expected a number above 0",
-        ),
-        (FIELD, "lanes = 3", "lanes: `3`: expected 1, 2 or 4"),
-        (FIELD, "fog = 16", "fog = `16`: fog: off|DENSITY is \"16\""),
-        (
-            FIELD,
-            "orthographic = 2",
-            "orthographic: expected only beside model or object",
+            r#"
+            sise = "640 360" → line 4: `sise`: expected a key, one of title, steer
+            model = "cube" → line 4: duplicate key
+            quality = "best" → line 4: quality = `best`: quality: fast|balanced|exact is "best" (column 9): expected fast or balanced or exact
+            quality = 1 → quality = `1`: quality: fast|balanced|exact is "1"
+            size = "640 480" → line 4: size = `640 480`: size: 640 x 480: expected 320 180, 640 360
+            size = ["640 360"] → size: `["640 360"]`: expected a text, a number, true or false
+            size = "" → expected a text, a number
+            shading = "gouraud" → shading = `gouraud`: shading: flat|smooth is "gouraud" (column 9): expected flat or smooth
+            cull = 2020-01-01 → cull: `2020-01-01`: expected
+            cull = "on ü" → expected at most 640 visible ASCII
+            fog = 0.1 → line 4: fog: expected only beside field
+            light = ["camera", "1,2,3"] → expected one light on meshes
+            light = [["camera"]] → light: `["camera"]`: expected
+            object = "cube" → line 2: model: expected only without object, found it in line 4
+            lookat = "1 1 1 0 0 0" → camera: expected only without lookat
+            lanes = 2 → lanes: `2`: expected the key only beside field
+            steer = "buttons" → expected buttons only beside program
+            steer = "imu off" → steer: `"imu off"`: expected fixed, buttons, orbit FRAMES
+            clock = -1 → clock: `-1`: expected a number above 0
+            clock = 1e999 → expected a number above 0
+            [budget]; luts = 3 → line 5: budget: `luts`: expected one of lut, ff
+            [budget]; lut = "3" → budget.lut: `"3"`: expected a number above 0
+            orthographic = 2; stereo = "0.1,4" → stereo: expected only without orthographic, found it in line 4
+        "#,
         ),
         (
             FIELD,
-            "edges = \"over\"",
-            "edges: expected only beside model",
-        ),
-        (
-            MODEL,
-            "orthographic = 2\nstereo = \"0.1,4\"",
-            "stereo: expected only without orthographic, found it in line 4",
-        ),
-        (
-            PROGRAM,
-            "stereo = \"0.1,4\"",
-            "stereo: expected only beside model or object or field",
+            r#"
+            lanes = 3 → lanes: `3`: expected 1, 2 or 4
+            fog = 16 → fog = `16`: fog: off|DENSITY is "16"
+            orthographic = 2 → orthographic: expected only beside model or object
+            edges = "over" → edges: expected only beside model
+            depth = "on" → depth: `"on"`: expected true or false
+        "#,
         ),
         (
             PROGRAM,
-            "camera = \"3 30 60\"",
-            "camera: expected only beside model or object or field",
+            r#"
+            stereo = "0.1,4" → stereo: expected only beside model or object or field
+            camera = "3 30 60" → camera: expected only beside model or object or field
+            steer = "gesture on" → expected fixed or buttons beside program
+        "#,
         ),
-        (
-            PROGRAM,
-            "steer = \"gesture on\"",
-            "expected fixed or buttons beside program",
-        ),
-        (
-            "",
-            "title = \"a\"\nprogram = \"gear\"",
-            "expected `cube`, the built-in program",
-        ),
-        (
-            FIELD,
-            "depth = \"on\"",
-            "depth: `\"on\"`: expected true or false",
-        ),
-        (
-            "",
-            "title = \"a\"\nscenes = []",
-            "scenes: `[]`: expected at least one scene",
-        ),
-        (
-            "",
-            "title = \"a\"\nscenes = [\"demo\"]",
-            "scenes: `demo`: expected one of cubes",
-        ),
-        (
-            "",
-            "title = \"a\"\nscenes = [\"cubes\"]\nfog = 1",
-            "fog: `1`: expected no such key beside scenes",
-        ),
-    ] {
-        let error = parse(&format!("{start}{text}")).unwrap_err();
-        assert!(
-            error.starts_with("a.toml: ") && error.contains(expected),
-            "{text}: {error}"
-        );
-        assert!(!error.contains('\n'), "{error:?}");
+    ];
+    for (start, table) in cases {
+        for (text, expected) in rows(table) {
+            let error = parse(&format!("{start}{text}")).unwrap_err();
+            assert!(
+                error.starts_with("a.toml: ") && error.contains(expected),
+                "{text}: {error}"
+            );
+            assert!(!error.contains('\n'), "{error:?}");
+        }
     }
 }
 
 #[test]
 fn needs_follow_from_the_keys() {
     let options = |text: &str| with_camera(text).needs().options().join(" ");
-    for (text, expected) in [
-        ("model = \"cube\"", "--blocks scanout triangle"),
-        ("model = \"cube\"\nbackend = \"cpu\"", "--blocks scanout"),
-        (
-            "model = \"cube\"\nshading = \"smooth\"",
-            "--blocks scanout triangle --smooth",
-        ),
-        (
-            "model = \"cube\"\nedges = \"over\"",
-            "--blocks scanout triangle line",
-        ),
-        (
-            "model = \"cube\"\nsteer = \"gesture vga\"",
-            "--blocks scanout triangle gesture",
-        ),
-        (
-            "field = \"menger:3\"",
-            "--blocks scanout raymarch --no-depths --fields menger:3 --lanes 2",
-        ),
-        (
-            "field = \"sphere:1\"\nlanes = 1",
-            "--blocks scanout raymarch --no-depths --fields spheres --lanes 1",
-        ),
-        (
-            "field = \"menger:3\"\ndepth = true",
-            "--blocks scanout raymarch --fields menger:3 --lanes 2",
-        ),
-        (
-            "field = \"planes:4\"\nprepass = true",
-            "--blocks scanout raymarch --no-depths --fields box,prepass --lanes 2",
-        ),
-        (
-            "field = \"octahedron:1\"\nstereo = \"0.1,4\"",
-            "--blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2",
-        ),
-        (
-            "model = \"cube\"\nstereo = \"0.1,4\"",
-            "--blocks scanout triangle",
-        ),
-        (
-            "model = \"cube\"\nfield = \"octahedron:1\"\nstereo = \"0.1,4\"",
-            "--blocks scanout triangle raymarch --fields octahedron --lanes 2",
-        ),
-        (
-            "field = \"union:menger:3+sphere:1\"",
-            "--blocks scanout raymarch --no-depths --fields menger:3,spheres --lanes 2",
-        ),
-        (
-            "field = \"smooth:0.3,box:1,1,0.2+sphere:1\"",
-            "--blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2",
-        ),
-        (
-            "field = \"menger:2\"\nmodel = \"cube\"",
-            "--blocks scanout triangle raymarch --fields menger:2 --lanes 2",
-        ),
-    ] {
-        assert_eq!(options(text), expected, "{text}");
+    let table = r#"
+        model = "cube" → --blocks scanout triangle
+        model = "cube"; backend = "cpu" → --blocks scanout
+        model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth
+        model = "cube"; edges = "over" → --blocks scanout triangle line
+        model = "cube"; steer = "gesture vga" → --blocks scanout triangle gesture
+        field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
+        field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres --lanes 1
+        field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
+        field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box,prepass --lanes 2
+        field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2
+        model = "cube"; stereo = "0.1,4" → --blocks scanout triangle
+        model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --fields octahedron --lanes 2
+        field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres --lanes 2
+        field = "smooth:0.3,box:1,1,0.2+sphere:1" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
+        field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --fields menger:2 --lanes 2
+    "#;
+    for (text, expected) in rows(table) {
+        assert_eq!(options(&text), expected, "{text}");
     }
 }
 
@@ -389,26 +252,21 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         let names = needs.features.iter().map(|feature| feature.name);
         names.collect::<Vec<_>>().join(" ")
     };
-    for (text, expected) in [
-        ("model = \"torus\"", "mesh"),
-        ("model = \"cow.obj\"", "mesh upload"),
-        ("model = \"torus\"\nbackend = \"cpu\"", "cpu mesh"),
-        ("model = \"torus\"\nclip = 3", "cpu mesh"),
-        ("model = \"torus\"\nedges = \"over\"", "edges mesh"),
-        ("object = \"torus\"\nlight = \"1,1,1\"", "light mesh object"),
-        ("model = \"torus\"\nsteer = \"gesture on\"", "gesture mesh"),
-        ("field = \"menger:3\"\nsteer = \"imu orbit\"", "field imu"),
-        (
-            "field = \"menger:2\"\nmodel = \"torus\"",
-            "field mesh mesh-in-field",
-        ),
-        ("field = \"menger:2\"\nstereo = \"0.1,4\"", "field stereo"),
-        (
-            "field = \"union:box:1,1,1+sphere:1\"\nfog = 0.1\nprepass = true",
-            "field fog prepass spheres",
-        ),
-    ] {
-        assert_eq!(features(text), expected, "{text}");
+    let table = r#"
+        model = "torus" → mesh
+        model = "cow.obj" → mesh upload
+        model = "torus"; backend = "cpu" → cpu mesh
+        model = "torus"; clip = 3 → cpu mesh
+        model = "torus"; edges = "over" → edges mesh
+        object = "torus"; light = "1,1,1" → light mesh object
+        model = "torus"; steer = "gesture on" → gesture mesh
+        field = "menger:3"; steer = "imu orbit" → field imu
+        field = "menger:2"; model = "torus" → field mesh mesh-in-field
+        field = "menger:2"; stereo = "0.1,4" → field stereo
+        field = "union:box:1,1,1+sphere:1"; fog = 0.1; prepass = true → field fog prepass spheres
+    "#;
+    for (text, expected) in rows(table) {
+        assert_eq!(features(&text), expected, "{text}");
     }
 }
 

@@ -215,32 +215,16 @@ mod tests {
         ] {
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);
         }
-        for (row, message) in [
-            (
-                "1,2,3,4,5,6",
-                "line 3: expected 7 columns as in the header, found 6",
-            ),
-            (
-                "1,2,3,4,5,6,7,8",
-                "line 3: expected 7 columns as in the header, found 8",
-            ),
-            (
-                "1,2,3,4,5,6,32768",
-                "line 3, column gz: expected a whole number from -32768 to 32767, found '32768'",
-            ),
-            (
-                "1,2,,4,5,6,7",
-                "line 3, column ay: expected a whole number from -32768 to 32767, found ''",
-            ),
-            (
-                "1,2,3,4,5.5,6,7",
-                "line 3, column gx: expected a whole number from -32768 to 32767, found '5.5'",
-            ),
-            (
-                "-1,2,3,4,5,6,7",
-                "line 3, column t_us: expected a whole number of microseconds, found '-1'",
-            ),
-        ] {
+        let rows = "
+            1,2,3,4,5,6 → line 3: expected 7 columns as in the header, found 6
+            1,2,3,4,5,6,7,8 → line 3: expected 7 columns as in the header, found 8
+            1,2,3,4,5,6,32768 → line 3, column gz: expected a whole number from -32768 to 32767, found '32768'
+            1,2,,4,5,6,7 → line 3, column ay: expected a whole number from -32768 to 32767, found ''
+            1,2,3,4,5.5,6,7 → line 3, column gx: expected a whole number from -32768 to 32767, found '5.5'
+            -1,2,3,4,5,6,7 → line 3, column t_us: expected a whole number of microseconds, found '-1'
+        ";
+        for row in rows.lines().filter_map(|row| row.split_once('→')) {
+            let (row, message) = (row.0.trim(), row.1.trim());
             let text = format!("{header}0,0,0,0,0,0,0\n{row}\n");
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);
         }

@@ -398,57 +398,30 @@ mod tests {
 
     #[test]
     fn errors_name_their_place() {
-        let cases = [
-            ("", "expected at least one face, found none"),
-            ("v 0 0 0\n", "expected at least one face, found none"),
-            (
-                "v 0 0\n",
-                "line 1: expected three numbers of a vertex, found 2",
-            ),
-            (
-                "\nv 0 nan 0\n",
-                "line 2: expected a number within ±1e30, found 'nan'",
-            ),
-            (
-                "v 1e300 0 0\n",
-                "line 1: expected a number within ±1e30, found '1e300'",
-            ),
-            (
-                "f 0 1 2\n",
-                "line 1: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '0'",
-            ),
-            (
-                "v 0 0 0\nf 1 1 9\n",
-                "line 2: expected a point index below 1, found 8 (counted from 0)",
-            ),
-            (
-                "v 0 0 0\nf 1 1 -2\n",
-                "line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '-2'",
-            ),
-            (
-                "v 0 0 0\nf 1 1 99999999999999999999\n",
-                "line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '99999999999999999999'",
-            ),
-            (
-                "v 0 0 0\nf 1 1\n",
-                "line 2: expected a face of 3 to 8192 corners, found 2",
-            ),
-            (
-                "v 0 0 0\nf 1//1 1//1 1//1\n",
-                "line 2: expected a normal index below 0, found 0 (counted from 0)",
-            ),
-            (
-                "v 0 0 0 1 2\n",
-                "line 1: expected three colour components, found 2",
-            ),
-            (
-                "\x7fELF\0\n",
-                "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'",
-            ),
-        ];
-        for (text, message) in cases {
-            assert_eq!(error(text), message, "{text:?}");
+        // The lines of a file, with `;` between them, and the error.
+        let cases = "
+            v 0 0 0 → expected at least one face, found none
+            v 0 0 → line 1: expected three numbers of a vertex, found 2
+            ; v 0 nan 0 → line 2: expected a number within ±1e30, found 'nan'
+            v 1e300 0 0 → line 1: expected a number within ±1e30, found '1e300'
+            f 0 1 2 → line 1: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '0'
+            v 0 0 0; f 1 1 9 → line 2: expected a point index below 1, found 8 (counted from 0)
+            v 0 0 0; f 1 1 -2 → line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '-2'
+            v 0 0 0; f 1 1 99999999999999999999 → line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '99999999999999999999'
+            v 0 0 0; f 1 1 → line 2: expected a face of 3 to 8192 corners, found 2
+            v 0 0 0; f 1//1 1//1 1//1 → line 2: expected a normal index below 0, found 0 (counted from 0)
+            v 0 0 0 1 2 → line 1: expected three colour components, found 2
+        ";
+        for case in cases.lines().filter(|case| case.contains('→')) {
+            let (text, message) = case.split_once('→').unwrap();
+            let text = text.trim().replace("; ", "\n") + "\n";
+            assert_eq!(error(&text), message.trim(), "{text:?}");
         }
+        assert_eq!(error(""), "expected at least one face, found none");
+        assert_eq!(
+            error("\x7fELF\0\n"),
+            "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'"
+        );
         assert_eq!(
             error(&format!("v {}\n", " ".repeat(1 << 20))),
             "line 1: expected a line of at most 65536 bytes, found a longer one"
