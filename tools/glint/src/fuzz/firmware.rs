@@ -1,10 +1,10 @@
 //! The fuzz target of the whole firmware on the emulated board: arbitrary bytes on its serial line.
 
-use super::transfer::{SESSION, upload_data};
-use crate::board::{self, Board, BoardError, EmulatedBoard, SimulatedBoard, built_firmware};
+use super::transfer::{SESSION, exchange, upload_data};
+use crate::board::{self, Board, EmulatedBoard, SimulatedBoard, built_firmware};
 use crate::console::Console;
-use crate::transfer::upload;
 use glint_core::console::PROMPT;
+use glint_core::wire::crc32;
 use std::sync::LazyLock;
 
 /// Silence in ms of the board's time after which the board has processed an input.
@@ -19,17 +19,13 @@ const LENGTHS: [usize; 2] = [16, 1500];
 static FIRMWARE: LazyLock<Vec<u8>> =
     LazyLock::new(|| built_firmware(None).expect("`cargo xtask firmware` has built the firmware"));
 
-/// The bytes that the host sends in complete uploads.
+/// The bytes that the host sends in whole uploads. The data are not a mesh, so the firmware refuses them after the transfer.
 pub fn seeds() -> Vec<Vec<u8>> {
     let uploads = LENGTHS.map(|length| {
-        let mut line = Recorded {
-            board: start(),
-            written: Vec::new(),
-        };
-        // The data are not a mesh, so the firmware rejects them after the transfer.
-        let console = &mut Console::new(&mut line);
-        let _ = upload(console, &upload_data(length), None, SESSION, &mut |_, _| {});
-        line.written
+        let data = upload_data(length);
+        let command = format!("\0load {length} {:08x}\r", crc32(&data));
+        let [sent, _] = exchange(&data, SESSION);
+        [command.into_bytes(), sent].concat()
     });
     uploads.into()
 }
@@ -71,25 +67,4 @@ fn start() -> SimulatedBoard<EmulatedBoard> {
             .expect("an emulated board has no broken line");
     }
     board
-}
-
-/// A board that records the bytes written to it.
-struct Recorded {
-    board: SimulatedBoard<EmulatedBoard>,
-    written: Vec<u8>,
-}
-
-impl Board for Recorded {
-    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
-        self.written.extend_from_slice(bytes);
-        self.board.write(bytes)
-    }
-
-    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-        self.board.read(bytes, wait_ms)
-    }
-
-    fn now_ms(&self) -> u64 {
-        self.board.now_ms()
-    }
 }

@@ -1,25 +1,8 @@
 //! Tokens and lengths of glTF files.
 
 /// Keywords of the JSON, and the type of the binary chunk.
-pub const WORDS: &[&str] = &[
-    "mode",
-    "mesh",
-    "children",
-    "count",
-    "byteOffset",
-    "byteStride",
-    "byteLength",
-    "indices",
-    "bufferView",
-    "5121",
-    "5123",
-    "5125",
-    "5126",
-    "VEC3",
-    "sparse",
-    "uri",
-    "BIN\0",
-];
+pub const WORDS: &str = "mode mesh children count byteOffset byteStride byteLength indices bufferView 5121 5123 5125 5126 VEC3 sparse \
+                         uri BIN\0";
 
 /// Corrects the lengths in the header of a binary glTF file and in its two chunks.
 pub fn repair(input: &mut [u8]) {

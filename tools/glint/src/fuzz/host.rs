@@ -13,23 +13,7 @@ use glint_core::calibration::Units;
 use glint_core::orientation::log::{self as image, HEADER_BYTES};
 
 /// Keywords of a board's output.
-pub const WORDS: &[&str] = &[
-    "ok\r\n",
-    "ready\r\n",
-    "present\r\n",
-    "error: ",
-    "glint> ",
-    "mask",
-    "samples",
-    "cycles",
-    "backend",
-    "rays",
-    "0x",
-    "K",
-    "\r\n",
-    "\x1b[",
-    "\x1e\n",
-];
+pub const WORDS: &str = "ok\r\n ready\r\n present\r\n error: glint> mask samples cycles backend rays 0x K \r\n \x1b[ \x1e\n";
 
 /// Size in bytes of the uploaded and downloaded data.
 const LENGTH: usize = 100;

@@ -12,7 +12,7 @@ mod targets;
 mod transfer;
 
 pub use mutate::{MAX_INPUT, Random};
-pub use targets::{Target, Verdict};
+pub use targets::Target;
 
 use mutate::mutate;
 
@@ -21,6 +21,7 @@ pub struct Inputs {
     target: Target,
     seed: u64,
     corpus: Vec<Vec<u8>>,
+    words: Vec<&'static str>,
 }
 
 impl Inputs {
@@ -30,13 +31,14 @@ impl Inputs {
             target,
             seed,
             corpus: corpus::of(target),
+            words: target.words(),
         }
     }
 
     /// The input `number`, with at most [`MAX_INPUT`] bytes.
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
-        let mut input = mutate(&self.corpus, self.target.words(), &mut random);
+        let mut input = mutate(&self.corpus, &self.words, &mut random);
         // Without a correct checksum nearly every mutation is rejected, so half of the inputs get one.
         if random.below(2) == 0 {
             self.target.repair(&mut input);
@@ -45,8 +47,8 @@ impl Inputs {
         input
     }
 
-    /// Runs the target on the input `number`. The caller catches panics.
-    pub fn run(&self, number: u64) -> Verdict {
+    /// Runs the target on the input with a number, and returns whether it has accepted the input. The caller catches panics.
+    pub fn run(&self, number: u64) -> bool {
         self.target.run(&self.input(number))
     }
 }

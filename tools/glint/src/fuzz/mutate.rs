@@ -34,32 +34,13 @@ impl Random {
 }
 
 /// Texts of numbers near the limits of types, infinity and NaN.
-const WORDS: [&str; 20] = [
-    "0",
-    "1",
-    "-1",
-    "2",
-    "255",
-    "256",
-    "65535",
-    "65536",
-    "2147483647",
-    "2147483648",
-    "4294967295",
-    "4294967296",
-    "-2147483649",
-    "9223372036854775808",
-    "nan",
-    "inf",
-    "1e300",
-    "-1e-320",
-    "1e30",
-    "0.5",
-];
+const WORDS: &str = "0 1 -1 2 255 256 65535 65536 2147483647 2147483648 4294967295 4294967296 -2147483649 9223372036854775808 nan inf \
+                     1e300 -1e-320 1e30 0.5";
 const BYTES: [u8; 10] = [0, 1, 0x0a, 0x0d, 0x1b, 0x20, 0x7f, 0x80, 0xfe, 0xff];
 
 /// Returns a random seed of the corpus with one to eight mutations.
 pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8> {
+    let numbers: Vec<&str> = WORDS.split(' ').collect();
     let mut input = random.pick(corpus).cloned().unwrap_or_default();
     for _ in 0..=random.below(8) {
         match random.below(12) {
@@ -77,7 +58,7 @@ pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8
             4 => replace_range(&mut input, random, |_, random| {
                 random.next().to_le_bytes().to_vec()
             }),
-            5 | 6 => replace_word(&mut input, random, &WORDS),
+            5 | 6 => replace_word(&mut input, random, &numbers),
             7 | 8 => replace_word(&mut input, random, words),
             9 => change_byte(&mut input, random, |_, random| {
                 random.pick(&BYTES).copied().unwrap_or(0)

@@ -5,6 +5,8 @@ use crate::convert::{self, Options};
 use crate::formats::{glm, gltf, obj, ply, stl};
 use crate::imu::{log, replay};
 use crate::polygons::Polygons;
+use crate::render::{self, Frame, Subject};
+use crate::view;
 use crate::wireframe::{self, Form};
 use clap::ValueEnum;
 use glint_core::calibration::Units;
@@ -51,97 +53,28 @@ pub enum Target {
     Firmware,
 }
 
-/// Result of a target on an input.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The target accepted the complete input.
-    Accepted,
-    /// The target rejected the input.
-    Rejected,
-}
-
 impl Target {
-    /// Every target.
-    pub const ALL: [Self; 15] = [
-        Self::Upload,
-        Self::Console,
-        Self::Obj,
-        Self::Stl,
-        Self::Ply,
-        Self::Gltf,
-        Self::Glm,
-        Self::Imu,
-        Self::Replay,
-        Self::WireframeText,
-        Self::WireframeWords,
-        Self::Scene,
-        Self::Flash,
-        Self::Host,
-        Self::Firmware,
-    ];
-
     /// Keywords of the target's format that the mutator inserts.
-    pub fn words(self) -> &'static [&'static str] {
-        match self {
-            Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => &[],
-            Self::Flash => &["scene", "field", "menger:4", "torus", "lamp", "start", "\n"],
-            Self::Console | Self::Firmware => &[
-                "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
-                "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
-            ],
-            Self::Imu => &[
-                "t_us", "ax", "ay", "az", "gx", "gy", "gz", "temp", ",", "32767", "-32768", "32768",
-            ],
-            Self::WireframeText => &[
-                "eye", "plane", "window", "segment", "end", "#", "\n", "-16", "15.9995", "16",
-                "0x0800",
-            ],
-            Self::Scene => &[
-                "= ",
-                "= true\n",
-                "[budget]\n",
-                "\"",
-                "[",
-                "]",
-                "field",
-                "menger:4",
-                "light",
-                "steer",
-                "scenes",
-                "\n",
-            ],
-            Self::Obj => &[
-                "v", "vn", "vt", "f", "usemtl", "mtllib", "newmtl", "Kd", "#", "\\\n", "1//1",
-                "1/1/1",
-            ],
-            Self::Stl => &[
-                "solid", "facet", "normal", "outer", "loop", "vertex", "endloop", "endfacet",
-                "endsolid", "COLOR=",
-            ],
+    pub fn words(self) -> Vec<&'static str> {
+        let words = match self {
+            Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => return Vec::new(),
+            Self::Flash => "scene field menger:4 torus lamp start \n",
+            Self::Console | Self::Firmware => {
+                "help view camera field box: spheres: union: stereo load size on off depth json 0x 1e5 \r \x1b["
+            }
+            Self::Imu => "t_us ax ay az gx gy gz temp , 32767 -32768 32768",
+            Self::WireframeText => "eye plane window segment end # \n -16 15.9995 16 0x0800",
+            Self::Scene => "= true\n [budget]\n \" [ ] field menger:4 light steer scenes \n",
+            Self::Obj => "v vn vt f usemtl mtllib newmtl Kd # \\\n 1//1 1/1/1",
+            Self::Stl => "solid facet normal outer loop vertex endloop endfacet endsolid COLOR=",
             Self::Gltf => super::gltf::WORDS,
             Self::Host => host::WORDS,
-            Self::Ply => &[
-                "element",
-                "property",
-                "list",
-                "vertex",
-                "face",
-                "uchar",
-                "int8",
-                "ushort",
-                "int",
-                "uint",
-                "float",
-                "double",
-                "format",
-                "ascii",
-                "binary_little_endian",
-                "binary_big_endian",
-                "end_header",
-                "vertex_indices",
-                "red",
-            ],
-        }
+            Self::Ply => {
+                "element property list vertex face uchar int8 ushort int uint float double format ascii \
+                 binary_little_endian binary_big_endian end_header vertex_indices red"
+            }
+        };
+        words.split(' ').collect()
     }
 
     /// Corrects the checksums and lengths in the input. With wrong values the parser would reject nearly every mutation.
@@ -191,49 +124,42 @@ impl Target {
         }
     }
 
-    /// Runs the target. A panic is a bug.
-    pub fn run(self, input: &[u8]) -> Verdict {
+    /// Runs the target, and returns whether it has accepted the input to its end. A panic is a bug.
+    pub fn run(self, input: &[u8]) -> bool {
         match self {
-            Self::Upload => verdict(transfer::run(input)),
-            Self::Host => verdict(host::run(input)),
+            Self::Upload => transfer::run(input),
+            Self::Host => host::run(input),
             Self::Console => run_console(input),
             // An OBJ or glTF file also serves as each additional file that it names.
             Self::Obj => run_mesh(obj::parse(input, &mut |_| Some(input.to_vec()))),
             Self::Gltf => run_mesh(gltf::parse(input, &mut |_| Some(input.to_vec()))),
             Self::Stl => run_mesh(stl::parse(input)),
             Self::Ply => run_mesh(ply::parse(input)),
-            Self::Glm => glm::parse(input).map_or(Verdict::Rejected, |polygons| {
+            Self::Glm => glm::parse(input).is_ok_and(|polygons| {
                 run_conversion(&polygons);
                 run_model(input);
-                Verdict::Accepted
+                true
             }),
-            Self::Imu => log::parse(input).map_or(Verdict::Rejected, |log| {
+            Self::Imu => log::parse(input).is_ok_and(|log| {
                 run_replay(&log.entries);
-                Verdict::Accepted
+                true
             }),
             Self::Replay => run_image(input),
             Self::WireframeText => run_program(Form::Text, input),
             Self::WireframeWords => run_program(Form::Binary, input),
             Self::Scene => run_scene(input),
-            Self::Flash => verdict(flash::run(input)),
-            Self::Firmware => verdict(firmware::run(input)),
+            Self::Flash => flash::run(input),
+            Self::Firmware => firmware::run(input),
         }
     }
 }
 
-fn verdict(accepted: bool) -> Verdict {
-    match accepted {
-        true => Verdict::Accepted,
-        false => Verdict::Rejected,
-    }
-}
-
-fn run_mesh<E>(parsed: Result<Polygons, E>) -> Verdict {
-    parsed.map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
+fn run_mesh<E>(parsed: Result<Polygons, E>) -> bool {
+    parsed.is_ok_and(|polygons| run_conversion(&polygons))
 }
 
 /// Converts parsed polygons to a mesh, and checks that the mesh is valid.
-fn run_conversion(polygons: &Polygons) -> Verdict {
+fn run_conversion(polygons: &Polygons) -> bool {
     // A conversion without scaling may fail because of coordinates out of range, but must not panic.
     let keep_scale = Options {
         keep_scale: true,
@@ -252,9 +178,9 @@ fn run_conversion(polygons: &Polygons) -> Verdict {
                 glm::check_file(&mesh).is_ok(),
                 "a conversion gives a valid mesh"
             );
-            Verdict::Accepted
+            true
         }
-        Err(_) => Verdict::Rejected,
+        Err(_) => false,
     }
 }
 
@@ -283,21 +209,21 @@ fn run_replay(entries: &[log::Entry]) {
 }
 
 /// Parses a scene file. Every line of an accepted file must be a command.
-fn run_scene(input: &[u8]) -> Verdict {
+fn run_scene(input: &[u8]) -> bool {
     let scene = std::str::from_utf8(input).ok();
     match scene.and_then(|text| SceneFile::parse("scene", "scene.toml", text).ok()) {
         Some(scene) => {
             let is_command = |line: &str| matches!(Command::parse(line), Ok(Some(_)));
             assert!(scene.lines().all(is_command), "every line is a command");
             assert!(!scene.needs().options().is_empty());
-            Verdict::Accepted
+            true
         }
-        None => Verdict::Rejected,
+        None => false,
     }
 }
 
 /// Replays a log in a board's format. The attitudes of an accepted log must have length 1.
-fn run_image(input: &[u8]) -> Verdict {
+fn run_image(input: &[u8]) -> bool {
     let mut image = input.to_vec();
     match image::replay(&mut image) {
         Ok(counts) => {
@@ -307,25 +233,25 @@ fn run_image(input: &[u8]) -> Verdict {
                 records.all(|record| image::attitude(image::from_bytes(record)).is_some()),
                 "every attitude has length 1"
             );
-            Verdict::Accepted
+            true
         }
         Err(error) => {
             assert!(!error.to_string().contains('\n'));
             assert_eq!(image, input, "a rejected log stays unchanged");
-            Verdict::Rejected
+            false
         }
     }
 }
 
 /// Parses a program, and transforms and projects its segments.
-fn run_program(form: Form, input: &[u8]) -> Verdict {
+fn run_program(form: Form, input: &[u8]) -> bool {
     let Ok(bytes) = wireframe::parse(form, input.to_vec()) else {
-        return Verdict::Rejected;
+        return false;
     };
     let program = wireframe::check(&bytes);
     assert!(program.is_ok(), "a parsed program is valid");
     let Ok(program) = program else {
-        return Verdict::Rejected;
+        return false;
     };
     let mut motion = Motion::default();
     for (number, key) in Key::ALL.into_iter().cycle().take(20).enumerate() {
@@ -349,46 +275,22 @@ fn run_program(form: Form, input: &[u8]) -> Verdict {
             );
         }
     }
-    Verdict::Accepted
+    true
 }
 
 /// Renders a mesh if it is valid.
 fn run_model(mesh: &[u8]) {
-    let (Ok(mesh_view), Ok(view)) = (glm::check(mesh), crate::view::spherical("2,30,60")) else {
-        return;
-    };
-    let vertices = mesh_view
-        .chunks()
-        .map(|chunk| chunk.vertex_count())
-        .max()
-        .unwrap_or(0);
-    let mut scratch = vec![glint_model::Projected::Behind; vertices];
-    let (width, height) = glint_model::SIZES[0];
-    let pixels = (width * height) as usize;
-    let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
-    let mut target = glint_model::FrameBuffer {
-        width,
-        height,
-        colour: &mut colour,
-        depth: &mut depth,
-    };
-    let rendered = glint_model::triangle::render(
-        &mesh_view,
-        &view,
-        &mut target,
-        &mut scratch,
-        &glint_model::Options::default(),
-    );
-    assert!(
-        rendered.is_ok(),
-        "a checked mesh and a checked camera are rendered"
-    );
+    if let (Ok(mesh), Ok(view)) = (glm::check(mesh), view::spherical("2,30,60")) {
+        let frame = Frame::new(Subject::mesh(mesh), view, Size::W320);
+        let rendered = render::on_model(&frame);
+        assert!(rendered.is_ok(), "a checked mesh is rendered");
+    }
 }
 
-fn run_console(input: &[u8]) -> Verdict {
+fn run_console(input: &[u8]) -> bool {
     let mut editor = LineEditor::new();
     let (mut echo, mut text) = (String::new(), String::new());
-    let mut verdict = Verdict::Rejected;
+    let mut accepted = false;
     for &byte in input {
         if let Event::Line(line) = editor.on_byte(byte, &mut echo) {
             use std::fmt::Write;
@@ -397,7 +299,7 @@ fn run_console(input: &[u8]) -> Verdict {
                     // Writing to a string cannot fail.
                     let _ = write_help(&mut text, command);
                 }
-                Ok(_) => verdict = Verdict::Accepted,
+                Ok(_) => accepted = true,
                 Err(error) => {
                     let _ = write!(text, "{error}");
                     assert!(
@@ -414,5 +316,5 @@ fn run_console(input: &[u8]) -> Verdict {
         );
         echo.clear();
     }
-    verdict
+    accepted
 }
