@@ -1,5 +1,6 @@
 //! `glint demo`: a demonstration of the whole system.
 
+use super::camera::turn;
 use super::convert::load;
 use super::messages::say;
 use super::output::{Output, PICTURE};
@@ -12,7 +13,8 @@ use glint::flash;
 use glint::model::Model;
 use glint::picture::{Image, write_animation};
 use glint::render::{
-    self, BoardRenderer, FieldSubject, Frame, Route, Stats, Subject, size_command, view_command,
+    BoardRenderer, FieldSubject, Frame, Parts, Rendered, Route, Stats, Subject, on_model,
+    size_command,
 };
 use glint::scene::{self, Changes};
 use glint::view;
@@ -83,28 +85,24 @@ impl DemoArguments {
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("{}: cannot be created", self.out.display()))?;
         check_folder(&self.out)?;
-        let names: Vec<String> = if self.models.is_empty() {
-            MODELS.map(str::to_owned).to_vec()
-        } else {
-            self.models.clone()
+        let names = match &self.models[..] {
+            [] => MODELS.to_vec(),
+            names => names.iter().map(String::as_str).collect(),
         };
-        let models = names
-            .iter()
-            .map(|name| Ok((name.as_str(), load(name, false)?)))
-            .collect::<anyhow::Result<Vec<_>>>()?;
+        let models = names.into_iter().map(|name| Ok((name, load(name, false)?)));
+        let models = models.collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
 
         // The two boards run in parallel: the simulation of a board uses one CPU core, and most hosts have at least two.
         let (first, others) = models.split_first().context("no model")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
-            let mut rows = vec![self.first_board(first, &firmware)?];
-            let waiting = spinner("waiting for the second board");
-            let (others, lines) = second
-                .join()
-                .map_err(|_| anyhow::anyhow!("the second board's thread panicked"))??;
-            waiting.finish();
-            rows.extend(others);
+            let first = self.first_board(first, &firmware)?;
+            let _waiting = spinner("waiting for the second board");
+            let second = second.join();
+            let (mut rows, lines) =
+                second.map_err(|_| anyhow::anyhow!("the second board's thread panicked"))??;
+            rows.push(first);
             anyhow::Ok((rows, lines))
         })?;
         rows.sort_by_key(|row| row.number);
@@ -116,19 +114,22 @@ impl DemoArguments {
     /// the soft core draws the same picture, for a comparison of the cycles.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = board::verilated_bios()?;
-        let mut renderer =
-            BoardRenderer::new(boot(&mut board, firmware)?).with_backend(Backend::Gateware);
-        let mut row = self.show(&mut renderer, model, 0, Route::Serial)?;
-        let waiting = spinner("the soft core draws the same frame");
+        let console = boot(&mut board, firmware)?;
+        let bar = bar(model.0);
+        let mut renderer = BoardRenderer::new(console)
+            .with_backend(Backend::Gateware)
+            .with_progress(advance(&bar));
+        let mut row = self.show(&mut renderer, model, 0)?;
+        bar.finish();
+        let _waiting = spinner("the soft core draws the same frame");
         renderer.console().command("backend cpu")?;
         row.cpu_cycles = renderer.look(&camera(azimuth(0))?)?.cycles;
-        waiting.finish();
         Ok(row)
     }
 
-    /// Runs the second board, which starts with the firmware in its memory. It draws `models`, which are uploaded to its memory,
-    /// then animates an orbit around the last model (`first` if there is no other) and a flight to the sponge, and draws the
-    /// built-in scenes.
+    /// Runs the second board, which starts with the firmware in its memory. It shows `models`, uploaded through its memory, then
+    /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge, and shows the built-in
+    /// scenes. The other board, in its thread, shows the progress.
     fn second_board(
         &self,
         first: &Named,
@@ -138,30 +139,30 @@ impl DemoArguments {
         let mut board = board::verilated(firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
-        let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
+        let mut renderer = BoardRenderer::new(console)
+            .with_backend(Backend::Gateware)
+            .with_route(Route::Memory);
         let mut rows = Vec::new();
         for (number, model) in (1..).zip(models) {
-            rows.push(self.show(&mut renderer, model, number, Route::Memory)?);
+            rows.push(self.show(&mut renderer, model, number)?);
         }
         let (name, _) = models.last().unwrap_or(first);
         if models.is_empty() {
-            renderer.upload(&first.1.mesh, None, Route::Memory, &mut |_, _| {})?;
+            renderer.upload(&first.1.mesh, None)?;
         }
+        let clock = renderer.board().inner().clock_hz();
         let path = self.out.join("orbit.png");
         let cycles = self.orbit(&mut renderer, &path)?;
-        let clock = renderer.board().inner().clock_hz();
         let around = format!("{} frames around {name}", self.orbit);
-        let orbit = line(&path, &around, ORBIT_SIZE, cycles, clock);
+        let mut lines = vec![line(&path, &around, ORBIT_SIZE, cycles, clock)];
         let path = self.out.join("sponge.png");
         let cycles = self.sponge(&mut renderer, &path)?;
         let towards = format!("{} frames towards {SPONGE}, for two eyes", self.sponge);
-        let sponge = line(&path, &towards, SIZE, cycles, clock);
-        let mut lines = vec![orbit, sponge];
+        lines.push(line(&path, &towards, SIZE, cycles, clock));
         for name in SCENES {
             let path = self.out.join(name).with_extension("png");
             let cycles = show_scene(&mut renderer, name, &path)?;
-            let what = format!("scene {name}");
-            lines.push(line(&path, &what, SIZE, cycles, clock));
+            lines.push(line(&path, &format!("scene {name}"), SIZE, cycles, clock));
         }
         Ok((rows, lines))
     }
@@ -172,25 +173,18 @@ impl DemoArguments {
         renderer: &mut BoardRenderer<SimulatedBoard>,
         (name, model): &Named,
         number: u32,
-        route: Route,
     ) -> anyhow::Result<Row> {
         let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
         let subject = Subject::mesh(Mesh::new_checked(&model.mesh)?);
         let frame = Frame::new(subject, camera(azimuth(number))?, SIZE);
-        // The second board runs in its own thread, and shows no progress while the first board does.
-        let bar = (route == Route::Serial).then(|| bar(name));
-        let stats = renderer.show(&frame, route, &mut |done, all| {
-            bar.iter().for_each(|bar| advance(bar)(done, all));
-        })?;
-        drop(bar);
+        let stats = renderer.show(&frame)?;
         let picture = renderer.board().inner().capture()?;
         let path = self.out.join(file_stem(name)).with_extension("png");
         write_picture(&path, |out| picture.write_png(out))?;
 
         let scale = virtual_board::WIDTH / SIZE.width() as usize;
-        let expected = render::on_model(&frame)?.image.colour;
         anyhow::ensure!(
-            picture.scaled_back(scale)? == expected,
+            picture.scaled_back(scale)? == on_model(&frame)?.image.colour,
             "{name}: the picture on the monitor differs from the model's"
         );
         let cycles = renderer.board().inner().cycles() - start_cycles;
@@ -209,30 +203,12 @@ impl DemoArguments {
         let console = renderer.console();
         console.command("backend gateware")?;
         console.command(&size_command(ORBIT_SIZE))?;
-        console.command(&view_command(&camera(Turns(0))?))?;
-        let mut cycles = 0;
-        let mut images = Vec::new();
-        for number in 0..self.orbit {
-            // The command `camera` is shorter than the command `view`, and most of a frame's time is the transfer of text over
-            // the serial line.
-            let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
-            let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
-            renderer.console().command(&command)?;
-            let stats = renderer.redraw()?;
-            anyhow::ensure!(
-                stats.backend.as_deref() == Some("gateware"),
-                "frame {number} of the orbit was drawn by the soft core"
-            );
-            cycles += stats.cycles.unwrap_or_default();
-            images.push(Image {
-                colour: renderer.colour(ORBIT_SIZE, Route::Memory, &mut |_, _| {})?,
-                ..Image::empty(ORBIT_SIZE)
-            });
+        let mut film = Film::default();
+        for view in turn(&camera(Turns(0))?, self.orbit)? {
+            let stats = renderer.look(&view)?;
+            film.add(&stats, renderer.image(ORBIT_SIZE)?)?;
         }
-        write_picture(path, |out| {
-            write_animation(out, &images, ORBIT_FRAMES_PER_SECOND)
-        })?;
-        Ok(cycles / u64::from(self.orbit.max(1)))
+        film.write(path, ORBIT_FRAMES_PER_SECOND)
     }
 
     /// Writes an animation to `path` in which the camera moves towards the sponge and around it. Returns the mean number of
@@ -249,8 +225,7 @@ impl DemoArguments {
             quality: Quality::default(),
             prepass: false,
         };
-        let mut cycles = 0;
-        let mut images = Vec::new();
+        let mut film = Film::default();
         for number in 0..self.sponge {
             let part = f64::from(number) / f64::from(self.sponge.max(2) - 1);
             let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
@@ -261,27 +236,50 @@ impl DemoArguments {
                 stereo: Some(EYES),
                 ..Frame::new(Subject::Field(subject), view, SIZE)
             };
-            let stats = renderer.show(&frame, Route::Memory, &mut |_, _| {})?;
-            let image = Image {
-                colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
-                ..Image::empty(SIZE)
-            };
+            let Rendered { image, stats } = renderer.render(&frame, Parts::COLOUR)?;
             anyhow::ensure!(
-                stats.backend.as_deref() == Some("gateware")
-                    && image.colour == render::on_model(&frame)?.image.colour,
-                "frame {number} of the sponge differs from the model's, or was drawn by the soft core"
+                image.colour == on_model(&frame)?.image.colour,
+                "frame {number} of the sponge differs from the model's"
             );
-            cycles += stats.cycles.unwrap_or_default();
-            images.push(image);
+            film.add(&stats, image)?;
         }
-        write_picture(path, |out| {
-            write_animation(out, &images, SPONGE_FRAMES_PER_SECOND)
-        })?;
-        Ok(cycles / u64::from(self.sponge.max(1)))
+        film.write(path, SPONGE_FRAMES_PER_SECOND)
     }
 }
 
-/// Rejects a folder that contains pictures, unless they may be replaced.
+/// Frames of an animation that the gateware has drawn.
+#[derive(Default)]
+struct Film {
+    images: Vec<Image>,
+    cycles: u64,
+}
+
+impl Film {
+    fn add(&mut self, stats: &Stats, image: Image) -> anyhow::Result<()> {
+        self.cycles += cycles_of_gateware(stats)?;
+        self.images.push(image);
+        Ok(())
+    }
+
+    /// Writes the animation to `path`, and returns the mean number of cycles of a frame.
+    fn write(self, path: &Path, frames_per_second: u16) -> anyhow::Result<u64> {
+        write_picture(path, |out| {
+            write_animation(out, &self.images, frames_per_second)
+        })?;
+        Ok(self.cycles / self.images.len().max(1) as u64)
+    }
+}
+
+/// The cycles of a frame that the gateware must have drawn.
+fn cycles_of_gateware(stats: &Stats) -> anyhow::Result<u64> {
+    anyhow::ensure!(
+        stats.backend.as_deref() == Some("gateware"),
+        "expected a frame by the gateware, found one by the soft core"
+    );
+    Ok(stats.cycles.unwrap_or_default())
+}
+
+/// Refuses a folder with pictures if they may not be replaced.
 fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let files = folder.read_dir();
     let files = files.with_context(|| format!("{}: cannot be read", folder.display()))?;
@@ -310,28 +308,21 @@ fn show_scene<B: Board>(
     path: &Path,
 ) -> anyhow::Result<u64> {
     let scene = glint_scene_file::read(name)?;
-    let commands = [
-        &*format!("scene {name}"),
-        "shading flat",
-        &size_command(SIZE),
-    ];
-    let stats = renderer.render_after(&commands)?;
-    let image = Image {
-        colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
-        ..Image::empty(SIZE)
-    };
+    let show = format!("scene {name}");
+    let commands = [show, "shading flat".into(), size_command(SIZE)];
+    let Rendered { image, stats } = renderer.render_after(&commands, SIZE, Parts::COLOUR)?;
     let changes = Changes {
         shading: Some(Shading::Flat),
         size: Some(SIZE),
         ..Changes::default()
     };
-    let expected = scene::draw(&scene, &changes, render::on_model)??;
+    let expected = scene::draw(&scene, &changes, on_model)??;
     anyhow::ensure!(
-        stats.backend.as_deref() == Some("gateware") && image.colour == expected.image.colour,
-        "scene {name}: the picture differs from the model's, or was drawn by the soft core"
+        image.colour == expected.image.colour,
+        "scene {name}: the picture differs from the model's"
     );
     write_picture(path, |out| image.picture().write_png(out))?;
-    Ok(stats.cycles.unwrap_or_default())
+    cycles_of_gateware(&stats)
 }
 
 /// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, and `clock` the frequency of the
@@ -357,24 +348,15 @@ const SCENES: [&str; 3] = ["objects", "simplegpu", "wireframe"];
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// Half width of the image plane at distance 1. With this value most models nearly fill the height of the picture.
-const HALF_WIDTH: f64 = 0.6;
+/// Half width of the image plane at distance 1. With this value models nearly fill the height of the picture.
+const HALF_WIDTH: U8_28 = U8_28::lit("0.6");
 
 /// The demo's camera at `azimuth`.
 fn camera(azimuth: Turns) -> anyhow::Result<View> {
     let polar = Turns::from_degrees(Q32_32::from_num(POLAR_DEGREES));
-    let view = View::spherical(Q32_32::from_num(DISTANCE), azimuth, polar);
-    view.and_then(|view| {
-        View::new_checked(
-            view.eye(),
-            view.u(),
-            view.v(),
-            view.n(),
-            U8_28::from_num(HALF_WIDTH),
-            view.near(),
-        )
-    })
-    .map_err(anyhow::Error::msg)
+    View::spherical(Q32_32::from_num(DISTANCE), azimuth, polar)
+        .and_then(|view| view.with_half_width(HALF_WIDTH))
+        .map_err(anyhow::Error::msg)
 }
 
 /// Boots a board from reset: the BIOS, its serial boot, then the firmware up to its prompt. Returns the firmware's console.
@@ -461,13 +443,13 @@ mod tests {
         let mut board = board::emulated(&firmware).unwrap();
         let mut console = Console::new(&mut board);
         console.greet().unwrap();
-        let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
+        let mut renderer = BoardRenderer::new(console)
+            .with_backend(Backend::Gateware)
+            .with_route(Route::Memory);
         let model = load("teapot", false).unwrap();
         let subject = Subject::mesh(Mesh::new_checked(&model.mesh).unwrap());
         let frame = Frame::new(subject, camera(azimuth(0)).unwrap(), SIZE);
-        renderer
-            .show(&frame, Route::Memory, &mut |_, _| {})
-            .unwrap();
+        renderer.show(&frame).unwrap();
 
         let folder = tempfile::tempdir().unwrap();
         let tour = DemoArguments {

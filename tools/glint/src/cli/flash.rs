@@ -12,7 +12,7 @@ use glint::console::Console;
 use glint::flash;
 use glint::formats::read_file;
 use glint::image;
-use glint::render::{BoardRenderer, Route};
+use glint::render::BoardRenderer;
 use glint_core::flash::FIRMWARE;
 use glint_core::mesh::{MAX_NAME, is_name};
 use std::io::{self, Write};
@@ -178,12 +178,9 @@ impl UploadArguments {
         let name = self.name.or_else(|| default_name(&self.model));
         let start = board.now_ms();
         let bar = bar("mesh");
-        BoardRenderer::new(Console::new(&mut *board)).upload(
-            &model.mesh,
-            name.as_deref(),
-            Route::Serial,
-            &mut advance(&bar),
-        )?;
+        BoardRenderer::new(Console::new(&mut *board))
+            .with_progress(advance(&bar))
+            .upload(&model.mesh, name.as_deref())?;
         bar.finish();
         let milliseconds = board.now_ms() - start;
         if self.json {

@@ -12,7 +12,7 @@ use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
-use glint::picture::{Animation, Image};
+use glint::picture::Animation;
 use glint::render::{BoardRenderer, Frame, Rendered, Route, Subject, on_model, remarks};
 use glint::scene;
 use glint_core::camera::View;
@@ -249,16 +249,14 @@ impl OrbitArguments {
         let route = self.transfer.transfer.unwrap_or(Route::of(name));
         let mut renderer = BoardRenderer::new(Console::new(&mut *board))
             .with_backend(self.backend)
-            .with_scene(scene.cloned());
+            .with_scene(scene.cloned())
+            .with_route(route);
         for (number, &view) in views.iter().enumerate() {
             let stats = match number {
-                0 => renderer.show(&Frame { view, ..*frame }, route, &mut |_, _| {})?,
+                0 => renderer.show(&Frame { view, ..*frame })?,
                 _ => renderer.look(&view)?,
             };
-            let image = Image {
-                colour: renderer.colour(frame.size, route, &mut |_, _| {})?,
-                ..Image::empty(frame.size)
-            };
+            let image = renderer.image(frame.size)?;
             take(Rendered { image, stats })?;
         }
         Ok(())

@@ -14,11 +14,9 @@ use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
 use glint::object::Description;
 use glint::render::{
-    BoardRenderer, Frame, ModelRenderer, Parts, RayCounts, Rendered, Renderer, Route, Stats,
-    remarks,
+    BoardRenderer, Frame, Parts, RayCounts, Rendered, Route, Stats, on_model, remarks,
 };
 use glint::scene;
-use glint::transfer::Progress;
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
 use glint_core::picture::{Backend, Size};
@@ -255,7 +253,7 @@ impl RenderArguments {
         match &self.board {
             ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
-                let rendered = self.render_by(&mut ModelRenderer, frame, &mut |_, _| {})?;
+                let rendered = on_model(frame)?;
                 spinner.finish();
                 Ok(rendered)
             }
@@ -294,27 +292,17 @@ impl RenderArguments {
         frame: &Frame,
         scene: Option<&SceneFile>,
     ) -> anyhow::Result<Rendered> {
+        let bar = bar("mesh and frames");
         let mut renderer = BoardRenderer::new(Console::new(board))
             .with_backend(self.backend)
             .with_scene(scene.cloned())
-            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
-        let bar = bar("mesh and frames");
-        let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;
-        bar.finish();
-        Ok(rendered)
-    }
-
-    fn render_by(
-        &self,
-        renderer: &mut dyn Renderer,
-        frame: &Frame,
-        progress: &mut Progress,
-    ) -> anyhow::Result<Rendered> {
+            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)))
+            .with_progress(advance(&bar));
         let parts = Parts {
             colour: self.capture == Capture::Frame,
             depth: self.depth.is_some(),
         };
-        Ok(renderer.render(frame, parts, progress)?)
+        Ok(renderer.render(frame, parts)?)
     }
 }
 

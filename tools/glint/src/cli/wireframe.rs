@@ -318,12 +318,11 @@ impl RenderArguments {
         size: Size,
     ) -> anyhow::Result<Rendered> {
         let mut board = self.transfer.line.board(name)?;
+        let bar = bar("program and frame");
         let mut renderer = BoardRenderer::new(Console::new(&mut *board))
             .with_backend(self.backend)
-            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
-        let bar = bar("program and frame");
-        let rendered = renderer.play(program, script, size, &mut advance(&bar))?;
-        bar.finish();
-        Ok(rendered)
+            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)))
+            .with_progress(advance(&bar));
+        Ok(renderer.play(program, script, size)?)
     }
 }

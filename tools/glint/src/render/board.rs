@@ -1,13 +1,13 @@
 //! A renderer that draws frames on a board, by console commands.
 
 use super::commands::{commands, size_command, view_command};
-use super::renderer::{Error, Parts, Rendered, Renderer};
+use super::rendered::{Error, Parts, Rendered};
 use super::stats::{Stats, stats_of};
 use crate::board::{Board, Route};
-use crate::console::{self, Console};
+use crate::console::Console;
 use crate::picture::Image;
 use crate::scene;
-use crate::transfer::{self, Progress};
+use crate::transfer;
 use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -25,6 +25,7 @@ pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     route: Route,
     /// The scene that is drawn instead of the subjects of frames.
     scene: Option<SceneFile>,
+    progress: Box<dyn FnMut(u64, u64) + 'b>,
 }
 
 impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
@@ -36,14 +37,15 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             backend: None,
             route: Route::Serial,
             scene: None,
+            progress: Box::new(|_, _| {}),
         }
     }
 
     /// Sets the backend of all following frames, the soft core or the gateware; `None` leaves the choice to the board.
     #[must_use]
-    pub fn with_backend(self, backend: impl Into<Option<Backend>>) -> Self {
-        let backend = backend.into();
-        Self { backend, ..self }
+    pub fn with_backend(mut self, backend: impl Into<Option<Backend>>) -> Self {
+        self.set_backend(backend);
+        self
     }
 
     /// Draws a scene instead of the subjects of frames, with the frames' cameras and sizes; `None` draws the subjects.
@@ -52,13 +54,20 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { scene, ..self }
     }
 
-    /// Sets the route by which [`render`](Renderer::render) transfers meshes and pictures. The default is the serial line.
+    /// Sets the route of meshes and pictures. The default is the serial line.
     #[must_use]
     pub fn with_route(self, route: Route) -> Self {
         Self { route, ..self }
     }
 
-    /// Sets the backend of all following frames, the soft core or the gateware; `None` leaves the choice to the board.
+    /// Calls `progress` with the number of bytes that a transfer has passed, and its total.
+    #[must_use]
+    pub fn with_progress(self, progress: impl FnMut(u64, u64) + 'b) -> Self {
+        let progress = Box::new(progress);
+        Self { progress, ..self }
+    }
+
+    /// Sets the backend as [`with_backend`](Self::with_backend).
     pub fn set_backend(&mut self, backend: impl Into<Option<Backend>>) {
         self.backend = backend.into();
     }
@@ -77,24 +86,34 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// options of the first object.
     ///
     /// # Errors
-    /// The firmware refuses a command, or an upload fails.
-    pub fn show(
-        &mut self,
-        frame: &Frame,
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<Stats, Error> {
-        if let Some(backend) = self.backend {
-            self.console.command(&format!("backend {backend}"))?;
+    /// The firmware refuses, or the upload fails.
+    pub fn show(&mut self, frame: &Frame) -> Result<Stats, Error> {
+        Ok(self.render(frame, Parts::NONE)?.stats)
+    }
+
+    /// Shows a frame on the board, as [`show`](Self::show), and downloads parts of it.
+    ///
+    /// # Errors
+    /// The firmware refuses, or a transfer fails.
+    pub fn render(&mut self, frame: &Frame, parts: Parts) -> Result<Rendered, Error> {
+        let backend = self.backend.map(|backend| format!("backend {backend}"));
+        if let Some(backend) = &backend {
+            self.console.command(backend)?;
         }
-        if let Some(scene) = self.scene.take() {
-            let stats = self.show_scene(&scene, frame, route, progress);
-            self.scene = Some(scene);
-            return stats;
-        }
+        let mut lines = match self.scene.clone() {
+            Some(scene) => self.load_scene(&scene, frame)?,
+            None => self.load_subject(frame)?,
+        };
+        // The scene may have another one.
+        lines.extend(backend);
+        self.render_after(&lines, frame.size, parts)
+    }
+
+    /// Uploads the meshes of a frame, and returns the commands that show it.
+    fn load_subject(&mut self, frame: &Frame) -> Result<Vec<String>, Error> {
         const MESH: &str = "model";
         if let Some(subject) = frame.subject.mesh_part() {
-            self.upload(subject.mesh.bytes(), Some(MESH), route, progress)?;
+            self.upload(subject.mesh.bytes(), Some(MESH))?;
         }
         // A mesh of several objects is uploaded once.
         let objects = frame.subject.objects().unwrap_or_default().iter();
@@ -107,41 +126,26 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         let name = |number| format!("object{}", first(number) + 1);
         for (number, mesh) in objects.iter().enumerate() {
             if first(number) == number {
-                self.upload(mesh.bytes(), Some(&name(number)), route, progress)?;
+                self.upload(mesh.bytes(), Some(&name(number)))?;
             }
         }
-        for line in commands(frame, MESH, name)? {
-            self.console.command(&line)?;
-        }
-        self.redraw()
+        Ok(commands(frame, MESH, name)?)
     }
 
-    /// Draws a scene with the camera, quality and size of `frame`; commands of the scene that move the camera are left out. Each
-    /// mesh that is not built into the firmware is uploaded.
-    fn show_scene(
-        &mut self,
-        scene: &SceneFile,
-        frame: &Frame,
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<Stats, Error> {
+    /// Uploads the meshes of a scene that are not built into the firmware, and returns the commands that show the scene with camera,
+    /// quality and size of `frame`, without what moves the camera.
+    fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
             if !scene::is_shape(name) {
-                let mesh = scene::mesh(name)?;
-                self.upload(&mesh, Some(name), route, progress)?;
+                self.upload(&scene::mesh(name)?, Some(name))?;
             }
         }
-        self.console.command("scene default")?;
-        for line in scene.settings() {
-            self.console.command(line)?;
-        }
-        let backend = self.backend.map(|backend| format!("backend {backend}"));
+        let mut lines = vec!["scene default".to_owned()];
+        lines.extend_from_slice(scene.settings());
         let field = frame.subject.field_part();
-        let quality = field.map(|field| format!("quality {}", field.quality));
-        let last = backend.into_iter().chain(quality);
-        let last = last.chain([size_command(frame.size), view_command(&frame.view)]);
-        let last: Vec<_> = last.collect();
-        self.render_after(&last.iter().map(String::as_str).collect::<Vec<_>>())
+        lines.extend(field.map(|field| format!("quality {}", field.quality)));
+        lines.extend([size_command(frame.size), view_command(&frame.view)]);
+        Ok(lines)
     }
 
     /// Draws a program of the wireframe simulator on the board in a picture of size `size`, plays a script of keys, one key per
@@ -154,18 +158,21 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         program: &[u8],
         script: &[Action],
         size: Size,
-        progress: &mut Progress,
     ) -> Result<Rendered, Error> {
         if let Some(backend) = self.backend {
             self.console.command(&format!("backend {backend}"))?;
         }
         self.console.command(&size_command(size))?;
-        if self.route == Route::Memory {
-            transfer::stage(&mut self.console, program)?;
-        }
-        self.uploads = self.uploads.wrapping_add(1);
-        let (console, session) = (&mut self.console, self.uploads);
-        transfer::upload_for(console, "program", program, session, progress, &mut |_| {})?;
+        let session = self.stage(program)?;
+        let progress = &mut *self.progress;
+        transfer::upload_for(
+            &mut self.console,
+            "program",
+            program,
+            session,
+            progress,
+            &mut |_| {},
+        )?;
         let mut rotate = "";
         for action in script {
             match action {
@@ -177,35 +184,27 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         let stats = self.redraw()?;
-        let image = Image {
-            colour: self.colour(size, self.route, progress)?,
-            ..Image::empty(size)
-        };
+        let image = self.image(size)?;
         Ok(Rendered { image, stats })
     }
 
     /// Uploads a mesh under a name, by default `model`, and draws it.
     ///
     /// # Errors
-    /// The upload fails, or the board does not offer `route`.
-    pub fn upload(
-        &mut self,
-        mesh: &[u8],
-        name: Option<&str>,
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<(), Error> {
-        if route == Route::Memory {
-            transfer::stage(&mut self.console, mesh)?;
+    /// The upload fails, or the board does not offer the route.
+    pub fn upload(&mut self, mesh: &[u8], name: Option<&str>) -> Result<(), Error> {
+        let session = self.stage(mesh)?;
+        let (console, progress) = (&mut self.console, &mut *self.progress);
+        Ok(transfer::upload(console, mesh, name, session, progress)?)
+    }
+
+    /// Writes data of an upload to the board's memory, if that is the route. Returns the number of the upload.
+    fn stage(&mut self, data: &[u8]) -> Result<u8, Error> {
+        if self.route == Route::Memory {
+            transfer::stage(&mut self.console, data)?;
         }
         self.uploads = self.uploads.wrapping_add(1);
-        Ok(transfer::upload(
-            &mut self.console,
-            mesh,
-            name,
-            self.uploads,
-            progress,
-        )?)
+        Ok(self.uploads)
     }
 
     /// Moves the camera, and waits until the frame is drawn.
@@ -217,71 +216,34 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
+    /// Downloads the colours of the last frame as an image without depths.
+    ///
+    /// # Errors
+    /// As [`colour`](Self::colour).
+    pub fn image(&mut self, size: Size) -> Result<Image, Error> {
+        Ok(Image {
+            colour: self.colour(size)?,
+            ..Image::empty(size)
+        })
+    }
+
     /// Downloads the colours of the last frame.
     ///
     /// # Errors
-    /// The download fails, or the board does not offer `route`.
-    pub fn colour(
-        &mut self,
-        size: Size,
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<Vec<u16>, Error> {
-        let bytes = self.frame("frame", 2, size, route, progress)?;
-        Ok(bytes
-            .chunks_exact(2)
-            .map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]))
-            .collect())
+    /// The download fails, or the board does not offer the route.
+    pub fn colour(&mut self, size: Size) -> Result<Vec<u16>, Error> {
+        let bytes = self.download("frame", "frame", 2 * size.pixel_count())?;
+        let pixels = bytes.as_chunks().0.iter();
+        Ok(pixels.map(|pixel| u16::from_le_bytes(*pixel)).collect())
     }
 
-    /// Downloads the depth codes of the current scene.
-    ///
-    /// # Errors
-    /// The download fails, or the board does not offer `route`.
-    pub fn depth(
-        &mut self,
-        size: Size,
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<Vec<u32>, Error> {
-        // The gateware writes depth codes only on request. Over the serial line, `frame depth` requests them; for a direct read
-        // from memory, `render depth` must request them.
-        if route == Route::Memory {
-            let lines = self.console.command("stats")?;
-            if console::value::<String>("stats", &lines, "backend")? == Backend::Gateware.name() {
-                self.console.command("render depth")?;
-            }
-        }
-        let bytes = self.frame("depth", 4, size, route, progress)?;
-        let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);
-        Ok(bytes.chunks_exact(4).map(word).collect())
-    }
-
-    fn frame(
-        &mut self,
-        kind: &str,
-        pixel_bytes: usize,
-        size: Size,
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<Vec<u8>, Error> {
-        let length = pixel_bytes * size.pixel_count();
-        match route {
-            Route::Serial => {
-                let command = if kind == "depth" {
-                    "frame depth"
-                } else {
-                    "frame"
-                };
-                Ok(transfer::download(
-                    &mut self.console,
-                    command,
-                    length,
-                    progress,
-                )?)
-            }
-            Route::Memory => Ok(transfer::read_memory(&mut self.console, kind, 0, length)?),
-        }
+    /// Downloads a part of the frame: from the address that `info` prints for `key`, or by a command.
+    fn download(&mut self, key: &str, command: &str, length: usize) -> Result<Vec<u8>, Error> {
+        let (console, progress) = (&mut self.console, &mut *self.progress);
+        Ok(match self.route {
+            Route::Serial => transfer::download(console, command, length, progress)?,
+            Route::Memory => transfer::read_memory(console, key, 0, length)?,
+        })
     }
 
     /// Draws the frame again, and reads its statistics.
@@ -293,37 +255,37 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(stats_of(&lines)?)
     }
 
-    /// Sends commands that change the scene, draws one frame, and reads its statistics.
+    /// Sends commands that change the scene, draws one frame, which has this size, and downloads parts of it.
     ///
     /// # Errors
-    /// The firmware refuses the command, or does not answer.
-    pub fn render_after(&mut self, commands: &[&str]) -> Result<Stats, Error> {
-        // The commands are sent in one write, so that the board draws no frame before `render` arrives.
-        let text = format!("{}\rrender\r", commands.join("\r"));
+    /// The firmware refuses a command or does not answer, or a download fails.
+    pub fn render_after(
+        &mut self,
+        commands: &[String],
+        size: Size,
+        parts: Parts,
+    ) -> Result<Rendered, Error> {
+        // The gateware writes depth codes on request only. Over the serial line, the download requests them.
+        let render = match self.route {
+            Route::Memory if parts.depth => "render depth",
+            _ => "render",
+        };
+        // The commands are sent in one write, so that the board does not draw the change before `render` arrives.
+        let lines = commands.iter().map(String::as_str).chain([render]);
+        let text: String = lines.flat_map(|line| [line, "\r"]).collect();
         self.console.board().write(text.as_bytes())?;
         for command in commands {
             self.console.reply(command)?;
         }
-        let lines = self.console.reply("render")?;
-        Ok(stats_of(&lines)?)
-    }
-}
-
-impl<B: Board + ?Sized> Renderer for BoardRenderer<'_, B> {
-    fn render(
-        &mut self,
-        frame: &Frame,
-        parts: Parts,
-        progress: &mut Progress,
-    ) -> Result<Rendered, Error> {
-        let (size, route) = (frame.size, self.route);
-        let stats = self.show(frame, route, progress)?;
+        let stats = stats_of(&self.console.reply(render)?)?;
         let mut image = Image::empty(size);
         if parts.colour {
-            image.colour = self.colour(size, route, progress)?;
+            image.colour = self.colour(size)?;
         }
         if parts.depth {
-            image.depth = self.depth(size, route, progress)?;
+            let bytes = self.download("depth", "frame depth", 4 * size.pixel_count())?;
+            let words = bytes.as_chunks().0.iter();
+            image.depth = words.map(|word| u32::from_le_bytes(*word)).collect();
         }
         Ok(Rendered { image, stats })
     }

@@ -1,20 +1,9 @@
-//! A renderer that uses the bit-exact model in this process.
+//! Frames by the bit-exact model, in this process and without a board.
 
-use super::renderer::{Error, Parts, Rendered, Renderer};
+use super::rendered::{Error, Rendered};
 use crate::picture::Image;
-use crate::transfer::Progress;
 use glint_model::edges::EdgeList;
 use glint_model::{Frame, FrameBuffer, FrameStats, Projected, RenderError, Subject};
-
-/// Renders with the bit-exact model in this process, without a board.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ModelRenderer;
-
-impl Renderer for ModelRenderer {
-    fn render(&mut self, frame: &Frame, _: Parts, _: &mut Progress) -> Result<Rendered, Error> {
-        on_model(frame)
-    }
-}
 
 /// Draws a frame with the bit-exact model.
 ///
@@ -128,8 +117,9 @@ mod tests {
             image.depth.iter().filter(|&&code| code > 0).count() as u64
         );
     }
-    /// On a sphere, no face hides an edge of a front face: all pixels of these edges are drawn, and no pixels of edges between
-    /// back faces, except at the silhouette. At vertices, other faces hide up to 4 of 1,352 pixels.
+
+    /// On a sphere, whose faces hide no edge of another front face, each edge of a front face has all its pixels, and edges of back
+    /// faces alone have none, except at the silhouette. At vertices other faces hide up to 4 of 1,352 pixels.
     #[test]
     fn faces_hide_the_edges_behind_them_alone() {
         let model = generate::named("icosphere:6").unwrap();

@@ -1,13 +1,11 @@
 //! Compares frames of the gateware on the virtual board with frames of the emulated board's engines: pictures, depths, the
 //! position of a hand and the exact counts are equal.
 
-use crate::common::{
-    ALL_PARTS, console, emulator, mesh, plain, renderer, running_board, two_objects,
-};
+use crate::common::{console, emulator, mesh, plain, renderer, running_board, two_objects};
 use glint::board::{SimulatedBoard, Simulation};
 use glint::console::value;
 use glint::gesture::image_sensor;
-use glint::render::{FieldSubject, Frame, Rendered, Renderer, Subject};
+use glint::render::{FieldSubject, Frame, Parts, Rendered, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
@@ -20,7 +18,7 @@ use virtual_board::virtual_image_sensor::{Hand, Scene};
 fn drawn<S: Simulation>(mut board: SimulatedBoard<S>, frames: &[(&str, Frame)]) -> Vec<Rendered> {
     let mut renderer = renderer(&mut board);
     let render = |(name, frame): &(&str, Frame)| {
-        let rendered = renderer.render(frame, ALL_PARTS, &mut |_, _| {}).unwrap();
+        let rendered = renderer.render(frame, Parts::ALL).unwrap();
         println!("{name}: {:?} cycles", rendered.stats.cycles);
         rendered
     };

@@ -5,7 +5,7 @@ use glint::console::{Console, value};
 use glint::convert::{self, Options};
 use glint::counters::Counters;
 use glint::render::{
-    self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Renderer, Route, Stats, Subject,
+    self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Route, Stats, Subject, TriangleCounts,
 };
 use glint::{generate, view};
 use glint_core::mesh::Mesh;
@@ -17,8 +17,8 @@ use glint_model::{Object, Placement};
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
-/// Milliseconds of the board's time without output after which the firmware counts as failed.
-const PATIENCE_MS: u64 = 2000;
+/// Milliseconds of board time without output after which the firmware counts as failed.
+const PATIENCE_MS: u64 = 4000;
 
 /// A virtual board that starts with the built firmware in its memory.
 pub fn running_board() -> SimulatedBoard {
@@ -44,23 +44,31 @@ pub fn renderer<S: Simulation>(
     BoardRenderer::new(console(board)).with_route(Route::Memory)
 }
 
-/// Colours and depths.
-pub const ALL_PARTS: Parts = Parts {
-    colour: true,
-    depth: true,
-};
-
-/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns the board's and the model's
-/// result.
-pub fn drawn_alike(renderer: &mut impl Renderer, frame: &Frame, name: &str) -> [Rendered; 2] {
+/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns what the board has drawn, and the
+/// model.
+pub fn drawn_alike<B: Board>(
+    renderer: &mut BoardRenderer<B>,
+    frame: &Frame,
+    name: &str,
+) -> [Rendered; 2] {
     let expected = render::on_model(frame).unwrap();
-    let found = renderer.render(frame, ALL_PARTS, &mut |_, _| {}).unwrap();
+    let found = renderer.render(frame, Parts::ALL).unwrap();
     assert!(
         found.image.colour == expected.image.colour,
         "{name}: colours"
     );
     assert!(found.image.depth == expected.image.depth, "{name}: depths");
     [found, expected]
+}
+
+/// The counts that the model and boards have in common.
+pub fn counts(stats: &Stats) -> impl PartialEq + std::fmt::Debug {
+    let mesh = stats.mesh.clone().map(|mesh| TriangleCounts {
+        pixels_tested: None,
+        ..mesh
+    });
+    let others = (stats.wireframe.clone(), stats.edges.clone());
+    (mesh, stats.rays.clone(), others)
 }
 
 /// A mesh without options.

@@ -3,7 +3,7 @@
 use crate::common::{address, drawn_alike, emulator, mesh, plain, read, renderer, timeless};
 use glint::board::Board;
 use glint::picture::Image;
-use glint::render::{self, FieldSubject, Frame, Rendered, Route, Subject};
+use glint::render::{self, FieldSubject, Frame, Rendered, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
@@ -57,11 +57,9 @@ fn the_cpu_draws_a_mesh_in_a_field() {
 
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
-    renderer
-        .upload(&mesh, None, Route::Memory, &mut |_, _| {})
-        .unwrap();
-    // Frames alternate between two frame buffers. `colour` and `depth` are addresses in the current buffer; after one `render`,
-    // the next frame is drawn into this buffer again.
+    renderer.upload(&mesh, None).unwrap();
+    // Frames alternate between two frame buffers. `colour` and `depth` are the addresses of this frame; after one `render` the
+    // next frame is drawn there again.
     renderer.redraw().unwrap();
     let console = renderer.console();
     let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));

@@ -47,9 +47,7 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     let mut renderer = renderer(&mut board);
     let mesh = mesh("icosphere:6");
     let frame = mesh_frame(&mesh, "2,30,60", Size::W320);
-    renderer
-        .show(&frame, Route::Memory, &mut |_, _| {})
-        .unwrap();
+    renderer.show(&frame).unwrap();
     for camera in ["2.5,40,65", "3,130,80"] {
         let stats = renderer.look(&view::spherical(camera).unwrap()).unwrap();
         let cycles = stats.engine.get("cycles_soft_core").unwrap();
@@ -87,9 +85,7 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
             let name = format!("{lighting:?} {clear:?}");
             let [_, expected] = drawn_alike(&mut renderer, &frame, &name);
             for _ in 0..2 {
-                let colour = renderer
-                    .colour(frame.size, Route::Memory, &mut |_, _| {})
-                    .unwrap();
+                let colour = renderer.colour(frame.size).unwrap();
                 assert!(colour == expected.image.colour, "{name}");
                 renderer.redraw().unwrap();
             }
@@ -182,9 +178,7 @@ fn the_monitor_shows_the_larger_sizes() {
     let mut renderer = renderer(&mut board).with_backend(Backend::Cpu);
     for (size, scale) in [(Size::W640, 2), (Size::W1280, 1)] {
         let frame = mesh_frame(&mesh, "2,30,60", size);
-        renderer
-            .show(&frame, Route::Memory, &mut |_, _| {})
-            .unwrap();
+        renderer.show(&frame).unwrap();
         let expected = render::on_model(&frame).unwrap().image;
         assert!(
             renderer.board().inner().monitor_frame(scale).unwrap() == expected.colour,
@@ -200,7 +194,7 @@ fn no_frame_is_torn() {
     let mut board = running_board();
     let mut renderer = renderer(&mut board).with_backend(Backend::Cpu);
     let [old, new] = ["2,30,60", "2,200,100"].map(|camera| mesh_frame(&mesh, camera, Size::W320));
-    renderer.show(&old, Route::Memory, &mut |_, _| {}).unwrap();
+    renderer.show(&old).unwrap();
     let [old, new] = [old, new].map(|frame| render::on_model(&frame).unwrap().image.colour);
     renderer.board().inner().monitor().turn_on();
     assert!(captured(&mut renderer, 4) == old);
@@ -288,9 +282,7 @@ fn pixels_tested_are_counted_alike_or_have_another_name() {
     let mut renderer = renderer(&mut board);
     for (backend, has_pixels) in [(Backend::Cpu, true), (Backend::Gateware, false)] {
         renderer.set_backend(backend);
-        let stats = renderer
-            .show(&frame, Route::Memory, &mut |_, _| {})
-            .unwrap();
+        let stats = renderer.show(&frame).unwrap();
         assert_eq!(stats.backend.as_deref(), Some(backend.name()));
         let tested = stats.triangles().pixels_tested;
         let of_model = expected.triangles().pixels_tested;

@@ -1,7 +1,7 @@
 //! The scenes in the firmware equal the files of the folder `scenes`, and are drawn as the model draws them.
 
 use crate::common::{console, drawn_alike, emulator, info, renderer};
-use glint::render::{self, Route, size_command, view_command};
+use glint::render::{self, Parts, Rendered, size_command, view_command};
 use glint::scene::{self, Changes};
 use glint_core::colour::Shading;
 use glint_core::picture::Size;
@@ -27,17 +27,17 @@ fn scenes_are_the_models() {
         .unwrap();
         let show = format!("scene {name}");
         let (size, view) = (size_command(Size::W320), view_command(&view));
-        let mut commands = vec![show.as_str(), "imu off", "shading flat", &size, &view];
+        let mut commands = vec![show, "imu off".into(), "shading flat".into(), size, view];
         if name == "holoforge" {
-            let error = renderer.console().command(commands.remove(0)).unwrap_err();
+            let error = renderer.console().command(&commands.remove(0)).unwrap_err();
             let error = error.to_string();
             assert!(error.contains("no image sensor answers"), "{error}");
         }
-        let stats = renderer.render_after(&commands).unwrap();
+        let drawn = renderer.render_after(&commands, Size::W320, Parts::COLOUR);
+        let Rendered { image, stats } = drawn.unwrap();
         println!("{name}: {:?} cycles", stats.cycles);
         assert_eq!(stats.backend.as_deref(), Some("gateware"), "{name}");
-        let found = renderer.colour(Size::W320, Route::Memory, &mut |_, _| {});
-        assert!(found.unwrap() == expected.image.colour, "{name}");
+        assert!(image.colour == expected.image.colour, "{name}");
     }
     // The scene at start contains no settings of the other scenes.
     let console = renderer.console();

@@ -192,9 +192,7 @@ fn a_script_of_keys() {
     let mut renderer = renderer(&mut board);
     let program = cube();
     let script = wireframe::script("rotate,right:2,pan,up,zoom-in").unwrap();
-    let drawn = renderer
-        .play(&program, &script, Size::W320, &mut |_, _| {})
-        .unwrap();
+    let drawn = renderer.play(&program, &script, Size::W320).unwrap();
     let mut motion = Motion::default();
     for step in [
         Key::Right.step(true),

@@ -11,28 +11,27 @@
 //! board     load 0, draw 0      load 1, d 1   load 2, d 2   load 3, d 3
 //! ```
 
+#[allow(dead_code, reason = "the tests of boards use all of it")]
+#[path = "../board/common.rs"]
+mod common;
 mod fields;
 mod objects;
 
-use glint::board::{self, Board, BoardError, Memory, SimulatedBoard, built_firmware};
-use glint::console::{Console, value};
-use glint::render::{self, Frame, MeshSubject, Rendered, Stats, Subject};
-use glint::{convert, generate, view};
-use glint_core::mesh::Mesh;
+use common::{counts, info, mesh, plain, running_board};
+use glint::board::{Board, BoardError, Memory, SimulatedBoard};
+use glint::console::Console;
+use glint::render::{
+    self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Route, Stats, Subject, on_model,
+};
+use glint::transfer::stage;
+use glint::view;
 use glint_core::picture::Size;
 use glint_core::wire::Manifest;
 use glint_vectors::meshes;
 use glint_vectors::scenes::Scene;
 use rand_pcg::Pcg64Mcg;
 
-/// Returns the bytes of the generated mesh `name`.
-fn generated(name: &str) -> Vec<u8> {
-    let model = generate::named(name).expect("a model");
-    let converted = convert::convert(&model, convert::Options::default());
-    converted.expect("a mesh").0
-}
-
-/// Longest accepted pause in the firmware's output, in the board's time.
+/// Longest pause in the firmware's output that the console accepts, in board time.
 const PATIENCE_MS: u64 = 2000;
 
 /// Longest wait for a picture: the time of three video frames.
@@ -131,67 +130,51 @@ impl Board for Watched {
     }
 }
 
-/// Lines of the firmware's replies, each with a key and a value.
-struct Replies {
-    lines: Vec<String>,
-}
-
-impl Replies {
-    fn text(&self, key: &str) -> String {
-        let line = |line: &String| line.starts_with(&format!("{key} "));
-        let lines: Vec<String> = self
-            .lines
-            .iter()
-            .filter(|l| line(l))
-            .take(1)
-            .cloned()
-            .collect();
-        value("render", &lines, key).unwrap_or_else(|_| panic!("{key} in {:#?}", self.lines))
-    }
-
-    fn number(&self, key: &str) -> u32 {
-        self.text(key).parse().unwrap()
-    }
-
-    fn address(&self, key: &str) -> u32 {
-        let text = self.text(key);
-        let digits = text.trim_start_matches("0x").split(' ').next().unwrap();
-        u32::from_str_radix(digits, 16).unwrap()
+/// Checks that the pixels of a frame are equal.
+fn assert_same<T: PartialEq + std::fmt::Debug>(
+    found: &[T],
+    expected: &[T],
+    what: &str,
+    size: Size,
+) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    let differs = found.iter().zip(expected).position(|(a, b)| a != b);
+    if let Some(at) = differs {
+        let (x, y) = (at % size.width() as usize, at / size.width() as usize);
+        let (found, expected) = (&found[at], &expected[at]);
+        panic!("{what} at {x}, {y}: expected {expected:?}, found {found:?}");
     }
 }
 
-/// Compares the counts of triangles in the firmware's replies with the model's.
-fn compare_triangles(replies: &Replies, name: &str, stats: &Stats) {
-    let counts =
-        ["in", "culled", "clipped", "drawn"].map(|key| replies.number(&format!("triangles_{key}")));
-    let triangles = stats.triangles();
-    let expected = [
-        triangles.triangles_in,
-        triangles.triangles_culled,
-        triangles.triangles_clipped,
-        triangles.triangles_drawn,
-    ];
-    assert_eq!(
-        counts, expected,
-        "{name}: triangles in, culled, clipped, drawn"
-    );
-}
-
-/// Sends all lines in one write, so that no frame is drawn between them, and collects the replies.
-fn send<B: Board>(console: &mut Console<B>, lines: &[String]) -> Replies {
-    let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
-    console.board().write(text.as_bytes()).unwrap();
-    let replies = lines.iter().map(|line| console.reply(line).unwrap());
-    Replies {
-        lines: replies.flatten().collect(),
+/// Checks that the gateware has drawn the model's frame: colours, depths if there are some, and counts.
+fn compare_frames(name: &str, size: Size, found: &Rendered, expected: &Rendered) {
+    let Rendered { image, stats } = found;
+    assert_eq!(stats.backend.as_deref(), Some("gateware"), "{name}");
+    assert_eq!(counts(stats), counts(&expected.stats), "{name}");
+    let colour = format!("{name}: colour");
+    assert_same(&image.colour, &expected.image.colour, &colour, size);
+    if !image.depth.is_empty() {
+        let depth = format!("{name}: depth");
+        assert_same(&image.depth, &expected.image.depth, &depth, size);
     }
 }
 
-fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<u8> {
-    let mut bytes = vec![0; length];
-    let memory = console.board().memory().unwrap();
-    memory.read_memory(address, &mut bytes).unwrap();
-    bytes
+/// Draws a frame, whose meshes the board has under the name `model`, by the gateware and by the model, and compares them. Returns the
+/// board's statistics.
+fn compare(renderer: &mut BoardRenderer<SimulatedBoard>, frame: &Frame, with_depth: bool) -> Stats {
+    let lines = render::commands(frame, "model", |_| "model".to_owned()).unwrap();
+    let found = renderer.render_after(&lines, frame.size, parts(with_depth));
+    let (found, expected) = (found.unwrap(), on_model(frame).unwrap());
+    compare_frames(&lines.join(", "), frame.size, &found, &expected);
+    found.stats
+}
+
+/// The colours, with the depths or without.
+const fn parts(with_depth: bool) -> Parts {
+    match with_depth {
+        true => Parts::ALL,
+        false => Parts::COLOUR,
+    }
 }
 
 /// Largest size of a small mesh, in bytes.
@@ -200,7 +183,7 @@ const SMALL: usize = 256 << 10;
 /// Returns the scenes with meshes of at most `SMALL` bytes, and a scene with two small chunks; without `small`, returns the
 /// scenes with larger meshes.
 fn scenes(small: bool) -> Vec<Scene> {
-    let mut scenes = glint_vectors::scenes::scenes(generated);
+    let mut scenes = glint_vectors::scenes::scenes(mesh);
     scenes.retain(|(_, mesh, ..)| (mesh.len() <= SMALL) == small);
     if small {
         let triangles = meshes::random(&mut Pcg64Mcg::new(2), 500, 0.1);
@@ -211,9 +194,8 @@ fn scenes(small: bool) -> Vec<Scene> {
 }
 
 fn draw(size: Size, scenes: Vec<Scene>) {
-    let board = board::verilated(&built_firmware(None).unwrap()).unwrap();
     let mut board = Watched {
-        board,
+        board: running_board(),
         scale: (1280 / size.width()) as usize,
         expected: vec![("nothing".to_owned(), vec![0; size.pixel_count()])],
         seen: 1,
@@ -221,21 +203,16 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     };
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
-    send(&mut console, &["backend gateware".to_owned()]);
-    // The monitor captures its first picture in the middle of a video frame, before any frame is shown.
+    console.command("backend gateware").unwrap();
+    // The monitor takes its first picture in the middle of a video frame, while nothing is shown.
     console.board().board.inner().monitor().turn_on();
-    let start = [&render::size_command(size), "render", "info"];
-    let mut replies = send(&mut console, &start.map(str::to_owned));
-    let bytes = read(
-        &mut console,
-        replies.address("frame"),
-        2 * size.pixel_count(),
-    );
-    let pixels = bytes.chunks_exact(2);
-    let pixels = pixels.map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]));
-    console.board().expect("the start", pixels.collect());
-    // The firmware's count of video frames at the last drawn scene.
-    let mut drawn = replies.number("video_frames");
+    let mut renderer = BoardRenderer::new(console).with_route(Route::Memory);
+    let start = [render::size_command(size)];
+    let shown = renderer.render_after(&start, size, Parts::COLOUR);
+    let shown = shown.unwrap().image.colour;
+    renderer.board().expect("the start", shown);
+    // The firmware's count of video frames when the last scene was drawn.
+    let mut drawn: u32 = info(renderer.console(), "video_frames");
 
     for (name, mesh, view, cull) in scenes {
         // Further views are drawn without depths, so that the triangle engine writes only the changed part of a frame.
@@ -249,71 +226,44 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             let name = format!("{name} {number} at {size}");
             let subject = Subject::Mesh(MeshSubject {
                 cull,
-                ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
+                ..plain(&mesh)
             });
             let frame = Frame::new(subject, view, size);
-            let Rendered { image, stats } = render::on_model(&frame).unwrap();
+            let expected = on_model(&frame).unwrap();
+            let console = renderer.console();
             let mut lines = Vec::new();
             if number == 0 {
                 // `load` comes first, because it takes time to check the bytes; the picture follows the other lines quickly. The
                 // bytes are already in the staging memory, so `load` finds their CRC-32 correct and skips the transfer.
                 let Manifest { length, crc32 } = Manifest::of(&mesh);
-                let memory = console.board().memory().unwrap();
-                memory
-                    .write_memory(replies.address("staging"), &mesh)
-                    .unwrap();
+                stage(console, &mesh).unwrap();
                 lines.push(format!("load {length} {crc32:08x}"));
             }
             lines.extend([
                 format!("cull {}", if cull { "on" } else { "off" }),
                 render::size_command(size),
                 render::view_command(&view),
-                "info".to_owned(),
             ]);
-            console.board().expect(&name, image.colour);
-            replies = send(&mut console, &lines);
-            // Waits until the monitor shows the last frame; otherwise `render` would replace it first.
-            while replies.number("video_frames") == drawn {
+            let colour = expected.image.colour.clone();
+            console.board().expect(&name, colour);
+            let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
+            console.board().write(text.as_bytes()).unwrap();
+            for line in &lines {
+                console.reply(line).unwrap();
+            }
+            // Waits until the monitor shows the last frame, because `render` would otherwise replace it before.
+            while info::<u32>(console, "video_frames") == drawn {
                 console.board().wait_for_picture();
-                replies = send(&mut console, &["info".to_owned()]);
             }
-            let render = format!("render{}", if with_depth { " depth" } else { "" });
-            replies = send(&mut console, &[render, "info".to_owned()]);
-            drawn = replies.number("video_frames");
-
-            assert_eq!(
-                replies.text("backend"),
-                "gateware",
-                "{name}: {:#?}",
-                replies.lines
-            );
-            compare_triangles(&replies, &name, &stats);
-            let place = |at: usize| (at as u32 % size.width(), at as u32 / size.width());
-            let bytes = read(
-                &mut console,
-                replies.address("frame"),
-                2 * image.depth.len(),
-            );
-            let (_, colour) = console.board().expected.last().unwrap();
-            for (at, (found, &wanted)) in bytes.chunks_exact(2).zip(colour).enumerate() {
-                let found = u16::from_le_bytes([found[0], found[1]]);
-                assert_eq!(found, wanted, "{name}: the colour at {:?}", place(at));
-            }
-            if with_depth {
-                let bytes = read(
-                    &mut console,
-                    replies.address("depth"),
-                    4 * image.depth.len(),
-                );
-                for (at, (found, &wanted)) in bytes.chunks_exact(4).zip(&image.depth).enumerate() {
-                    let found = u32::from_le_bytes([found[0], found[1], found[2], found[3]]);
-                    assert_eq!(found, wanted, "{name}: the depth at {:?}", place(at));
-                }
-            }
-            assert_eq!(replies.number("video_underflows"), 0, "{name}: late lines");
+            let found = renderer.render_after(&[], size, parts(with_depth));
+            compare_frames(&name, size, &found.unwrap(), &expected);
+            let console = renderer.console();
+            drawn = info(console, "video_frames");
+            let underflows: u32 = info(console, "video_underflows");
+            assert_eq!(underflows, 0, "{name}: late lines");
         }
     }
-    let board = console.board();
+    let board = renderer.board();
     board.see();
     assert_eq!(board.board.inner().monitor().errors(), []);
     let board = board.board.inner();

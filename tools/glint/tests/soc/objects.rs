@@ -2,22 +2,16 @@
 //! engine makes a geometry pass for each object, and the firmware clips the exceptions of each object. Shading is flat, the
 //! shading of the standard gateware build.
 
-use glint::console::Console;
-use glint::render::{self, Frame, MeshSubject, Rendered, Subject, on_model};
+use glint::console::value;
+use glint::render::{self, Frame, Subject};
 use glint_core::colour::Winding;
 use glint_core::fixed::U8_28;
-use glint_core::mesh::Mesh;
-use glint_core::object::Place;
 use glint_core::picture::Size;
-use glint_core::words::Words;
-use glint_model::{Clip, Object, Placement};
+use glint_model::Clip;
 use glint_vectors::Camera;
 
-use crate::fields::{board, compare_picture, load};
-use crate::{compare_triangles, generated, send};
-
-/// Longest accepted pause in the firmware's output, in the board's time.
-const PATIENCE_MS: u64 = 4000;
+use crate::common::{mesh, object, renderer, running_board};
+use crate::compare;
 
 /// Placements of the objects that the gateware draws. The first object is around the eye of the last camera, and others cross its
 /// near plane, so that triangles of several objects are clipped.
@@ -34,82 +28,44 @@ const STRETCHED: &str = "scale 0.2,0.4,0.1";
 
 #[test]
 fn the_soc_draws_objects() {
-    let mut board = board();
-    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
-    console.greet().unwrap();
-    let mesh = generated("icosphere:2");
-    let load = load(&mut console, &mesh);
-    send(&mut console, &[load]);
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh("icosphere:2");
+    renderer.upload(&mesh, Some("model")).unwrap();
     let views = [
         Camera::looking([1.5, -1.9, 1.0], [0.0; 3], 0.6, 0.1),
         Camera::looking([0.3, -0.2, 0.2], [-0.3, 0.4, 0.0], 1.4, 0.02),
     ];
-    let mut objects = vec![];
-    for (number, text) in OBJECTS.into_iter().chain([STRETCHED]).enumerate() {
-        let place = Place::parse(&mut Words::new(text)).unwrap();
-        objects.push(Object {
-            subject: MeshSubject::new(Mesh::new_checked(&mesh).unwrap()),
-            placement: Placement::new(place.matrix),
-            colour: place.colour,
-        });
-        send(&mut console, &[format!("object add model {text}")]);
-        // One object, all objects that the gateware draws, and one more object.
-        if (1..OBJECTS.len() - 1).contains(&number) {
-            continue;
+    let places = OBJECTS.into_iter().chain([STRETCHED]);
+    let mut objects: Vec<_> = places.map(|place| object(&mesh, place)).collect();
+    let all = OBJECTS.len();
+    let usual = [0, 1].map(|view| (view, Clip::Guard, Winding::Mesh));
+    let far = U8_28::lit("2.5");
+    // Geometry passes lack these options, so that the CPU makes all descriptors.
+    let by_cpu = [
+        (0, Clip::View { far }, Winding::Mesh),
+        (1, Clip::Guard, Winding::Screen),
+    ];
+    // One object, and all objects that the gateware draws; then one more, in two sizes, and with the options.
+    let usual_at = |count, size| usual.map(|options| (count, size, options));
+    let frames = [
+        usual_at(1, Size::W320),
+        usual_at(all, Size::W320),
+        usual_at(all + 1, Size::W320),
+        usual_at(all + 1, Size::W640),
+        by_cpu.map(|options| (all + 1, Size::W320, options)),
+    ];
+    for (count, size, (view, clip, winding)) in frames.into_iter().flatten() {
+        for object in &mut objects {
+            object.subject.winding = winding;
+            object.subject.clip = clip;
         }
-        let mut frames: Vec<_> = views
-            .iter()
-            .map(|view| (view, Clip::Guard, Winding::Mesh))
-            .collect();
-        if number == OBJECTS.len() {
-            // The geometry pass does not support the options of these frames, so the CPU makes all descriptors.
-            let far = U8_28::lit("2.5");
-            frames.extend([
-                (&views[0], Clip::View { far }, Winding::Mesh),
-                (&views[1], Clip::Guard, Winding::Screen),
-            ]);
-        }
-        for (place, (view, clip, winding)) in frames.into_iter().enumerate() {
-            // The larger size is used only with all objects, and not if the CPU makes all descriptors, which takes a long time.
-            let is_larger = number == OBJECTS.len() && place < views.len();
-            let sizes = [Size::W320, Size::W640];
-            for size in sizes.into_iter().take(1 + usize::from(is_larger)) {
-                for object in &mut objects {
-                    object.subject.winding = winding;
-                    object.subject.clip = clip;
-                }
-                let name = format!("{} objects at {size}, frame {place}", number + 1);
-                let frame = Frame::new(Subject::Objects(&objects), view.rounded(), size);
-                let Rendered { image, stats } = on_model(&frame).unwrap();
-                let clip = match clip {
-                    Clip::Guard => "off".to_owned(),
-                    Clip::View { far } => far.to_string(),
-                };
-                let lines = [
-                    format!("clip {clip}"),
-                    format!("winding {winding}"),
-                    render::size_command(size),
-                    render::view_command(&frame.view),
-                    "render depth".to_owned(),
-                    "info".to_owned(),
-                ];
-                let replies = send(&mut console, &lines);
-                assert_eq!(
-                    replies.text("backend"),
-                    "gateware",
-                    "{name}: {:#?}",
-                    replies.lines
-                );
-                let is_by_cpu = replies.number("cycles_geometry") == 0;
-                assert_eq!(is_by_cpu, place >= views.len(), "{name}");
-                println!(
-                    "{name}: {} triangles clipped",
-                    stats.triangles().triangles_clipped
-                );
-                compare_triangles(&replies, &name, &stats);
-                compare_picture(&mut console, &replies, &name, &image, true);
-            }
-        }
+        let subject = Subject::Objects(&objects[..count]);
+        let frame = Frame::new(subject, views[view].rounded(), size);
+        let stats = compare(&mut renderer, &frame, true);
+        let is_by_cpu = stats.engine.get("cycles_geometry").unwrap() == 0;
+        let has_options = (clip, winding) != (Clip::Guard, Winding::Mesh);
+        assert_eq!(is_by_cpu, has_options, "{count} objects at {size}");
     }
 }
 
@@ -119,17 +75,14 @@ fn the_soc_draws_objects() {
 #[ignore = "needs gateware with smooth shading"]
 fn five_objects_take_a_sixtieth_of_a_second() {
     const CYCLES: u64 = 81_250_000 / 60;
-    let mut board = board();
-    let mut console = Console::new(&mut board).patience(PATIENCE_MS);
-    console.greet().unwrap();
-    let load = load(&mut console, &generated("icosphere:7"));
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    renderer.upload(&mesh("icosphere:7"), None).unwrap();
+    let console = renderer.console();
     let view = Camera::looking([1.5, -1.9, 1.0], [0.0; 3], 0.5, 0.1);
-    let lines = [
-        load,
-        "shading smooth".to_owned(),
-        render::view_command(&view.rounded()),
-    ];
-    send(&mut console, &lines);
+    console.command("shading smooth").unwrap();
+    let view = render::view_command(&view.rounded());
+    console.command(&view).unwrap();
     let mut soft_core = vec![];
     for (count, place) in [
         (1, "move 0,0,0"),
@@ -138,14 +91,15 @@ fn five_objects_take_a_sixtieth_of_a_second() {
         (4, "scale 0.4 rotate y 50 move 0,-0.7,0.4 colour ff8020"),
         (5, "scale 0.4 rotate z 50 move 0.3,-0.7,-0.4 colour 40c0ff"),
     ] {
-        send(&mut console, &[format!("object add model {place}")]);
+        let object = format!("object add model {place}");
+        console.command(&object).unwrap();
         if count > 1 && count < 5 {
             continue;
         }
         for size in [Size::W640, Size::W1280] {
-            let lines = [render::size_command(size), "bench triangle".to_owned()];
-            let replies = send(&mut console, &lines);
-            let text = replies.text("bench");
+            console.command(&render::size_command(size)).unwrap();
+            let lines = console.command("bench triangle").unwrap();
+            let text: String = value("bench triangle", &lines, "bench").unwrap();
             let value = |key: &str| -> u64 {
                 let mut words = text.split(' ').skip_while(|word| *word != key);
                 words.nth(1).unwrap().parse().unwrap()

@@ -7,7 +7,7 @@ use std::thread;
 use anyhow::{Context, Result, bail, ensure};
 use glint::board::SimulatedBoard;
 use glint::console::Console;
-use glint::render::{self, BoardRenderer, Route, Stats};
+use glint::render::{self, BoardRenderer, Parts, Rendered, Route, Stats};
 use glint::scene::{self, Changes};
 use glint_scene_file::SceneFile;
 use virtual_board::{Start, VirtualBoard};
@@ -42,21 +42,19 @@ pub fn frame(firmware: &[u8], scene: &SceneFile, changes: &Changes) -> Result<St
     let mut board = started(folder, firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;
-    let mut renderer = BoardRenderer::new(console);
+    let mut renderer = BoardRenderer::new(console).with_route(Route::Memory);
     let size = changes.size.unwrap_or(scene.size());
     let quality = changes.quality.map(|quality| format!("quality {quality}"));
-    let command = render::size_command(size);
-    let lines = scene.settings().iter().map(String::as_str);
-    let lines: Vec<&str> = lines.chain(quality.as_deref()).chain([&*command]).collect();
-    let stats = renderer.render_after(&lines)?;
+    let lines = scene.settings().iter().cloned().chain(quality);
+    let lines: Vec<String> = lines.chain([render::size_command(size)]).collect();
+    let Rendered { image, stats } = renderer.render_after(&lines, size, Parts::COLOUR)?;
     ensure!(
         stats.backend.as_deref() == Some("gateware"),
         "expected a frame of the gateware, found the soft core's"
     );
-    let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
     let expected = scene::draw(scene, changes, render::on_model)??;
     ensure!(
-        found == expected.image.colour,
+        image.colour == expected.image.colour,
         "the frame is not the model's"
     );
     Ok(stats)

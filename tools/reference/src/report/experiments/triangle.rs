@@ -240,14 +240,16 @@ fn measure_cases<R: Send>(
         let mut board = board::verilated(&firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
-        let mut renderer = BoardRenderer::new(console).with_backend(backend);
+        let mut renderer = BoardRenderer::new(console)
+            .with_backend(backend)
+            .with_route(Route::Memory);
         let mesh = case.mesh()?;
         let subject = Subject::mesh(Mesh::new_checked(&mesh)?);
         let size = Size::of(case.size.0, case.size.1).context("not the size of a picture")?;
         let frame = Frame::new(subject, ahead(case.half_width)?, size);
         let expected = render::on_model(&frame)?;
-        let stats = renderer.show(&frame, Route::Memory, &mut |_, _| {})?;
-        let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
+        let stats = renderer.show(&frame)?;
+        let found = renderer.colour(size)?;
         ensure!(
             found == expected.image.colour,
             "{}: the frame by {backend} is not the model's",

@@ -237,7 +237,9 @@ fn draw(
     let mut board = soc::started(case.build.folder, firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;
-    let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
+    let mut renderer = BoardRenderer::new(console)
+        .with_backend(Backend::Gateware)
+        .with_route(Route::Memory);
     let size = Size::of(case.size.0, case.size.1).context("not the size of a picture")?;
     let field = Field::parse(case.field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let stereo = case.stereo.map(Stereo::parse).transpose();
@@ -258,7 +260,7 @@ fn draw(
         };
         let expected = render::on_model(&frame)?;
         let stats = if rows.is_empty() {
-            renderer.show(&frame, Route::Memory, &mut |_, _| {})?
+            renderer.show(&frame)?
         } else {
             renderer.look(&frame.view)?
         };
@@ -266,7 +268,7 @@ fn draw(
             stats.backend.as_deref() == Some("gateware"),
             "expected a frame of the gateware, found the soft core's"
         );
-        let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
+        let found = renderer.colour(size)?;
         ensure!(
             found == expected.image.colour && stats.rays == expected.stats.rays,
             "turned by {angles:?} degrees, the raymarcher's frame is not the model's"

@@ -1,26 +1,12 @@
-//! The interface of the renderers: the model and boards.
+//! Drawn frames, and errors in drawing them.
 
 use super::stats::Stats;
 use crate::board::BoardError;
 use crate::console::ConsoleError;
 use crate::error::InputError;
 use crate::picture::Image;
-use crate::transfer::{Progress, TransferError};
-use glint_model::{Frame, RenderError};
-
-/// A renderer of frames: the model in this process, or a board.
-pub trait Renderer {
-    /// Draws a frame, and returns its requested parts.
-    ///
-    /// # Errors
-    /// The frame exceeds the renderer's limits, or the board does not answer.
-    fn render(
-        &mut self,
-        frame: &Frame,
-        parts: Parts,
-        progress: &mut Progress,
-    ) -> Result<Rendered, Error>;
-}
+use crate::transfer::TransferError;
+use glint_model::RenderError;
 
 /// The parts of a drawn frame that the caller requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +15,19 @@ pub struct Parts {
     pub colour: bool,
     /// Whether the depth codes are requested.
     pub depth: bool,
+}
+
+impl Parts {
+    /// Statistics alone.
+    pub const NONE: Self = Self::new(false, false);
+    /// The colours.
+    pub const COLOUR: Self = Self::new(true, false);
+    /// Colours and depth codes.
+    pub const ALL: Self = Self::new(true, true);
+
+    const fn new(colour: bool, depth: bool) -> Self {
+        Self { colour, depth }
+    }
 }
 
 /// A drawn frame.
