@@ -19,5 +19,5 @@ pub mod simulation;
 pub mod transfer;
 
 pub use line::{Board, BoardError, Memory, read_in_steps};
-pub use simulation::{Frame, Meter, SimulatedBoard, Simulation, Uart};
+pub use simulation::{AnyBoard, Frame, Meter, SimulatedBoard, Simulation, Timeout, Uart};
 pub use {virtual_flash, virtual_image_sensor, virtual_mpu6050};

@@ -7,7 +7,7 @@ use virtual_flash::Flash;
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
-/// Clock cycles to simulate between two checks for bytes from the board.
+/// Clock cycles to simulate between two looks at the board.
 const SLICE: u64 = 1000;
 
 /// A simulated board with a UART.
@@ -21,14 +21,83 @@ pub trait Uart {
     /// System clock frequency in Hz.
     fn clock_hz(&self) -> u32;
 
-    /// Sends bytes to the UART.
+    /// Sends bytes to the UART. They queue until the program takes them.
     fn uart_write(&mut self, bytes: &[u8]);
 
     /// Number of sent bytes that the UART has not received yet.
     fn uart_queued(&self) -> usize;
 
-    /// Moves the unread serial output to the end of `output`.
-    fn uart_read(&mut self, output: &mut Vec<u8>);
+    /// The serial output that has not been read.
+    fn uart_output(&mut self) -> &mut Vec<u8>;
+
+    /// Appends the unread serial output to `output`.
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        output.append(self.uart_output());
+    }
+
+    /// Runs until `done` returns true, but at most about `limit` cycles; calls `done` every 1000 cycles. Returns whether `done`
+    /// returned true.
+    fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool
+    where
+        Self: Sized,
+    {
+        let end = self.cycles().saturating_add(limit);
+        loop {
+            if done(self) {
+                return true;
+            }
+            let left = end.saturating_sub(self.cycles());
+            if left == 0 {
+                return false;
+            }
+            self.run(left.min(SLICE));
+        }
+    }
+
+    /// Runs until the board has sent `expected`, and returns the unread output up to and including `expected`. Later output stays
+    /// unread.
+    ///
+    /// # Errors
+    /// [`Timeout`], with the output so far, if `expected` has not come within `limit` cycles.
+    fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Timeout>
+    where
+        Self: Sized,
+    {
+        let wanted = expected.as_bytes();
+        let mut searched = 0;
+        let mut end = None;
+        self.run_until(limit, |board| {
+            let sent = board.uart_output();
+            end = sent[searched..]
+                .windows(wanted.len().max(1))
+                .position(|window| window == wanted)
+                .map(|at| searched + at + wanted.len());
+            searched = sent.len().saturating_sub(wanted.len()).max(searched);
+            end.is_some()
+        });
+        let sent = self.uart_output();
+        let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+        match end {
+            Some(end) => Ok(text(sent.drain(..end).collect())),
+            None => Err(Timeout {
+                expected: format!("{expected:?}"),
+                cycles: limit,
+                got: text(std::mem::take(sent)),
+            }),
+        }
+    }
+}
+
+/// The expected output or video of a simulated board did not come in time.
+#[derive(Debug, thiserror::Error)]
+#[error("expected {expected} within {cycles} cycles, found {got:?}")]
+pub struct Timeout {
+    /// Expected input.
+    pub expected: String,
+    /// Time-out in cycles.
+    pub cycles: u64,
+    /// Output of the board during the wait.
+    pub got: String,
 }
 
 /// A frame on a board's monitor.
@@ -92,70 +161,6 @@ pub trait Simulation: Uart {
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError>;
 }
 
-/// Implements [`Uart`] by a board's methods of the same names.
-#[macro_export]
-macro_rules! own_uart {
-    () => {
-        fn run(&mut self, cycles: u64) {
-            self.run(cycles);
-        }
-
-        fn cycles(&self) -> u64 {
-            self.cycles()
-        }
-
-        fn clock_hz(&self) -> u32 {
-            self.clock_hz()
-        }
-
-        fn uart_write(&mut self, bytes: &[u8]) {
-            self.uart_write(bytes);
-        }
-
-        fn uart_queued(&self) -> usize {
-            self.uart_queued()
-        }
-
-        fn uart_read(&mut self, output: &mut Vec<u8>) {
-            self.uart_read(output);
-        }
-    };
-}
-
-/// Implements the pins of [`Simulation`] by a board's methods of the same names.
-#[macro_export]
-macro_rules! own_pins {
-    () => {
-        fn digits(&self) -> [u8; 8] {
-            self.digits()
-        }
-
-        fn set_buttons(&mut self, pressed: u8) {
-            self.set_buttons(pressed);
-        }
-
-        fn set_switches(&mut self, on: u16) {
-            self.set_switches(on);
-        }
-
-        fn leds(&self) -> u16 {
-            self.leds()
-        }
-
-        fn plug(&mut self, sensor: $crate::virtual_mpu6050::Wires) {
-            self.plug(sensor);
-        }
-
-        fn plug_flash(&mut self, flash: $crate::virtual_flash::Flash) {
-            self.plug_flash(flash);
-        }
-
-        fn plug_image_sensor(&mut self, sensor: $crate::virtual_image_sensor::ImageSensor) {
-            self.plug_image_sensor(sensor);
-        }
-    };
-}
-
 /// Lets another thread read the cycle count of a simulated board.
 #[derive(Clone, Debug)]
 pub struct Meter {
@@ -176,10 +181,13 @@ impl Meter {
 }
 
 /// A simulated board with a serial line and direct access to its memory.
-pub struct SimulatedBoard<S> {
-    board: S,
+pub struct SimulatedBoard<S: ?Sized> {
+    board: Box<S>,
     meter: Meter,
 }
+
+/// A simulated board of any kind.
+pub type AnyBoard = SimulatedBoard<dyn Simulation + Send>;
 
 impl<S: Uart> SimulatedBoard<S> {
     /// Wraps a board that the caller has built.
@@ -188,9 +196,18 @@ impl<S: Uart> SimulatedBoard<S> {
             cycles: Arc::default(),
             clock_hz: board.clock_hz(),
         };
+        let board = Box::new(board);
         Self { board, meter }
     }
+}
 
+impl<S: Simulation + Send + 'static> From<SimulatedBoard<S>> for AnyBoard {
+    fn from(SimulatedBoard { board, meter }: SimulatedBoard<S>) -> Self {
+        Self { board, meter }
+    }
+}
+
+impl<S: Uart + ?Sized> SimulatedBoard<S> {
     /// The cycle count of the board, for another thread.
     pub fn meter(&self) -> Meter {
         self.meter.clone()
@@ -209,7 +226,7 @@ impl<S: Uart> SimulatedBoard<S> {
     }
 }
 
-impl<S: Uart> Uart for SimulatedBoard<S> {
+impl<S: Uart + ?Sized> Uart for SimulatedBoard<S> {
     fn run(&mut self, cycles: u64) {
         self.advance(cycles);
     }
@@ -230,12 +247,12 @@ impl<S: Uart> Uart for SimulatedBoard<S> {
         self.board.uart_write(bytes);
     }
 
-    fn uart_read(&mut self, output: &mut Vec<u8>) {
-        self.board.uart_read(output);
+    fn uart_output(&mut self) -> &mut Vec<u8> {
+        self.board.uart_output()
     }
 }
 
-impl<S: Simulation> Board for SimulatedBoard<S> {
+impl<S: Simulation + ?Sized> Board for SimulatedBoard<S> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
         self.board.uart_write(bytes);
         Ok(())
@@ -262,7 +279,7 @@ impl<S: Simulation> Board for SimulatedBoard<S> {
     }
 }
 
-impl<S: Simulation> Memory for SimulatedBoard<S> {
+impl<S: Simulation + ?Sized> Memory for SimulatedBoard<S> {
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
         self.board.read_memory(address, bytes)
     }

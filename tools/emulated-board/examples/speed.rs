@@ -1,5 +1,6 @@
 //! Prints the speed of the emulated board: `cargo run --release -p emulated-board --example speed [FIRMWARE]`.
 
+use emulated_board::Uart;
 use std::time::Instant;
 
 use emulated_board::EmulatedBoard;

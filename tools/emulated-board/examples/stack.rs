@@ -5,6 +5,7 @@
 //! that is not 0 shows how far the stack has grown. A motion sensor at rest and an image sensor without a hand are plugged in.
 
 use emulated_board::EmulatedBoard;
+use emulated_board::{Simulation, Uart};
 use virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 

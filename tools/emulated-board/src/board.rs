@@ -1,8 +1,9 @@
 //! The board: The board: CPU, bus and devices, and the parts that a person connects or operates.
 
-use glint_board_api::Frame;
+use glint_board_api::{BoardError, Frame, Simulation, Uart};
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::memories::MAIN_RAM;
+use litex_pac::scanout::Scanout;
 use virtual_flash::Flash;
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
@@ -11,9 +12,6 @@ use crate::bus::Bus;
 use crate::cpu::{Cpu, Difference, Executed, Pause};
 use crate::devices::Devices;
 use crate::error::Error;
-
-/// Longest time in cycles between two evaluations of a condition.
-const SLICE: u64 = 1000;
 
 /// Factor by which the devices' time runs faster than the followed board's: an engine with an overestimated time must have ended
 /// before the program starts it again.
@@ -33,7 +31,8 @@ impl EmulatedBoard {
     /// [`Error::Address`] for firmware that exceeds main memory.
     pub fn fast(firmware: &[u8]) -> Result<Self, Error> {
         let mut board = Self::full(&jump(MAIN_RAM.base));
-        board.write_memory(MAIN_RAM.base, firmware)?;
+        let place = board.memory(MAIN_RAM.base, firmware.len())?;
+        place.copy_from_slice(firmware);
         Ok(board)
     }
 
@@ -46,48 +45,6 @@ impl EmulatedBoard {
             cpu: Cpu::new(),
             bus,
             cycles: 0,
-        }
-    }
-
-    /// Runs for at least `cycles` cycles; the last instruction may end later.
-    pub fn run(&mut self, cycles: u64) {
-        let end = self.cycles.saturating_add(cycles);
-        self.bus.devices.look();
-        while self.cycles < end {
-            let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
-            let lines = self.bus.devices.interrupts();
-            let limit = next.min(end);
-            let (now, pause) = if self.bus.devices.controller.holds_cpu {
-                (limit, Pause::Ready)
-            } else {
-                self.cpu.run(&mut self.bus, self.cycles, limit, lines)
-            };
-            self.cycles = now;
-            if pause == Pause::Asleep && now < limit {
-                self.cycles = self.bus.devices.sleep(end, &mut self.bus.ram);
-            }
-            if std::mem::take(&mut self.bus.devices.controller.reset) {
-                self.bus.devices.reset();
-                self.cpu.reset();
-            }
-        }
-        // The last instruction may have waited for the bus until after the time of an event.
-        self.bus.devices.advance(self.cycles, &mut self.bus.ram);
-    }
-
-    /// Runs until `done` returns true, but at most about `limit` cycles; calls `done` every 1000 cycles. Returns whether `done`
-    /// returned true.
-    pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
-        let end = self.cycles.saturating_add(limit);
-        loop {
-            if done(self) {
-                return true;
-            }
-            let left = end.saturating_sub(self.cycles);
-            if left == 0 {
-                return false;
-            }
-            self.run(left.min(SLICE));
         }
     }
 
@@ -105,95 +62,10 @@ impl EmulatedBoard {
         self.cpu.follow(&mut self.bus, now, other)
     }
 
-    /// Clock cycles since the start.
-    #[must_use]
-    pub fn cycles(&self) -> u64 {
-        self.cycles
-    }
-
     /// Instructions since the start.
     #[must_use]
     pub fn instructions(&self) -> u64 {
         self.cpu.retired()
-    }
-
-    /// Frequency of the system clock in Hz.
-    #[must_use]
-    pub fn clock_hz(&self) -> u32 {
-        CONFIG_CLOCK_FREQUENCY
-    }
-
-    /// Sends bytes to the UART.
-    pub fn uart_write(&mut self, bytes: &[u8]) {
-        self.bus.devices.uart.push(bytes);
-    }
-
-    /// Number of sent bytes that the CPU has not read from the UART yet.
-    #[must_use]
-    pub fn uart_queued(&self) -> usize {
-        self.bus.devices.uart.queued()
-    }
-
-    /// Moves the unread output of the UART to the end of `output`.
-    pub fn uart_read(&mut self, output: &mut Vec<u8>) {
-        output.append(self.bus.devices.uart.sent());
-    }
-
-    /// Runs until the board has sent `expected`, and returns the unread output up to and including `expected`. Later output stays
-    /// unread.
-    ///
-    /// # Errors
-    /// [`Error::Timeout`], with the output so far, if the board has not sent `expected` within `limit` cycles.
-    pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
-        let wanted = expected.as_bytes();
-        let mut searched = 0;
-        let mut end = None;
-        self.run_until(limit, |board| {
-            let sent = board.bus.devices.uart.sent();
-            end = sent[searched..]
-                .windows(wanted.len().max(1))
-                .position(|window| window == wanted)
-                .map(|at| searched + at + wanted.len());
-            searched = sent.len().saturating_sub(wanted.len()).max(searched);
-            end.is_some()
-        });
-        let sent = self.bus.devices.uart.sent();
-        let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-        match end {
-            Some(end) => Ok(text(sent.drain(..end).collect())),
-            None => Err(Error::Timeout {
-                expected: format!("{expected:?}"),
-                cycles: limit,
-                got: text(std::mem::take(sent)),
-            }),
-        }
-    }
-
-    /// Sets which of the buttons 0 to 3 are pressed, one bit each.
-    pub fn set_buttons(&mut self, pressed: u8) {
-        self.bus.devices.buttons.set(pressed.into());
-    }
-
-    /// Sets the 16 switches, one bit each.
-    pub fn set_switches(&mut self, on: u16) {
-        self.bus.devices.switches.set(on.into());
-    }
-
-    /// The 16 LEDs, one bit each.
-    #[must_use]
-    pub fn leds(&self) -> u16 {
-        self.bus.devices.leds.levels
-    }
-
-    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
-    #[must_use]
-    pub fn digits(&self) -> [u8; 8] {
-        self.bus.devices.digits.segments
-    }
-
-    /// Connects a sensor to the I2C bus; replaces the connected sensor, if any.
-    pub fn plug(&mut self, sensor: Wires) {
-        self.bus.devices.i2c.sensor = Some(sensor);
     }
 
     /// The sensor on the I2C bus, if any.
@@ -206,20 +78,9 @@ impl EmulatedBoard {
         self.bus.devices.i2c.sensor.take()
     }
 
-    /// Connects a flash in place of the connected one; a new board has an erased flash.
-    pub fn plug_flash(&mut self, flash: Flash) {
-        self.bus.flash = flash;
-        self.cpu.forget_code();
-    }
-
     /// Sets the block enable bits of the gateware's identity, to emulate a gateware without some blocks. The blocks stay.
     pub fn state_blocks(&mut self, blocks: u32) {
         self.bus.devices.identity.blocks = blocks;
-    }
-
-    /// Connects an image sensor; replaces the connected sensor, if any.
-    pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
-        self.bus.devices.gesture.plug(image_sensor);
     }
 
     /// The image sensor, if any. A fault that is set takes effect with the sensor's next frame.
@@ -247,31 +108,119 @@ impl EmulatedBoard {
         self.bus.devices.scanout.blankings()
     }
 
-    /// Reads main memory from the CPU address `address` on.
-    ///
-    /// # Errors
-    /// [`Error::Address`] if the range is not within main memory.
-    pub fn read_memory(&self, address: u32, bytes: &mut [u8]) -> Result<(), Error> {
-        let found = self.bus.ram.bytes(address, bytes.len());
-        bytes.copy_from_slice(found.ok_or(Error::Address {
-            address,
-            length: bytes.len(),
-        })?);
+    /// Main memory from `address` on, an address of the CPU.
+    fn memory(&mut self, address: u32, length: usize) -> Result<&mut [u8], Error> {
+        let place = self.bus.ram.bytes_mut(address, length);
+        place.ok_or(Error::Address { address, length })
+    }
+}
+
+impl Uart for EmulatedBoard {
+    /// Runs for at least `cycles` cycles; the last instruction may end later.
+    fn run(&mut self, cycles: u64) {
+        let end = self.cycles.saturating_add(cycles);
+        self.bus.devices.look();
+        while self.cycles < end {
+            let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
+            let lines = self.bus.devices.interrupts();
+            let limit = next.min(end);
+            let (now, pause) = if self.bus.devices.controller.holds_cpu {
+                (limit, Pause::Ready)
+            } else {
+                self.cpu.run(&mut self.bus, self.cycles, limit, lines)
+            };
+            self.cycles = now;
+            if pause == Pause::Asleep && now < limit {
+                self.cycles = self.bus.devices.sleep(end, &mut self.bus.ram);
+            }
+            if std::mem::take(&mut self.bus.devices.controller.reset) {
+                self.bus.devices.reset();
+                self.cpu.reset();
+            }
+        }
+        // The last instruction may have waited for the bus until after the time of an event.
+        self.bus.devices.advance(self.cycles, &mut self.bus.ram);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.cycles
+    }
+
+    fn clock_hz(&self) -> u32 {
+        CONFIG_CLOCK_FREQUENCY
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.bus.devices.uart.push(bytes);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.bus.devices.uart.queued()
+    }
+
+    fn uart_output(&mut self) -> &mut Vec<u8> {
+        self.bus.devices.uart.sent()
+    }
+}
+
+impl Simulation for EmulatedBoard {
+    fn set_buttons(&mut self, pressed: u8) {
+        self.bus.devices.buttons.set(pressed.into());
+    }
+
+    fn set_switches(&mut self, on: u16) {
+        self.bus.devices.switches.set(on.into());
+    }
+
+    fn leds(&self) -> u16 {
+        self.bus.devices.leds.levels
+    }
+
+    fn digits(&self) -> [u8; 8] {
+        self.bus.devices.digits.segments
+    }
+
+    fn plug(&mut self, sensor: Wires) {
+        self.bus.devices.i2c.sensor = Some(sensor);
+    }
+
+    fn plug_flash(&mut self, flash: Flash) {
+        self.bus.flash = flash;
+        self.cpu.forget_code();
+    }
+
+    fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
+        self.bus.devices.gesture.plug(image_sensor);
+    }
+
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
+        let place = self.memory(address, bytes.len());
+        bytes.copy_from_slice(place.map_err(BoardError::simulation)?);
         Ok(())
     }
 
-    /// Writes main memory from the CPU address `address` on.
-    ///
-    /// # Errors
-    /// [`Error::Address`] if the range is not within main memory.
-    pub fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), Error> {
-        let place = self.bus.ram.bytes_mut(address, bytes.len());
-        let length = bytes.len();
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        let place = self.memory(address, bytes.len());
         place
-            .ok_or(Error::Address { address, length })?
+            .map_err(BoardError::simulation)?
             .copy_from_slice(bytes);
         self.cpu.forget_code();
         Ok(())
+    }
+
+    fn new_frame(&mut self, last: u64) -> Result<Option<(u64, Frame)>, BoardError> {
+        let number = self.blankings();
+        Ok((number != last).then(|| (number, self.shown())))
+    }
+
+    fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
+        let frame = self.capture();
+        let (expected, found) = (Scanout::SCREEN_WIDTH as usize / scale.max(1), frame.width);
+        if found != expected {
+            let error = Error::FrameWidth { expected, found };
+            return Err(BoardError::simulation(error));
+        }
+        Ok(frame.pixels)
     }
 }
 

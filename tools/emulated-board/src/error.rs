@@ -24,14 +24,4 @@ pub enum Error {
         /// Number of pixels in a line.
         found: usize,
     },
-    /// The expected output did not arrive in time.
-    #[error("expected {expected} within {cycles} cycles, found {got:?}")]
-    Timeout {
-        /// Expected input.
-        expected: String,
-        /// Time-out in cycles.
-        cycles: u64,
-        /// Output of the board during the wait.
-        got: String,
-    },
 }

@@ -26,7 +26,6 @@ mod engines;
 mod error;
 mod events;
 mod memory;
-mod simulation;
 
 pub use board::EmulatedBoard;
 pub use cpu::{Difference, Executed};
@@ -34,7 +33,7 @@ pub use device::Device;
 pub use engines::{GestureEngine, Raymarcher, TriangleEngine};
 pub use error::Error;
 pub use events::Events;
-pub use glint_board_api::Frame;
+pub use glint_board_api::{Frame, Simulation, Uart};
 pub use memory::MainMemory;
 pub use virtual_image_sensor;
 pub use virtual_mpu6050;

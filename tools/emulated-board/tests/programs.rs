@@ -1,6 +1,7 @@
 //! Tests small programs on the whole board, with operations that the firmware does not use.
 
 use emulated_board::EmulatedBoard;
+use emulated_board::{Simulation, Uart};
 use litex_pac::memories::{FLASH, MAIN_RAM};
 use litex_pac::register::Value;
 use litex_pac::{ctrl, leds};
@@ -72,7 +73,7 @@ fn started(words: &[u32]) -> EmulatedBoard {
 }
 
 /// The result number `place`.
-fn result(board: &EmulatedBoard, place: u32) -> u32 {
+fn result(board: &mut EmulatedBoard, place: u32) -> u32 {
     let mut word = [0; 4];
     let address = RESULTS + 4 * place;
     board.read_memory(address, &mut word).expect("main memory");
@@ -104,7 +105,7 @@ fn each_page_of_the_flash_runs_its_own_code() {
         ]);
         board.plug_flash(Flash::new(bytes(&words)));
         board.run(100);
-        assert_eq!(result(&board, 0), value);
+        assert_eq!(result(&mut board, 0), value);
     }
 }
 
@@ -142,8 +143,9 @@ fn an_access_that_fills_a_line_of_a_cache_is_eight_on_the_bus() {
     let mut board = started(&program);
     board.run(30_000_000);
     for ((_, access, count), place) in accesses.into_iter().zip(1..) {
-        let difference =
-            |word: u32| result(&board, 2 * place + word) - result(&board, 2 * place - 2 + word);
+        let mut difference = |word: u32| {
+            result(&mut board, 2 * place + word) - result(&mut board, 2 * place - 2 + word)
+        };
         assert_eq!(difference(0), count, "{access:#010x}");
         assert_eq!(difference(1) / TIMEOUT, count, "{access:#010x}");
     }
@@ -168,7 +170,7 @@ fn a_held_cpu_halts_and_the_devices_go_on() {
     board.run(5_000_000);
     assert_eq!((board.instructions(), board.leds()), (instructions, 5));
     assert!(board.blankings() > blankings + 1 && board.cycles() >= 5_000_100);
-    assert_eq!(result(&board, 0), 0);
+    assert_eq!(result(&mut board, 0), 0);
 }
 
 #[test]
@@ -187,5 +189,5 @@ fn an_instruction_that_traps_does_not_count() {
         LOOP,
     ]);
     board.run(100);
-    assert_eq!(result(&board, 1) - result(&board, 0), 1);
+    assert_eq!(result(&mut board, 1) - result(&mut board, 0), 1);
 }

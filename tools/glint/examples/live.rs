@@ -1,6 +1,7 @@
 //! Prints the number of pictures per second of moving scenes on the emulated board: `cargo run --release -p glint --example live
 //! [SCENE…]`.
 
+use glint::board::Uart;
 use std::time::Instant;
 
 use glint::board::{self, Simulation, built_firmware};

@@ -16,16 +16,22 @@ const SLICE_MS: u64 = 1;
 /// A board for the live page. The board runs during a read from its line, at most at real-time speed.
 pub trait Live: Board {
     /// The motion sensor and the hand that the page moves; `None` for a board without access to its pins.
-    fn motion(&self) -> Option<Arc<Motion>>;
+    fn motion(&self) -> Option<Arc<Motion>> {
+        None
+    }
 
     /// Sets buttons and switches, and returns the levels of all pins; `None` for a board without access to its pins.
-    fn pins(&mut self, levels: Levels) -> Option<Pins>;
+    fn pins(&mut self, _levels: Levels) -> Option<Pins> {
+        None
+    }
 
     /// The picture on the monitor, if it has changed since the last call.
     ///
     /// # Errors
     /// The monitor shows no frame.
-    fn picture(&mut self) -> Result<Option<Frame>, BoardError>;
+    fn picture(&mut self) -> Result<Option<Frame>, BoardError> {
+        Ok(None)
+    }
 
     /// Interval of the measurements on the console.
     fn sample_period(&self) -> Duration;
@@ -40,7 +46,7 @@ pub trait Live: Board {
 }
 
 /// A simulated board that runs in real time.
-pub struct LiveSimulation<S, C> {
+pub struct LiveSimulation<S: ?Sized, C> {
     board: SimulatedBoard<S>,
     sample_period: Duration,
     motion: Arc<Motion>,
@@ -50,7 +56,7 @@ pub struct LiveSimulation<S, C> {
     shown: (u64, Option<Frame>),
 }
 
-impl<S: Simulation, C: Clock> LiveSimulation<S, C> {
+impl<S: Simulation + ?Sized, C: Clock> LiveSimulation<S, C> {
     /// Takes a board whose firmware is running, and connects a motion sensor and a camera. `clock` limits the board to real time.
     /// `sample_period` is the interval of the measurements on its console.
     pub fn new(mut board: SimulatedBoard<S>, sample_period: Duration, clock: C) -> Self {
@@ -78,7 +84,7 @@ impl<S: Simulation, C: Clock> LiveSimulation<S, C> {
     }
 }
 
-impl<S: Simulation, C: Clock> Board for LiveSimulation<S, C> {
+impl<S: Simulation + ?Sized, C: Clock> Board for LiveSimulation<S, C> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
         self.board.write(bytes)
     }
@@ -101,7 +107,7 @@ impl<S: Simulation, C: Clock> Board for LiveSimulation<S, C> {
     }
 }
 
-impl<S: Simulation, C: Clock> Live for LiveSimulation<S, C> {
+impl<S: Simulation + ?Sized, C: Clock> Live for LiveSimulation<S, C> {
     fn motion(&self) -> Option<Arc<Motion>> {
         Some(Arc::clone(&self.motion))
     }

@@ -1,5 +1,6 @@
 //! The emulated board with the built firmware and a console.
 
+use glint::board::Uart;
 use std::sync::LazyLock;
 
 use anyhow::{Context, Result, bail};

@@ -7,6 +7,7 @@
 
 use std::process::ExitCode;
 use std::time::Instant;
+use virtual_board::Uart;
 
 use virtual_board::{Error, VirtualBoard};
 

@@ -4,7 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use glint_board_api::built;
+use glint_board_api::{BoardError, Frame, Simulation, Timeout, Uart, built};
 use litex_pac::memories::MAIN_RAM;
 use litex_pac::scanout::Scanout;
 use virtual_flash::{Flash, Pins};
@@ -150,51 +150,12 @@ impl VirtualBoard {
         Builder::default()
     }
 
-    /// Runs `cycles` cycles of the system clock.
-    pub fn run(&mut self, cycles: u64) {
-        let start = Instant::now();
-        self.soc.video_record(self.monitor.is_on());
-        let mut left = cycles;
-        while left > 0 {
-            let slice = left.min(SLICE);
-            let has_devices =
-                self.sensor.is_some() || self.image_sensor.is_some() || self.flash.is_some();
-            left -= if has_devices {
-                self.soc.run_to_edge(slice)
-            } else {
-                self.soc.run(slice);
-                slice
-            };
-            self.update_flash();
-            self.update_wires();
-            self.update_image_sensor();
-            self.collect();
-        }
-        self.running += start.elapsed();
-    }
-
-    /// Runs `cycles` cycles in a bare C++ loop around the model; its speed is the reference for [`run`](Self::run). The SoC's serial
-    /// output and video of these cycles are lost, and serial input stays queued.
+    /// Runs `cycles` cycles in a bare C++ loop around the model, whose speed is the reference for [`run`](Uart::run). The
+    /// SoC's serial output and video of these cycles are lost, and its serial input waits.
     pub fn run_bare(&mut self, cycles: u64) {
         let start = Instant::now();
         self.soc.run_bare(cycles);
         self.running += start.elapsed();
-    }
-
-    /// Runs until `done` returns true, but at most `limit` cycles; calls `done` every 1000 cycles. Returns whether `done`
-    /// returned true.
-    pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
-        let end = self.cycles().saturating_add(limit);
-        loop {
-            if done(self) {
-                return true;
-            }
-            let left = end.saturating_sub(self.cycles());
-            if left == 0 {
-                return false;
-            }
-            self.run(left.min(SLICE));
-        }
     }
 
     /// Passes the SoC's outputs to the flash, and the flash's data to the SoC.
@@ -274,104 +235,16 @@ impl VirtualBoard {
         self.soc.instructions_take(list);
     }
 
-    /// Cycles of the system clock since the start.
-    #[must_use]
-    pub fn cycles(&self) -> u64 {
-        self.soc.cycles()
-    }
-
     /// Mean simulation speed since the start, in cycles per second of wall time.
     #[must_use]
     pub fn cycles_per_second(&self) -> f64 {
         self.cycles() as f64 / self.running.as_secs_f64().max(f64::MIN_POSITIVE)
     }
 
-    /// System clock frequency of the SoC in Hz.
-    #[must_use]
-    pub fn clock_hz(&self) -> u32 {
-        self.soc.clock_hz()
-    }
-
     /// Build id: CRC-32 of the gateware's register map.
     #[must_use]
     pub fn build_id(&self) -> u32 {
         self.soc.build_id()
-    }
-
-    /// Sends bytes to the SoC's UART. They queue until the UART takes them.
-    pub fn uart_write(&mut self, bytes: &[u8]) {
-        self.soc.uart_write(bytes);
-    }
-
-    /// Number of bytes that are queued for the UART.
-    #[must_use]
-    pub fn uart_queued(&self) -> usize {
-        self.soc.uart_queued()
-    }
-
-    /// Appends the unread serial output of the SoC to `output`.
-    pub fn uart_read(&mut self, output: &mut Vec<u8>) {
-        output.append(&mut self.uart);
-    }
-
-    /// Runs until the SoC has sent `expected`, and returns the unread output up to the end of `expected`. Later output
-    /// stays unread.
-    ///
-    /// # Errors
-    /// [`Error::Timeout`], with the output so far, if `expected` has not come within `limit` cycles.
-    pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
-        let wanted = expected.as_bytes();
-        let mut searched = 0;
-        let mut end = None;
-        self.run_until(limit, |board| {
-            end = board.uart[searched..]
-                .windows(wanted.len().max(1))
-                .position(|window| window == wanted)
-                .map(|at| searched + at + wanted.len());
-            searched = board
-                .uart
-                .len()
-                .saturating_sub(wanted.len().saturating_sub(1))
-                .max(searched);
-            end.is_some()
-        });
-        let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-        match end {
-            Some(end) => Ok(text(self.uart.drain(..end).collect())),
-            None => Err(Error::Timeout {
-                expected: format!("{expected:?}"),
-                cycles: limit,
-                got: text(std::mem::take(&mut self.uart)),
-            }),
-        }
-    }
-
-    /// Sets which of the buttons 0 to 3 are pressed, one bit each.
-    pub fn set_buttons(&mut self, pressed: u8) {
-        self.soc.set_buttons(pressed);
-    }
-
-    /// Sets the 16 switches, one bit each.
-    pub fn set_switches(&mut self, on: u16) {
-        self.soc.set_switches(on);
-    }
-
-    /// The 16 LEDs, one bit each.
-    #[must_use]
-    pub fn leds(&self) -> u16 {
-        self.soc.leds()
-    }
-
-    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
-    #[must_use]
-    pub fn digits(&self) -> [u8; 8] {
-        self.digits.seen(self.cycles())
-    }
-
-    /// Connects a sensor to the I2C bus; it replaces the connected sensor, if any. The sensor then drives the wires in place of
-    /// [`i2c_drive`](Self::i2c_drive).
-    pub fn plug(&mut self, sensor: Wires) {
-        self.sensor = Some(sensor);
     }
 
     /// The sensor on the I2C bus, if any.
@@ -383,17 +256,6 @@ impl VirtualBoard {
     pub fn unplug(&mut self) -> Option<Wires> {
         self.soc.i2c_drive(0b11);
         self.sensor.take()
-    }
-
-    /// Connects a flash; it replaces the connected flash, if any. Without a flash, its window reads as ones.
-    pub fn plug_flash(&mut self, flash: Flash) {
-        self.flash = Some(flash);
-    }
-
-    /// Connects an image sensor; it replaces the connected one, if any.
-    pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
-        self.soc.camera_clear();
-        self.image_sensor = Some(image_sensor);
     }
 
     /// The image sensor, if any. Its faults take effect with its next frame.
@@ -434,14 +296,13 @@ impl VirtualBoard {
             self.monitor.turn_off();
         }
         let picture = self.monitor.take_picture();
-        picture.filter(|_| shown).ok_or_else(|| Error::Timeout {
-            expected: "a frame on the monitor".to_owned(),
-            cycles: two_frames,
-            got: self
-                .monitor
-                .errors()
-                .first()
-                .map_or("no sync".to_owned(), TimingError::to_string),
+        picture.filter(|_| shown).ok_or_else(|| {
+            let error = self.monitor.errors().first();
+            Error::Timeout(Timeout {
+                expected: "a frame on the monitor".to_owned(),
+                cycles: two_frames,
+                got: error.map_or("no sync".to_owned(), TimingError::to_string),
+            })
         })
     }
 
@@ -478,5 +339,115 @@ impl VirtualBoard {
         if self.cycles() > 0 {
             self.run(SETTLE);
         }
+    }
+}
+
+impl Uart for VirtualBoard {
+    fn run(&mut self, cycles: u64) {
+        let start = Instant::now();
+        self.soc.video_record(self.monitor.is_on());
+        let mut left = cycles;
+        while left > 0 {
+            let slice = left.min(SLICE);
+            let has_devices =
+                self.sensor.is_some() || self.image_sensor.is_some() || self.flash.is_some();
+            left -= if has_devices {
+                self.soc.run_to_edge(slice)
+            } else {
+                self.soc.run(slice);
+                slice
+            };
+            self.update_flash();
+            self.update_wires();
+            self.update_image_sensor();
+            self.collect();
+        }
+        self.running += start.elapsed();
+    }
+
+    fn cycles(&self) -> u64 {
+        self.soc.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.soc.clock_hz()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.soc.uart_write(bytes);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.soc.uart_queued()
+    }
+
+    fn uart_output(&mut self) -> &mut Vec<u8> {
+        &mut self.uart
+    }
+}
+
+impl Simulation for VirtualBoard {
+    fn set_buttons(&mut self, pressed: u8) {
+        self.soc.set_buttons(pressed);
+    }
+
+    fn set_switches(&mut self, on: u16) {
+        self.soc.set_switches(on);
+    }
+
+    fn leds(&self) -> u16 {
+        self.soc.leds()
+    }
+
+    fn digits(&self) -> [u8; 8] {
+        self.digits.seen(self.cycles())
+    }
+
+    fn plug(&mut self, sensor: Wires) {
+        self.sensor = Some(sensor);
+    }
+
+    fn plug_flash(&mut self, flash: Flash) {
+        self.flash = Some(flash);
+    }
+
+    fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
+        self.soc.camera_clear();
+        self.image_sensor = Some(image_sensor);
+    }
+
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
+        self.ddr_read(address, bytes)
+            .map_err(BoardError::simulation)
+    }
+
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        self.ddr_write(address, bytes)
+            .map_err(BoardError::simulation)
+    }
+
+    fn new_frame(&mut self, last: u64) -> Result<Option<(u64, Frame)>, BoardError> {
+        self.monitor().turn_on();
+        let Some(picture) = self.monitor().take_picture() else {
+            return Ok(None);
+        };
+        // If larger blocks have equal pixels, the frame is smaller.
+        let mut scales = [4, 2].into_iter();
+        let smaller = scales.find_map(|scale| Some((scale, picture.scaled_back(scale).ok()?)));
+        let (scale, pixels) = match smaller {
+            Some(found) => found,
+            None => (1, picture.scaled_back(1).map_err(BoardError::simulation)?),
+        };
+        let frame = Frame {
+            width: picture.width() / scale,
+            height: picture.height() / scale,
+            pixels,
+        };
+        Ok(Some((last + 1, frame)))
+    }
+
+    fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
+        let picture = self.capture().map_err(BoardError::simulation)?;
+        picture.scaled_back(scale).map_err(BoardError::simulation)
     }
 }

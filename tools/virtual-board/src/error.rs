@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use glint_board_api::Timeout;
 use glint_board_api::built::NotBuilt;
 use glint_testbench::LoadError;
 
@@ -53,15 +54,8 @@ pub enum Error {
         ram: std::ops::Range<u32>,
     },
     /// Time-out while waiting for output or video.
-    #[error("expected {expected} within {cycles} cycles, found {got:?}")]
-    Timeout {
-        /// Expected input.
-        expected: String,
-        /// Time-out in cycles.
-        cycles: u64,
-        /// Output of the SoC until the time-out.
-        got: String,
-    },
+    #[error(transparent)]
+    Timeout(#[from] Timeout),
     /// The operating system provides no pseudo-terminal.
     #[error("pseudo-terminal: {0}")]
     Pty(#[from] std::io::Error),

@@ -34,10 +34,10 @@ mod memory;
 mod monitor;
 mod picture;
 pub mod pty;
-mod simulation;
 
 pub use board::{Builder, Start, VirtualBoard};
 pub use error::Error;
+pub use glint_board_api::{Simulation, Uart};
 pub use library::Instruction;
 pub use monitor::{HEIGHT, Monitor, TimingError, WIDTH};
 pub use picture::{Picture, PictureError};

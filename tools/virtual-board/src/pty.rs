@@ -43,11 +43,22 @@ impl<B: Uart + Send + 'static> Pty<B> {
     /// # Errors
     /// When the system provides no pseudo-terminal.
     pub fn start(board: B) -> Result<Self, Error> {
+        Self::watched(board, |_, _| ())
+    }
+
+    /// Moves the board to a new thread, and starts it. Calls `watch` with the bytes that have been passed: to the board, and from it.
+    ///
+    /// # Errors
+    /// When the system provides no pseudo-terminal.
+    pub fn watched(
+        board: B,
+        watch: impl FnMut(&[u8], &[u8]) + Send + 'static,
+    ) -> Result<Self, Error> {
         let (side, terminal, path) = open().map_err(io::Error::from)?;
         let (tasks, queue) = channel();
         let thread = std::thread::Builder::new()
             .name("virtual board".to_owned())
-            .spawn(move || run(board, side, &queue))?;
+            .spawn(move || run(board, side, &queue, watch))?;
         Ok(Self {
             path,
             tasks: Some(tasks),
@@ -130,7 +141,12 @@ fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
 
 /// Body of the board's thread. Repeatedly passes bytes from the terminal to the UART, runs the board for a slice, and passes bytes from
 /// the UART to the terminal.
-fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> B {
+fn run<B: Uart>(
+    mut board: B,
+    mut terminal: File,
+    tasks: &Receiver<Task<B>>,
+    mut watch: impl FnMut(&[u8], &[u8]),
+) -> B {
     let mut output = Vec::new();
     let mut pace = Pace::new(SystemClock::start(), board.clock_hz(), board.cycles());
     loop {
@@ -144,13 +160,17 @@ fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> 
         if board.uart_queued() < QUEUE {
             let mut input = [0; QUEUE];
             match terminal.read(&mut input) {
-                Ok(count) => board.uart_write(&input[..count]),
+                Ok(count) => {
+                    board.uart_write(&input[..count]);
+                    watch(&input[..count], &[]);
+                }
                 Err(error) if is_passing(&error) => {}
                 Err(error) => panic!("reading the virtual board's terminal: {error}"),
             }
         }
         pace.wait(board.cycles());
         board.run(SLICE);
+        watch(&[], board.uart_output());
         board.uart_read(&mut output);
         match terminal.write(&output) {
             Ok(count) => drop(output.drain(..count)),
@@ -178,11 +198,17 @@ mod tests {
         cycles: u64,
         number: u32,
         end: u32,
+        output: Vec<u8>,
     }
 
     impl Uart for Talker {
         fn run(&mut self, cycles: u64) {
             self.cycles += cycles;
+            let last = self.end.min(self.number + 10_000);
+            for number in self.number..last {
+                self.output.extend(format!("{number:7}\n").bytes());
+            }
+            self.number = last;
         }
 
         fn cycles(&self) -> u64 {
@@ -199,12 +225,8 @@ mod tests {
             0
         }
 
-        fn uart_read(&mut self, output: &mut Vec<u8>) {
-            let last = self.end.min(self.number + 10_000);
-            for number in self.number..last {
-                output.extend(format!("{number:7}\n").bytes());
-            }
-            self.number = last;
+        fn uart_output(&mut self) -> &mut Vec<u8> {
+            &mut self.output
         }
     }
 

@@ -10,12 +10,12 @@ mod simulated;
 pub use emulated_board::EmulatedBoard;
 pub use error::OpenError;
 pub use glint_board_api::{
-    Board, BoardError, Frame as MonitorFrame, Memory, Meter, Simulation, Uart,
+    AnyBoard, Board, BoardError, Frame as MonitorFrame, Memory, Meter, Simulation, Uart,
 };
 pub use name::{BoardName, ModelOrBoard};
 pub use ports::{Port, ports};
 pub use route::Route;
 pub use serial::SerialBoard;
 pub use simulated::{
-    SimulatedBoard, built_firmware, emulated, emulated_bios, verilated, verilated_bios,
+    SimulatedBoard, built_firmware, emulated, emulated_bios, simulated, verilated, verilated_bios,
 };

@@ -1,8 +1,9 @@
 //! Starts boards that are simulated in this process.
 
 use super::error::OpenError;
+use super::name::BoardName;
 use emulated_board::EmulatedBoard;
-use glint_board_api::built;
+use glint_board_api::{AnyBoard, built};
 use std::path::Path;
 use virtual_board::{Start, VirtualBoard};
 
@@ -43,6 +44,21 @@ pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
     let bios = "gateware/virtual/software/bios/bios.bin";
     let bios = read(&built::find(bios, "cargo xtask gateware")?)?;
     Ok(SimulatedBoard::new(EmulatedBoard::full(&bios)))
+}
+
+/// Builds the simulated board `name` that starts with `firmware` in its memory, or with its BIOS for `None`. Returns `None` for a board
+/// on a serial port.
+///
+/// # Errors
+/// As those of the functions for each board.
+pub fn simulated(name: &BoardName, firmware: Option<&[u8]>) -> Result<Option<AnyBoard>, OpenError> {
+    Ok(Some(match (name, firmware) {
+        (BoardName::Emulated, Some(firmware)) => emulated(firmware)?.into(),
+        (BoardName::Emulated, None) => emulated_bios()?.into(),
+        (BoardName::Virtual, Some(firmware)) => verilated(firmware)?.into(),
+        (BoardName::Virtual, None) => verilated_bios()?.into(),
+        (BoardName::Serial(_), _) => return Ok(None),
+    }))
 }
 
 /// Reads the firmware file at `path`, or without a path the firmware that `cargo xtask firmware` has built and [`built::find`]

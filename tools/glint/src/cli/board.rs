@@ -1,16 +1,16 @@
 //! `glint board`.
 
-use super::common::{LineArguments, bad_value};
+use super::common::{LineArguments, Opened, bad_value};
 use super::messages::{note, say, warn};
 use super::output::Output;
 use super::progress::{show_simulation, spinner};
 use super::terminal::talk;
 use anyhow::Context;
 use clap::Args;
-use glint::board::{self, BoardName, SerialBoard, SimulatedBoard, Simulation, Uart};
+use glint::board::{self, AnyBoard, BoardName, SerialBoard};
 use glint::error::{FormatError, quote};
 use glint::formats::read_file;
-use glint::web::{LiveSerial, Server};
+use glint::web::Server;
 use glint_board_api::pace::SystemClock;
 use glint_live_page::{Live, LiveSimulation};
 use rustix::termios::isatty;
@@ -64,17 +64,11 @@ impl BoardArguments {
         if let Some(address) = self.web {
             return self.serve(address);
         }
-        let bios = self.bios || self.flash.is_some();
-        match (&self.board, bios) {
-            (BoardName::Emulated, true) => self.stay(|| self.powered(board::emulated_bios()?)),
-            (BoardName::Emulated, false) => self.stay(|| self.line.emulated_board()),
-            (BoardName::Virtual, true) => self.stay(|| self.powered(board::verilated_bios()?)),
-            (BoardName::Virtual, false) => self.stay(|| self.line.virtual_board()),
-            (BoardName::Serial(port), _) => {
-                let expected = "emulated or virtual, or --web";
-                Err(bad_value("--board", expected, quote(port.as_bytes())).into())
-            }
+        if let BoardName::Serial(port) = &self.board {
+            let expected = "emulated or virtual, or --web";
+            return Err(bad_value("--board", expected, quote(port.as_bytes())).into());
         }
+        self.stay()
     }
 
     /// Opens the file of `--ready-file`. Removes an earlier file, so that the file exists only when the board is ready.
@@ -95,18 +89,15 @@ impl BoardArguments {
         let ended = Arc::clone(&stop);
         ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed))?;
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
-        let mut board: Box<dyn Live> = match &self.board {
-            BoardName::Emulated => Box::new(LiveSimulation::new(
-                self.line.emulated_board()?,
-                Duration::from_millis(250),
-                SystemClock::start(),
-            )),
-            BoardName::Virtual => Box::new(LiveSimulation::new(
-                self.line.virtual_board()?,
-                Duration::from_secs(2),
-                SystemClock::start(),
-            )),
-            BoardName::Serial(port) => Box::new(LiveSerial(self.line.serial_board(port)?)),
+        let mut board: Box<dyn Live> = match self.line.open_any(&self.board)? {
+            Opened::Simulated(board) => {
+                let period = match self.board {
+                    BoardName::Virtual => Duration::from_secs(2),
+                    _ => Duration::from_millis(250),
+                };
+                Box::new(LiveSimulation::new(board, period, SystemClock::start()))
+            }
+            Opened::Serial(board) => Box::new(board),
         };
         let url = server.url()?;
         say(&url)?;
@@ -119,11 +110,21 @@ impl BoardArguments {
         Ok(server.run(&mut *board, &self.board.to_string(), &stop)?)
     }
 
-    /// A board that starts with the BIOS, and its flash memory.
-    fn powered<S: Simulation>(
-        &self,
-        mut board: SimulatedBoard<S>,
-    ) -> anyhow::Result<SimulatedBoard<S>> {
+    /// Whether the board starts with the BIOS.
+    fn has_bios(&self) -> bool {
+        self.bios || self.flash.is_some()
+    }
+
+    /// The simulated board, at its start.
+    fn simulated(&self) -> anyhow::Result<AnyBoard> {
+        let board = match self.has_bios() {
+            true => board::simulated(&self.board, None)?,
+            false => match self.line.open_any(&self.board)? {
+                Opened::Simulated(board) => return Ok(board),
+                Opened::Serial(_) => None,
+            },
+        };
+        let mut board = board.context("expected a simulated board")?;
         if let Some(path) = &self.flash {
             let image = read_file(path)?;
             let (found, limit) = (image.len(), MAX_BYTES);
@@ -138,10 +139,7 @@ impl BoardArguments {
         Ok(board)
     }
 
-    fn stay<B: Uart + Send + 'static>(
-        &self,
-        start: impl FnOnce() -> anyhow::Result<B>,
-    ) -> anyhow::Result<()> {
+    fn stay(&self) -> anyhow::Result<()> {
         let ready = self.ready()?;
         let (report, events) = channel();
         let end = report.clone();
@@ -149,11 +147,7 @@ impl BoardArguments {
             // Without a receiver the program is already ending.
             let _ = end.send(Event::End);
         })?;
-        let pty = Pty::start(Watched {
-            board: start()?,
-            heard: Vec::new(),
-            report: Some(report),
-        })?;
+        let pty = Pty::watched(self.simulated()?, first_prompt(report))?;
         let port = pty.path();
         let link = self.pty.as_deref().map(|link| Link::new(link, port));
         let _link = link.transpose()?;
@@ -166,8 +160,7 @@ impl BoardArguments {
             return talk(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
         }
         // A board without the BIOS has already started.
-        let bios = self.bios || self.flash.is_some();
-        let mut starting = bios.then(|| spinner("the board starts"));
+        let mut starting = self.has_bios().then(|| spinner("the board starts"));
         while let Event::Started = events.recv()? {
             starting = None;
         }
@@ -184,56 +177,24 @@ enum Event {
     End,
 }
 
-/// A board that sends an event at its first prompt.
-struct Watched<B> {
-    board: B,
-    /// The last bytes of the output, which may be the start of a prompt.
-    heard: Vec<u8>,
-    /// Sender of the event of the first prompt; `None` afterwards.
-    report: Option<Sender<Event>>,
-}
-
-impl<B: Uart> Uart for Watched<B> {
-    fn run(&mut self, cycles: u64) {
-        self.board.run(cycles);
-    }
-
-    fn cycles(&self) -> u64 {
-        self.board.cycles()
-    }
-
-    fn clock_hz(&self) -> u32 {
-        self.board.clock_hz()
-    }
-
-    fn uart_queued(&self) -> usize {
-        self.board.uart_queued()
-    }
-
-    fn uart_write(&mut self, bytes: &[u8]) {
-        self.board.uart_write(bytes);
-    }
-
-    fn uart_read(&mut self, output: &mut Vec<u8>) {
-        let before = output.len();
-        self.board.uart_read(output);
-        if self.report.is_none() {
+/// Reports the first prompt in the bytes from a board.
+fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8], &[u8]) + Send {
+    let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);
+    // The end of the output, in which a prompt may have begun, and the receiver of the event until it is sent.
+    let (mut heard, mut report) = (Vec::new(), Some(report));
+    move |_, said| {
+        if said.is_empty() || report.is_none() {
             return;
         }
-        self.heard.extend(output.iter().skip(before));
-        let is_said = |prompt: &&[u8]| {
-            let mut parts = self.heard.windows(prompt.len());
-            parts.any(|part| part == *prompt)
-        };
+        heard.extend_from_slice(said);
+        let is_said = |prompt: &&[u8]| heard.windows(prompt.len()).any(|part| part == *prompt);
         if PROMPTS.iter().any(is_said)
-            && let Some(report) = self.report.take()
+            && let Some(report) = report.take()
         {
             // Without a receiver the program is already ending.
             let _ = report.send(Event::Started);
         }
-        let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);
-        let surplus = self.heard.len().saturating_sub(longest);
-        self.heard.drain(..surplus);
+        heard.drain(..heard.len().saturating_sub(longest));
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::config;
 use super::progress::{show_simulation, spinner};
+use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{
-    self, Board, BoardName, EmulatedBoard, ModelOrBoard, Route, SerialBoard, SimulatedBoard,
-    Simulation, built_firmware,
+    self, AnyBoard, Board, BoardName, ModelOrBoard, Route, SerialBoard, built_firmware,
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
@@ -97,22 +97,8 @@ impl LineArguments {
         self.baud.check(name)
     }
 
-    /// Starts a virtual board and runs it to the firmware's first prompt.
-    pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
-        self.check(&BoardName::Virtual)?;
-        let firmware = built_firmware(self.firmware.as_deref())?;
-        started(board::verilated(&firmware)?)
-    }
-
-    /// Starts an emulated board and runs it to the firmware's first prompt.
-    pub fn emulated_board(&self) -> anyhow::Result<SimulatedBoard<EmulatedBoard>> {
-        self.check(&BoardName::Emulated)?;
-        let firmware = built_firmware(self.firmware.as_deref())?;
-        started(board::emulated(&firmware)?)
-    }
-
     /// Opens a board on a serial port, and cancels an unfinished command or transfer of an earlier program.
-    pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
+    fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
         let mut board = self.open(port)?;
         let spinner = spinner("waiting for the board");
         Console::new(&mut board).synchronise()?;
@@ -136,21 +122,32 @@ impl LineArguments {
 
     /// Opens the board `name`. A simulated board is started, and runs its firmware.
     pub fn board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
-        Ok(match name {
-            BoardName::Emulated => Box::new(self.emulated_board()?),
-            BoardName::Virtual => Box::new(self.virtual_board()?),
-            BoardName::Serial(port) => Box::new(self.serial_board(port)?),
+        Ok(match self.open_any(name)? {
+            Opened::Simulated(board) => Box::new(board),
+            Opened::Serial(board) => Box::new(board),
         })
+    }
+
+    /// Opens the board that `name` selects, as [`board`](Self::board), with access to its kind.
+    pub fn open_any(&self, name: &BoardName) -> anyhow::Result<Opened> {
+        self.check(name)?;
+        if let BoardName::Serial(port) = name {
+            return Ok(Opened::Serial(self.serial_board(port)?));
+        }
+        let firmware = built_firmware(self.firmware.as_deref())?;
+        let board = board::simulated(name, Some(&firmware))?;
+        let mut board = board.context("expected a simulated board")?;
+        show_simulation(board.meter());
+        let _starting = spinner("the board starts");
+        Console::new(&mut board).greet()?;
+        Ok(Opened::Simulated(board))
     }
 }
 
-/// Runs a board to the firmware's first prompt.
-fn started<S: Simulation>(mut board: SimulatedBoard<S>) -> anyhow::Result<SimulatedBoard<S>> {
-    show_simulation(board.meter());
-    let spinner = spinner("the board starts");
-    Console::new(&mut board).greet()?;
-    spinner.finish();
-    Ok(board)
+/// A board whose firmware waits for a command.
+pub enum Opened {
+    Simulated(AnyBoard),
+    Serial(SerialBoard),
 }
 
 /// Options of a command that transfers data to or from a board, and prints a result.

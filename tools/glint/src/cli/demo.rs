@@ -7,6 +7,7 @@ use super::output::{Output, PICTURE};
 use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::Args;
+use glint::board::Uart;
 use glint::board::{self, Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::flash;
@@ -279,7 +280,7 @@ fn cycles_of_gateware(stats: &Stats) -> anyhow::Result<u64> {
     Ok(stats.cycles.unwrap_or_default())
 }
 
-/// Refuses a folder with pictures if they may not be replaced.
+/// Rejects a folder that contains pictures, unless they may be replaced.
 fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let files = folder.read_dir();
     let files = files.with_context(|| format!("{}: cannot be read", folder.display()))?;
@@ -348,7 +349,7 @@ const SCENES: [&str; 3] = ["objects", "simplegpu", "wireframe"];
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// Half width of the image plane at distance 1. With this value models nearly fill the height of the picture.
+/// Half width of the image plane at distance 1. With this value most models nearly fill the height of the picture.
 const HALF_WIDTH: U8_28 = U8_28::lit("0.6");
 
 /// The demo's camera at `azimuth`.

@@ -7,7 +7,7 @@ use super::messages::{note, print_json, say};
 use super::progress::{advance, bar, show_simulation, spinner};
 use anyhow::Context;
 use clap::Args;
-use glint::board::{self, Board, BoardName, SerialBoard, SimulatedBoard, Simulation};
+use glint::board::{self, Board, SerialBoard};
 use glint::console::Console;
 use glint::flash;
 use glint::formats::read_file;
@@ -81,12 +81,6 @@ fn default_name(model: &str) -> Option<String> {
     Some(stem.chars().map(visible).take(MAX_NAME).collect())
 }
 
-/// A simulated board that reports its cycles to the progress display.
-fn metered<S: Simulation + 'static>(board: SimulatedBoard<S>) -> Box<dyn Board> {
-    show_simulation(board.meter());
-    Box::new(board)
-}
-
 fn parse_address(text: &str) -> Result<u32, String> {
     let digits = text
         .strip_prefix("0x")
@@ -102,10 +96,12 @@ impl FlashArguments {
         let name = self.board.name()?;
         self.baud.check(&name)?;
         let program = read_file(&self.program)?;
-        let mut board: Box<dyn Board> = match &name {
-            BoardName::Emulated => metered(board::emulated_bios()?),
-            BoardName::Virtual => metered(board::verilated_bios()?),
-            BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud.rate()?)?),
+        let mut board: Box<dyn Board> = match board::simulated(&name, None)? {
+            Some(board) => {
+                show_simulation(board.meter());
+                Box::new(board)
+            }
+            None => Box::new(SerialBoard::open(&name.to_string(), self.baud.rate()?)?),
         };
         let waiting = spinner("waiting for the BIOS");
         let bar = bar("program");

@@ -1,13 +1,13 @@
 //! `glint gesture`.
 
-use super::common::{LineArguments, named};
+use super::common::{LineArguments, Opened, named};
 use super::config::BoardChoice;
 use super::messages::say;
 use super::output::{Output, PICTURE};
 use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::{Args, Subcommand};
-use glint::board::{Board, BoardName};
+use glint::board::Board;
 use glint::console::Console;
 use glint::gesture::{self, SensorFault};
 use std::path::PathBuf;
@@ -70,26 +70,19 @@ impl SensorArguments {
     }
 
     fn open(&self) -> anyhow::Result<Box<dyn Board>> {
-        let name = self.board.name()?;
-        match &name {
-            BoardName::Emulated => {
-                let mut board = self.line.emulated_board()?;
+        Ok(match self.line.open_any(&self.board.name()?)? {
+            Opened::Simulated(mut board) => {
                 board.inner().plug_image_sensor(self.sensor()?);
-                Ok(Box::new(board))
+                Box::new(board)
             }
-            BoardName::Virtual => {
-                let mut board = self.line.virtual_board()?;
-                board.inner().plug_image_sensor(self.sensor()?);
-                Ok(Box::new(board))
-            }
-            BoardName::Serial(port) => {
+            Opened::Serial(board) => {
                 anyhow::ensure!(
                     self.pictures.is_none() && self.fault.is_none(),
                     "--pictures and --fault: expected --board emulated or --board virtual"
                 );
-                Ok(Box::new(self.line.serial_board(port)?))
+                Box::new(board)
             }
-        }
+        })
     }
 }
 

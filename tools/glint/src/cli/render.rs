@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::camera::{CameraArguments, Shown};
-use super::common::{SizeArguments, TransferArguments, bad_value, named};
+use super::common::{Opened, SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
@@ -10,7 +10,7 @@ use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
+use glint::board::{Board, BoardName, ModelOrBoard};
 use glint::console::Console;
 use glint::object::Description;
 use glint::render::{
@@ -257,32 +257,19 @@ impl RenderArguments {
                 spinner.finish();
                 Ok(rendered)
             }
-            ModelOrBoard::Board(name @ BoardName::Emulated) => {
-                let board = self.transfer.line.emulated_board()?;
-                self.render_simulated(board, name, frame, scene)
-            }
-            ModelOrBoard::Board(name @ BoardName::Virtual) => {
-                let board = self.transfer.line.virtual_board()?;
-                self.render_simulated(board, name, frame, scene)
-            }
-            ModelOrBoard::Board(name) => {
-                self.render_on(&mut *self.transfer.line.board(name)?, name, frame, scene)
-            }
+            ModelOrBoard::Board(name) => match self.transfer.line.open_any(name)? {
+                Opened::Serial(mut board) => self.render_on(&mut board, name, frame, scene),
+                Opened::Simulated(mut board) => {
+                    let mut rendered = self.render_on(&mut board, name, frame, scene)?;
+                    if self.capture == Capture::Monitor {
+                        let _capturing = spinner("capturing a frame of the monitor");
+                        let scale = virtual_board::WIDTH / frame.size.width() as usize;
+                        rendered.image.colour = board.inner().monitor_frame(scale)?;
+                    }
+                    Ok(rendered)
+                }
+            },
         }
-    }
-
-    fn render_simulated<S: Simulation>(
-        &self,
-        mut board: SimulatedBoard<S>,
-        name: &BoardName,
-        frame: &Frame,
-        scene: Option<&SceneFile>,
-    ) -> anyhow::Result<Rendered> {
-        let mut rendered = self.render_on(&mut board, name, frame, scene)?;
-        if self.capture == Capture::Monitor {
-            rendered.image.colour = from_monitor(&mut board, frame.size)?;
-        }
-        Ok(rendered)
     }
 
     fn render_on(
@@ -331,18 +318,6 @@ pub fn shown<'a>(
 pub fn nothing(options: &str) -> anyhow::Error {
     let expected = format!("a mesh file or a generator such as teapot, or {options} in its place");
     bad_value("MODEL", &expected, "none").into()
-}
-
-/// Captures the frame on a board's monitor, scaled down to the frame's size.
-fn from_monitor<S: Simulation>(
-    board: &mut SimulatedBoard<S>,
-    size: Size,
-) -> anyhow::Result<Vec<u16>> {
-    let spinner = spinner("capturing a frame of the monitor");
-    let scale = virtual_board::WIDTH / size.width() as usize;
-    let colours = board.inner().monitor_frame(scale)?;
-    spinner.finish();
-    Ok(colours)
 }
 
 /// Prints the statistics of a frame as text.

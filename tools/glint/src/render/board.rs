@@ -86,7 +86,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// options of the first object.
     ///
     /// # Errors
-    /// The firmware refuses, or the upload fails.
+    /// The firmware refuses a command, or an upload fails.
     pub fn show(&mut self, frame: &Frame) -> Result<Stats, Error> {
         Ok(self.render(frame, Parts::NONE)?.stats)
     }
@@ -270,7 +270,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             Route::Memory if parts.depth => "render depth",
             _ => "render",
         };
-        // The commands are sent in one write, so that the board does not draw the change before `render` arrives.
+        // The commands are sent in one write, so that the board draws no frame before `render` arrives.
         let lines = commands.iter().map(String::as_str).chain([render]);
         let text: String = lines.flat_map(|line| [line, "\r"]).collect();
         self.console.board().write(text.as_bytes())?;

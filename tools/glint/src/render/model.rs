@@ -118,8 +118,8 @@ mod tests {
         );
     }
 
-    /// On a sphere, whose faces hide no edge of another front face, each edge of a front face has all its pixels, and edges of back
-    /// faces alone have none, except at the silhouette. At vertices other faces hide up to 4 of 1,352 pixels.
+    /// On a sphere, no face hides an edge of a front face: all pixels of these edges are drawn, and no pixels of edges between
+    /// back faces, except at the silhouette. At vertices, other faces hide up to 4 of 1,352 pixels.
     #[test]
     fn faces_hide_the_edges_behind_them_alone() {
         let model = generate::named("icosphere:6").unwrap();

@@ -4,14 +4,13 @@
 //! |---|---|
 //! | [`server`] | listens, checks the requests, serves the files of the page |
 //! | [`connection`] | the connection to one open page |
-//! | [`serial`] | the page of a board on a serial port |
+//! | `serial` | the page of a board on a serial port |
 //!
 //! `glint_live_page` contains the page, its messages and the session with the board. docs/live-page.md describes the page and the
 //! messages.
 
 pub mod connection;
-pub mod serial;
+mod serial;
 pub mod server;
 
-pub use serial::LiveSerial;
 pub use server::Server;

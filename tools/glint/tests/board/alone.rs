@@ -1,6 +1,7 @@
 //! Tests of a board without a host: the demo, buttons, switches, LEDs and digits.
 
 use glint::board::{EmulatedBoard, built_firmware};
+use glint::board::{Simulation, Uart};
 use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;

@@ -2,6 +2,7 @@
 //! parallel with the other tests.
 
 use crate::power_up::read_until;
+use glint::board::Uart;
 use glint::board::{self, SimulatedBoard, Simulation, built_firmware};
 use glint::console::Console;
 use glint::image;

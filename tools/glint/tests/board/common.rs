@@ -17,7 +17,7 @@ use glint_model::{Object, Placement};
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
-/// Milliseconds of board time without output after which the firmware counts as failed.
+/// Milliseconds of the board's time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 4000;
 
 /// A virtual board that starts with the built firmware in its memory.
@@ -44,8 +44,8 @@ pub fn renderer<S: Simulation>(
     BoardRenderer::new(console(board)).with_route(Route::Memory)
 }
 
-/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns what the board has drawn, and the
-/// model.
+/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns the board's and the model's
+/// result.
 pub fn drawn_alike<B: Board>(
     renderer: &mut BoardRenderer<B>,
     frame: &Frame,
@@ -61,7 +61,7 @@ pub fn drawn_alike<B: Board>(
     [found, expected]
 }
 
-/// The counts that the model and boards have in common.
+/// The counts that both the model and boards provide.
 pub fn counts(stats: &Stats) -> impl PartialEq + std::fmt::Debug {
     let mesh = stats.mesh.clone().map(|mesh| TriangleCounts {
         pixels_tested: None,

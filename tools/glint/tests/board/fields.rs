@@ -58,8 +58,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
     renderer.upload(&mesh, None).unwrap();
-    // Frames alternate between two frame buffers. `colour` and `depth` are the addresses of this frame; after one `render` the
-    // next frame is drawn there again.
+    // Frames alternate between two frame buffers. `colour` and `depth` are addresses in the current buffer; after one `render`,
+    // the next frame is drawn into this buffer again.
     renderer.redraw().unwrap();
     let console = renderer.console();
     let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));

@@ -3,6 +3,7 @@
 use crate::alone::{LIMIT, MS, PANEL, command, press, right, turn};
 use crate::common::mesh;
 use glint::board::{EmulatedBoard, built_firmware};
+use glint::board::{Simulation, Uart};
 use glint::fuzz::{Inputs, Target};
 use glint::image;
 use glint_core::block::Block;

@@ -2,6 +2,7 @@
 //! sensor's port through the gesture engine, the firmware and the triangle engine to the monitor.
 
 use crate::common::{console, emulator, mesh};
+use glint::board::Uart;
 use glint::board::{EmulatedBoard, SimulatedBoard, Simulation};
 use glint::console::{Console, value};
 use glint::gesture::{self, SensorFault, image_sensor};

@@ -2,13 +2,14 @@
 
 use crate::common::{begin_upload, console, emulator, info, mesh};
 use crate::terminal::{Terminal, patience};
-use glint::board::{Board, EmulatedBoard, SimulatedBoard, Uart};
+use glint::board::{Board, EmulatedBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::transfer;
 use std::path::Path;
 use std::process::Command;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 use virtual_board::pty::Pty;
 
 /// Number of received bytes at which a transfer counts as half done: more than all commands together, less than the mesh.
@@ -18,63 +19,31 @@ const LARGE: &str = "icosphere:16";
 /// Seconds without progress after which a test fails.
 const PATIENCE: u32 = 120;
 
-/// An emulated board that reports when it has received a given number of bytes.
-struct Counted {
-    board: SimulatedBoard<EmulatedBoard>,
-    received: usize,
-    report: Option<(usize, Sender<()>)>,
-}
-
-impl Uart for Counted {
-    fn run(&mut self, cycles: u64) {
-        self.board.run(cycles);
-    }
-
-    fn cycles(&self) -> u64 {
-        self.board.cycles()
-    }
-
-    fn clock_hz(&self) -> u32 {
-        self.board.clock_hz()
-    }
-
-    fn uart_queued(&self) -> usize {
-        self.board.uart_queued()
-    }
-
-    fn uart_write(&mut self, bytes: &[u8]) {
-        self.received += bytes.len();
-        if let Some((_, report)) = self.report.take_if(|(at, _)| self.received >= *at) {
-            report.send(()).unwrap();
-        }
-        self.board.uart_write(bytes);
-    }
-
-    fn uart_read(&mut self, output: &mut Vec<u8>) {
-        self.board.uart_read(output);
-    }
-}
-
 /// A board on a serial port that shows a mesh of 20 triangles.
-struct Port(Pty<Counted>);
+struct Port {
+    pty: Pty<SimulatedBoard<EmulatedBoard>>,
+    /// Number of bytes that the board has received.
+    received: Arc<AtomicUsize>,
+}
 
 impl Port {
     fn start() -> Self {
         let mut board = emulator();
         console(&mut board);
-        let board = Counted {
-            board,
-            received: 0,
-            report: None,
-        };
-        let port = Self(Pty::start(board).unwrap());
+        let received = Arc::<AtomicUsize>::default();
+        let count = received.clone();
+        let pty = Pty::watched(board, move |sent, _| {
+            count.fetch_add(sent.len(), Ordering::Relaxed);
+        });
+        let pty = pty.unwrap();
+        let port = Self { pty, received };
         port.succeed(&["upload", "icosphere:1"]);
         assert_eq!(port.triangles(), "20");
         port
     }
 
     fn path(&self) -> &str {
-        self.0.path().to_str().unwrap()
+        self.pty.path().to_str().unwrap()
     }
 
     /// The program `glint` with this port as its board.
@@ -99,12 +68,14 @@ impl Port {
 
     /// Kills an upload with SIGKILL when the board has received part of the mesh.
     fn kill_an_upload(&self) {
-        let (report, half_done): (_, Receiver<()>) = channel();
-        self.0
-            .with(move |board| board.report = Some((board.received + PART, report)));
+        let received = || self.received.load(Ordering::Relaxed);
+        let part = received() + PART;
         let mut upload = self.glint(&["upload", LARGE]).spawn().unwrap();
-        let wait = Duration::from_secs(PATIENCE.into());
-        half_done.recv_timeout(wait).unwrap();
+        let end = Instant::now() + Duration::from_secs(PATIENCE.into());
+        while received() < part {
+            assert!(Instant::now() < end, "{} bytes were received", received());
+            std::thread::sleep(Duration::from_millis(1));
+        }
         upload.kill().unwrap();
         assert!(!upload.wait().unwrap().success());
     }

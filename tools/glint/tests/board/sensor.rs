@@ -1,6 +1,7 @@
 //! The sensor of a board, accessed through the board's console.
 
 use crate::common::{console, emulator};
+use glint::board::Simulation;
 use glint::imu::log::Entry;
 use glint::imu::sensor;
 

@@ -3,6 +3,7 @@
 
 use crate::power_up::read_until;
 use crate::terminal::Terminal;
+use glint::board::Uart;
 use glint::board::{self};
 use glint::console::Console;
 use glint::flash;

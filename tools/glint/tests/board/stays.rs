@@ -2,6 +2,7 @@
 
 use crate::common::{begin_upload, mesh, piped};
 use crate::terminal::{Terminal, patience};
+use glint::board::Uart;
 use glint::board::{self, Board as _, SerialBoard};
 use glint::console::Console;
 use std::io::{BufRead, BufReader};

@@ -3,6 +3,7 @@
 
 use crate::common::{console, counts, drawn_alike, emulator, mesh, plain, renderer, two_objects};
 use glint::board::Board;
+use glint::board::Uart;
 use glint::render::{self, FieldSubject, Frame, MeshSubject, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;

@@ -1,5 +1,6 @@
 //! Transfers that run concurrently with the other tasks: at the speed of a serial line, with the motion sensor at 1 kHz.
 
+use glint::board::{Simulation, Uart};
 use std::collections::{HashSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 

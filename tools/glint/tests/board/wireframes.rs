@@ -2,6 +2,7 @@
 
 use crate::common::{address, console, emulator, info, renderer};
 use glint::board::{EmulatedBoard, SimulatedBoard};
+use glint::board::{Simulation, Uart};
 use glint::console::{Console, ConsoleError};
 use glint::render::{Frame, Subject, WireframeSubject, on_model};
 use glint::transfer::{self, TransferError};

@@ -68,8 +68,8 @@ fn eyes() -> [Option<Stereo>; 3] {
     ]
 }
 
-/// Whether the environment variable `GLINT_RTL_FIELDS` asks for more combinations of fields, cameras and sizes, which take
-/// long.
+/// Whether the environment variable `GLINT_RTL_FIELDS` requests more combinations of fields, cameras and sizes, which take a long
+/// time.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
@@ -185,7 +185,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     if !all() {
         return;
     }
-    // The command `bench` draws eight frames one after the other, without waiting for the monitor to show them.
+    // The command `bench` draws eight frames without waiting for the monitor between them.
     let console = renderer.console();
     let bench = console.command("bench field").unwrap();
     assert!(bench[0].starts_with("bench field frames 8 cycles "));

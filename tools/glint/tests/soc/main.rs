@@ -18,6 +18,7 @@ mod fields;
 mod objects;
 
 use common::{counts, info, mesh, plain, running_board};
+use glint::board::Uart;
 use glint::board::{Board, BoardError, Memory, SimulatedBoard};
 use glint::console::Console;
 use glint::render::{
@@ -31,7 +32,7 @@ use glint_vectors::meshes;
 use glint_vectors::scenes::Scene;
 use rand_pcg::Pcg64Mcg;
 
-/// Longest pause in the firmware's output that the console accepts, in board time.
+/// Longest accepted pause in the firmware's output, in the board's time.
 const PATIENCE_MS: u64 = 2000;
 
 /// Longest wait for a picture: the time of three video frames.
@@ -204,14 +205,14 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
     console.command("backend gateware").unwrap();
-    // The monitor takes its first picture in the middle of a video frame, while nothing is shown.
+    // The monitor captures its first picture in the middle of a video frame, before any frame is shown.
     console.board().board.inner().monitor().turn_on();
     let mut renderer = BoardRenderer::new(console).with_route(Route::Memory);
     let start = [render::size_command(size)];
     let shown = renderer.render_after(&start, size, Parts::COLOUR);
     let shown = shown.unwrap().image.colour;
     renderer.board().expect("the start", shown);
-    // The firmware's count of video frames when the last scene was drawn.
+    // The firmware's count of video frames at the last drawn scene.
     let mut drawn: u32 = info(renderer.console(), "video_frames");
 
     for (name, mesh, view, cull) in scenes {
@@ -251,7 +252,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             for line in &lines {
                 console.reply(line).unwrap();
             }
-            // Waits until the monitor shows the last frame, because `render` would otherwise replace it before.
+            // Waits until the monitor shows the last frame; otherwise `render` would replace it first.
             while info::<u32>(console, "video_frames") == drawn {
                 console.board().wait_for_picture();
             }

@@ -1,5 +1,6 @@
 //! Tests of the full start: LiteX's BIOS on the verilated SoC, and back-door accesses to DDR3 compared with accesses of the CPU.
 
+use virtual_board::Uart;
 use virtual_board::{Start, VirtualBoard};
 
 /// The BIOS's prompt, with its colours.

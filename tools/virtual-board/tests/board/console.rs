@@ -1,6 +1,7 @@
 //! Tests of the firmware's console: its output, word for word, and its behaviour with noise and long input.
 
 use std::path::{Path, PathBuf};
+use virtual_board::{Simulation, Uart};
 
 use crate::firmware::{Console, LIMIT, PROMPT, command, emulated, image, started};
 use litex_pac::triangle::Counters;

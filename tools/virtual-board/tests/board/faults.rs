@@ -4,6 +4,7 @@ use crate::firmware::{LIMIT, PROMPT, address, command, emulated, image, patch, s
 use emulated_board::EmulatedBoard;
 use litex_pac::BUILD_ID;
 use litex_pac::memories::MAIN_RAM;
+use virtual_board::{Simulation, Uart};
 
 #[test]
 fn gateware_of_another_build_is_reported_and_the_console_works() {

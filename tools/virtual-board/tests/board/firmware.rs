@@ -1,6 +1,7 @@
 //! Helpers for tests of the firmware: the firmware's image, and virtual or emulated boards that run it.
 
 use std::path::{Path, PathBuf};
+use virtual_board::Uart;
 
 use emulated_board::EmulatedBoard;
 use litex_pac::memories::MAIN_RAM;

@@ -2,6 +2,7 @@
 //! equal on both boards. The firmware must execute the same instructions with equal results.
 
 use std::fmt::Write;
+use virtual_board::{Simulation, Uart};
 
 use emulated_board::{EmulatedBoard, Executed};
 use glint_vectors::Random;

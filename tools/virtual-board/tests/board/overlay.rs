@@ -1,6 +1,7 @@
 //! Tests of the text overlay.
 
 use std::convert::Infallible;
+use virtual_board::{Simulation, Uart};
 
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Point, Size};

@@ -3,6 +3,7 @@
 use crate::program;
 use litex_pac::{buttons, digits, leds, switches};
 use virtual_board::VirtualBoard;
+use virtual_board::{Simulation, Uart};
 
 /// Address of the word in DDR3 that the program reads or writes. The DDR3 row of this word holds no other data of the program.
 const WORD: u32 = 0x4012_3450;

@@ -2,6 +2,7 @@
 
 use crate::program;
 use litex_pac::{leds, scanout};
+use virtual_board::Simulation;
 use virtual_board::{HEIGHT, WIDTH};
 
 /// Addresses of two frame buffers, far enough apart for the largest frame.

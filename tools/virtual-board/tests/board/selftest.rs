@@ -5,6 +5,7 @@ use crate::firmware::{address, command, emulated, image, patch};
 use crate::sensor::{emulated_with_sensor, sensor};
 use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_board::virtual_mpu6050::{Fault, State};
+use virtual_board::{Simulation, Uart};
 
 /// All parts.
 const PARTS: [&str; 15] = [

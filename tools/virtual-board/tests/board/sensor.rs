@@ -5,6 +5,7 @@ use crate::program;
 use emulated_board::EmulatedBoard;
 use litex_pac::{i2c, leds};
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
+use virtual_board::{Simulation, Uart};
 use virtual_board::{Start, VirtualBoard};
 
 /// Interval between two checks for the end of a fault, in ms.

@@ -1,6 +1,7 @@
 //! Tests of the monitor's pictures during changes of scenes.
 
 use emulated_board::{EmulatedBoard, Frame};
+use virtual_board::Uart;
 
 use crate::firmware::{LIMIT, PROMPT, command, emulated, image};
 

@@ -3,6 +3,7 @@
 use emulated_board::EmulatedBoard;
 use litex_pac::ctrl;
 use litex_pac::memories::MAIN_RAM;
+use virtual_board::{Simulation, Uart};
 use virtual_board::{Start, VirtualBoard};
 
 use crate::program::assemble;

@@ -1,11 +1,11 @@
 //! The two sources of samples: a board's sensor, and a log file.
 
-use crate::cli::common::LineArguments;
+use crate::cli::common::{LineArguments, Opened};
 use crate::cli::config::BoardChoice;
 use crate::cli::messages::warn;
 use crate::cli::progress::spinner;
 use clap::Args;
-use glint::board::{Board, BoardName};
+use glint::board::Board;
 use glint::console::Console;
 use glint::formats::read_file;
 use glint::imu::log::{self, Entry};
@@ -42,19 +42,14 @@ impl SensorArguments {
             None => None,
             Some(path) => Some(read_log(path)?),
         };
-        let wires = sensor::virtual_sensor(entries.as_deref());
-        let mut board: Box<dyn Board> = match &name {
-            BoardName::Emulated => {
-                let mut board = self.line.emulated_board()?;
-                board.inner().plug(wires);
+        let mut board: Box<dyn Board> = match self.line.open_any(&name)? {
+            Opened::Simulated(mut board) => {
+                board
+                    .inner()
+                    .plug(sensor::virtual_sensor(entries.as_deref()));
                 Box::new(board)
             }
-            BoardName::Virtual => {
-                let mut board = self.line.virtual_board()?;
-                board.inner().plug(wires);
-                Box::new(board)
-            }
-            BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),
+            Opened::Serial(board) => Box::new(board),
         };
         let spinner = spinner("waiting for the sensor");
         let found = sensor::wait(&mut Console::new(board.as_mut()));

@@ -6,6 +6,7 @@ use glint::transfer::{TransferError, upload};
 use glint_vectors::Model;
 use serde::Deserialize;
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
+use virtual_board::{Simulation, Uart};
 
 use crate::emulated::{Emulated, cycles, start};
 use crate::stiff::kind::Kind;

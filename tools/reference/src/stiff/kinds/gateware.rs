@@ -1,5 +1,6 @@
 //! The console of the virtual board, the simulated gateware. All cases share a board, because its start takes a minute.
 
+use glint::board::{Simulation, Uart};
 use std::cell::RefCell;
 
 use anyhow::{Context, Result};

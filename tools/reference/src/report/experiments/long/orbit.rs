@@ -1,5 +1,6 @@
 //! A camera that orbits a mesh by the command `orbit`: the basis against f64, and the pictures of each turn.
 
+use glint::board::Uart;
 use std::f64::consts::TAU;
 use std::hash::{DefaultHasher, Hash, Hasher};
 

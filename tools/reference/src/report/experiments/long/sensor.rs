@@ -1,6 +1,7 @@
 //! A day of the motion sensor on the board: the firmware's attitude against the true attitude.
 
 use std::sync::{Arc, Mutex};
+use virtual_board::{Simulation, Uart};
 
 use anyhow::{Context, Result, anyhow};
 use glint::console::value as entry;

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use glint::board::Board;
+use glint::board::{Simulation, Uart};
 use glint::console::Console;
 use glint::gesture::{image_sensor, moving_hand};
 use glint::transfer::upload;
