@@ -1,11 +1,11 @@
-//! Cameras from the command line and from files.
+//! Cameras from files, and those of the command line that the console does not have.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
-use glint_core::camera::{Projection, UP, View, ViewError};
+use glint_core::camera::{Projection, View, ViewError};
 use glint_core::choice::Choice;
 use glint_core::fixed::fixed::traits::Fixed;
-use glint_core::fixed::{Q2_23, Q32_32, Turns, U8_28};
+use glint_core::fixed::{Q2_23, Q32_32, Turns};
 use glint_core::trig::sin_cos_q30;
 use serde::Deserialize;
 use std::path::Path;
@@ -98,26 +98,6 @@ pub fn spherical(text: &str) -> Result<View, FormatError> {
     View::spherical(r, Turns::from_degrees(theta), Turns::from_degrees(phi)).map_err(no_camera)
 }
 
-/// Camera from `EX,EY,EZ,GX,GY,GZ` or `EX,EY,EZ,GX,GY,GZ,UX,UY,UZ`: eye, direction of the gaze, and the direction that points up
-/// on the screen (default z).
-///
-/// # Errors
-/// The text is not six or nine decimals, or [`View::towards`] rejects the camera.
-pub fn look_at(text: &str) -> Result<View, FormatError> {
-    let numbers = decimals(text).unwrap_or_default();
-    let (eye, gaze, up) = match *numbers.as_slice() {
-        [ex, ey, ez, gx, gy, gz] => ([ex, ey, ez], [gx, gy, gz], UP),
-        [ex, ey, ez, gx, gy, gz, ux, uy, uz] => ([ex, ey, ez], [gx, gy, gz], [ux, uy, uz]),
-        _ => {
-            return Err(refuse(
-                "a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1",
-                text,
-            ));
-        }
-    };
-    View::towards(eye, gaze, up).map_err(no_camera)
-}
-
 /// Free camera from `EX,EY,EZ,YAW,PITCH` or `EX,EY,EZ,YAW,PITCH,ROLL`: eye, and angles in degrees as in [`View::look`].
 ///
 /// # Errors
@@ -136,50 +116,6 @@ pub fn look(text: &str) -> Result<View, FormatError> {
     };
     let [yaw, pitch, roll] = angles.map(Turns::from_degrees);
     View::look(eye, yaw, pitch, roll).map_err(no_camera)
-}
-
-/// Returns the camera in orthographic projection, `text` world units wide.
-///
-/// # Errors
-/// The text is not a decimal in the range of [`View::with_width`].
-pub fn with_width(view: View, text: &str) -> Result<View, FormatError> {
-    let width: Option<U8_28> = text.trim().parse().ok();
-    let width = width
-        .filter(|width| *width < 256)
-        .ok_or_else(|| refuse("a width in world units", text))?;
-    view.with_width(width).map_err(no_camera)
-}
-
-/// Returns the camera in perspective with a horizontal field of view of `text` degrees.
-///
-/// # Errors
-/// The text is not a decimal from 1 to 179.
-pub fn with_field_of_view(view: View, text: &str) -> Result<View, FormatError> {
-    view.with_field_of_view(field_of_view(text)?)
-        .map_err(no_camera)
-}
-
-/// Parses a field of view in degrees.
-///
-/// # Errors
-/// The text is not a decimal from 1 to 179.
-pub fn field_of_view(text: &str) -> Result<Turns, FormatError> {
-    let degrees: Option<Q32_32> = text.trim().parse().ok();
-    degrees
-        .filter(|degrees| (1..=179).contains(degrees))
-        .map(Turns::from_degrees)
-        .ok_or_else(|| refuse("1 to 179 degrees", text))
-}
-
-/// Returns the camera with a narrower field of view, which enlarges the middle of the picture by `factor`.
-///
-/// # Errors
-/// The field of view is not from 1 to 179 degrees.
-pub fn zoomed(view: View, factor: f64) -> Result<View, FormatError> {
-    let half_width = U8_28::checked_from_num(view.half_width().to_num::<f64>() / factor);
-    let zoomed = half_width.and_then(|half_width| view.with_half_width(half_width).ok());
-    let expected = "a factor that leaves a field of view of 1 to 179 degrees";
-    zoomed.ok_or_else(|| FormatError::whole(expected, factor.to_string()))
 }
 
 /// Returns the camera after a turn about the z axis through the origin, from the x axis towards the y axis. Without a turn the
@@ -235,6 +171,7 @@ fn no_camera(error: ViewError) -> FormatError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glint_core::fixed::U8_28;
 
     const GOOD: &str =
         r#"{"eye":[0,-3,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
@@ -306,23 +243,6 @@ mod tests {
     }
 
     #[test]
-    fn looking_at_the_origin() {
-        let view = look_at("3,0,0,-3,0,0").unwrap();
-        assert_eq!(view, spherical("3,0,90").unwrap());
-        assert_eq!(view, look_at("3,0,0,-0.001,0,0,0,0,7").unwrap());
-        for (text, expected) in [
-            ("3,0,0", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]"),
-            ("3,0,0,0,0,0", "gaze (0, 0, 0)"),
-            ("3,0,0,1,0,0,0,0,0", "up (0, 0, 0)"),
-            ("33,0,0,1,0,0", "within 32 of the origin"),
-            ("3,0,0,inf,0,0", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]"),
-        ] {
-            let message = look_at(text).unwrap_err().to_string();
-            assert!(message.contains(expected), "{text}: {message}");
-        }
-    }
-
-    #[test]
     fn free_look() {
         let view = look("0,-3,0,0,0").unwrap();
         assert_eq!(view, spherical("3,-90,90").unwrap());
@@ -343,7 +263,8 @@ mod tests {
     #[test]
     fn turns_about_the_z_axis() {
         for first in ["3,0,60", "4,30,90"].map(|text| spherical(text).unwrap()) {
-            let first = with_field_of_view(first, "40").unwrap();
+            let angle = Turns::from_degrees(Q32_32::lit("40"));
+            let first = first.with_field_of_view(angle).unwrap();
             assert_eq!(turned(&first, Turns(0)).unwrap(), first);
             let mut view = first;
             for _ in 0..4 {
@@ -361,34 +282,10 @@ mod tests {
     #[test]
     fn orthographic_projections() {
         let view = spherical("3,0,90").unwrap();
-        let parallel = with_width(view, "3.5").unwrap();
+        let parallel = view.with_width(U8_28::lit("3.5")).unwrap();
         let file = GOOD.replace("0.9", "1.75");
         let file = file.replace("0.1}", r#"0.1,"projection":"orthographic"}"#);
         let read = parse(file.as_bytes()).unwrap();
         assert_eq!(read.with_lens_of(&parallel), read);
-        for (width, expected) in [
-            ("0.01", "width 0.01"),
-            ("231", "width 231: expected 0.0174 to 230"),
-            ("300", "a width in world units"),
-            ("wide", "a width in world units"),
-        ] {
-            let message = with_width(view, width).unwrap_err().to_string();
-            assert!(message.contains(expected), "{width}: {message}");
-        }
-    }
-
-    #[test]
-    fn fields_of_view() {
-        let view = spherical("3,0,90").unwrap();
-        let half = |degrees| {
-            with_field_of_view(view, degrees)
-                .map(|view| view.half_width().to_num::<f64>())
-                .map_err(|error| error.to_string())
-        };
-        assert_eq!(half("90"), Ok(1.0));
-        assert!((half("150").unwrap() - 75f64.to_radians().tan()).abs() < 1e-6);
-        for degrees in ["0.9", "179.1", "nan", "-90", ""] {
-            assert!(half(degrees).unwrap_err().contains("1 to 179 degrees"));
-        }
     }
 }

@@ -106,17 +106,28 @@ commands! {
             => key(Turn::Option).with(FIELD)
                 .host(switch("undecided", "on", "Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour"));
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
-            => key(Turn::Camera).with(LIT).without(&["lookat"]);
+            => key(Turn::Camera).with(LIT).without(&["lookat"])
+                .host(option("camera", "R,THETA,PHI", "A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The half width of the image plane at distance 1 is 0.9, and the near plane is at 0.1 [default: a camera that shows the whole model; with a field 4,30,60]")
+                    .expects("a camera R,THETA,PHI such as 3,30,60"));
         view View(view: View) or show: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
             => key(Turn::Camera).with(LIT).without(&["camera", "lookat"]);
         look Look(yaw: Turns, pitch: Turns, roll: Turns): "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
         lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen"
-            => key(Turn::Camera).with(LIT);
+            => key(Turn::Camera).with(LIT)
+                .host(option("look-at", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]", "A camera at the eye E in the direction of the gaze G, with the direction U (by default z) up on the screen")
+                    .expects("a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1"));
         fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees"
-            => key(Turn::Lens).with(LIT).without(&["orthographic"]);
+            => key(Turn::Lens).with(LIT).without(&["orthographic"])
+                .host(option("fov", "DEGREES", "The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square")
+                    .expects("1 to 179 degrees"));
         orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
-            => key(Turn::Lens).with(MESHES).without(FIELD);
-        zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more";
+            => key(Turn::Lens).with(MESHES).without(FIELD)
+                .host(option("orthographic", "WIDTH", "Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field requires perspective")
+                    .expects("a width in world units"));
+        zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more"
+            => key(Turn::Lens).with(LIT).without(&["orthographic"])
+                .host(option("zoom", "FACTOR", "Enlarge the middle of the picture by this factor, with a narrower field of view")
+                    .expects("a factor that leaves a field of view of 1 to 179 degrees"));
         fit Fit(lens: Option<Fit>) in FIT: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
     }
 

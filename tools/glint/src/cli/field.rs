@@ -17,7 +17,7 @@ pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help(), conflicts_with = "scene")]
     field: Option<String>,
     #[command(flatten)]
-    options: OptionArguments,
+    pub options: OptionArguments,
 }
 
 impl FieldArguments {

@@ -4,8 +4,11 @@ use super::common::bad_value;
 use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use glint::error::{InputError, quote};
-use glint_core::console::{self, FORMS, Forms, HostOption, Row, accepted_words};
+use glint_core::camera::View;
+use glint_core::console::{self, FORMS, Forms, HostOption, Row, Setting, Turn, accepted_words};
+use glint_core::fixed::Turns;
 use glint_core::light::MAX_LIGHTS;
+use glint_core::picture::Backend;
 use glint_scene::{AnyBoard, Scene};
 
 /// The options given on the command line, with their values.
@@ -41,15 +44,19 @@ impl Args for OptionArguments {
 
 fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
     let Forms {
+        turn,
         with,
         without,
         is_list,
         ..
     } = row.forms;
-    let argument = Arg::new(option.name)
-        .long(option.name)
-        .help(option.help)
-        .conflicts_with("scene");
+    let is_of_subject = turn == Turn::Option;
+    let argument = Arg::new(row.key()).long(option.name).help(option.help);
+    // The camera of a scene can be replaced.
+    let argument = match is_of_subject {
+        true => argument.conflicts_with("scene"),
+        false => argument,
+    };
     let argument = match option.switch {
         Some(_) => argument.action(ArgAction::SetTrue),
         None => {
@@ -70,7 +77,7 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
         }
     };
     // Only meshes without a field have the option.
-    let argument = match with.contains(&"model") && !with.contains(&"field") {
+    let argument = match is_of_subject && with.contains(&"model") && !with.contains(&"field") {
         true => argument.requires("model"),
         false => argument,
     };
@@ -80,26 +87,20 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
         .copied()
         .chain(is_of_one_mesh.then_some("object"));
     let known = |id: &&str| {
-        command
-            .get_arguments()
-            .any(|argument| argument.get_id() == *id)
+        let mut arguments = command.get_arguments().map(|known| known.get_id().as_str());
+        arguments.any(|known| known == *id) || options().any(|(row, _)| row.key() == *id)
     };
     argument.conflicts_with_all(others.filter(known))
 }
 
 impl FromArgMatches for OptionArguments {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let values = |option: &HostOption| match option.switch {
-            Some(value) => matches
-                .get_flag(option.name)
-                .then(|| vec![value.to_owned()]),
-            None => {
-                let values = matches.get_many::<String>(option.name)?;
-                Some(values.cloned().collect())
-            }
+        let values = |row: &Row, option: &HostOption| match option.switch {
+            Some(value) => matches.get_flag(row.key()).then(|| vec![value.to_owned()]),
+            None => Some(matches.get_many::<String>(row.key())?.cloned().collect()),
         };
         let given = options().filter_map(|(row, option)| {
-            let values = values(option)?;
+            let values = values(row, option)?;
             Some(Given {
                 row,
                 option,
@@ -117,54 +118,119 @@ impl FromArgMatches for OptionArguments {
     }
 }
 
-impl OptionArguments {
-    /// Whether an option is given.
-    pub fn has(&self, name: &str) -> bool {
-        self.given.iter().any(|given| given.option.name == name)
+impl Given {
+    /// The error for a value that is not accepted.
+    fn refuse(&self, found: String) -> InputError {
+        let name = format!("--{}", self.option.name);
+        bad_value(&name, self.option.expected, found)
     }
 
-    /// Applies the given options to `scene`, with or without a field.
+    /// The lines of the console that set the values. Commas separate the numbers of a camera.
+    fn lines(&self) -> impl Iterator<Item = String> {
+        self.values.iter().map(|value| match self.row.forms.turn {
+            Turn::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
+            _ => format!("{} {value}", self.row.command),
+        })
+    }
+
+    /// The setting of a line; `value` is its value, for errors.
+    fn setting<'l>(&self, line: &'l str, value: &str) -> Result<Setting<'l>, InputError> {
+        match console::Command::parse(line) {
+            Ok(Some(console::Command::Set(setting))) => Ok(setting),
+            Ok(_) => Err(self.refuse(quote(value.as_bytes()))),
+            Err(error) => {
+                let reason = error.value().map(|reason| reason.to_string());
+                // The reason may quote the value.
+                let reason = reason.map(|reason| reason.escape_debug().to_string());
+                Err(self.refuse(reason.unwrap_or_else(|| quote(value.as_bytes()))))
+            }
+        }
+    }
+
+    /// Sets the values in `scene`.
+    fn apply(&self, scene: &mut Scene) -> Result<(), InputError> {
+        for (line, value) in self.lines().zip(&self.values) {
+            let setting = self.setting(&line, value)?;
+            let set = scene.apply(&setting, &mut AnyBoard);
+            set.map_err(|error| self.refuse(error.to_string()))?;
+        }
+        Ok(())
+    }
+
+    /// Checks that the option has a meaning, and not too many values, with a field or without.
+    fn check(&self, has_field: bool) -> Result<(), InputError> {
+        let Self {
+            row,
+            option,
+            values,
+        } = self;
+        let name = format!("--{}", option.name);
+        if !has_field && !option.is_free && row.forms.with == console::FIELD {
+            return Err(bad_value(&name, "a --field", "a mesh"));
+        }
+        let most = if has_field { MAX_LIGHTS } else { 1 };
+        if values.len() > most {
+            let expected = match has_field {
+                true => format!("at most {most} {}s", option.name),
+                false => format!("one {} on meshes", option.name),
+            };
+            return Err(bad_value(&name, &expected, values.len().to_string()));
+        }
+        Ok(())
+    }
+}
+
+impl OptionArguments {
+    fn get(&self, name: &str) -> Option<&Given> {
+        self.given.iter().find(|given| given.option.name == name)
+    }
+
+    /// Whether an option is given.
+    pub fn has(&self, name: &str) -> bool {
+        self.get(name).is_some()
+    }
+
+    /// Sets the given options in `scene`, which may or may not have a field, except camera and lens.
     ///
     /// # Errors
     /// A value is invalid, or the option requires a field.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), InputError> {
-        for Given {
-            row,
-            option,
-            values,
-        } in &self.given
-        {
-            let name = format!("--{}", option.name);
-            let refuse = |found: String| bad_value(&name, option.expected, found);
-            let has_field = scene.field.is_some();
-            if !has_field && !option.is_free && row.forms.with == console::FIELD {
-                return Err(bad_value(&name, "a --field", "a mesh"));
-            }
-            let most = if has_field { MAX_LIGHTS } else { 1 };
-            if values.len() > most {
-                let expected = match has_field {
-                    true => format!("at most {most} {}s", option.name),
-                    false => format!("one {} on meshes", option.name),
-                };
-                return Err(bad_value(&name, &expected, values.len().to_string()));
-            }
-            for value in values {
-                let line = format!("{} {value}", row.command);
-                let setting = match console::Command::parse(&line) {
-                    Ok(Some(console::Command::Set(setting))) => setting,
-                    Ok(_) => return Err(refuse(quote(value.as_bytes()))),
-                    Err(error) => {
-                        let reason = error.value().map(|reason| reason.to_string());
-                        // The reason may contain the value.
-                        let reason = reason.map(|reason| reason.escape_debug().to_string());
-                        let found = reason.unwrap_or_else(|| quote(value.as_bytes()));
-                        return Err(refuse(found));
-                    }
-                };
-                let set = scene.apply(&setting, &mut AnyBoard);
-                set.map_err(|error| refuse(error.to_string()))?;
-            }
+        let given = self.given.iter();
+        for given in given.filter(|given| given.row.forms.turn == Turn::Option) {
+            given.check(scene.field.is_some())?;
+            given.apply(scene)?;
         }
         Ok(())
+    }
+
+    /// The camera `view` with the given options for camera and lens.
+    ///
+    /// # Errors
+    /// A value is not accepted.
+    pub fn camera(&self, view: View) -> anyhow::Result<View> {
+        let mut scene = Scene {
+            view,
+            ..Scene::new(Backend::Gateware)?
+        };
+        let given = self.given.iter();
+        for given in given.filter(|given| given.row.forms.turn != Turn::Option) {
+            given.apply(&mut scene)?;
+        }
+        Ok(scene.view)
+    }
+
+    /// The given field of view.
+    ///
+    /// # Errors
+    /// The value is not accepted.
+    pub fn field_of_view(&self) -> Result<Option<Turns>, InputError> {
+        let Some(given) = self.get("fov") else {
+            return Ok(None);
+        };
+        let line = given.lines().collect::<String>();
+        Ok(match given.setting(&line, &given.values.concat())? {
+            Setting::FieldOfView { angle } => Some(angle),
+            _ => None,
+        })
     }
 }

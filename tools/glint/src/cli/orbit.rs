@@ -95,7 +95,10 @@ impl OrbitArguments {
                 let expected = "a scene with a camera";
                 return Err(bad_value("--scene", expected, "a wireframe program").into());
             }
-            let views = turn(&self.camera.of_scene(frame.view)?, self.frames)?;
+            let views = turn(
+                &self.camera.of_scene(&self.field.options, frame.view)?,
+                self.frames,
+            )?;
             self.write(out, frame, &views, Some(scene))
         })?
     }
@@ -116,16 +119,14 @@ impl OrbitArguments {
         let object = object.map(|mesh| scene.object(&place, mesh));
         let frame = shown(&mut scene, mesh, object.as_slice());
         let frame = frame?.ok_or_else(|| nothing("--field or --scene"))?;
-        let views = self.camera.turn(
-            &Shown {
-                sphere: frame.subject.sphere(),
-                model: self.model.as_deref(),
-                has_mesh: mesh.is_some(),
-                has_field: frame.subject.field_part().is_some(),
-                stereo: frame.stereo,
-            },
-            self.frames,
-        )?;
+        let shown = Shown {
+            sphere: frame.subject.sphere(),
+            model: self.model.as_deref(),
+            has_mesh: mesh.is_some(),
+            stereo: frame.stereo,
+        };
+        let options = &self.field.options;
+        let views = self.camera.turn(options, &shown, self.frames)?;
         self.write(out, &frame, &views, None)
     }
 

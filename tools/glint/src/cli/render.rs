@@ -113,7 +113,7 @@ impl RenderArguments {
         if let Some(name) = &self.scene {
             let scene = glint_scene_file::read(name)?;
             return scene::draw(&scene, &self.size.changes()?, |frame| {
-                let view = self.camera.of_scene(frame.view)?;
+                let view = self.camera.of_scene(&self.field.options, frame.view)?;
                 self.write(&Frame { view, ..*frame }, Some(&scene))
             })?;
         }
@@ -146,13 +146,13 @@ impl RenderArguments {
         }
         let frame = shown(&mut scene, mesh, &objects);
         let frame = frame?.ok_or_else(|| nothing("--field, --object or --scene"))?;
-        let view = self.camera.view(&Shown {
+        let shown = Shown {
             sphere: frame.subject.sphere(),
             model: self.model.as_deref(),
             has_mesh: mesh.is_some(),
-            has_field: frame.subject.field_part().is_some(),
             stereo: frame.stereo,
-        })?;
+        };
+        let view = self.camera.view(&self.field.options, &shown)?;
         self.write(&Frame { view, ..frame }, None)
     }
 

@@ -8,6 +8,7 @@ use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Su
 use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading};
+use glint_core::fixed::U8_28;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::picture::{Backend, Size};
 use std::path::Path;
@@ -99,7 +100,8 @@ fn orthographic_pictures_are_the_models_on_every_backend() {
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
     let mesh = mesh("icosphere:3");
-    let view = view::with_width(view::spherical("2,30,60").unwrap(), "1.2").unwrap();
+    let view = view::spherical("2,30,60").unwrap();
+    let view = view.with_width(U8_28::lit("1.2")).unwrap();
     for (backend, shading) in [
         (None, Shading::Flat),
         (Some(Backend::Cpu), Shading::Flat),

@@ -1,6 +1,6 @@
 //! The camera that shows the whole model, and the lens options.
 
-use crate::common::{SQUARE, drawn, folder, picture, refused, said};
+use crate::common::{drawn, folder, glint, picture, refused, said};
 
 /// The first and the last drawn row and column of a picture with a black background.
 fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
@@ -84,12 +84,12 @@ fn the_axis_that_is_up() {
     assert!(drawn("y.obj") == (upright.clone(), guessed.to_owned()));
     assert!(drawn("y.obj --up y") == (upright.clone(), String::new()));
     assert!(drawn("y.obj --up z").0 != upright);
-    std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
-    assert_eq!(
-        refused(
-            &folder,
-            "render --field box:1,1,1 --orthographic 2 --out a.png"
-        ),
-        "error: --orthographic: expected a mesh, found a --field"
-    );
+    let orthographic = "--field box:1,1,1 --orthographic 2 --out b.png";
+    for command in ["render", "orbit"] {
+        let output = glint(&folder, &format!("{command} {orthographic}"));
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains("cannot be used with"), "{error}");
+    }
+    assert!(!folder.join("b.png").exists());
 }

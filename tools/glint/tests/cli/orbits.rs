@@ -101,8 +101,6 @@ fn fields_and_scenes() {
             MODEL: expected a mesh file or a generator such as teapot, or --field or --scene in its place, found none
         orbit --scene wireframe --out b.gif
             --scene: expected a scene with a camera, found a wireframe program
-        orbit --field menger:1 --orthographic 2 --out b.gif
-            --orthographic: expected a mesh, found a --field
         orbit cube --fog 1 --out b.gif
             --fog: expected a --field, found a mesh
         ",
