@@ -106,14 +106,6 @@ fn lower_orders_are_as_far_off_as_their_remainder_says() {
 }
 
 #[test]
-fn quarter_turns_are_exact() {
-    let one = 1 << 30;
-    for (quarter, expected) in [(0, [0, one]), (1, [one, 0]), (2, [0, -one]), (3, [-one, 0])] {
-        assert_eq!(q30(Turns(quarter << 30)), expected);
-    }
-}
-
-#[test]
 fn symmetries_hold_bit_for_bit() {
     for kernel in [q30, q30_order::<1>] {
         for phase in dense() {

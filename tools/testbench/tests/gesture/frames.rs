@@ -181,12 +181,6 @@ fn vga_at_60_frames_a_second() {
     takes(slow, [640, 480]);
 }
 
-/// 320x240 pixels 120 times a second need less than half of VGA's pixel clock, which the test uses.
-#[test]
-fn qvga_at_120_frames_a_second() {
-    takes(Clocks::URBANA, [320, 240]);
-}
-
 /// The largest frame with every pixel marked: no sum overflows.
 #[test]
 fn sums_of_the_largest_frame_fit() {

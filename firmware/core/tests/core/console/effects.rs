@@ -8,24 +8,11 @@ fn parse(line: &str) -> Command<'_> {
 
 #[test]
 fn commands_that_show_something_leave_the_picture() {
-    let shown = "help info selftest buttons scene models field mesh stereo object material light \
-        ambient background fog occlusion undecided view imu mounting sensitivity replay gesture \
-        quality backend shading edges overlay render frame stats bench demo";
-    for line in shown.split(' ') {
-        assert_eq!(parse(line).effect(), Effect::None, "{line}");
-    }
-    for line in [
-        "object list",
-        "imu calibrate",
-        "imu stream",
-        "gesture calibrate",
-        "gesture mask",
-        "overlay on",
-        "demo on",
-        "reboot",
-        "leds 1",
-        "echo a",
-    ] {
+    let shown = "help, info, selftest, buttons, scene, models, field, mesh, stereo, object, material, light, ambient, background, \
+        fog, occlusion, undecided, view, imu, mounting, sensitivity, replay, gesture, quality, backend, shading, edges, overlay, \
+        render, frame, stats, bench, demo, object list, imu calibrate, imu stream, gesture calibrate, gesture mask, overlay on, \
+        demo on, reboot, leds 1, echo a";
+    for line in shown.split(", ") {
         assert_eq!(parse(line).effect(), Effect::None, "{line}");
     }
 }
@@ -35,23 +22,9 @@ fn uploads_are_apart_from_settings() {
     for line in ["load 16 0", "unload a", "program 16 0", "replay 16 0"] {
         assert_eq!(parse(line).effect(), Effect::Uploads, "{line}");
     }
-    for line in [
-        "scene a",
-        "program",
-        "field off",
-        "object add a",
-        "object remove all",
-        "orbit",
-        "imu look",
-        "imu off",
-        "gesture on",
-        "fov 60",
-        "zoom 2",
-        "fit",
-        "quality fast",
-        "size 320 180",
-        "backend cpu",
-    ] {
+    let settings = "scene a, program, field off, object add a, object remove all, orbit, imu look, imu off, gesture on, fov 60, zoom 2, \
+        fit, quality fast, size 320 180, backend cpu";
+    for line in settings.split(", ") {
         assert_eq!(parse(line).effect(), Effect::Picture, "{line}");
     }
 }
