@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use glint_core::tasks::Turn;
 use glint_core::wire::{
-    CRC_32, Digest, Failure, MAX_FRAME, Manifest, Party, Receiving, Role, Sending, State, Timing,
+    CRC_32, Digest, Endpoint, Failure, MAX_FRAME, Manifest, Receiving, Role, Sending, State, Timing,
 };
 use glint_hal::timer::Clock;
 use glint_scene::Name;
@@ -53,8 +53,8 @@ enum Stage {
     /// already hold the announced data: a tool may have written them, bypassing the cache, or a transfer may have been interrupted near
     /// its end.
     Sum(Sum),
-    Receive(Party<Receiving<Loan>>),
-    Send(Party<Sending<Loan>>),
+    Receive(Endpoint<Receiving<Loan>>),
+    Send(Endpoint<Sending<Loan>>),
     Over(Loan, Result<(), Failure>),
 }
 
@@ -102,13 +102,19 @@ impl Transfer {
                         Some(announced) => {
                             terminal.print(format_args!("ready\n"));
                             let announced = Some(announced);
-                            Stage::Receive(Party::<Receiving<_>>::new(
+                            Stage::Receive(Endpoint::<Receiving<_>>::new(
                                 memory, announced, TIMING, now,
                             ))
                         }
                         None => {
                             terminal.print(format_args!("ready\n"));
-                            Stage::Send(Party::announced(memory, found, self.session, TIMING, now))
+                            Stage::Send(Endpoint::announced(
+                                memory,
+                                found,
+                                self.session,
+                                TIMING,
+                                now,
+                            ))
                         }
                     };
                     terminal.lend(true);
@@ -116,14 +122,14 @@ impl Transfer {
                 });
                 (Turn::Again, next)
             }
-            Stage::Receive(party) => {
-                let (turn, result) = self.line.exchange(party, now);
-                let over = result.map(|result| Stage::Over(party.take_buffer(), result));
+            Stage::Receive(endpoint) => {
+                let (turn, result) = self.line.exchange(endpoint, now);
+                let over = result.map(|result| Stage::Over(endpoint.take_buffer(), result));
                 (turn, over)
             }
-            Stage::Send(party) => {
-                let (turn, result) = self.line.exchange(party, now);
-                let over = result.map(|result| Stage::Over(party.take_data(), result));
+            Stage::Send(endpoint) => {
+                let (turn, result) = self.line.exchange(endpoint, now);
+                let over = result.map(|result| Stage::Over(endpoint.take_data(), result));
                 (turn, over)
             }
             Stage::Over(..) => (Turn::Wait, None),
@@ -203,7 +209,7 @@ impl Line {
     /// Exchanges bytes with the queues. Returns the result of the transfer after its end.
     fn exchange(
         &mut self,
-        party: &mut Party<impl Role>,
+        endpoint: &mut Endpoint<impl Role>,
         now: u64,
     ) -> (Turn, Option<Result<(), Failure>>) {
         let mut received = [0; 256];
@@ -211,16 +217,16 @@ impl Line {
         for _ in 0..EXCHANGES {
             // Reads all waiting bytes before the timeout is checked. Bytes after the end do not belong to the transfer.
             let mut count = 0;
-            while party.state() == State::Running {
+            while endpoint.state() == State::Running {
                 let next = self.uart.receive(&mut received);
-                party.on_bytes(now, received.get(..next).unwrap_or_default());
+                endpoint.on_bytes(now, received.get(..next).unwrap_or_default());
                 count += next;
                 if next < received.len() {
                     break;
                 }
             }
             if self.unsent.is_empty() {
-                self.unsent = 0..party.poll(now, &mut self.frame);
+                self.unsent = 0..endpoint.poll(now, &mut self.frame);
             }
             let unsent = self.frame.get(self.unsent.clone()).unwrap_or_default();
             let sent = self.uart.send(unsent);
@@ -230,14 +236,14 @@ impl Line {
             }
             has_worked = true;
         }
-        let result = match party.state() {
+        let result = match endpoint.state() {
             State::Done if self.unsent.is_empty() => Some(Ok(())),
             State::Failed(failure) if self.unsent.is_empty() => Some(Err(failure)),
             State::Running | State::Done | State::Failed(_) => None,
         };
         // The end of a transfer waits a few milliseconds for a quiet line. Longer timeouts are checked after each vertical blanking
         // interrupt.
-        (Turn::worked(has_worked || party.is_ending()), result)
+        (Turn::worked(has_worked || endpoint.is_ending()), result)
     }
 }
 

@@ -31,18 +31,18 @@
 //! ([`Timing::quiet_ms`]). The other side treats the bytes after the last zero byte as text.
 
 mod ending;
+mod endpoint;
 mod format;
 mod frame;
 mod pace;
-mod party;
 mod receiver;
 mod sender;
 mod state;
 mod window;
 
+pub use endpoint::{Endpoint, Role};
 pub use format::{CRC_32, Digest, MAX_LENGTH, Manifest, crc32};
 pub use frame::{MAX_FRAME, reset};
-pub use party::{Party, Role};
 pub use receiver::{Receiver, Receiving};
 pub use sender::{Sender, Sending};
 pub use state::{Failure, Reason, State, Timing};

@@ -3,7 +3,7 @@
 use crate::console::{self, Console, ConsoleError};
 use crate::line::{Board, BoardError};
 use glint_core::wire::{
-    Failure, MAX_FRAME, Manifest, Party, Receiver, Role, Sender, State, Timing,
+    Endpoint, Failure, MAX_FRAME, Manifest, Receiver, Role, Sender, State, Timing,
 };
 
 /// An error of a transfer.
@@ -219,24 +219,24 @@ pub fn receive<B: Board + ?Sized>(
 fn run<B: Board + ?Sized>(
     board: &mut B,
     pending: &mut Vec<u8>,
-    party: &mut Party<impl Role>,
+    endpoint: &mut Endpoint<impl Role>,
     progress: &mut Progress,
 ) -> Result<(), TransferError> {
     let mut frame = [0; MAX_FRAME];
     loop {
         let now = board.now_ms();
-        let taken = party.on_bytes(now, pending);
+        let taken = endpoint.on_bytes(now, pending);
         pending.drain(..taken);
         loop {
-            let length = party.poll(now, &mut frame);
+            let length = endpoint.poll(now, &mut frame);
             if length == 0 {
                 break;
             }
             board.write(&frame[..length])?;
         }
-        let (done, all) = party.progress();
+        let (done, all) = endpoint.progress();
         progress(done.into(), all.into());
-        match party.state() {
+        match endpoint.state() {
             State::Running => board.read(pending, LOOK_MS)?,
             State::Done => return Ok(()),
             State::Failed(failure) => return Err(TransferError::Failed(failure)),

@@ -43,11 +43,6 @@ impl Ending {
         }
     }
 
-    /// Starts the end of a failed transfer, without a last message.
-    pub fn failed(failure: Failure, timing: Timing, now_ms: u64) -> Self {
-        Self::new(State::Failed(failure), None, timing, now_ms)
-    }
-
     /// Starts the end of a transfer that the other side has interrupted, which needs no wait.
     pub fn interrupted(now_ms: u64) -> Self {
         let timing = Timing {
@@ -55,7 +50,7 @@ impl Ending {
             quiet_ms: 0,
         };
         let failure = Failure::AbortedByPeer(Reason::Cancelled);
-        Self::failed(failure, timing, now_ms)
+        Self::new(State::Failed(failure), None, timing, now_ms)
     }
 
     /// Drops received bytes, which are remains of the transfer, and returns their number. Without a wait for a quiet line no

@@ -147,7 +147,7 @@ impl Body<'_> {
 }
 
 /// Splits a byte stream into frames at zero bytes.
-pub struct Reader {
+pub struct FrameReader {
     buffer: [u8; MAX_FRAME],
     /// Number of bytes received so far of the present frame. A number above the buffer's length means that the frame is too long.
     length: usize,
@@ -155,7 +155,7 @@ pub struct Reader {
     last_ms: u64,
 }
 
-impl Reader {
+impl FrameReader {
     pub const fn new() -> Self {
         Self {
             buffer: [0; MAX_FRAME],
@@ -299,7 +299,7 @@ mod tests {
         for message in messages() {
             let mut out = [0xEE; MAX_FRAME];
             let length = write(9, message, &mut out);
-            let mut reader = Reader::new();
+            let mut reader = FrameReader::new();
             assert_eq!(reader.take(&out[..length]), (1, None));
             assert_eq!(
                 reader.take(&out[1..length]),
@@ -336,7 +336,7 @@ mod tests {
     }
 
     fn has_frame(mut bytes: &[u8]) -> bool {
-        let mut reader = Reader::new();
+        let mut reader = FrameReader::new();
         let mut found = false;
         while !bytes.is_empty() {
             let (taken, message) = reader.take(bytes);
@@ -348,7 +348,7 @@ mod tests {
 
     #[test]
     fn an_endless_frame_does_no_harm() {
-        let mut reader = Reader::new();
+        let mut reader = FrameReader::new();
         for _ in 0..100 {
             assert_eq!(reader.take(&[1; 100]), (100, None));
         }

@@ -3,23 +3,23 @@
 use super::format::{BLOCK, MAX_BLOCKS};
 use super::frame::OVERHEAD;
 
-/// Largest number of sent bytes in the statistics of `FrameSize`; beyond it the statistics are halved.
+/// Largest number of sent bytes in the statistics of `FrameLength`; beyond it the statistics are halved.
 const MEMORY: u32 = 8_192;
-/// One frame in units of 1/256 frame, as in `FrameSize::lost`.
+/// One frame in units of 1/256 frame, as in `FrameLength::lost`.
 const FRAME: u32 = 256;
 
 /// Chooses the best length of a data frame from the rate of lost frames.
 ///
 /// With n data bytes and h bytes of overhead in a frame, on a line that damages a byte with probability p, the used part of the
 /// line's capacity is n/(n + h)·(1 − p)^(n + h). The maximum is at about n = √(h/p).
-pub struct FrameSize {
+pub struct FrameLength {
     /// Number of lost frames, in units of 1/256 frame; older frames count less.
     lost: u32,
     /// Number of sent bytes that are known to have arrived or to be lost; older bytes count less.
     bytes: u32,
 }
 
-impl FrameSize {
+impl FrameLength {
     /// Starts with the estimate of one lost frame in 410 bytes, which gives frames of 4 blocks.
     pub const fn new() -> Self {
         Self {
@@ -51,7 +51,7 @@ impl FrameSize {
 ///
 /// Each timeout is slightly longer than the previous one. The first timeouts are short, which suits a bad line. With a slow other
 /// side, the number of requests grows only with the square root of the time.
-pub struct Patience {
+pub struct Backoff {
     since_ms: Option<u64>,
     tries: u64,
 }
@@ -61,7 +61,7 @@ const FIRST_WAIT: u64 = 15;
 /// Difference between successive timeouts in milliseconds.
 const LONGER: u64 = 2;
 
-impl Patience {
+impl Backoff {
     pub const fn new() -> Self {
         Self {
             since_ms: None,
@@ -109,14 +109,14 @@ mod tests {
 
     #[test]
     fn frames_are_as_long_as_the_line_allows() {
-        assert_eq!(FrameSize::new().blocks(), 4);
+        assert_eq!(FrameLength::new().blocks(), 4);
         for one_in in [20, 33, 50, 100, 200, 500, 1_000, 4_000, 50_000] {
             let brings = |blocks: u32| {
                 let (data, all) = (blocks * BLOCK, blocks * BLOCK + OVERHEAD as u32);
                 f64::from(data) / f64::from(all) * (1.0 - 1.0 / f64::from(one_in)).powi(all as i32)
             };
             let best = (1..=MAX_BLOCKS).map(brings).fold(0.0, f64::max);
-            let mut size = FrameSize::new();
+            let mut size = FrameLength::new();
             (0..100).for_each(|_| size.record(one_in, 1));
             assert!(
                 brings(size.blocks()) >= 0.98 * best,
@@ -128,22 +128,22 @@ mod tests {
 
     #[test]
     fn a_clean_line_gets_the_longest_frames_within_8_kib() {
-        let mut size = FrameSize::new();
+        let mut size = FrameLength::new();
         size.record(8_000, 0);
         assert_eq!(size.blocks(), MAX_BLOCKS);
     }
 
     #[test]
     fn questions_become_rarer_until_there_is_an_answer() {
-        let mut patience = Patience::new();
-        assert!(!patience.is_over(1_000));
-        patience.begin(0);
+        let mut backoff = Backoff::new();
+        assert!(!backoff.is_over(1_000));
+        backoff.begin(0);
         let asked =
-            |patience: &mut Patience, until| (0..until).filter(|&ms| patience.is_over(ms)).count();
-        assert_eq!(asked(&mut patience, 111), 5);
-        assert_eq!(asked(&mut patience, 5_000), 59);
-        patience.answered(6_000);
-        assert!(!patience.is_over(6_014));
-        assert!(patience.is_over(6_015));
+            |backoff: &mut Backoff, until| (0..until).filter(|&ms| backoff.is_over(ms)).count();
+        assert_eq!(asked(&mut backoff, 111), 5);
+        assert_eq!(asked(&mut backoff, 5_000), 59);
+        backoff.answered(6_000);
+        assert!(!backoff.is_over(6_014));
+        assert!(backoff.is_over(6_015));
     }
 }

@@ -1,35 +1,31 @@
 //! The receiver of a transfer.
 
-use super::ending::Ending;
+use super::endpoint::{Endpoint, Role};
 use super::format::{BLOCK, CRC_32, Digest, MAX_LENGTH, Manifest, WINDOW};
 use super::frame::{Acknowledge, Data, Message, write};
-use super::party::{Party, Role};
 use super::state::{Failure, Reason, State, Timing};
 
 /// Receives one transfer into a borrowed buffer.
-pub type Receiver<'a> = Party<Receiving<&'a mut [u8]>>;
+pub type Receiver<'a> = Endpoint<Receiving<&'a mut [u8]>>;
 
-impl<B: AsRef<[u8]> + AsMut<[u8]>> Party<Receiving<B>> {
+impl<B: AsRef<[u8]> + AsMut<[u8]>> Endpoint<Receiving<B>> {
     /// Waits for a transfer that fits into `buffer`. If `announced` is given, the transfer must have this length and CRC-32.
     pub fn new(buffer: B, announced: Option<Manifest>, timing: Timing, now_ms: u64) -> Self {
-        Self::of(Receiving {
+        let role = Receiving {
             buffer,
             announced,
-            timing,
             opened: None,
-            valid_ms: now_ms,
             reply: false,
-            ending: None,
-            state: State::Running,
-        })
+        };
+        Self::of(role, timing, now_ms)
     }
 
     /// The verified data, once the state is [`State::Done`].
     pub fn received(&self) -> Option<&[u8]> {
-        let opened = self.transfer.opened.as_ref()?;
-        let buffer = self.transfer.buffer.as_ref();
+        let opened = self.role.opened.as_ref()?;
+        let buffer = self.role.buffer.as_ref();
         let received = buffer.get(..opened.manifest.length as usize)?;
-        (self.transfer.state == State::Done).then_some(received)
+        (self.state() == State::Done).then_some(received)
     }
 
     /// Takes the buffer of a transfer that has ended.
@@ -37,7 +33,7 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Party<Receiving<B>> {
     where
         B: Default,
     {
-        core::mem::take(&mut self.transfer.buffer)
+        core::mem::take(&mut self.role.buffer)
     }
 }
 
@@ -47,14 +43,9 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Party<Receiving<B>> {
 pub struct Receiving<B> {
     buffer: B,
     announced: Option<Manifest>,
-    timing: Timing,
     opened: Option<Opened>,
-    /// Time in milliseconds at which the last valid frame was received.
-    valid_ms: u64,
     /// Whether a received frame has not yet been answered.
     reply: bool,
-    ending: Option<Ending>,
-    state: State,
 }
 
 /// State of a transfer whose `Open` was received.
@@ -74,78 +65,61 @@ struct Opened {
 }
 
 impl<B: AsRef<[u8]> + AsMut<[u8]>> Role for Receiving<B> {
-    fn on_message(&mut self, now_ms: u64, session: u8, message: Message) {
+    fn session(&self) -> Option<u8> {
+        self.opened.as_ref().map(|opened| opened.session)
+    }
+
+    fn on_message(&mut self, _: u64, session: u8, message: Message) -> Option<State> {
         if let Message::Open(manifest) = message {
-            self.valid_ms = now_ms;
-            self.open(now_ms, session, manifest);
-            return;
+            return Some(self.open(session, manifest));
         }
-        let Some(opened) = self
-            .opened
-            .as_mut()
-            .filter(|opened| opened.session == session)
-        else {
-            return;
-        };
+        let opened = self.opened.as_mut();
+        let opened = opened.filter(|opened| opened.session == session)?;
         match message {
             Message::Data(data) => {
                 opened.store(data, self.buffer.as_mut());
                 self.reply = true;
+                Some(State::Running)
             }
-            Message::Close if opened.verdict == Some(true) => {
-                self.ending = Some(Ending::new(State::Done, None, self.timing, now_ms));
-            }
-            Message::Abort(reason) => {
-                self.ending = Some(Ending::failed(
-                    Failure::AbortedByPeer(reason),
-                    self.timing,
-                    now_ms,
-                ));
-            }
-            // Only a receiver sends messages of the other kinds, so such a message is an echo of a frame from this receiver.
-            _ => return,
+            Message::Close => (opened.verdict == Some(true)).then_some(State::Done),
+            // Only a receiver sends the first two, so such a message is an echo of a frame from this receiver.
+            Message::Acknowledge(_)
+            | Message::Complete { .. }
+            | Message::Open(_)
+            | Message::Abort(_)
+            | Message::Reset => None,
         }
-        self.valid_ms = now_ms;
     }
 
-    fn interrupt(&mut self, now_ms: u64) {
-        self.ending = Some(Ending::interrupted(now_ms));
+    fn on_silence(&self, silence_ms: u64) -> State {
+        // A silent sender may have received the verdict and ended, so a known verdict decides the outcome.
+        match self.opened.as_ref().and_then(|opened| opened.verdict) {
+            Some(true) => State::Done,
+            Some(false) => State::Failed(Failure::Corrupt),
+            None => State::Failed(Failure::Silence(silence_ms)),
+        }
     }
 
-    fn ending(&mut self) -> Option<&mut Ending> {
-        self.ending.as_mut()
+    fn report(&self, outcome: State) -> Option<Message<'static>> {
+        match outcome {
+            State::Failed(Failure::Aborted(reason)) => Some(Message::Abort(reason)),
+            State::Running | State::Done => None,
+            State::Failed(
+                Failure::Silence(_)
+                | Failure::Stalled(_)
+                | Failure::Corrupt
+                | Failure::AbortedByPeer(_),
+            ) => None,
+        }
     }
 
-    fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-        if let Some(ending) = &mut self.ending {
-            let (length, state) = ending.poll(now_ms, out);
-            self.state = state;
-            return length;
-        }
-        if now_ms.saturating_sub(self.valid_ms) > self.timing.silence_ms {
-            // A silent sender may have received the verdict and ended, so a known verdict decides the outcome.
-            let outcome = match self.opened.as_ref().and_then(|opened| opened.verdict) {
-                Some(true) => State::Done,
-                Some(false) => State::Failed(Failure::Corrupt),
-                None => State::Failed(Failure::Silence(self.timing.silence_ms)),
-            };
-            self.ending = Some(Ending::new(outcome, None, self.timing, now_ms));
-            return 0;
-        }
+    fn poll(&mut self, _: u64, out: &mut [u8]) -> Result<usize, Failure> {
         let Some(opened) = self.opened.as_ref().filter(|_| self.reply) else {
-            return 0;
+            return Ok(0);
         };
-        let length = write(opened.session, opened.report(), out);
+        let length = write(opened.session, opened.answer(), out);
         self.reply = length == 0;
-        length
-    }
-
-    fn abort(&mut self, now_ms: u64) {
-        self.cancel(Reason::Cancelled, now_ms);
-    }
-
-    fn state(&self) -> State {
-        self.state
+        Ok(length)
     }
 
     fn progress(&self) -> (u32, u32) {
@@ -156,35 +130,25 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Role for Receiving<B> {
     }
 }
 
-impl<B: AsRef<[u8]> + AsMut<[u8]>> Receiving<B> {
-    fn open(&mut self, now_ms: u64, session: u8, manifest: Manifest) {
+impl<B: AsRef<[u8]>> Receiving<B> {
+    fn open(&mut self, session: u8, manifest: Manifest) -> State {
         let known = |opened: &Opened| opened.session == session && opened.manifest == manifest;
         if !self.opened.as_ref().is_some_and(known) {
             self.opened = Some(Opened::new(session, manifest));
-            if self
-                .announced
-                .is_some_and(|announced| announced != manifest)
-            {
-                return self.cancel(Reason::Unannounced, now_ms);
-            }
-            if manifest.length > MAX_LENGTH || manifest.length as usize > self.buffer.as_ref().len()
-            {
-                return self.cancel(Reason::TooLong, now_ms);
+            let room = self.buffer.as_ref().len();
+            let reason = if self.announced.is_some_and(|known| known != manifest) {
+                Some(Reason::Unannounced)
+            } else if manifest.length > MAX_LENGTH || manifest.length as usize > room {
+                Some(Reason::TooLong)
+            } else {
+                None
+            };
+            if let Some(reason) = reason {
+                return State::Failed(Failure::Aborted(reason));
             }
         }
         self.reply = true;
-    }
-
-    fn cancel(&mut self, reason: Reason, now_ms: u64) {
-        if self.ending.is_none() {
-            // Before an `Open` the session is unknown, so no message can be sent.
-            let last_message = self
-                .opened
-                .as_ref()
-                .map(|opened| (opened.session, Message::Abort(reason)));
-            let outcome = State::Failed(Failure::Aborted(reason));
-            self.ending = Some(Ending::new(outcome, last_message, self.timing, now_ms));
-        }
+        State::Running
     }
 }
 
@@ -266,7 +230,7 @@ impl Opened {
         }
     }
 
-    fn report(&self) -> Message<'static> {
+    fn answer(&self) -> Message<'static> {
         match self.verdict {
             Some(verified) => Message::Complete { verified },
             None => Message::Acknowledge(Acknowledge {

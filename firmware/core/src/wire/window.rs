@@ -8,7 +8,7 @@ use super::frame::Acknowledge;
 const MAX_FRAMES: u8 = 120;
 
 /// The sender's record of sent and acknowledged blocks.
-pub struct Window {
+pub struct SendWindow {
     /// Number of the first block that is not acknowledged.
     pub next: u32,
     /// Number of the block after the last block sent so far.
@@ -39,7 +39,7 @@ pub struct Run {
     pub blocks: u32,
 }
 
-impl Window {
+impl SendWindow {
     pub const fn new() -> Self {
         Self {
             next: 0,
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn an_acknowledgement_is_true_until_the_next_and_never_impossible() {
-        let mut window = Window::new();
+        let mut window = SendWindow::new();
         for _ in 0..3 {
             window.take(4, 100);
         }
