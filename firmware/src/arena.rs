@@ -5,7 +5,7 @@ use core::ops::Range;
 use core::ptr;
 use core::slice;
 
-use glint_core::regions::{Region, Regions};
+use glint_core::allocator::{Allocator, Region};
 
 /// Largest number of uploads: the meshes, a program, and a new upload that is to replace one of them.
 const UPLOADS: usize = 18;
@@ -62,7 +62,7 @@ impl AsMut<[u8]> for Loan {
 /// Memory that is divided into regions.
 pub struct Arena {
     memory: *mut [u8],
-    regions: Regions<UPLOADS>,
+    allocator: Allocator<UPLOADS>,
     /// Number of regions that are lent. While it is above 0, no region is moved.
     lent: usize,
 }
@@ -71,7 +71,7 @@ impl Arena {
     /// An arena without regions in `memory`, aligned to 16 bytes.
     pub const fn new(memory: &'static mut [u8]) -> Self {
         Self {
-            regions: Regions::new(memory.len()),
+            allocator: Allocator::new(memory.len()),
             memory: ptr::from_mut(memory),
             lent: 0,
         }
@@ -84,12 +84,12 @@ impl Arena {
 
     /// Number of bytes without a region.
     pub fn free(&self) -> usize {
-        self.regions.free()
+        self.allocator.free()
     }
 
     /// The largest gap, which is separate from all regions.
     pub fn staging(&mut self) -> &mut [u8] {
-        let gap = self.regions.gap();
+        let gap = self.allocator.gap();
         // SAFETY: the gap is in the memory, which `new` borrowed for `'static`, and overlaps no region. The result borrows the arena
         // mutably, so that no region is made of the gap and no other mutable reference to it exists.
         unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(gap.start), gap.len()) }
@@ -97,19 +97,19 @@ impl Arena {
 
     /// Makes a region of the first `length` bytes of [`staging`](Self::staging). `None` if there are fewer bytes, or if there are too
     /// many regions.
-    pub fn keep(&mut self, length: usize) -> Option<Region> {
-        self.regions.keep(length)
+    pub fn allocate(&mut self, length: usize) -> Option<Region> {
+        self.allocator.allocate(length)
     }
 
     /// Lends the first `length` bytes of [`staging`](Self::staging), as they are, until [`keep_lent`](Self::keep_lent) or
-    /// [`give_back`](Self::give_back) of this arena. `None` in the same cases as [`keep`](Self::keep).
+    /// [`give_back`](Self::give_back) of this arena. `None` in the same cases as [`allocate`](Self::allocate).
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
-        let region = self.keep(length)?;
-        let start = self.regions.range(region).start;
+        let region = self.allocate(length)?;
+        let start = self.allocator.range(region).start;
         self.lent += 1;
         // SAFETY: the region has at least `length` bytes of the memory, which `new` borrowed for `'static`. Only the loan has the region's
         // number, so no other reference to its bytes is made before the loan ends. The region overlaps no other region, and stays in place
-        // because `close_gaps` moves nothing while a region is lent.
+        // because `compact` moves nothing while a region is lent.
         let bytes =
             unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(start), length) };
         Some(Loan {
@@ -132,24 +132,24 @@ impl Arena {
 
     /// The first `length` bytes of a region; empty if the region is shorter.
     pub fn bytes(&self, region: Region, length: usize) -> &[u8] {
-        let range = self.regions.range(region);
+        let range = self.allocator.range(region);
         let length = if length > range.len() { 0 } else { length };
-        // SAFETY: the region is in the memory, and is only written by `close_gaps`, which borrows the arena mutably.
+        // SAFETY: the region is in the memory, and is only written by `compact`, which borrows the arena mutably.
         unsafe { slice::from_raw_parts(self.memory.cast::<u8>().add(range.start), length) }
     }
 
     /// Frees a region.
     pub fn release(&mut self, region: Region) {
-        self.regions.release(region);
+        self.allocator.release(region);
     }
 
     /// Moves all regions so that one gap remains; does nothing while a region is lent.
-    pub fn close_gaps(&mut self) {
+    pub fn compact(&mut self) {
         if self.lent > 0 {
             return;
         }
         let memory = self.memory.cast::<u8>();
-        self.regions.close_gaps(|from, to| {
+        self.allocator.compact(|from, to| {
             // SAFETY: both ranges are in the memory, and the target overlaps no region except the moved one. This method borrows the arena
             // mutably, and no region is lent.
             unsafe { ptr::copy(memory.add(from.start), memory.add(to), from.len()) };

@@ -41,7 +41,8 @@ pub fn execute<'l>(
     };
     let reply = command.execute(machine)?;
     // An upload has no effect until it has been accepted.
-    if command.effect() != Effect::None && !matches!(reply, Reply::After(Job::Transfer(_))) {
+    if !matches!(command.effect(), Effect::None) && !matches!(reply, Reply::After(Job::Transfer(_)))
+    {
         machine.demo.stop();
     }
     Ok(Some(reply))

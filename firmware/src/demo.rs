@@ -5,7 +5,7 @@ use glint_core::feature::DEMO;
 use glint_core::flash::FlashError;
 
 use crate::job::Orbit;
-use crate::scenes::{Library, List};
+use crate::scenes::{Library, List, built_in_list};
 
 /// Button 0: the next scene.
 const NEXT: u8 = 1 << 0;
@@ -58,7 +58,7 @@ impl Demo {
     /// Starts the demo with the first scene of the first list of the flash, or of the built-in list.
     pub fn start(&mut self, library: &Library) {
         let list = library.first_list().and_then(|list| list.text().ok());
-        self.list = list.map_or_else(List::built_in, List::Flash);
+        self.list = list.map_or_else(built_in_list, List::Flash);
         self.turns.start(self.list.len());
         self.orbit = None;
         self.error = None;

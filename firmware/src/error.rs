@@ -7,7 +7,7 @@ use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
 use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD};
 use glint_core::flash::FlashError;
-use glint_core::gesture::CalibrationError as GestureCalibrationError;
+use glint_core::gesture::ColourError;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
 use glint_core::wire::Failure;
@@ -144,7 +144,7 @@ pub enum CommandError<'l> {
     /// The image sensor sent no whole frame in time.
     NoSensorFrame,
     /// The windows of the hand's colour were not found.
-    HandColour(GestureCalibrationError),
+    HandColour(ColourError),
     /// The upload is not a log.
     Log(LogError),
     /// The demo is off.

@@ -9,7 +9,7 @@ use core::time::Duration;
 use critical_section::Mutex;
 use glint_core::colour::Rgb565;
 use glint_core::gesture::{
-    Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
+    Blob, Calibrated, ColourError, Control, Doubt, Pose, Presence, Window, calibrate,
 };
 use glint_core::image_sensor::{FrameSize, Model};
 use glint_core::tasks::Turn;
@@ -19,7 +19,7 @@ use glint_hal::timer::{Clock, Deadline};
 use glint_model::gesture::{Channel, channels};
 use litex_pac::cpu;
 
-use crate::mark::Mark;
+use crate::marker::Marker;
 
 /// Windows of Cr and Cb before a calibration: skin in lamplight or daylight.
 const SKIN: [Window; 2] = [
@@ -167,7 +167,7 @@ impl Gesture {
                     Err(error) => Some(Err(error)),
                 }
             }
-            _ => Some(engine::find(&mut self.engine, self.clock)),
+            Some(Err(_)) | None => Some(engine::find(&mut self.engine, self.clock)),
         };
         let mut pause = LOOK;
         if let Some(found) = found {
@@ -238,11 +238,11 @@ impl Gesture {
     }
 
     /// The marker of the hand's position, if it is to be drawn.
-    pub fn mark(&self) -> Option<Mark> {
+    pub fn marker(&self) -> Option<Marker> {
         let blob = self.seen().and_then(Result::ok);
         self.is_marked.then(|| {
             let size = self.size.pixels();
-            Mark::new(
+            Marker::new(
                 blob.map(|blob| blob.centre),
                 size,
                 self.presence() == Presence::Tracked,
@@ -279,7 +279,7 @@ impl Gesture {
     }
 
     /// Finds the windows of the hand's colour from the small picture of colours; `None` if the picture's frame has not ended.
-    pub fn calibrate(&mut self) -> Option<Result<Calibrated, CalibrationError>> {
+    pub fn calibrate(&mut self) -> Option<Result<Calibrated, ColourError>> {
         let [columns, rows] = self.picture_size(true);
         let chroma = self.engine.picture()?.map(|colour| {
             let channels = channels(Rgb565(colour));

@@ -11,10 +11,10 @@ use crate::error::CommandError;
 use crate::transfer::{Purpose, Transfer};
 
 /// The result of a command.
-pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
+pub type CommandResult<'l> = Result<Reply, CommandError<'l>>;
 
 /// The result of a job; `Poll::Pending` until the job has ended.
-pub type JobResult = Poll<Outcome<'static>>;
+pub type JobResult = Poll<CommandResult<'static>>;
 
 /// The reply of a successful command.
 #[expect(

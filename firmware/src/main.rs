@@ -37,7 +37,7 @@ mod job;
 mod machine;
 #[allow(unsafe_code)] // Starts the sensor's stream in a function that does not return.
 mod main_loop;
-mod mark;
+mod marker;
 #[allow(unsafe_code)] // Makes slices of the memory at linker symbols.
 mod memory;
 #[allow(unsafe_code)] // Keeps meshes and programs beyond the borrow of their memory.

@@ -200,8 +200,8 @@ impl MainLoop {
                 }
                 turn = Turn::Again;
             }
-            if picture.mark != gesture.mark() {
-                picture.mark = gesture.mark();
+            if picture.marker != gesture.marker() {
+                picture.marker = gesture.marker();
                 turn = Turn::Again;
             }
         }

@@ -2,12 +2,12 @@
 
 use core::slice;
 
+use glint_core::allocator::Region;
 use glint_core::mesh::{Mesh, MeshError};
-use glint_core::regions::Region;
 use glint_core::shape::Shape;
 use glint_core::wireframe::{Program, ProgramError};
 use glint_model::Frame;
-use glint_scene::{Content, Name, Scene};
+use glint_scene::{Assets, Name, Scene};
 use heapless::Vec;
 
 use crate::arena::{Arena, Loan};
@@ -84,7 +84,7 @@ impl Models {
 
     /// The frame of `scene`. Its objects are as of the last [`update`](Self::update_objects).
     pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
-        scene.frame(Content {
+        scene.frame(Assets {
             mesh: Some(self.mesh(scene)),
             objects: self.objects.all(),
             program: *self.program(),
@@ -160,11 +160,11 @@ impl Models {
         self.arena.staging()
     }
 
-    /// Checks that an upload may have this name, which must not be the name of a scene. An upload in progress counts as a mesh.
+    /// Checks that the list of meshes has a place for an upload with this name. An upload in progress counts as a mesh.
     ///
     /// # Errors
-    /// The reason why the name is not allowed.
-    pub fn check_name(&self, name: &str) -> Result<(), NameError> {
+    /// [`NameError::Full`].
+    pub fn check_capacity(&self, name: &str) -> Result<(), NameError> {
         if self.meshes.len() + self.arena.lent() >= MAX_MESHES && !self.has_upload(name) {
             return Err(NameError::Full);
         }
@@ -176,7 +176,7 @@ impl Models {
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
         let moves = self.arena.lent() == 0;
         if moves && (self.arena.staging().len() + 1..=self.arena.free()).contains(&length) {
-            self.close_gaps();
+            self.compact();
         }
         self.arena.lend(length)
     }
@@ -251,12 +251,12 @@ impl Models {
         };
         let (_, region) = self.meshes.remove(position);
         self.arena.release(region);
-        self.close_gaps();
+        self.compact();
         true
     }
 
     /// Moves all uploads so that one gap remains.
-    fn close_gaps(&mut self) {
+    fn compact(&mut self) {
         self.revise();
         let cube = self.shapes.cube();
         // No references into the arena may exist while it moves its regions.
@@ -272,7 +272,7 @@ impl Models {
         let program = self.program.take();
         let program = program.map(|(program, region)| (program.bytes().len(), region));
 
-        self.arena.close_gaps();
+        self.arena.compact();
         for (index, length) in lengths.iter().enumerate() {
             let region = self.meshes.get(index).map(|(_, region)| *region);
             let mesh = region.map(|region| Mesh::new_checked(self.lasting(region, *length)));
@@ -291,7 +291,7 @@ impl Models {
         let bytes = self.arena.bytes(region, length);
         // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `meshes`, `program` and
         // `objects`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its region, and
-        // `close_gaps` before it moves the regions; the arena lends only gaps mutably.
+        // `compact` before it moves the regions; the arena lends only gaps mutably.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }
 }

@@ -2,10 +2,10 @@
 
 use core::{ptr, slice};
 
+use glint_core::allocator::Region;
 use glint_core::matrix::Normals;
 use glint_core::mesh::Mesh;
 use glint_core::object::MAX_OBJECTS;
-use glint_core::regions::Region;
 use glint_model::{Object, Placement};
 use glint_scene::{PlacedMesh, Scene};
 use heapless::Vec;
@@ -184,5 +184,5 @@ fn copy(
     // are private, takes the copy out of its list before it releases the region.
     let bytes: &'static [u8] = unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) };
     let mesh = Mesh::new_checked(bytes).ok()?;
-    Some((mesh, memory.keep(bytes.len())?))
+    Some((mesh, memory.allocate(bytes.len())?))
 }

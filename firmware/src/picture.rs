@@ -9,7 +9,7 @@ use glint_model::{FrameStats, RenderError};
 use glint_scene::Scene;
 
 use crate::gateware::{Fallback, Unsupported};
-use crate::mark::Mark;
+use crate::marker::Marker;
 use crate::models::Models;
 
 /// Statistics of the last frame.
@@ -67,7 +67,7 @@ struct Content {
     scene: Scene,
     /// [`Models::revision`].
     models: u32,
-    mark: Option<Mark>,
+    marker: Option<Marker>,
 }
 
 /// The last picture, and requests for the next picture.
@@ -79,7 +79,7 @@ pub struct Picture {
     /// Whether the next frame needs depth codes in memory. The gateware only writes them on request.
     pub wants_depth: bool,
     /// The marker of the hand's position, if it is drawn.
-    pub mark: Option<Mark>,
+    pub marker: Option<Marker>,
 }
 
 impl Picture {
@@ -88,7 +88,7 @@ impl Picture {
         let lacks_depth = matches!(&self.drawn, Some(Ok(drawn)) if !drawn.has_depth);
         self.wants_depth && lacks_depth
             || self.content.as_ref().is_none_or(|content| {
-                content.mark != self.mark
+                content.marker != self.marker
                     || content.models != models.revision()
                     || content.scene != *scene
             })
@@ -110,7 +110,7 @@ impl Picture {
         self.content = Some(Content {
             scene: scene.clone(),
             models: models.revision(),
-            mark: self.mark,
+            marker: self.marker,
         });
     }
 }

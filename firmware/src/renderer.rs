@@ -76,7 +76,7 @@ impl Renderer {
             Err(fallback) => Err(DrawError::NoCpu(fallback)),
         };
         if let Ok(drawn) = &drawn {
-            self.draw_mark(scene, picture);
+            self.draw_marker(scene, picture);
             self.draw_overlay(scene, drawn);
             self.display.show(scene.size.width());
         }
@@ -84,11 +84,11 @@ impl Renderer {
     }
 
     /// Draws the marker of the hand's position, if any, into the frame that was just drawn.
-    fn draw_mark(&mut self, scene: &Scene, picture: &Picture) {
-        let (Some(mark), Some(back)) = (picture.mark, self.display.back()) else {
+    fn draw_marker(&mut self, scene: &Scene, picture: &Picture) {
+        let (Some(marker), Some(back)) = (picture.marker, self.display.back()) else {
             return;
         };
-        mark.draw(back, scene.size);
+        marker.draw(back, scene.size);
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);
         }
@@ -101,7 +101,7 @@ impl Renderer {
         };
         let size = scene.size;
         let mut overlay = Overlay::new(back, size);
-        overlay.line(format_args!("{}", scene.shown()));
+        overlay.line(format_args!("{}", scene.subject()));
         let by = match drawn.by {
             RenderedBy::Cpu(_) => Backend::Cpu,
             RenderedBy::Gateware(..) => Backend::Gateware,
@@ -224,7 +224,7 @@ impl Renderer {
         count: u32,
     ) -> Option<Result<gateware::Rendered, Fallback>> {
         let frame = models.frame(scene);
-        self.unseen(|gateware, right, output, cpu| match frame.eyes()? {
+        self.off_screen(|gateware, right, output, cpu| match frame.eyes()? {
             Some(eyes) => right.repeat(gateware, &eyes, output, cpu, count),
             None => gateware.repeat(&frame, output, cpu, count),
         })
@@ -233,7 +233,7 @@ impl Renderer {
     /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
     /// gateware has no triangle engine, or while no frame buffer is free.
     pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
-        self.unseen(|gateware, _, output, cpu| {
+        self.off_screen(|gateware, _, output, cpu| {
             let drawn = loop {
                 if let Some(drawn) = gateware.advance(frame, output, cpu) {
                     break drawn;
@@ -248,7 +248,7 @@ impl Renderer {
 
     /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and the resources of the CPU. Returns
     /// `None` if the gateware has no triangle engine, or while no frame buffer is free.
-    fn unseen<T>(
+    fn off_screen<T>(
         &mut self,
         draw: impl FnOnce(&mut GatewareRenderer, &mut RightEye, &mut Output, &mut Cpu) -> T,
     ) -> Option<T> {

@@ -1,6 +1,7 @@
 //! Scenes and lists of scenes, from the flash and built-in, by name.
 
 mod built_in;
+mod content;
 #[rustfmt::skip]
 mod table;
 
@@ -8,7 +9,7 @@ use glint_core::feature::DEMO;
 use glint_core::flash::{Contents, Expected, FlashError, Item, Kind};
 
 pub use built_in::BuiltIn;
-use built_in::Content;
+pub use content::{Content, List};
 pub use table::SCENES;
 
 /// Name of the default scene, which every gateware can show.
@@ -23,73 +24,34 @@ pub fn named(name: &str) -> Option<&'static BuiltIn> {
 
 /// A scene or a list of scenes.
 #[derive(Clone, Copy, Debug)]
-pub enum Found {
+pub enum SceneItem {
     /// A scene or list of the flash.
     Flash(Item<'static>),
     /// A built-in scene or list.
     BuiltIn(&'static BuiltIn),
 }
 
-/// Content of a scene or a list.
-#[derive(Clone, Copy, Debug)]
-pub enum Shows {
-    /// Console commands, one per line.
-    Lines(&'static str),
-    /// Scenes.
-    Scenes(List),
-}
-
-impl Found {
+impl SceneItem {
     /// Content of the scene or list.
     ///
     /// # Errors
     /// The flash is damaged.
-    pub fn shows(&self) -> Result<Shows, FlashError> {
+    pub fn content(&self) -> Result<Content, FlashError> {
         match self {
             Self::Flash(item) if item.kind == Kind::List => {
-                Ok(Shows::Scenes(List::Flash(item.text()?)))
+                Ok(Content::Scenes(List::Flash(item.text()?)))
             }
-            Self::Flash(item) => Ok(Shows::Lines(item.text()?)),
-            Self::BuiltIn(built_in) => Ok(match built_in.content {
-                Content::Lines(lines) => Shows::Lines(lines),
-                Content::Scenes(names) => Shows::Scenes(List::BuiltIn(names)),
-            }),
+            Self::Flash(item) => Ok(Content::Lines(item.text()?)),
+            Self::BuiltIn(built_in) => Ok(built_in.content),
         }
     }
 }
 
-/// The names of a list of scenes.
-#[derive(Clone, Copy, Debug)]
-pub enum List {
-    /// A list of the flash: one name per line.
-    Flash(&'static str),
-    /// A built-in list.
-    BuiltIn(&'static [&'static str]),
-}
-
-impl List {
-    /// The built-in demo list, for a board without a list in its flash.
-    pub fn built_in() -> Self {
-        match named(ALONE).map(|built_in| &built_in.content) {
-            Some(Content::Scenes(names)) => Self::BuiltIn(names),
-            Some(Content::Lines(_)) | None => Self::BuiltIn(&[]),
-        }
-    }
-
-    /// Number of scenes.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Flash(names) => names.lines().count(),
-            Self::BuiltIn(names) => names.len(),
-        }
-    }
-
-    /// The name of a scene by its number, from 0.
-    pub fn name(&self, number: usize) -> Option<&'static str> {
-        match self {
-            Self::Flash(names) => names.lines().nth(number),
-            Self::BuiltIn(names) => names.get(number).copied(),
-        }
+/// The built-in demo list, for a board without a list in its flash.
+pub fn built_in_list() -> List {
+    match named(ALONE).map(|built_in| built_in.content) {
+        Some(Content::Scenes(list)) => list,
+        Some(Content::Lines(_)) | None => List::BuiltIn(&[]),
     }
 }
 
@@ -129,11 +91,11 @@ impl Library {
     }
 
     /// The scene or list with this name.
-    pub fn find(&self, name: &str) -> Option<Found> {
+    pub fn find(&self, name: &str) -> Option<SceneItem> {
         let kinds = [Kind::Scene, Kind::List].into_iter();
         let mut found = kinds.filter_map(|kind| self.contents?.find(kind, name));
-        let built_in = || named(name).map(Found::BuiltIn);
-        found.next().map(Found::Flash).or_else(built_in)
+        let built_in = || named(name).map(SceneItem::BuiltIn);
+        found.next().map(SceneItem::Flash).or_else(built_in)
     }
 
     /// The mesh of the flash with this name.

@@ -1,7 +1,7 @@
 """Numbers that gateware, firmware and host share.
 
 `cargo xtask pac` writes them as the SystemVerilog packages `picture_pkg`, `band_pkg` and `list_pkg`, and
-as `firmware/core/src/machine.rs`. Numbers of a single block are in the description of that block.
+as `firmware/core/src/constants.rs`. Numbers of a single block are in the description of that block.
 """
 
 from dataclasses import dataclass
@@ -76,7 +76,7 @@ for _size, _code in zip(SIZES, range(3)):
 
 def files():
     """Returns the texts of the generated files by path: the packages `picture_pkg`, `band_pkg` and `list_pkg`, and the module
-    `machine` of glint-core."""
+    `constants` of glint-core."""
     texts = {
         ("common", "picture_pkg"): ("Sizes of pictures. Code s is the first size times 2^s.", [
             "\n".join([number("WIDTH", SIZES[0].width), number("HEIGHT", SIZES[0].height)]),
@@ -108,7 +108,7 @@ def files():
     }
     return {
         **{RTL / folder / f"{name}.sv": package(name, "constants.py", *text) for (folder, name), text in texts.items()},
-        CORE / "machine.rs": _machine(),
+        CORE / "constants.rs": _constants(),
     }
 
 
@@ -124,7 +124,7 @@ def _by_size(name, kind, text, value):
     ])
 
 
-def _machine():
+def _constants():
     sizes = "\n".join(f"    Picture {{ width: {size.width}, height: {size.height}, band_lines: {size.band_lines} }},"
                       for size in SIZES)
     numbers = {

@@ -14,7 +14,7 @@ use crate::fixed::{Q2_23, Q4_28, Q32_32, Turns, U4_28, U8_28};
 use crate::trig::sin_cos_q30;
 use crate::vector::{self, unit};
 
-pub use error::{Axis, ViewError};
+pub use error::{BasisVector, ViewError};
 pub use limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS, WIDTH};
 
 /// Half width of the image plane at distance 1, in world units, for cameras that are defined by angles.
@@ -410,7 +410,11 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
     const TOLERANCE: i64 = ONE / 10_000;
     const SQUARE: i64 = ONE / 100_000_000;
 
-    let rows = [(Axis::U, u), (Axis::V, v), (Axis::N, n)];
+    let rows = [
+        (BasisVector::U, u),
+        (BasisVector::V, v),
+        (BasisVector::N, n),
+    ];
     for (axis, row) in rows {
         // The scalar products cannot overflow if all components are below 2 in magnitude.
         let squared = row

@@ -2,7 +2,7 @@
 //!
 //! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`] checks the
 //! numbers. Each kind of field has one module here. The module defines the kind's name and its parameters with their ranges
-//! ([`Shape`]). It also evaluates distances from the solid in fixed-point arithmetic, bit for bit as the gateware
+//! ([`FieldKind`]). It also evaluates distances from the solid in fixed-point arithmetic, bit for bit as the gateware
 //! ([`FlatSolid`], [`FixedSpheres`]). The lists in the module `primitive` name all kinds (docs/adding-a-field.md).
 
 use core::fmt;
@@ -22,8 +22,8 @@ pub use argument::{Arguments, Random};
 pub use error::FieldError;
 pub use limits::{MAX_EXTENT, MAX_SPHERES, PERIOD};
 pub use primitive::*;
-pub use shape::{FlatConstants, FlatSolid, Placed, Shape};
-pub use surface::{FRACTION, Sample, Surface, cropped, magnitude, units};
+pub use shape::{FieldKind, FlatConstants, FlatSolid, Placed};
+pub use surface::{FRACTION, FieldSample, Surface, cropped, magnitude, units};
 pub use union::Union;
 
 /// A distance field: one solid, or the union of two solids.

@@ -11,7 +11,7 @@ use core::ops::Range;
 use core::str;
 
 use crate::console::LINE_MAX;
-use crate::machine;
+use crate::constants;
 use crate::mesh::is_name;
 use crate::records::{FirmwareHeader, FlashEntry, FlashHeader, WORD};
 use crate::wire::crc32;
@@ -21,7 +21,7 @@ pub use encode::{EncodeError, Piece, encode};
 pub use error::{Expected, FlashError};
 
 /// Offset of the firmware in bytes, after the slot of the bitstream.
-pub const FIRMWARE: usize = machine::FLASH_FIRMWARE as usize;
+pub const FIRMWARE: usize = constants::FLASH_FIRMWARE as usize;
 /// Offset of the contents in bytes.
 pub const CONTENTS: usize = 4 << 20;
 /// Largest length of an image in bytes.

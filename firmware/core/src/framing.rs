@@ -24,7 +24,7 @@ const POLAR: Turns = Turns::from_degrees(Q32_32::lit("60"));
 
 /// A sphere around all vertices of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sphere {
+pub struct BoundingSphere {
     /// The centre of the box around the vertices, rounded down.
     centre: [Length; 3],
     /// Distance of the farthest vertex from the centre, rounded up.
@@ -63,7 +63,7 @@ impl fmt::Display for FramingError {
 
 impl core::error::Error for FramingError {}
 
-impl Sphere {
+impl BoundingSphere {
     /// Computes the sphere around placed meshes; `None` without a mesh. Centre and radius are within 2^−19 of their exact values.
     pub fn around<'a>(meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone) -> Option<Self> {
         let points = meshes.flat_map(|(mesh, matrix)| {

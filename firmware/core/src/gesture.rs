@@ -11,7 +11,7 @@
 //! | width, the square root of the area | distance r: 5 for [`WIDTHS`]`[0]` of the frame or less, 2 for [`WIDTHS`]`[1]` or more |
 //!
 //! [`Control`] filters the target, holds the camera while the hand is lost, and moves smoothly to a hand that comes back. It also
-//! returns the [`Setting`] of the engine for the next frame: the region around the hand, outside which no pixels are counted.
+//! returns the [`EngineSetting`] for the next frame: the region around the hand, outside which no pixels are counted.
 //! [`calibrate`] finds the windows of the hand's colour from a small picture.
 //!
 //! Noise pixels all over the frame pull the mean of all pixels to the frame's middle: 5 % of noise pixels shift it by 80 pixels
@@ -25,10 +25,10 @@ mod filter;
 mod target;
 
 pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics, quotient};
-pub use calibration::{Calibrated, CalibrationError, LEAST_SAMPLES, WIDEST, Window, calibrate};
+pub use calibration::{Calibrated, ColourError, LEAST_SAMPLES, WIDEST, Window, calibrate};
 pub use control::{
-    ANGLE, CHANNELS, Control, DISTANCE, PATIENCE, Pose, Presence, RUN_MOVING, RUN_RESTING,
-    RUN_SEARCHING, Setting,
+    ANGLE, CHANNELS, Control, DISTANCE, EngineSetting, PATIENCE, Pose, Presence, RUN_MOVING,
+    RUN_RESTING, RUN_SEARCHING,
 };
-pub use filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
+pub use filter::{Backlash, OneEuro, TimeStep, Tuning, low_pass_gain, towards};
 pub use target::{POLE, WIDTHS, target};

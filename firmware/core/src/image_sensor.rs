@@ -16,7 +16,7 @@ use core::fmt;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c};
 
-use step::Step;
+use step::SetupStep;
 
 /// Number of columns and rows of a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl Model {
     }
 
     /// The steps of the set-up for a size.
-    const fn steps(self, size: FrameSize) -> [&'static [Step]; 3] {
+    const fn steps(self, size: FrameSize) -> [&'static [SetupStep]; 3] {
         match (self, size) {
             (Self::Ov7670, FrameSize::Qvga) => [ov7670::RESET, ov7670::COMMON, ov7670::QVGA],
             (Self::Ov7670, FrameSize::Vga) => [ov7670::RESET, ov7670::COMMON, ov7670::VGA],
@@ -187,8 +187,8 @@ impl<B: I2c> ImageSensor<B> {
         let model = self.find().await?;
         for &step in model.steps(size).into_iter().flatten() {
             match step {
-                Step::Write(register, value) => self.write(model, register, value).await?,
-                Step::Check(register, expected) => {
+                SetupStep::Write(register, value) => self.write(model, register, value).await?,
+                SetupStep::Check(register, expected) => {
                     self.write(model, register, expected).await?;
                     let found = self.read(model, register).await?;
                     if found != expected {
@@ -199,7 +199,7 @@ impl<B: I2c> ImageSensor<B> {
                         });
                     }
                 }
-                Step::Wait(time) => delay.delay_ms(time).await,
+                SetupStep::Wait(time) => delay.delay_ms(time).await,
             }
         }
         Ok(model)
@@ -212,7 +212,7 @@ impl<B: I2c> ImageSensor<B> {
     /// The chip does not answer.
     pub async fn keeps(&mut self, model: Model, size: FrameSize) -> Result<bool, Error<B::Error>> {
         for &step in model.steps(size).into_iter().flatten() {
-            if let Step::Check(register, expected) = step
+            if let SetupStep::Check(register, expected) = step
                 && self.read(model, register).await? != expected
             {
                 return Ok(false);

@@ -5,13 +5,15 @@
 
 use core::fmt;
 
-use crate::calibration::{self, Calibration, Progress, Report, RestBias, Units};
+use crate::calibration::{self, Calibration, Progress, Report};
 use crate::camera::{View, ViewError};
 use crate::choice::choices;
 use crate::fixed::Q32_32;
-use crate::follow::{self, Mounting, Steering};
 use crate::mpu6050::{self, Error, Identity, Measurement, Sink};
-use crate::orientation::{Counts, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker};
+use crate::orientation::{
+    Counts, Quaternion, RestBias, Sample, Scale, TIME_CONSTANT, Tilt, Tracker, Units,
+};
+use crate::steering::{self, Mounting, Steering};
 
 /// How the sensor steers the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,7 +166,7 @@ impl<E: Copy> Imu<E> {
     pub const fn calibrated_samples(&self) -> Option<u32> {
         match self.calibrating {
             Calibrating::Going(_, samples) => Some(samples),
-            _ => None,
+            Calibrating::Never | Calibrating::Ended(_) => None,
         }
     }
 
@@ -172,7 +174,7 @@ impl<E: Copy> Imu<E> {
     pub const fn calibration(&self) -> Option<Result<Report, CalibrationError<E>>> {
         match self.calibrating {
             Calibrating::Ended(result) => Some(result),
-            _ => None,
+            Calibrating::Never | Calibrating::Going(..) => None,
         }
     }
 
@@ -203,7 +205,7 @@ impl<E: Copy> Imu<E> {
         self.steering.sensitivity()
     }
 
-    /// Sets the sensitivity of the steering in units of 1/256, limited to the range [`SENSITIVITY`](follow::SENSITIVITY).
+    /// Sets the sensitivity of the steering in units of 1/256, limited to the range [`SENSITIVITY`](steering::SENSITIVITY).
     pub fn set_sensitivity(&mut self, sensitivity: u16) {
         self.steering.set_sensitivity(sensitivity);
     }
@@ -248,8 +250,8 @@ impl<E: Copy> Imu<E> {
         self.moved = false;
         let attitude = self.steering.follow(self.tracker.attitude());
         Some(match follow {
-            Follow::Look => follow::free_look(eye, attitude, self.mounting),
-            Follow::Orbit => follow::orbit(radius, attitude, self.mounting),
+            Follow::Look => steering::free_look(eye, attitude, self.mounting),
+            Follow::Orbit => steering::orbit(radius, attitude, self.mounting),
         })
     }
 }

@@ -12,6 +12,7 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod allocator;
 pub mod appearance;
 pub mod bits;
 pub mod block;
@@ -20,33 +21,32 @@ pub mod camera;
 pub mod choice;
 pub mod colour;
 pub mod console;
+#[rustfmt::skip]
+pub mod constants;
+pub mod cordic;
 pub mod demo;
 pub mod digits;
 pub mod feature;
 pub mod field;
 pub mod fixed;
 pub mod flash;
-pub mod follow;
 pub mod framing;
 pub mod gesture;
 pub mod image_sensor;
 pub mod imu;
 pub mod light;
-#[rustfmt::skip]
-pub mod machine;
 pub mod matrix;
 pub mod mesh;
 pub mod mpu6050;
 pub mod object;
 pub mod orientation;
 pub mod picture;
-pub mod polar;
 pub mod quality;
 #[rustfmt::skip]
 pub mod records;
-pub mod regions;
 pub mod root;
 pub mod shape;
+pub mod steering;
 pub mod stereo;
 pub mod tasks;
 pub mod trig;

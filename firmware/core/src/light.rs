@@ -135,7 +135,7 @@ impl fmt::Display for Light {
             Some([x, y, z]) => write!(f, "{x},{y},{z}")?,
             None => f.write_str(CAMERA)?,
         }
-        write!(f, ",{}", Hexadecimal(self.colour))
+        write!(f, ",{}", HexColour(self.colour))
     }
 }
 
@@ -146,9 +146,9 @@ pub const fn whole(part: u8) -> i32 {
 
 /// Displays a colour as the six hexadecimal digits that [`parse_rgb`] reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hexadecimal(pub Rgb);
+pub struct HexColour(pub Rgb);
 
-impl fmt::Display for Hexadecimal {
+impl fmt::Display for HexColour {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.0
             .iter()
@@ -437,7 +437,7 @@ impl fmt::Display for Background {
         match *self {
             Self::White => f.write_str(Self::WHITE),
             Self::Sky => f.write_str(Self::SKY),
-            Self::Colour(colour) => Hexadecimal(colour).fmt(f),
+            Self::Colour(colour) => HexColour(colour).fmt(f),
         }
     }
 }

@@ -443,7 +443,11 @@ impl fmt::Display for MeshError {
         )?;
         match self.expected {
             Expected::Magic => write!(f, "\"{}\"", self.found.to_le_bytes().escape_ascii()),
-            _ => write!(f, "{}", self.found),
+            Expected::Exactly(..)
+            | Expected::AtLeast(..)
+            | Expected::AtMost(..)
+            | Expected::Below(..)
+            | Expected::MultipleOf(..) => write!(f, "{}", self.found),
         }
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::choice::choices;
-use crate::machine::{PICTURES, Picture};
+use crate::constants::{PICTURES, Picture};
 
 /// The size of a picture. The discriminant is the code of the size in registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Settings of the gesture engine for gesture control, and set-up of the image sensor over the engine's I2C wires.
 
 use embedded_hal::delay::DelayNs;
-use glint_core::gesture::{Region, Setting, Statistics, Window};
+use glint_core::gesture::{EngineSetting, Region, Statistics, Window};
 use glint_core::image_sensor::{Error, FrameSize, ImageSensor, Model};
 use glint_hal::gesture::GestureEngine;
 use glint_hal::timer::{Clock, Waiting, block_on};
@@ -70,7 +70,7 @@ pub fn set_windows(engine: &mut GestureEngine, windows: [Window; 2]) {
 }
 
 /// Sets the pixels that the engine counts.
-pub fn set_gate(engine: &mut GestureEngine, setting: &Setting) {
+pub fn set_gate(engine: &mut GestureEngine, setting: &EngineSetting) {
     let Region { first, last } = setting.region;
     engine.set_gate([first, last], setting.least_run);
 }

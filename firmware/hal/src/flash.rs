@@ -22,6 +22,7 @@ fn is_present(identity: &Identity, bit: u32) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glint_core::block::Block;
     use litex_pac::Peripherals;
     use litex_pac::identity::offset::BLOCKS;
 
@@ -30,7 +31,7 @@ mod tests {
 
     #[test]
     fn the_window_is_there_if_the_gateware_has_the_block() {
-        const BIT: u32 = 1 << 5;
+        const BIT: u32 = Block::Flash.bit();
         let address = Identity::BASE + BLOCKS as usize;
         for (blocks, expected) in [(!BIT, false), (BIT, true)] {
             recording::connect([(address, blocks)]);

@@ -16,4 +16,6 @@ mod text;
 
 pub use error::{ObjectError, SettingError};
 pub use lines::{Line, LineError, Reason, lines};
-pub use scene::{AnyBoard, Board, CUBE, Content, Kind, Name, PlacedMesh, Scene, Shown, Sphere};
+pub use scene::{
+    AnyBoard, Assets, Board, CUBE, Kind, Name, PlacedMesh, Scene, SceneSubject, Sphere,
+};

@@ -62,17 +62,14 @@ impl<'l> Line<'l> {
     /// The line is not a command that sets the picture.
     pub fn parse(text: &'l str) -> Result<Self, Reason<'l>> {
         let command = Command::parse(text).map_err(Reason::Parse)?;
-        let command = command.filter(|command| command.effect() == Effect::Picture);
         let command = command.ok_or(Reason::Effect)?;
-        Ok(if let Command::Set(setting) = command {
-            Self::Option(setting)
-        } else if let Command::Scene { name: Some(mesh) } = command {
-            Self::Mesh(mesh)
-        } else if let Command::Program { upload: None } = command {
-            Self::Wireframe
-        } else {
-            Self::Motion(command)
-        })
+        match command.effect() {
+            Effect::Option(setting) => Ok(Self::Option(*setting)),
+            Effect::Subject(mesh) => Ok(Self::Mesh(mesh)),
+            Effect::Wireframe => Ok(Self::Wireframe),
+            Effect::Motion => Ok(Self::Motion(command)),
+            Effect::None | Effect::Uploads => Err(Reason::Effect),
+        }
     }
 
     /// Name of the mesh that the line shows, or adds to the objects.

@@ -112,9 +112,9 @@ pub enum Kind {
     Wireframe(Motion),
 }
 
-/// Content of a scene. `Display` writes the name of the content.
+/// The subject of a scene. `Display` writes the name of the subject.
 #[derive(Clone, Copy, Debug)]
-pub enum Shown<'s> {
+pub enum SceneSubject<'s> {
     /// The mesh with this name.
     Mesh(&'s str),
     /// The edges of the mesh with this name.
@@ -129,7 +129,7 @@ pub enum Shown<'s> {
     Wireframe(&'s Motion),
 }
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for SceneSubject<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Mesh(mesh) | Self::Edges(mesh, _) => f.write_str(mesh),
@@ -143,7 +143,7 @@ impl fmt::Display for Shown<'_> {
 
 /// The meshes and the wireframe program of a frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Content<'a> {
+pub struct Assets<'a> {
     /// The mesh that is shown alone or in a field; `None` if no such mesh is shown.
     pub mesh: Option<Mesh<'a>>,
     /// The objects.
@@ -446,30 +446,32 @@ impl Scene {
         OVERLAY.is_built && self.overlay
     }
 
-    /// Content of the scene.
-    pub fn shown(&self) -> Shown<'_> {
+    /// The subject of the scene.
+    pub fn subject(&self) -> SceneSubject<'_> {
         if let Some(motion) = self.wireframe() {
-            return Shown::Wireframe(motion);
+            return SceneSubject::Wireframe(motion);
         }
         if self.shows_objects() {
-            return Shown::Objects;
+            return SceneSubject::Objects;
         }
         let field = self.field.as_ref().filter(|_| FIELD.is_built);
         match (field, self.edges) {
-            (None, None) => Shown::Mesh(&self.mesh),
-            (None, Some(edges)) => Shown::Edges(&self.mesh, edges),
+            (None, None) => SceneSubject::Mesh(&self.mesh),
+            (None, Some(edges)) => SceneSubject::Edges(&self.mesh, edges),
             (Some(field), _) if self.with_mesh && MESH_IN_FIELD.is_built => {
-                Shown::MeshInField(&self.mesh, field)
+                SceneSubject::MeshInField(&self.mesh, field)
             }
-            (Some(field), _) => Shown::Field(field),
+            (Some(field), _) => SceneSubject::Field(field),
         }
     }
 
     /// Name of the mesh that is shown, alone or in a field.
     pub fn shown_mesh(&self) -> Option<&str> {
-        match self.shown() {
-            Shown::Mesh(mesh) | Shown::Edges(mesh, _) | Shown::MeshInField(mesh, _) => Some(mesh),
-            Shown::Field(_) | Shown::Objects | Shown::Wireframe(_) => None,
+        match self.subject() {
+            SceneSubject::Mesh(mesh)
+            | SceneSubject::Edges(mesh, _)
+            | SceneSubject::MeshInField(mesh, _) => Some(mesh),
+            SceneSubject::Field(_) | SceneSubject::Objects | SceneSubject::Wireframe(_) => None,
         }
     }
 
@@ -483,7 +485,7 @@ impl Scene {
     }
 
     /// Converts the scene to a frame.
-    pub fn frame<'a>(&'a self, content: Content<'a>) -> Frame<'a> {
+    pub fn frame<'a>(&'a self, content: Assets<'a>) -> Frame<'a> {
         let mesh = content.mesh.map(|mesh| self.options.subject(mesh));
         let field = |field| FieldSubject {
             field,
@@ -491,14 +493,18 @@ impl Scene {
             quality: self.quality,
             prepass: self.prepass,
         };
-        let subject = match (self.shown(), mesh) {
-            (Shown::Mesh(_), Some(mesh)) => Subject::Mesh(mesh),
-            (Shown::Edges(_, edges), Some(mesh)) => Subject::edges(mesh, edges),
-            (Shown::MeshInField(_, shown), Some(mesh)) => Subject::MeshInField(mesh, field(shown)),
-            (Shown::Field(shown) | Shown::MeshInField(_, shown), _) => Subject::Field(field(shown)),
-            (Shown::Objects, _) => Subject::Objects(content.objects),
-            (Shown::Mesh(_) | Shown::Edges(..), None) => Subject::Objects(&[]),
-            (Shown::Wireframe(motion), _) => Subject::Wireframe(WireframeSubject {
+        let subject = match (self.subject(), mesh) {
+            (SceneSubject::Mesh(_), Some(mesh)) => Subject::Mesh(mesh),
+            (SceneSubject::Edges(_, edges), Some(mesh)) => Subject::edges(mesh, edges),
+            (SceneSubject::MeshInField(_, shown), Some(mesh)) => {
+                Subject::MeshInField(mesh, field(shown))
+            }
+            (SceneSubject::Field(shown) | SceneSubject::MeshInField(_, shown), _) => {
+                Subject::Field(field(shown))
+            }
+            (SceneSubject::Objects, _) => Subject::Objects(content.objects),
+            (SceneSubject::Mesh(_) | SceneSubject::Edges(..), None) => Subject::Objects(&[]),
+            (SceneSubject::Wireframe(motion), _) => Subject::Wireframe(WireframeSubject {
                 program: content.program,
                 pose: motion.pose(),
             }),
@@ -510,32 +516,35 @@ impl Scene {
     }
 
     /// The sphere around the single shown mesh, or around the objects.
-    fn bounds(&self, board: &dyn Board) -> Option<framing::Sphere> {
+    fn bounds(&self, board: &dyn Board) -> Option<framing::BoundingSphere> {
         let mut meshes: Vec<(Mesh, Matrix), MAX_OBJECTS> = Vec::new();
         // The list has space for all objects, so no object is dropped.
-        match self.shown() {
-            Shown::Mesh(mesh) | Shown::Edges(mesh, _) => {
+        match self.subject() {
+            SceneSubject::Mesh(mesh) | SceneSubject::Edges(mesh, _) => {
                 meshes.extend(board.mesh(mesh).map(|mesh| (mesh, Matrix::IDENTITY)));
             }
-            Shown::Objects => {
+            SceneSubject::Objects => {
                 for object in &self.objects {
                     let mesh = board.mesh(&object.mesh);
                     meshes.extend(mesh.map(|mesh| (mesh, object.place.matrix)));
                 }
             }
-            Shown::Field(_) | Shown::MeshInField(..) | Shown::Wireframe(_) => {}
+            SceneSubject::Field(_) | SceneSubject::MeshInField(..) | SceneSubject::Wireframe(_) => {
+            }
         }
-        framing::Sphere::around(meshes.iter().copied())
+        framing::BoundingSphere::around(meshes.iter().copied())
     }
 
     /// The optional gateware blocks that the scene needs, one bit per block ([`Block::bit`]). A picture drawn by the soft core
     /// needs no engine.
     pub fn blocks(&self) -> u32 {
-        let engines = match self.shown() {
-            Shown::Mesh(_) | Shown::Objects => Block::Triangle.bit(),
-            Shown::Edges(..) | Shown::Wireframe(_) => Block::Triangle.bit() | Block::Line.bit(),
-            Shown::Field(_) => Block::Raymarch.bit(),
-            Shown::MeshInField(..) => Block::Triangle.bit() | Block::Raymarch.bit(),
+        let engines = match self.subject() {
+            SceneSubject::Mesh(_) | SceneSubject::Objects => Block::Triangle.bit(),
+            SceneSubject::Edges(..) | SceneSubject::Wireframe(_) => {
+                Block::Triangle.bit() | Block::Line.bit()
+            }
+            SceneSubject::Field(_) => Block::Raymarch.bit(),
+            SceneSubject::MeshInField(..) => Block::Triangle.bit() | Block::Raymarch.bit(),
         };
         let drawn = match self.backend {
             Backend::Gateware => engines,

@@ -5,11 +5,11 @@ use core::fmt::{self, Display, Write};
 use glint_core::choice::switch_name;
 use glint_core::console::OptionName;
 use glint_core::fixed::{Turns, U4_28};
-use glint_core::light::Hexadecimal;
+use glint_core::light::{HexColour, Rgb};
 use glint_core::picture::Size;
 use glint_model::Clip;
 
-use crate::scene::{Kind, Scene, Sphere};
+use crate::scene::{Kind, PlacedMesh, Scene, Sphere};
 
 /// Displays a value, or `off` for `None`.
 #[derive(PartialEq)]
@@ -60,38 +60,31 @@ impl Scene {
     ///
     /// # Errors The errors of `out`.
     pub fn show(&self, option: OptionName, out: &mut dyn Write) -> fmt::Result {
-        let appearance = &self.appearance;
-        match option {
-            // The lights in use, including default lights.
-            OptionName::Light => {
-                let mut lights = appearance.lighting().lights;
-                if appearance.lights.is_empty() && !self.shows_field() {
-                    lights.clear();
-                    // The empty list has space for one light.
-                    let _ = lights.push(appearance.mesh_lighting().light);
-                }
-                if lights.is_empty() {
-                    writeln!(out, "light none")?;
-                }
-                lights
-                    .iter()
-                    .try_for_each(|light| writeln!(out, "light {light}"))
-            }
-            OptionName::Ambient => {
-                let colour = if self.shows_field() {
-                    appearance.lighting().ambient
-                } else {
-                    appearance.mesh_lighting().ambient
-                };
-                writeln!(out, "ambient {}", Hexadecimal(colour))
-            }
-            OptionName::Object => {
-                let mut numbered = (1..).zip(&self.objects);
-                numbered.try_for_each(|(number, object)| {
-                    writeln!(out, "object {number} {} {}", object.mesh, object.place)
-                })
-            }
-            option => self.write_option(option, None, out),
+        self.write_option(option, None, out)
+    }
+
+    /// Writes the lights in use, including default lights.
+    fn show_lights(&self, out: &mut dyn Write) -> fmt::Result {
+        let mut lights = self.appearance.lighting().lights;
+        if self.appearance.lights.is_empty() && !self.shows_field() {
+            lights.clear();
+            // The empty list has space for one light.
+            let _ = lights.push(self.appearance.mesh_lighting().light);
+        }
+        if lights.is_empty() {
+            writeln!(out, "light none")?;
+        }
+        lights
+            .iter()
+            .try_for_each(|light| writeln!(out, "light {light}"))
+    }
+
+    /// The ambient light in use.
+    fn shown_ambient(&self) -> Rgb {
+        if self.shows_field() {
+            self.appearance.lighting().ambient
+        } else {
+            self.appearance.mesh_lighting().ambient
         }
     }
 
@@ -120,7 +113,7 @@ impl Scene {
         }
     }
 
-    /// Writes the commands that set an option, unless its value is equal in the scene `from`.
+    /// Writes the commands that set an option, unless its value is equal in the scene `from`; without `from`, shows the option.
     fn write_option(
         &self,
         option: OptionName,
@@ -133,24 +126,30 @@ impl Scene {
             OptionName::Mesh => self.put(name, from, out, |scene| switch_name(scene.with_mesh)),
             OptionName::Stereo => self.put(name, from, out, |scene| OrOff(scene.stereo)),
             OptionName::Object => {
-                let mut objects = self.objects.iter();
-                objects.try_for_each(|object| {
-                    writeln!(out, "{name} add {} {}", object.mesh, object.place)
+                let mut numbered = (1..).zip(&self.objects);
+                numbered.try_for_each(|(number, PlacedMesh { mesh, place })| match from {
+                    Some(_) => writeln!(out, "{name} add {mesh} {place}"),
+                    None => writeln!(out, "{name} {number} {mesh} {place}"),
                 })
             }
             OptionName::Material => self.put(name, from, out, |scene| scene.appearance.material),
             OptionName::Light => {
+                let Some(from) = from else {
+                    return self.show_lights(out);
+                };
                 let lights = &self.appearance.lights;
-                let old = from.map_or(&[][..], |from| &from.appearance.lights);
-                let added = lights.strip_prefix(old);
+                let added = lights.strip_prefix(&from.appearance.lights[..]);
                 if added.is_none() {
                     writeln!(out, "{name} default")?;
                 }
                 let mut added = added.unwrap_or(lights).iter();
                 added.try_for_each(|light| writeln!(out, "{name} {light}"))
             }
+            OptionName::Ambient if from.is_none() => {
+                writeln!(out, "{name} {}", HexColour(self.shown_ambient()))
+            }
             OptionName::Ambient => self.put(name, from, out, |scene| {
-                OrDefault(scene.appearance.ambient.map(Hexadecimal))
+                OrDefault(scene.appearance.ambient.map(HexColour))
             }),
             OptionName::Background => self.put(name, from, out, |scene| {
                 OrDefault(scene.appearance.background)

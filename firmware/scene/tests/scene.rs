@@ -252,7 +252,7 @@ fn an_option_is_shown_as_it_is_set() {
     assert_eq!(shown(OptionName::Ambient), "ambient 404040\n");
     assert_eq!(shown(OptionName::Light), "light 1,-2,3,ffffff\n");
     assert!(shown(OptionName::Object).starts_with("object 1 a matrix 1,0,0,"));
-    assert_eq!(scene.shown().to_string(), "b");
+    assert_eq!(scene.subject().to_string(), "b");
 }
 
 /// A mesh replaces the objects, and `object show` shows them again; without objects the mesh is shown.

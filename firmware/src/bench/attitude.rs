@@ -2,9 +2,8 @@
 
 use core::cell::RefCell;
 
-use glint_core::calibration::Units;
 use glint_core::orientation::{
-    Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker, log,
+    Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker, Units, log,
 };
 
 use super::measure::{Cycles, Report, measure};

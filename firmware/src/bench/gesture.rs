@@ -3,7 +3,9 @@
 use core::cell::RefCell;
 
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::gesture::{ANGLE, Backlash, CHANNELS, Control, OneEuro, Region, Statistics, Step};
+use glint_core::gesture::{
+    ANGLE, Backlash, CHANNELS, Control, OneEuro, Region, Statistics, TimeStep,
+};
 use glint_variants::filter::{AlphaBeta, Average, LowPass};
 
 use super::measure::{Report, measure};
@@ -21,8 +23,8 @@ pub fn gesture(report: Report) {
         *time += u64::from(FRAME);
         control.on_frame(*time, &statistics)
     });
-    let step = Step::new(FRAME);
-    measure(report, "step", |phase| FRAME + (phase >> 28), Step::new);
+    let step = TimeStep::new(FRAME);
+    measure(report, "step", |phase| FRAME + (phase >> 28), TimeStep::new);
     let start = Q4_28::ZERO;
     measure(report, "none", input, |input| input);
     let average = RefCell::new(Average::<8>::new(start));

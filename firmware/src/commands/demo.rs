@@ -4,11 +4,11 @@ use glint_core::console::{DemoAction, DemoCommands};
 use glint_core::demo::Move;
 
 use crate::error::CommandError;
-use crate::job::{Outcome, Reply};
+use crate::job::{CommandResult, Reply};
 use crate::machine::Machine;
 
 impl<'l> DemoCommands<'l> for Machine {
-    fn demo(&mut self, action: Option<DemoAction>) -> Outcome<'l> {
+    fn demo(&mut self, action: Option<DemoAction>) -> CommandResult<'l> {
         let Machine {
             terminal,
             demo,

@@ -5,27 +5,27 @@ use litex_pac::cpu;
 
 use super::{bench, statistics};
 use crate::error::CommandError;
-use crate::job::{Job, Outcome, Reply};
+use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
 
 impl<'l> FrameCommands<'l> for Machine {
-    fn render(&mut self, depth: bool) -> Outcome<'l> {
+    fn render(&mut self, depth: bool) -> CommandResult<'l> {
         self.picture.request();
         self.picture.wants_depth = depth;
         Ok(Reply::After(Job::Render))
     }
 
-    fn frame(&mut self, depth: bool) -> Outcome<'l> {
+    fn frame(&mut self, depth: bool) -> CommandResult<'l> {
         self.picture.wants_depth = depth;
         Ok(Reply::After(Job::Frame { depth }))
     }
 
-    fn stats(&mut self, json: bool) -> Outcome<'l> {
+    fn stats(&mut self, json: bool) -> CommandResult<'l> {
         statistics::print(self, json)?;
         Ok(Reply::Done)
     }
 
-    fn bench(&mut self, benchmark: Option<(&'l str, Option<u32>)>) -> Outcome<'l> {
+    fn bench(&mut self, benchmark: Option<(&'l str, Option<u32>)>) -> CommandResult<'l> {
         bench::run(self, benchmark)?;
         Ok(Reply::Done)
     }
@@ -36,7 +36,7 @@ impl<'l> FrameCommands<'l> for Machine {
 ///
 /// # Errors
 /// No frame was drawn, or its drawing failed.
-pub fn begin_download(machine: &mut Machine, depth: bool) -> Outcome<'static> {
+pub fn begin_download(machine: &mut Machine, depth: bool) -> CommandResult<'static> {
     let Machine {
         scene,
         picture,

@@ -10,7 +10,7 @@ use glint_core::image_sensor::FrameSize;
 
 use crate::error::CommandError;
 use crate::gesture::Gesture;
-use crate::job::{GestureJob, Job, JobResult, Outcome, Reply};
+use crate::job::{CommandResult, GestureJob, Job, JobResult, Reply};
 use crate::machine::Machine;
 
 /// Timeout for a small picture.
@@ -20,7 +20,7 @@ const WAIT: Duration = Duration::from_millis(500);
 const MASK: usize = 160 * 120 / 8;
 
 impl<'l> GestureCommands<'l> for Machine {
-    fn gesture(&mut self, action: Option<GestureAction>) -> Outcome<'l> {
+    fn gesture(&mut self, action: Option<GestureAction>) -> CommandResult<'l> {
         let clock = self.clock;
         let gesture = self.gesture.as_mut().ok_or(CommandError::NoGesture)?;
         match action {

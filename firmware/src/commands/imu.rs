@@ -2,18 +2,18 @@
 
 use core::task::Poll;
 
-use glint_core::calibration::Units;
 use glint_core::console::{ImuAction, ImuCommands};
 use glint_core::feature::IMU;
 use glint_core::fixed::Q32_32;
-use glint_core::follow::Mounting;
 use glint_core::mpu6050::degrees_per_second;
+use glint_core::orientation::Units;
+use glint_core::steering::Mounting;
 use glint_core::wire::Manifest;
 
 use super::{replay, upload};
 use crate::error::CommandError;
 use crate::format::{OrOff, Vector};
-use crate::job::{Job, JobResult, Outcome, Reply, SensorJob};
+use crate::job::{CommandResult, Job, JobResult, Reply, SensorJob};
 use crate::machine::Machine;
 use crate::sensor;
 use crate::transfer::Purpose;
@@ -22,7 +22,7 @@ use crate::transfer::Purpose;
 const PROGRESS: u32 = 1_024;
 
 impl<'l> ImuCommands<'l> for Machine {
-    fn imu(&mut self, action: Option<ImuAction>) -> Outcome<'l> {
+    fn imu(&mut self, action: Option<ImuAction>) -> CommandResult<'l> {
         let imu = &mut self.imu;
         match action {
             None => print_status(self),
@@ -47,7 +47,7 @@ impl<'l> ImuCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn mounting(&mut self, mounting: Option<Mounting>) -> Outcome<'l> {
+    fn mounting(&mut self, mounting: Option<Mounting>) -> CommandResult<'l> {
         match mounting {
             Some(mounting) => self.imu.set_mounting(mounting),
             None => {
@@ -58,7 +58,7 @@ impl<'l> ImuCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn sensitivity(&mut self, gain: Option<u16>) -> Outcome<'l> {
+    fn sensitivity(&mut self, gain: Option<u16>) -> CommandResult<'l> {
         match gain {
             Some(gain) => self.imu.set_sensitivity(gain),
             None => {
@@ -69,7 +69,7 @@ impl<'l> ImuCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn replay(&mut self, upload: Option<Manifest>) -> Outcome<'l> {
+    fn replay(&mut self, upload: Option<Manifest>) -> CommandResult<'l> {
         match upload {
             Some(manifest) => upload::begin(self, "replay", Purpose::Log, manifest),
             None => replay::send(self),

@@ -8,18 +8,18 @@ use litex_pac::{EMULATED, cpu, ctrl};
 
 use crate::error::CommandError;
 use crate::gateware::GatewareRenderer;
-use crate::job::{Outcome, Reply};
+use crate::job::{CommandResult, Reply};
 use crate::machine::{Devices, Machine};
 use crate::selftest;
 
 impl<'l> MachineCommands<'l> for Machine {
-    fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
+    fn help(&mut self, command: Option<&'l str>) -> CommandResult<'l> {
         // Writing fails only if the line accepts no text; an error message would be lost as well.
         let _ = write_help(self.terminal.output(), command);
         Ok(Reply::Done)
     }
 
-    fn info(&mut self, key: Option<&'l str>) -> Outcome<'l> {
+    fn info(&mut self, key: Option<&'l str>) -> CommandResult<'l> {
         let Self {
             terminal,
             identity,
@@ -61,7 +61,7 @@ impl<'l> MachineCommands<'l> for Machine {
             ("blocks", format_args!("{:#x}", identity.blocks)),
             ("gateware_draws", format_args!("{subjects}")),
             ("clock", format_args!("{}", clock.frequency().hertz())),
-            ("scene", format_args!("{}", scene.shown())),
+            ("scene", format_args!("{}", scene.subject())),
             ("vertices", format_args!("{vertices}")),
             ("triangles", format_args!("{triangles}")),
             ("size", format_args!("{width} {height}")),
@@ -91,25 +91,25 @@ impl<'l> MachineCommands<'l> for Machine {
         }
     }
 
-    fn selftest(&mut self) -> Outcome<'l> {
+    fn selftest(&mut self) -> CommandResult<'l> {
         match selftest::run(self) {
             0 => Ok(Reply::Done),
             failed => Err(CommandError::SelfTest(failed)),
         }
     }
 
-    fn echo(&mut self, word: &'l str) -> Outcome<'l> {
+    fn echo(&mut self, word: &'l str) -> CommandResult<'l> {
         self.terminal.print(format_args!("{word}\n"));
         Ok(Reply::Done)
     }
 
-    fn leds(&mut self, value: u16) -> Outcome<'l> {
+    fn leds(&mut self, value: u16) -> CommandResult<'l> {
         devices(self)?.leds.set(value);
         self.heartbeat = false;
         Ok(Reply::Done)
     }
 
-    fn buttons(&mut self) -> Outcome<'l> {
+    fn buttons(&mut self) -> CommandResult<'l> {
         let devices = devices(self)?;
         let (buttons, switches) = (devices.buttons.read(), devices.switches.read());
         self.terminal.print(format_args!(
@@ -120,7 +120,7 @@ impl<'l> MachineCommands<'l> for Machine {
 
     // Tests of the trap handler find this function by its symbol and patch its code with instructions that cause a trap.
     #[inline(never)]
-    fn reboot(&mut self) -> Outcome<'l> {
+    fn reboot(&mut self) -> CommandResult<'l> {
         self.terminal.print(format_args!("ok\n"));
         self.terminal.flush();
         self.ctrl

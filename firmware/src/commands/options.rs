@@ -8,7 +8,7 @@ use glint_scene::Board;
 
 use super::upload;
 use crate::error::CommandError;
-use crate::job::{Outcome, Reply};
+use crate::job::{CommandResult, Reply};
 use crate::machine::Machine;
 use crate::models::Models;
 use crate::renderer::Renderer;
@@ -42,9 +42,9 @@ impl Board for ThisBoard<'_> {
 }
 
 impl<'l> Executor<'l> for Machine {
-    type Output = Outcome<'l>;
+    type Output = CommandResult<'l>;
 
-    fn set(&mut self, setting: Setting<'l>) -> Outcome<'l> {
+    fn set(&mut self, setting: Setting<'l>) -> CommandResult<'l> {
         if let Setting::Object { action } = setting {
             match action {
                 ObjectAction::List => return self.show(OptionName::Object),
@@ -64,13 +64,13 @@ impl<'l> Executor<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn show(&mut self, option: OptionName) -> Outcome<'l> {
+    fn show(&mut self, option: OptionName) -> CommandResult<'l> {
         // Writing fails only if the line accepts no text.
         let _ = self.scene.show(option, self.terminal.output());
         Ok(Reply::Done)
     }
 
-    fn left_out(&mut self, feature: Feature) -> Outcome<'l> {
+    fn left_out(&mut self, feature: Feature) -> CommandResult<'l> {
         Err(CommandError::LeftOut(feature))
     }
 }

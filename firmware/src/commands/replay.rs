@@ -8,7 +8,7 @@ use glint_core::orientation::log;
 
 use crate::arena::Loan;
 use crate::error::CommandError;
-use crate::job::{Job, JobResult, Outcome, Reply};
+use crate::job::{CommandResult, Job, JobResult, Reply};
 use crate::machine::Machine;
 use crate::replay::Replay;
 
@@ -19,7 +19,7 @@ const PROGRESS: usize = 1_024;
 ///
 /// # Errors
 /// The upload is not a log; its memory is given back.
-pub fn begin(machine: &mut Machine, mut memory: Loan) -> Outcome<'static> {
+pub fn begin(machine: &mut Machine, mut memory: Loan) -> CommandResult<'static> {
     let opened = log::open(memory.as_mut()).map(|(setup, records)| {
         let tracker = setup.tracker();
         Replay::new(tracker, records.len())
@@ -71,7 +71,7 @@ pub fn poll(machine: &mut Machine, memory: &mut Loan) -> JobResult {
 }
 
 /// Begins to send the attitudes of the last replayed log, which are in the staging memory.
-pub fn send<'l>(machine: &mut Machine) -> Outcome<'l> {
+pub fn send<'l>(machine: &mut Machine) -> CommandResult<'l> {
     let Machine {
         terminal,
         models,

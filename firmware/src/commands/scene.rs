@@ -11,15 +11,15 @@ use glint_scene::{CUBE, Line, Name, lines};
 
 use super::{options, upload};
 use crate::error::CommandError;
-use crate::job::{Job, Orbit, Outcome, Reply};
+use crate::job::{CommandResult, Job, Orbit, Reply};
 use crate::machine::Machine;
 use crate::models::{MAX_MESHES, MODEL, NameError};
-use crate::scenes::{BuiltIn, DEFAULT, Found, SCENES, Shows};
+use crate::scenes::{BuiltIn, Content, DEFAULT, SCENES, SceneItem};
 use crate::sensor;
 use crate::transfer::Purpose;
 
 impl<'l> SceneCommands<'l> for Machine {
-    fn scene(&mut self, name: Option<&'l str>) -> Outcome<'l> {
+    fn scene(&mut self, name: Option<&'l str>) -> CommandResult<'l> {
         match name {
             Some(name) => show(self, name),
             None => {
@@ -29,12 +29,12 @@ impl<'l> SceneCommands<'l> for Machine {
         }
     }
 
-    fn load(&mut self, upload: Manifest, name: Option<&'l str>) -> Outcome<'l> {
+    fn load(&mut self, upload: Manifest, name: Option<&'l str>) -> CommandResult<'l> {
         let name = name.unwrap_or(MODEL);
         let accepted = if name == DEFAULT || self.library.find(name).is_some() {
             Err(NameError::Scene)
         } else {
-            self.models.check_name(name)
+            self.models.check_capacity(name)
         };
         accepted.map_err(|error| CommandError::MeshName { name, error })?;
         // The parser limits names to the string's capacity, so the conversion does not fail.
@@ -42,7 +42,7 @@ impl<'l> SceneCommands<'l> for Machine {
         upload::begin(self, "load", purpose, upload)
     }
 
-    fn models(&mut self) -> Outcome<'l> {
+    fn models(&mut self) -> CommandResult<'l> {
         let Self {
             terminal,
             models,
@@ -79,7 +79,7 @@ impl<'l> SceneCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn unload(&mut self, name: &'l str) -> Outcome<'l> {
+    fn unload(&mut self, name: &'l str) -> CommandResult<'l> {
         let object = self.scene.first_object_of(name);
         let object = object.filter(|_| self.models.has_upload(name));
         if object.is_some() || !self.models.remove(name) {
@@ -94,7 +94,7 @@ impl<'l> SceneCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn program(&mut self, upload: Option<Manifest>) -> Outcome<'l> {
+    fn program(&mut self, upload: Option<Manifest>) -> CommandResult<'l> {
         let Some(upload) = upload else {
             self.scene.show_wireframe();
             return Ok(Reply::Done);
@@ -105,7 +105,7 @@ impl<'l> SceneCommands<'l> for Machine {
         upload::begin(self, "program", Purpose::Program, upload)
     }
 
-    fn press(&mut self, key: Key, rotate: bool) -> Outcome<'l> {
+    fn press(&mut self, key: Key, rotate: bool) -> CommandResult<'l> {
         if self.scene.wireframe().is_none() {
             return Err(CommandError::NoWireframe);
         }
@@ -117,7 +117,7 @@ impl<'l> SceneCommands<'l> for Machine {
 }
 
 impl<'l> OrbitCommands<'l> for Machine {
-    fn orbit(&mut self, frames: Option<u32>) -> Outcome<'l> {
+    fn orbit(&mut self, frames: Option<u32>) -> CommandResult<'l> {
         let orbit = Orbit::new(self.scene.sphere, frames);
         Ok(Reply::After(Job::Orbit(orbit)))
     }
@@ -148,7 +148,7 @@ fn list(machine: &mut Machine) {
         }
     }
     for BuiltIn { name, .. } in &SCENES {
-        if matches!(library.find(name), Some(Found::BuiltIn(_))) {
+        if matches!(library.find(name), Some(SceneItem::BuiltIn(_))) {
             terminal.print(format_args!("scene {name} there\n"));
         }
     }
@@ -160,7 +160,7 @@ fn list(machine: &mut Machine) {
 /// # Errors
 /// The scene cannot be shown; the current scene then stays. If only a sensor is missing, the scene is shown without motion.
 #[inline(never)]
-pub fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
+pub fn show<'l>(machine: &mut Machine, name: &'l str) -> CommandResult<'l> {
     if name == DEFAULT {
         release_camera(machine);
         machine.scene.reset()?;
@@ -171,14 +171,14 @@ pub fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
         return Ok(Reply::Done);
     };
     let lines = match content(name, &found)? {
-        Shows::Lines(lines) => lines,
-        Shows::Scenes(list) => {
+        Content::Lines(lines) => lines,
+        Content::Scenes(list) => {
             let first = list.name(0).unwrap_or_default();
             let found = machine.library.find(first);
             match content(first, &found.ok_or(CommandError::Scene(first))?)? {
-                Shows::Lines(lines) => lines,
+                Content::Lines(lines) => lines,
                 // A list of lists.
-                Shows::Scenes(_) => return Err(CommandError::Scene(first)),
+                Content::Scenes(_) => return Err(CommandError::Scene(first)),
             }
         }
     };
@@ -194,21 +194,21 @@ pub fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
 ///
 /// # Errors
 /// The flash is damaged, or this build lacks parts of the firmware.
-fn content<'l>(name: &'l str, found: &Found) -> Result<Shows, CommandError<'l>> {
-    if let Found::BuiltIn(built_in) = *found
+fn content<'l>(name: &'l str, found: &SceneItem) -> Result<Content, CommandError<'l>> {
+    if let SceneItem::BuiltIn(built_in) = *found
         && built_in.lacks_features().next().is_some()
     {
         return Err(CommandError::Features { built_in });
     }
-    let shows = found.shows();
-    shows.map_err(|error| CommandError::Flash { name, error })
+    let content = found.content();
+    content.map_err(|error| CommandError::Flash { name, error })
 }
 
 /// Executes the lines of the scene `name` on the default scene. A camera motion starts when its line is reached.
 ///
 /// # Errors
 /// A line is not a scene command or fails, a mesh is missing, or the gateware lacks a block.
-fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> Outcome<'l> {
+fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> CommandResult<'l> {
     let backend = machine.scene.backend;
     machine.scene.reset()?;
     // Unless the scene sets the backend, the gateware must have the blocks that draw it.

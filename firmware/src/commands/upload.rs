@@ -7,7 +7,7 @@ use litex_pac::cpu;
 use super::replay;
 use crate::arena::Loan;
 use crate::error::CommandError;
-use crate::job::{Job, Outcome, Reply};
+use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
 use crate::transfer::{Purpose, Transfer};
 
@@ -21,7 +21,7 @@ pub fn begin<'l>(
     command: &'static str,
     purpose: Purpose,
     manifest: Manifest,
-) -> Outcome<'l> {
+) -> CommandResult<'l> {
     let memory = lend(machine, command, manifest.length as usize)?;
     // A tool may have written the data directly to memory, bypassing the cache.
     cpu::flush_data_cache();
@@ -33,7 +33,7 @@ pub fn begin<'l>(
 ///
 /// # Errors
 /// The transfer has failed, or the data are not valid for the command.
-pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> Outcome<'static> {
+pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'static> {
     let Some((memory, result)) = transfer.take_result() else {
         return Ok(Reply::Done);
     };
@@ -81,7 +81,7 @@ pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, Comm
     };
     let bytes = item.checked();
     let bytes = bytes.map_err(|error| CommandError::Flash { name, error })?;
-    let accepted = machine.models.check_name(name);
+    let accepted = machine.models.check_capacity(name);
     accepted.map_err(|error| CommandError::MeshName { name, error })?;
     let mut memory = lend(machine, name, bytes.len())?;
     memory.as_mut().copy_from_slice(bytes);

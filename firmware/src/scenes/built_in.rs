@@ -2,6 +2,8 @@
 
 use glint_core::feature::Feature;
 
+use super::content::{Content, List};
+
 /// A built-in scene or list of scenes.
 #[derive(Debug)]
 pub struct BuiltIn {
@@ -11,15 +13,6 @@ pub struct BuiltIn {
     pub features: &'static [Feature],
     /// Its content.
     pub content: Content,
-}
-
-/// Content of a built-in scene.
-#[derive(Debug)]
-pub enum Content {
-    /// The console commands, one per line, that set the picture and start camera motion, on top of the default scene.
-    Lines(&'static str),
-    /// The names of other built-in scenes; lists do not nest.
-    Scenes(&'static [&'static str]),
 }
 
 impl BuiltIn {
@@ -46,7 +39,7 @@ impl BuiltIn {
         Self {
             name,
             features,
-            content: Content::Scenes(scenes),
+            content: Content::Scenes(List::BuiltIn(scenes)),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Filters for gesture control, in the formats of the filter in use, [`glint_core::gesture::OneEuro`].
 
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::gesture::{Step, low_pass_gain, towards};
+use glint_core::gesture::{TimeStep, low_pass_gain, towards};
 
 /// The mean of the last `N` inputs, a power of two.
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +47,8 @@ impl LowPass {
         }
     }
 
-    /// Processes the next input, and returns the output.
-    pub fn next(&mut self, input: Q4_28, step: Step) -> Q4_28 {
+    /// Takes the next input, and returns the output.
+    pub fn next(&mut self, input: Q4_28, step: TimeStep) -> Q4_28 {
         let gain = low_pass_gain(self.cutoff, step);
         self.output = towards(self.output, input.to_bits(), gain);
         Q4_28::from_bits(self.output)

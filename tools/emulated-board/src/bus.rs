@@ -77,7 +77,7 @@ impl Bus {
             Target::Rom(offset) => self.rom.get(offset..)?.first_chunk(),
             Target::Sram(offset) => self.sram.get(offset..)?.first_chunk(),
             Target::Flash(offset) => return Some(self.flash.word(offset)),
-            _ => return self.ram.word(address),
+            Target::Register(_) | Target::Unused => return self.ram.word(address),
         };
         bytes.copied().map(u32::from_le_bytes)
     }
@@ -94,8 +94,9 @@ impl Bus {
                 cycles: 0,
                 device: true,
             },
-            _ if address < IO => self.time_out(LINE),
-            _ => self.time_out(1),
+            Target::Rom(_) | Target::Sram(_) | Target::Flash(_) | Target::Unused => {
+                self.time_out(if address < IO { LINE } else { 1 })
+            }
         }
     }
 
@@ -104,7 +105,9 @@ impl Bus {
     pub fn fetch(&mut self, address: u32, now: u64) -> Access {
         match place(address) {
             Target::Unused => self.time_out(LINE),
-            _ => self.load(address, now),
+            Target::Rom(_) | Target::Sram(_) | Target::Flash(_) | Target::Register(_) => {
+                self.load(address, now)
+            }
         }
     }
 

@@ -1,13 +1,13 @@
 //! The CPU: An interpreter of decoded instructions for the CPU VexRiscv `full`: rv32im with machine mode.
 
-mod follow;
+mod lockstep;
 
 use crate::bus::Bus;
-use crate::code::{Code, PAGE};
 use crate::csr::{Counts, Csrs, cause};
 use crate::decode::{Instruction, Operation};
+use crate::instruction_cache::{InstructionCache, PAGE};
 
-pub use follow::{Difference, Executed};
+pub use lockstep::{Difference, Executed};
 
 /// Estimated clock cycles of an instruction: the mean of the real CPU.
 pub const CYCLES: u64 = 1;
@@ -19,7 +19,7 @@ pub struct Cpu {
     x: [u32; 64],
     pc: u32,
     csrs: Csrs,
-    code: Code,
+    code: InstructionCache,
     /// Instructions since the start.
     retired: u64,
     /// Whether the last instruction was `wfi` and no interrupt has come since.
@@ -42,7 +42,7 @@ impl Cpu {
             x: [0; 64],
             pc: litex_pac::constants::CONFIG_CPU_RESET_ADDR,
             csrs: Csrs::new(),
-            code: Code::new(),
+            code: InstructionCache::new(),
             retired: 0,
             asleep: false,
         }

@@ -16,7 +16,6 @@
 
 mod board;
 mod bus;
-mod code;
 mod cpu;
 mod csr;
 mod decode;
@@ -25,6 +24,7 @@ mod devices;
 mod engines;
 mod error;
 mod events;
+mod instruction_cache;
 mod memory;
 
 pub use board::EmulatedBoard;

@@ -11,7 +11,7 @@ use glint_core::quality::Quality;
 use glint_core::shape::{MAX_BYTES, Shape};
 use glint_core::wireframe::{CUBE, Program};
 use glint_model::Frame;
-use glint_scene::{AnyBoard, Content};
+use glint_scene::{AnyBoard, Assets};
 use glint_scene_file::SceneFile;
 use std::fmt::Display;
 
@@ -91,7 +91,7 @@ pub fn draw<T>(
             mesh.map(|mesh| scene.object(&placed.place, *mesh))
         })
         .collect();
-    Ok(draw(&scene.frame(Content {
+    Ok(draw(&scene.frame(Assets {
         // A scene without objects has at most one mesh.
         mesh: meshes.first().copied(),
         objects: &objects,

@@ -341,10 +341,12 @@ pub fn play(program: &Program, script: &[Action], form: MotionForm) -> Played {
         refused += usize::from(!possible);
     }
     let mut moved = segments.into_iter();
-    let instructions = program.instructions().map(|instruction| match instruction {
-        Instruction::Segment(segment) => Instruction::Segment(moved.next().unwrap_or(segment)),
-        other => other,
-    });
+    let instructions = program
+        .instructions()
+        .map(|instruction| match instruction.segment() {
+            Some(segment) => Instruction::Segment(moved.next().unwrap_or(segment)),
+            None => instruction,
+        });
     Played {
         bytes: instructions.flat_map(Instruction::encode).collect(),
         pose: motion.pose(),

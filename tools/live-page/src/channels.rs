@@ -5,6 +5,7 @@ use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::ToPage;
 use crate::motion::Motion;
+use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
@@ -24,6 +25,17 @@ pub enum Request {
     Picture,
     /// Uploads a mesh, and draws it.
     Upload(Vec<u8>),
+}
+
+impl Request {
+    /// A later request with the same key replaces this one: one of the same kind, and for the same command.
+    pub fn key(&self) -> (Discriminant<Self>, &str) {
+        let command = match self {
+            Self::Help(command) => command,
+            Self::Command(_) | Self::Interrupt | Self::Picture | Self::Upload(_) => "",
+        };
+        (discriminant(self), command)
+    }
 }
 
 /// The channel for messages between the pages and the board.

@@ -167,7 +167,9 @@ impl Hub {
             ToPage::Board { .. } => state.board = Some(encoded.clone()),
             ToPage::Lists { .. } => state.lists = Some(encoded.clone()),
             ToPage::Pins(_) => state.pins = Some(encoded.clone()),
-            _ => {}
+            ToPage::Console { .. } | ToPage::Control { .. } | ToPage::Sample { .. } => {}
+            ToPage::Motion { .. } | ToPage::Help { .. } => {}
+            ToPage::Progress { .. } | ToPage::Notice { .. } => {}
         }
         state.send(&encoded);
     }

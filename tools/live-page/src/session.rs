@@ -13,7 +13,6 @@ use glint_core::picture::Size;
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::io;
-use std::mem::discriminant;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -161,7 +160,7 @@ impl<'a> Session<'a> {
                 // The user's keys go to the running program, as on a terminal.
                 Ok(Request::Command(line)) => self.type_line(&line),
                 Ok(Request::Interrupt) => self.board.write(INTERRUPT),
-                Ok(request) => {
+                Ok(request @ (Request::Help(_) | Request::Picture | Request::Upload(_))) => {
                     self.keep(request);
                     Ok(())
                 }
@@ -192,10 +191,8 @@ impl<'a> Session<'a> {
     /// Queues a request until the console waits for a command. A newer model or picture request replaces the queued one.
     /// Requests for descriptions above the limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
-        self.waiting.retain(|earlier| match (earlier, &request) {
-            (Request::Help(earlier), Request::Help(command)) => earlier != command,
-            _ => discriminant(earlier) != discriminant(&request),
-        });
+        self.waiting
+            .retain(|earlier| earlier.key() != request.key());
         if self.waiting.len() < MAX_REQUESTS || !matches!(request, Request::Help(_)) {
             self.waiting.push_back(request);
         }

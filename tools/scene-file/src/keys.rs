@@ -5,7 +5,7 @@ use glint_core::console::{FORMS, Row};
 /// The keys that are console commands, in the order of their execution.
 pub fn commands() -> Vec<&'static Row> {
     let mut rows: Vec<_> = FORMS.iter().collect();
-    rows.sort_by_key(|row| row.forms.turn);
+    rows.sort_by_key(|row| row.forms.order);
     rows
 }
 

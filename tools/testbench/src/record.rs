@@ -64,16 +64,6 @@ impl Record {
         self
     }
 
-    /// Returns the record with an array set to numbers in the order of its indices.
-    ///
-    /// # Panics
-    /// When there is no such array, its length differs from the number of values, or a number does not fit.
-    #[must_use]
-    pub fn with_all(mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) -> Self {
-        self.set_all(path, values);
-        self
-    }
-
     /// Sets a part to a signed or unsigned number.
     ///
     /// # Panics

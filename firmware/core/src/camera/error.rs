@@ -7,7 +7,7 @@ use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 /// One of the three vectors of a camera's basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
+pub enum BasisVector {
     /// The vector u, which points to the right of the screen.
     U,
     /// The vector v, which points down the screen.
@@ -16,7 +16,7 @@ pub enum Axis {
     N,
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for BasisVector {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::U => "u",
@@ -34,16 +34,16 @@ pub enum ViewError {
     /// The length of a vector of the basis differs from 1 by more than 1e-4.
     Length {
         /// Name of the vector.
-        axis: Axis,
+        axis: BasisVector,
         /// Components of the vector.
         row: [Q2_23; 3],
     },
     /// The scalar product of two vectors of the basis exceeds 1e-4 in magnitude.
     NotPerpendicular {
         /// The first vector.
-        a: Axis,
+        a: BasisVector,
         /// The second vector.
-        b: Axis,
+        b: BasisVector,
         /// Their scalar product.
         product: Q2_23,
     },

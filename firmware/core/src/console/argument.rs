@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use super::error::{ParseError, ParseErrorKind, ValueError};
-use super::syntax::{Kind, Parameter, Shape, Syntax};
+use super::syntax::{Parameter, Shape, Syntax, WordKind};
 use crate::choice::Choice;
 use crate::words::{Word, Words};
 
@@ -25,14 +25,14 @@ pub trait WordArgument {
     /// Type of the value that the word is parsed to.
     type Value<'a>;
     /// The texts that are accepted as the word.
-    const KIND: Kind;
+    const KIND: WordKind;
 
     /// Parses a word. `None` means that the word is not accepted.
     fn parse(text: &str) -> Option<Self::Value<'_>>;
 
-    /// Returns the reason why [`parse`](Self::parse) rejects a word.
-    fn error(_: &str) -> ValueError<'_> {
-        ValueError::Kind
+    /// Returns the reason why [`parse`](Self::parse) rejects a word; `None` if the word is not of this type.
+    fn error(_: &str) -> Option<ValueError<'_>> {
+        None
     }
 }
 
@@ -91,16 +91,14 @@ impl<'a> Reader<'a> {
     #[inline(never)]
     fn reject_word(&mut self, parameter: &'static Parameter, error_of: ErrorOf) {
         let Self { syntax, word, .. } = *self;
-        match error_of(word.text) {
-            ValueError::Kind => {
-                self.error = Some(ParseError(ParseErrorKind::Word {
-                    syntax,
-                    parameter,
-                    word,
-                }));
-            }
-            error => self.reject(error),
-        }
+        self.error = Some(ParseError(match error_of(word.text) {
+            Some(error) => ParseErrorKind::Value { syntax, error },
+            None => ParseErrorKind::Word {
+                syntax,
+                parameter,
+                word,
+            },
+        }));
     }
 
     /// Rejects a combination of valid words: stores `error`.
@@ -128,7 +126,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The type of [`WordArgument::error`].
-type ErrorOf = fn(&str) -> ValueError<'_>;
+type ErrorOf = fn(&str) -> Option<ValueError<'_>>;
 
 impl Parameter {
     /// Makes a parameter with this name that takes an argument of type `T`.
@@ -185,7 +183,7 @@ impl Argument for Flag {
         if reader.word(parameter)? == parameter.name {
             return Some(true);
         }
-        reader.reject_word(parameter, |_| ValueError::Kind);
+        reader.reject_word(parameter, |_| None);
         None
     }
 }
@@ -223,7 +221,7 @@ pub(super) use group;
 /// An argument of one word: the name of a value of a type that implements [`Choice`].
 impl<T: Choice> WordArgument for T {
     type Value<'a> = T;
-    const KIND: Kind = Kind::Words(T::WORDS);
+    const KIND: WordKind = WordKind::Words(T::WORDS);
 
     fn parse(text: &str) -> Option<T> {
         T::from_word(text)
@@ -255,7 +253,7 @@ pub struct Or<K, T>(PhantomData<(K, T)>);
 
 impl<K: Keyword, T: WordArgument> WordArgument for Or<K, T> {
     type Value<'a> = Option<T::Value<'a>>;
-    const KIND: Kind = Kind::Either(K::WORD, &T::KIND);
+    const KIND: WordKind = WordKind::Either(K::WORD, &T::KIND);
 
     fn parse(text: &str) -> Option<Self::Value<'_>> {
         if text == K::WORD {
@@ -264,7 +262,7 @@ impl<K: Keyword, T: WordArgument> WordArgument for Or<K, T> {
         T::parse(text).map(Some)
     }
 
-    fn error(text: &str) -> ValueError<'_> {
+    fn error(text: &str) -> Option<ValueError<'_>> {
         T::error(text)
     }
 }

@@ -1,7 +1,7 @@
 //! Completion of command names and of words of arguments.
 
 use super::command::{find, syntaxes};
-use super::syntax::{Kind, Parameter, Shape};
+use super::syntax::{Parameter, Shape, WordKind};
 use crate::words::{Word, Words};
 
 /// Calls `offer` for each candidate for the last word of `line`. The arguments of `offer` are the whole candidate and its part
@@ -18,23 +18,23 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
             offer(word, rest);
         }
     };
-    let shape = match (count, words.clone().next()) {
-        (0 | 1, _) | (_, None) => Some((&Shape::Word(&Kind::Command), "")),
-        (_, Some(command)) => {
-            parameter(command.text, count - 2).map(|parameter| (&parameter.shape, parameter.name))
-        }
+    let Some(command) = words.clone().next().filter(|_| count > 1) else {
+        return syntaxes().for_each(|syntax| offer(syntax.name));
     };
-    match shape {
-        Some((Shape::Flag, name)) => offer(name),
-        Some((Shape::Word(Kind::Words(words)), _)) => words.iter().for_each(|word| offer(word)),
-        Some((&Shape::Word(mut kind @ Kind::Either(..)), _)) => {
-            while let Kind::Either(keyword, other) = kind {
+    let Some(parameter) = parameter(command.text, count - 2) else {
+        return;
+    };
+    match &parameter.shape {
+        Shape::Flag => offer(parameter.name),
+        Shape::Word(WordKind::Words(words)) => words.iter().for_each(|word| offer(word)),
+        &Shape::Word(mut kind @ WordKind::Either(..)) => {
+            while let WordKind::Either(keyword, other) = kind {
                 offer(keyword);
                 kind = other;
             }
         }
-        Some((Shape::Word(Kind::Command), _)) => syntaxes().for_each(|syntax| offer(syntax.name)),
-        _ => {}
+        Shape::Word(WordKind::Command) => syntaxes().for_each(|syntax| offer(syntax.name)),
+        Shape::Word(WordKind::Text(_)) | Shape::Group(_) => {}
     }
 }
 

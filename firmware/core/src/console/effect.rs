@@ -4,36 +4,42 @@ use super::command::{Command, Setting};
 use super::object::ObjectAction;
 use super::values::{GestureAction, ImuAction};
 
-/// Effect of a command on the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
+/// Effect of a command on the picture. The lines of a scene are the commands that change the picture, or the source of its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Effect<'c, 'a> {
     /// None: the command shows or measures something, or sets state outside the scene.
     None,
-    /// The command changes the picture, or the source of camera motion. The lines of a scene are such commands.
-    Picture,
+    /// The command sets an option of the scene.
+    Option(&'c Setting<'a>),
+    /// The command shows the mesh or the scene with this name.
+    Subject(&'a str),
+    /// The command shows the wireframe.
+    Wireframe,
+    /// The command sets or starts the motion of the camera or the wireframe.
+    Motion,
     /// The command changes the uploads.
     Uploads,
 }
 
-impl Command<'_> {
+impl<'a> Command<'a> {
     /// Effect of the command on the picture.
-    pub const fn effect(&self) -> Effect {
+    pub const fn effect(&self) -> Effect<'_, 'a> {
         match self {
             Self::Set(setting) => setting.effect(),
             Self::Load { .. }
             | Self::Unload { .. }
             | Self::Program { upload: Some(_) }
             | Self::Replay { upload: Some(_) } => Effect::Uploads,
-            Self::Scene { name: Some(_) }
-            | Self::Program { upload: None }
-            | Self::Press { .. }
+            Self::Scene { name: Some(name) } => Effect::Subject(name),
+            Self::Program { upload: None } => Effect::Wireframe,
+            Self::Press { .. }
             | Self::Orbit { .. }
             | Self::Mounting { mounting: Some(_) }
-            | Self::Sensitivity { gain: Some(_) } => Effect::Picture,
+            | Self::Sensitivity { gain: Some(_) } => Effect::Motion,
             Self::Imu {
                 action: Some(action),
             } => match action {
-                ImuAction::Follow(_) | ImuAction::Recentre => Effect::Picture,
+                ImuAction::Follow(_) | ImuAction::Recentre => Effect::Motion,
                 ImuAction::Calibrate(_) | ImuAction::Stream(_) => Effect::None,
             },
             Self::Gesture {
@@ -43,7 +49,7 @@ impl Command<'_> {
                 | GestureAction::Vga
                 | GestureAction::Off
                 | GestureAction::Mark
-                | GestureAction::Unmark => Effect::Picture,
+                | GestureAction::Unmark => Effect::Motion,
                 GestureAction::Calibrate | GestureAction::Mask => Effect::None,
             },
             Self::Show(_)
@@ -70,9 +76,9 @@ impl Command<'_> {
     }
 }
 
-impl Setting<'_> {
+impl<'a> Setting<'a> {
     /// All options affect the picture of a scene, except the text over the picture, which belongs to no scene.
-    const fn effect(&self) -> Effect {
+    const fn effect(&self) -> Effect<'_, 'a> {
         if let Self::Overlay { .. }
         | Self::Object {
             action: ObjectAction::List,
@@ -80,6 +86,6 @@ impl Setting<'_> {
         {
             return Effect::None;
         }
-        Effect::Picture
+        Effect::Option(self)
     }
 }

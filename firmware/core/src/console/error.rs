@@ -7,9 +7,9 @@ use crate::camera::ViewError;
 use crate::feature::Feature;
 use crate::field::FieldError;
 use crate::fixed::Q32_32;
-use crate::follow::SENSITIVITY;
 use crate::light::LightError;
 use crate::object::PlaceError;
+use crate::steering::SENSITIVITY;
 use crate::stereo::StereoError;
 use crate::words::Word;
 
@@ -49,8 +49,6 @@ pub(super) enum ParseErrorKind<'a> {
 /// Reason why the words of an argument are rejected.
 #[derive(Clone, Copy, Debug)]
 pub enum ValueError<'a> {
-    /// The word is not of the parameter's type.
-    Kind,
     /// The width and height are not a picture size.
     Size([u32; 2]),
     /// A number of samples follows an action of the sensor that does not take this argument.
@@ -128,7 +126,6 @@ impl core::error::Error for ParseError<'_> {}
 impl Display for ValueError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Kind => f.write_str("not an accepted word"),
             Self::Size([width, height]) => write!(
                 f,
                 "{width} x {height}: expected 320 180, 640 360 or 1280 720"

@@ -17,7 +17,7 @@ pub struct Forms {
     /// Word of the console line between the command's name and the key's value, if any.
     pub action: Option<&'static str>,
     /// Position of the command in the order of execution.
-    pub turn: Turn,
+    pub order: Order,
     /// Whether the value may be a list, with one command per element.
     pub is_list: bool,
     /// Required keys, of which the file must contain at least one; empty if no other key is required.
@@ -47,7 +47,7 @@ pub struct HostOption {
 
 /// The order in which the commands of a scene file are executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Turn {
+pub enum Order {
     /// Quality, then size, which overrides the size of the quality.
     Size,
     /// The camera, whose command may also set the lens.
@@ -61,11 +61,11 @@ pub enum Turn {
 }
 
 /// Makes a key that has the command's name, and whose command is executed at this position.
-pub const fn key(turn: Turn) -> Forms {
+pub const fn key(order: Order) -> Forms {
     Forms {
         key: None,
         action: None,
-        turn,
+        order,
         is_list: false,
         with: &[],
         without: &[],

@@ -2,7 +2,7 @@
 
 use super::argument::{Argument, Keyword, Or, Reader};
 use super::error::ValueError;
-use super::syntax::{Kind, Parameter, Shape};
+use super::syntax::{Parameter, Shape, WordKind};
 use super::values::{MeshName, Whole};
 use crate::choice::choices;
 use crate::object::{MAX_OBJECTS, Operation, Place, PlaceError};
@@ -91,14 +91,14 @@ impl Argument for Object {
                                 Parameter {
                                     name: "object",
                                     optional: false,
-                                    shape: Shape::Word(&Kind::Text(
+                                    shape: Shape::Word(&WordKind::Text(
                                         &"a mesh after add, and the number of an object after other actions",
                                     )),
                                 },
                                 Parameter {
                                     name: "place",
                                     optional: true,
-                                    shape: Shape::Word(&Kind::Text(
+                                    shape: Shape::Word(&WordKind::Text(
                                         &"X,Y,Z to move, AXIS DEGREES to rotate, S or X,Y,Z to scale, 9 or 12 numbers of a \
                                           matrix, RRGGBB of a colour; after add, operations such as `scale 0.5 rotate z 30 move 1,0,0`",
                                     )),

@@ -41,7 +41,7 @@ const fn assert_optional_last(parameters: &[Parameter]) {
 #[derive(Debug)]
 pub enum Shape {
     /// One word.
-    Word(&'static Kind),
+    Word(&'static WordKind),
     /// A keyword: the parameter's own name.
     Flag,
     /// Several words that form one value; a parameter describes each word.
@@ -49,13 +49,13 @@ pub enum Shape {
 }
 
 /// The accepted texts of a word.
-pub enum Kind {
+pub enum WordKind {
     /// One of a list of words.
     Words(&'static [&'static str]),
     /// Any text of a certain form. The value is a description of this form, for help and error messages.
     Text(&'static (dyn Display + Sync)),
     /// Either this keyword, or a word of this kind.
-    Either(&'static str, &'static Kind),
+    Either(&'static str, &'static WordKind),
     /// The name of a command.
     Command,
 }
@@ -166,10 +166,10 @@ impl Display for Form<'_> {
         let Parameter { name, shape, .. } = self.0;
         match shape {
             Shape::Flag => return f.write_str(name),
-            Shape::Word(Kind::Words(words)) if words.len() <= USAGE_WORDS => {
+            Shape::Word(WordKind::Words(words)) if words.len() <= USAGE_WORDS => {
                 return write_list(f, words, "|");
             }
-            Shape::Word(Kind::Either(keyword, _)) => write!(f, "{keyword}|")?,
+            Shape::Word(WordKind::Either(keyword, _)) => write!(f, "{keyword}|")?,
             Shape::Word(_) | Shape::Group(_) => {}
         }
         name.chars()
@@ -187,7 +187,7 @@ impl Display for Parameter {
     }
 }
 
-impl Display for Kind {
+impl Display for WordKind {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Words(words) => write_list(f, words, " or "),
@@ -198,7 +198,7 @@ impl Display for Kind {
     }
 }
 
-impl fmt::Debug for Kind {
+impl fmt::Debug for WordKind {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{self}")
     }

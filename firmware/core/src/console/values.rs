@@ -6,18 +6,18 @@ use core::fmt::{self, Display};
 
 use super::argument::{Argument, Reader, WordArgument, group};
 use super::error::ValueError;
-use super::syntax::{Kind, Parameter, Shape};
+use super::syntax::{Parameter, Shape, WordKind};
 use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera::{self, Projection};
 use crate::choice::choices;
 use crate::field::{self, KINDS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28, parse_i32};
-use crate::follow::{self, Direction, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{self, Background, Rgb, parse_rgb};
 use crate::matrix::Axis;
 use crate::mesh::{self, MAX_BYTES};
 use crate::picture;
+use crate::steering::{self, Direction, SENSITIVITY};
 use crate::stereo;
 use crate::wire::Manifest;
 
@@ -26,7 +26,7 @@ pub struct Name;
 
 impl WordArgument for Name {
     type Value<'a> = &'a str;
-    const KIND: Kind = Kind::Text(&"a name");
+    const KIND: WordKind = WordKind::Text(&"a name");
 
     fn parse(text: &str) -> Option<&str> {
         Some(text)
@@ -38,7 +38,7 @@ pub struct MeshName;
 
 impl WordArgument for MeshName {
     type Value<'a> = &'a str;
-    const KIND: Kind = Kind::Text(&"a name of at most 24 visible characters of ASCII");
+    const KIND: WordKind = WordKind::Text(&"a name of at most 24 visible characters of ASCII");
 
     fn parse(text: &str) -> Option<&str> {
         Some(text).filter(|text| mesh::is_name(text))
@@ -48,7 +48,7 @@ impl WordArgument for MeshName {
 /// A decimal number.
 impl WordArgument for Q32_32 {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&"a number");
+    const KIND: WordKind = WordKind::Text(&"a number");
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
@@ -59,7 +59,7 @@ impl WordArgument for Q32_32 {
 /// A decimal number, rounded to the fixed-point format Q2.23.
 impl WordArgument for Q2_23 {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&"a number from -2 to 2");
+    const KIND: WordKind = WordKind::Text(&"a number from -2 to 2");
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
@@ -71,7 +71,7 @@ impl WordArgument for Q2_23 {
 /// A decimal number, rounded to the fixed-point format U4.28.
 impl WordArgument for U4_28 {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&"a number from 0 to below 16");
+    const KIND: WordKind = WordKind::Text(&"a number from 0 to below 16");
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
@@ -82,7 +82,7 @@ impl WordArgument for U4_28 {
 /// A decimal number, rounded to the fixed-point format U8.28.
 impl WordArgument for U8_28 {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&"a number from 0 to below 256");
+    const KIND: WordKind = WordKind::Text(&"a number from 0 to below 256");
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
@@ -94,7 +94,7 @@ impl WordArgument for U8_28 {
 /// An angle in degrees.
 impl WordArgument for Turns {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&"a number of degrees");
+    const KIND: WordKind = WordKind::Text(&"a number of degrees");
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
@@ -107,7 +107,7 @@ pub struct HalfTurn;
 
 impl WordArgument for HalfTurn {
     type Value<'a> = Turns;
-    const KIND: Kind = Kind::Text(&"a number of degrees from 0 to 180");
+    const KIND: WordKind = WordKind::Text(&"a number of degrees from 0 to 180");
 
     fn parse(text: &str) -> Option<Turns> {
         let degrees = Q32_32::parse(text)?;
@@ -121,7 +121,7 @@ pub struct Whole<const MAX: u32, const MIN: u32 = 0>;
 
 impl<const MAX: u32, const MIN: u32> WordArgument for Whole<MAX, MIN> {
     type Value<'a> = u32;
-    const KIND: Kind = Kind::Text(&Between(MIN, MAX));
+    const KIND: WordKind = WordKind::Text(&Between(MIN, MAX));
 
     fn parse(text: &str) -> Option<u32> {
         whole(text).filter(|number| (MIN..=MAX).contains(number))
@@ -131,7 +131,7 @@ impl<const MAX: u32, const MIN: u32> WordArgument for Whole<MAX, MIN> {
 /// A whole number from 0 to 65535.
 impl WordArgument for u16 {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&Between(0, Self::MAX as u32));
+    const KIND: WordKind = WordKind::Text(&Between(0, Self::MAX as u32));
 
     fn parse(text: &str) -> Option<Self> {
         whole(text)?.try_into().ok()
@@ -151,7 +151,7 @@ pub struct Hexadecimal;
 
 impl WordArgument for Hexadecimal {
     type Value<'a> = u32;
-    const KIND: Kind = Kind::Text(&"up to 8 hexadecimal digits");
+    const KIND: WordKind = WordKind::Text(&"up to 8 hexadecimal digits");
 
     fn parse(text: &str) -> Option<u32> {
         digits(text.strip_prefix("0x").unwrap_or(text), 16)
@@ -176,7 +176,7 @@ fn digits(text: &str, radix: u32) -> Option<u32> {
 /// A colour as six hexadecimal digits.
 impl WordArgument for Rgb {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&"a colour RRGGBB");
+    const KIND: WordKind = WordKind::Text(&"a colour RRGGBB");
 
     fn parse(text: &str) -> Option<Self> {
         parse_rgb(text)
@@ -186,7 +186,7 @@ impl WordArgument for Rgb {
 /// The text form of a background.
 impl WordArgument for Background {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Either(Self::WHITE, &Kind::Either(Self::SKY, &Rgb::KIND));
+    const KIND: WordKind = WordKind::Either(Self::WHITE, &WordKind::Either(Self::SKY, &Rgb::KIND));
 
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text)
@@ -196,17 +196,15 @@ impl WordArgument for Background {
 /// The text form of a distance field.
 impl WordArgument for field::Field {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&FieldForms);
+    const KIND: WordKind = WordKind::Text(&FieldForms);
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text).ok()
     }
 
-    fn error(text: &str) -> ValueError<'_> {
-        Self::parse(text)
-            .err()
-            .map_or(ValueError::Kind, ValueError::Field)
+    fn error(text: &str) -> Option<ValueError<'_>> {
+        Self::parse(text).err().map(ValueError::Field)
     }
 }
 
@@ -224,32 +222,28 @@ impl Display for FieldForms {
 /// The text form of the two eyes of a stereo picture.
 impl WordArgument for stereo::Stereo {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&stereo::FORM);
+    const KIND: WordKind = WordKind::Text(&stereo::FORM);
 
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text).ok()
     }
 
-    fn error(text: &str) -> ValueError<'_> {
-        Self::parse(text)
-            .err()
-            .map_or(ValueError::Kind, ValueError::Stereo)
+    fn error(text: &str) -> Option<ValueError<'_>> {
+        Self::parse(text).err().map(ValueError::Stereo)
     }
 }
 
 /// The text form of a light.
 impl WordArgument for light::Light {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&light::FORM);
+    const KIND: WordKind = WordKind::Text(&light::FORM);
 
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text).ok()
     }
 
-    fn error(text: &str) -> ValueError<'_> {
-        Self::parse(text)
-            .err()
-            .map_or(ValueError::Kind, ValueError::Light)
+    fn error(text: &str) -> Option<ValueError<'_>> {
+        Self::parse(text).err().map(ValueError::Light)
     }
 }
 
@@ -259,7 +253,7 @@ pub struct Sensitivity;
 
 impl WordArgument for Sensitivity {
     type Value<'a> = u16;
-    const KIND: Kind = U4_28::KIND;
+    const KIND: WordKind = U4_28::KIND;
 
     fn parse(text: &str) -> Option<u16> {
         // The number has 28 fraction bits: its upper 12 bits are in units of 1/256.
@@ -269,8 +263,8 @@ impl WordArgument for Sensitivity {
             .then_some(gain)
     }
 
-    fn error(text: &str) -> ValueError<'_> {
-        <U4_28 as WordArgument>::parse(text).map_or(ValueError::Kind, |_| ValueError::Sensitivity)
+    fn error(text: &str) -> Option<ValueError<'_>> {
+        <U4_28 as WordArgument>::parse(text).map(|_| ValueError::Sensitivity)
     }
 }
 
@@ -321,7 +315,7 @@ pub struct FieldOfView;
 
 impl WordArgument for FieldOfView {
     type Value<'a> = Turns;
-    const KIND: Kind = Kind::Text(&"a number of degrees from 1 to 179");
+    const KIND: WordKind = WordKind::Text(&"a number of degrees from 1 to 179");
 
     fn parse(text: &str) -> Option<Turns> {
         let degrees = Q32_32::parse(text)?;
@@ -337,8 +331,8 @@ group! {
 
 group! {
     /// The mounting of the sensor: which of its directions points into the scene, and which points up on the screen.
-    Mounting: follow::Mounting = (forward: Direction, up: Direction)
-        => follow::Mounting::new(forward, up).ok_or(ValueError::Mounting)
+    Mounting: steering::Mounting = (forward: Direction, up: Direction)
+        => steering::Mounting::new(forward, up).ok_or(ValueError::Mounting)
 }
 
 /// An action of the command `imu`.

@@ -45,7 +45,7 @@ pub(in crate::field) fn check(
 }
 
 /// Reads a field's numbers from the text after the kind's name. Commas separate numbers, semicolons separate groups of numbers.
-pub(in crate::field) struct Words<'a> {
+pub(in crate::field) struct NumberText<'a> {
     kind: &'a str,
     words: core::str::Split<'a, char>,
     /// Text of the groups after the present one; `None` after the last group.
@@ -53,7 +53,7 @@ pub(in crate::field) struct Words<'a> {
     in_group: bool,
 }
 
-impl<'a> Words<'a> {
+impl<'a> NumberText<'a> {
     pub fn new(kind: &'a str, numbers: &'a str) -> Self {
         Self {
             kind,
@@ -86,7 +86,7 @@ impl<'a> Words<'a> {
     }
 }
 
-impl<'a> Arguments<'a> for Words<'a> {
+impl<'a> Arguments<'a> for NumberText<'a> {
     fn number(&mut self, name: &'static str, range: [Q32_32; 2]) -> Result<Q32_32, FieldError<'a>> {
         check(name, self.next(name)?, range)
     }

@@ -9,10 +9,10 @@ mod menger;
 mod octahedron;
 mod sphere;
 
-use super::argument::{Arguments, Random, Words};
+use super::argument::{Arguments, NumberText, Random};
 use super::error::FieldError;
-use super::shape::{FlatConstants, FlatSolid, Placed, Shape};
-use super::surface::Sample;
+use super::shape::{FieldKind, FlatConstants, FlatSolid, Placed};
+use super::surface::FieldSample;
 use crate::feature::SPHERES;
 
 pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
@@ -22,7 +22,7 @@ pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
 
 /// Whether this build contains the kind of field `S`.
-const fn is_built<S: Shape>() -> bool {
+const fn is_built<S: FieldKind>() -> bool {
     SPHERES.is_built || !S::ROUND
 }
 
@@ -133,7 +133,7 @@ macro_rules! flat_solids {
             /// Computes the distance of a point from the solid, and the surface nearest to the point. Coordinates
             /// are in field units, s10.12.
             #[inline]
-            pub fn sample(&self, point: [i32; 3]) -> Sample {
+            pub fn sample(&self, point: [i32; 3]) -> FieldSample {
                 match self {
                     $(Self::$solid(solid) => solid.sample(point),)*
                 }
@@ -196,7 +196,7 @@ impl Solid {
     /// Computes the distance of a point from the solid, and the surface nearest to the point. Coordinates
     /// are in field units, s10.12.
     #[inline]
-    pub fn sample(&self, point: [i32; 3]) -> Sample {
+    pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         match self {
             Self::Flat(flat) => flat.sample(point),
             Self::Spheres(spheres) => spheres.sample(point),
@@ -240,7 +240,7 @@ impl Primitive {
     /// Reads the text form of a field; `None` for an unknown kind.
     pub(super) fn parse(text: &str) -> Option<Result<Self, FieldError<'_>>> {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
-        let mut words = Words::new(kind, numbers);
+        let mut words = NumberText::new(kind, numbers);
         let primitive = Self::read(kind, &mut words)?;
         Some(primitive.and_then(|primitive| words.end().map(|()| primitive)))
     }

@@ -4,11 +4,11 @@ use core::fmt;
 
 use super::argument::Arguments;
 use super::error::FieldError;
-use super::surface::Sample;
+use super::surface::FieldSample;
 use crate::fixed::Q32_32;
 
 /// A kind of field, and its text form.
-pub trait Shape: Sized {
+pub trait FieldKind: Sized {
     /// The type of the solid with lengths in field units, which the raymarcher evaluates.
     type Solid;
     /// The name of the kind: the word before the colon of the text form.
@@ -100,7 +100,7 @@ pub trait FlatSolid: Sized {
 
     /// Computes the distance of a point from the solid, and the surface nearest to the point. Coordinates
     /// are in field units, s10.12.
-    fn sample(&self, point: [i32; 3]) -> Sample;
+    fn sample(&self, point: [i32; 3]) -> FieldSample;
 
     /// Computes only the distance of [`sample`](Self::sample), which is faster for some solids.
     fn distance(&self, point: [i32; 3]) -> i32 {

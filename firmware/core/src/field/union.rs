@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::argument::{Arguments, Words, check};
+use super::argument::{Arguments, NumberText, check};
 use super::error::FieldError;
 use super::primitive::Primitive;
 use crate::fixed::Q32_32;
@@ -73,7 +73,7 @@ impl Union {
     /// Parses the width and the members after `smooth:`.
     pub(super) fn parse_smooth(text: &str) -> Result<Self, FieldError<'_>> {
         let (blend, members) = text.split_once(',').ok_or(FieldError::Union)?;
-        let blend = Words::new("smooth", blend).number("k", BLEND)?;
+        let blend = NumberText::new("smooth", blend).number("k", BLEND)?;
         Self::parse(members, blend)
     }
 

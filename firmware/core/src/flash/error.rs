@@ -56,7 +56,12 @@ impl FlashError {
             Expected::Magic(_) => write!(f, "\"{}\"", found.to_le_bytes().escape_ascii()),
             Expected::Crc32(_) | Expected::Bitstream => write!(f, "{found:#010x}"),
             Expected::Name | Expected::Text => write!(f, "{found:#04x}"),
-            _ => write!(f, "{found}"),
+            Expected::Exactly(..)
+            | Expected::AtLeast(..)
+            | Expected::AtMost(..)
+            | Expected::Kind => {
+                write!(f, "{found}")
+            }
         }
     }
 }

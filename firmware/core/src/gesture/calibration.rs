@@ -31,7 +31,7 @@ pub struct Calibrated {
 
 /// Reason why a calibration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CalibrationError {
+pub enum ColourError {
     /// The picture has fewer samples than its size requires, or the box has fewer than [`LEAST_SAMPLES`].
     Samples,
     /// The box shows several colours: the middle 80 % of a channel's values span more than [`WIDEST`]. The value is this span.
@@ -42,7 +42,7 @@ pub enum CalibrationError {
     Outside(u8),
 }
 
-impl fmt::Display for CalibrationError {
+impl fmt::Display for ColourError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Samples => write!(
@@ -89,7 +89,7 @@ pub fn calibrate(
     columns: u16,
     rows: u16,
     samples: impl Iterator<Item = [u8; 2]> + Clone,
-) -> Result<Calibrated, CalibrationError> {
+) -> Result<Calibrated, ColourError> {
     let size = [u32::from(columns), u32::from(rows)];
     let within = |number: u32, length: u32| (length * 3 / 8..length * 5 / 8).contains(&number);
     let total = size[0] * size[1];
@@ -112,7 +112,7 @@ pub fn calibrate(
         }
     }
     if taken < total || boxed < LEAST_SAMPLES {
-        return Err(CalibrationError::Samples);
+        return Err(ColourError::Samples);
     }
     let [cr, cb] = histograms.map(|histogram| window(&histogram, boxed / 10));
     let windows = [cr?, cb?];
@@ -131,21 +131,21 @@ pub fn calibrate(
         outside: percent(outside, total - boxed),
     };
     if found.inside < LEAST_INSIDE {
-        return Err(CalibrationError::Inside(found.inside));
+        return Err(ColourError::Inside(found.inside));
     }
     if found.outside > MOST_OUTSIDE {
-        return Err(CalibrationError::Outside(found.outside));
+        return Err(ColourError::Outside(found.outside));
     }
     Ok(found)
 }
 
 /// Returns the window of a channel from the histogram of its values. `tail` is the number of values to leave out at each end.
-fn window(histogram: &[u32; 256], tail: u32) -> Result<Window, CalibrationError> {
+fn window(histogram: &[u32; 256], tail: u32) -> Result<Window, ColourError> {
     let lower = end((0..=255).zip(histogram), tail);
     let upper = end((0..=255).zip(histogram).rev(), tail);
     let span = upper.saturating_sub(lower);
     if span > WIDEST {
-        return Err(CalibrationError::Colours(span));
+        return Err(ColourError::Colours(span));
     }
     let margin = (span / 2).max(MARGIN);
     Ok(Window {

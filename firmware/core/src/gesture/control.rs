@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics};
-use super::filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
+use super::filter::{Backlash, OneEuro, TimeStep, Tuning, low_pass_gain, towards};
 use super::target::{DISTANCES, POLARS, target};
 use crate::camera::{View, ViewError};
 use crate::fixed::{Q4_28, Q32_32, Turns, U16_16, U20_12};
@@ -90,14 +90,14 @@ impl fmt::Display for Presence {
 
 /// Settings of the engine for the next frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Setting {
+pub struct EngineSetting {
     /// Region of the frame; pixels outside do not count.
     pub region: Region,
     /// Minimum run: shorter runs of pixels in a line do not count.
     pub least_run: u8,
 }
 
-impl Setting {
+impl EngineSetting {
     /// The setting that searches the whole frame.
     pub const SEARCHING: Self = Self {
         region: Region::WHOLE,
@@ -172,7 +172,7 @@ impl Channel {
         &mut self,
         target: Q4_28,
         (tuning, zone): &(Tuning, Q4_28),
-        step: Step,
+        step: TimeStep,
         [speed, back]: [u32; 2],
     ) {
         let filtered = self.filter.next_with(target, tuning, step, speed);
@@ -192,7 +192,7 @@ impl Channel {
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     state: State,
-    setting: Setting,
+    setting: EngineSetting,
     /// Time in µs at which the last frame ended.
     ended: Option<u64>,
     /// Result of the last frame: the hand, or the reason why the frame shows no hand.
@@ -207,7 +207,7 @@ impl Default for Control {
         let start = [Q4_28::ZERO, Q4_28::lit("0.25"), Q4_28::lit("3.5")];
         Self {
             state: State::Absent,
-            setting: Setting::SEARCHING,
+            setting: EngineSetting::SEARCHING,
             ended: None,
             seen: Err(Doubt::Missing),
             channels: start.map(Channel::at),
@@ -228,7 +228,7 @@ impl Control {
     }
 
     /// Settings of the engine for the next frame.
-    pub const fn setting(&self) -> Setting {
+    pub const fn setting(&self) -> EngineSetting {
         self.setting
     }
 
@@ -290,11 +290,11 @@ impl Control {
             moved.to_bits() <= u32::from(size[axis]) << (12 - 6)
         };
         self.setting = if rests(0) && rests(1) {
-            Setting::resting(&blob.bounds, size)
+            EngineSetting::resting(&blob.bounds, size)
         } else {
-            Setting::moving(&blob.bounds, size)
+            EngineSetting::moving(&blob.bounds, size)
         };
-        self.steer(target(&blob, size), Step::new(gap));
+        self.steer(target(&blob, size), TimeStep::new(gap));
     }
 
     /// Takes a frame that does not continue a tracked hand, `gap` µs after the previous frame.
@@ -319,7 +319,7 @@ impl Control {
     /// Begins to search the whole frame.
     fn search(&mut self) {
         self.state = State::Absent;
-        self.setting = Setting::SEARCHING;
+        self.setting = EngineSetting::SEARCHING;
     }
 
     /// Searches for a hand in three successive frames.
@@ -332,7 +332,7 @@ impl Control {
         }
         let frames = match before {
             State::Appearing(before, frames) if is_near(&before, &blob, size) => frames + 1,
-            _ => 1,
+            State::Absent | State::Appearing(..) | State::Tracked(_) | State::Held(..) => 1,
         };
         self.state = State::Appearing(blob, frames);
         if frames == FRAMES {
@@ -351,7 +351,7 @@ impl Control {
         }
         if !matches!(self.state, State::Held(..)) {
             self.state = State::Held(count, 0);
-            self.setting = Setting::moving(&self.setting.region, size);
+            self.setting = EngineSetting::moving(&self.setting.region, size);
         }
     }
 
@@ -363,7 +363,7 @@ impl Control {
             count: 0,
             centre: blob.centre,
         });
-        self.setting = Setting::moving(&blob.bounds, size);
+        self.setting = EngineSetting::moving(&blob.bounds, size);
         for (channel, target) in self.channels.iter_mut().zip(target(blob, size)) {
             let offset = channel.output.saturating_sub(target);
             *channel = Channel {
@@ -378,7 +378,7 @@ impl Control {
     }
 
     /// Moves the camera towards the position of the hand.
-    fn steer(&mut self, target: [Q4_28; 3], step: Step) {
+    fn steer(&mut self, target: [Q4_28; 3], step: TimeStep) {
         let [theta, phi, r] = target;
         let [azimuth, polar, distance] = &mut self.channels;
         let [angle, span, back] = [ANGLE.speed_cutoff, DISTANCE.speed_cutoff, RETURN]

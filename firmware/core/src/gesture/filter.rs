@@ -9,14 +9,14 @@ const STEPS: [u32; 2] = [1_000, 100_000];
 
 /// The time between two camera frames, converted to the units that the filters need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct TimeStep {
     /// 2π·step: the angle in radians by which 1 Hz advances in one step, with 32 fraction bits.
     radians: u32,
     /// Reciprocal of the step: steps per second, with 12 fraction bits, rounded down.
     rate: u32,
 }
 
-impl Step {
+impl TimeStep {
     /// Makes a step of `micros` µs, which is clamped to 1 to 100 ms.
     pub fn new(micros: u32) -> Self {
         let micros = micros.clamp(STEPS[0], STEPS[1]);
@@ -31,7 +31,7 @@ impl Step {
 /// Returns the gain of a low pass of first order with the corner frequency `cutoff`, for one step: k/(1 + k) with k = 2π·cutoff·step,
 /// with 16 fraction bits, rounded up. Unlike the explicit gain k, this gain is below 1 for every step, so the filter is monotone.
 #[inline(never)]
-pub fn low_pass_gain(cutoff: U16_16, step: Step) -> u32 {
+pub fn low_pass_gain(cutoff: U16_16, step: TimeStep) -> u32 {
     // The step is at most 0.63 rad per Hz, so k is below 2^16 with 16 fraction bits.
     let k = ((u64::from(cutoff.to_bits()) * u64::from(step.radians)) >> 32) as u32;
     // 1/(1 + k) with 16 fraction bits, rounded down. The sum saturates at a gain of 1 − 2^−16.
@@ -72,7 +72,7 @@ impl OneEuro {
     }
 
     /// Takes the next input, and returns the output. The speed saturates at 128 units per second.
-    pub fn next(&mut self, input: Q4_28, tuning: &Tuning, step: Step) -> Q4_28 {
+    pub fn next(&mut self, input: Q4_28, tuning: &Tuning, step: TimeStep) -> Q4_28 {
         let gain = low_pass_gain(tuning.speed_cutoff, step);
         self.next_with(input, tuning, step, gain)
     }
@@ -82,7 +82,7 @@ impl OneEuro {
         &mut self,
         input: Q4_28,
         tuning: &Tuning,
-        step: Step,
+        step: TimeStep,
         gain: u32,
     ) -> Q4_28 {
         let moved = input.saturating_sub(self.input).to_bits();

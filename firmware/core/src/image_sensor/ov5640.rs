@@ -1,9 +1,9 @@
 //! Registers of the OV5640. A frame takes 984 lines of 1,896 clocks.
 
-use super::step::Step::{self, Check, Wait, Write};
+use super::step::SetupStep::{self, Check, Wait, Write};
 
 /// Selects the clock of the pin, resets all registers, and sleeps until the end of the set-up.
-pub const RESET: &[Step] = &[
+pub const RESET: &[SetupStep] = &[
     Write(0x3103, 0x11),
     Write(0x3008, 0x82),
     Wait(5),
@@ -11,7 +11,7 @@ pub const RESET: &[Step] = &[
 ];
 
 /// Settings for all sizes: clock, pixel array, format and automatic control.
-pub const COMMON: &[Step] = &[
+pub const COMMON: &[SetupStep] = &[
     // From here on the PLL generates the clock: pre-divider 3 and root divider 2, times 70, divided by 2.
     Write(0x3103, 0x03),
     Check(0x3034, 0x1a),
@@ -64,7 +64,7 @@ pub const COMMON: &[Step] = &[
 ];
 
 /// Number of columns and lines of the picture, then the end of the sleep.
-pub const VGA: &[Step] = &[
+pub const VGA: &[SetupStep] = &[
     Check(0x3808, 0x02),
     Check(0x3809, 0x80),
     Check(0x380a, 0x01),
@@ -73,7 +73,7 @@ pub const VGA: &[Step] = &[
 ];
 
 /// Number of columns and lines of the picture, then the end of the sleep.
-pub const QVGA: &[Step] = &[
+pub const QVGA: &[SetupStep] = &[
     Check(0x3808, 0x01),
     Check(0x3809, 0x40),
     Check(0x380a, 0x00),

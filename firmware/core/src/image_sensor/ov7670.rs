@@ -1,12 +1,12 @@
 //! Registers of the OV7670. A frame takes 510 lines of 784 pixels, 33 ms with XCLK = 24 MHz.
 
-use super::step::Step::{self, Check, Wait, Write};
+use super::step::SetupStep::{self, Check, Wait, Write};
 
 /// COM7: resets all registers.
-pub const RESET: &[Step] = &[Write(0x12, 0x80), Wait(2)];
+pub const RESET: &[SetupStep] = &[Write(0x12, 0x80), Wait(2)];
 
 /// Settings for all sizes: format, clock and automatic control.
-pub const COMMON: &[Step] = &[
+pub const COMMON: &[SetupStep] = &[
     // CLKRC and DBLV: the PLL multiplies XCLK by 4, the prescaler divides by 4. PCLK is XCLK.
     Check(0x11, 0x01),
     Check(0x6b, 0x4a),
@@ -42,7 +42,7 @@ pub const COMMON: &[Step] = &[
 ];
 
 /// 640×480: all columns of the pixel array, without scaling.
-pub const VGA: &[Step] = &[
+pub const VGA: &[SetupStep] = &[
     // COM3 and COM14: no scaling. SCALING_DCWCTR and SCALING_PCLK_DIV: no division.
     Check(0x0c, 0x00),
     Check(0x3e, 0x00),
@@ -55,7 +55,7 @@ pub const VGA: &[Step] = &[
 ];
 
 /// 320×240: half the columns and lines of the pixel array; PCLK is XCLK/2.
-pub const QVGA: &[Step] = &[
+pub const QVGA: &[SetupStep] = &[
     // COM3 and COM14: scaling, PCLK divided by 2. SCALING_DCWCTR and SCALING_PCLK_DIV: both directions divided by 2.
     Check(0x0c, 0x04),
     Check(0x3e, 0x19),

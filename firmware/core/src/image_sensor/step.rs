@@ -2,7 +2,7 @@
 
 /// A step of a set-up.
 #[derive(Clone, Copy, Debug)]
-pub enum Step {
+pub enum SetupStep {
     /// Writes a value to the register with this number.
     Write(u16, u8),
     /// Writes a value, reads it back, and fails if it differs.

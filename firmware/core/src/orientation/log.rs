@@ -23,11 +23,12 @@
 use core::fmt;
 
 use super::quaternion::Quaternion;
+use super::rest::RestBias;
 use super::sample::Sample;
 use super::scale::{LSB_PER_DPS, Scale};
 use super::tilt::{LSB_PER_G, TIME_CONSTANT, Tilt};
 use super::tracker::{Counts, Tracker};
-use crate::calibration::{RestBias, Units};
+use super::units::Units;
 use crate::fixed::Q32_32;
 
 /// Size of the header in bytes.

@@ -1,7 +1,7 @@
 //! Attitudes as quaternions of length 1.
 
+use crate::cordic::to_polar;
 use crate::fixed::{Q2_30, Turns, wide};
-use crate::polar::polar;
 use crate::trig::sin_cos_q30;
 
 /// An attitude: a Hamilton quaternion that maps body to world, of length 1 within 2^−29.
@@ -157,17 +157,17 @@ impl Quaternion {
     /// rotation: yaw − roll at the pole with pitch +¼, yaw + roll at the pole with pitch −¼.
     pub fn angles(self) -> Angles {
         let [[xx, xy, xz], [yx, yy, yz], [_, _, zz]] = self.columns();
-        let (level, yaw) = polar(xx, xy);
-        let (_, pitch) = polar(level, -xz);
+        let (level, yaw) = to_polar(xx, xy);
+        let (_, pitch) = to_polar(level, -xz);
         if level < POLE {
-            let (_, yaw) = polar(yy, -yx);
+            let (_, yaw) = to_polar(yy, -yx);
             return Angles {
                 yaw,
                 pitch,
                 roll: Turns(0),
             };
         }
-        let (_, roll) = polar(zz, yz);
+        let (_, roll) = to_polar(zz, yz);
         Angles { yaw, pitch, roll }
     }
 
@@ -175,7 +175,7 @@ impl Quaternion {
     /// The heading is continuous, even at both poles of the pitch, except for a body that is upside down.
     pub fn heading(self) -> Turns {
         let [w, _, _, z] = self.parts.map(i64::from);
-        let (_, half) = polar(w << 30, z << 30);
+        let (_, half) = to_polar(w << 30, z << 30);
         Turns(half.0 << 1)
     }
 

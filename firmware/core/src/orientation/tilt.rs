@@ -15,8 +15,8 @@
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
+use crate::cordic::to_polar;
 use crate::fixed::{Turns, wide};
-use crate::polar::polar;
 
 /// Default time constant τ of the filter, in µs.
 pub const TIME_CONSTANT: u32 = 3_000_000;
@@ -127,9 +127,9 @@ impl Tilt {
     #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
         let [x, y, z] = reading.map(|x| i64::from(x) << 40);
-        let (level, roll) = polar(z, y);
-        let (_, pitch) = polar(level, -x);
-        // If the x axis points straight up or down, the roll is undefined; `polar` then gives 0.
+        let (level, roll) = to_polar(z, y);
+        let (_, pitch) = to_polar(level, -x);
+        // If the x axis points straight up or down, the roll is undefined; `to_polar` then gives 0.
         Quaternion::from_angles(Angles {
             yaw: Turns(0),
             pitch,

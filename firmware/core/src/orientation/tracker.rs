@@ -2,10 +2,10 @@
 
 use super::integrator::{Integrator, LONGEST_STEP};
 use super::quaternion::Quaternion;
+use super::rest::RestBias;
 use super::sample::Sample;
 use super::scale::Scale;
 use super::tilt::{Tilt, is_end};
-use crate::calibration::RestBias;
 
 /// Effect of a sample on the attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -78,6 +78,14 @@ impl Instruction {
         word
     }
 
+    /// The segment that the instruction adds; `None` if it is another instruction.
+    pub const fn segment(self) -> Option<Segment> {
+        match self {
+            Self::Segment(segment) => Some(segment),
+            Self::Eye(_) | Self::Plane(_) | Self::Window(_) | Self::End => None,
+        }
+    }
+
     /// Makes an instruction from its kind and fields; unused fields are ignored.
     pub(super) const fn new(opcode: Opcode, [a, b, c, d, e, f]: [Q5_11; 6]) -> Self {
         match opcode {

@@ -174,10 +174,7 @@ impl<'a> Program<'a> {
 
     /// The segment in a word; `None` if the word is another instruction, or beyond the program.
     pub fn segment(&self, word: usize) -> Option<Segment> {
-        match Instruction::decode(self.words.get(word)?) {
-            Ok(Instruction::Segment(segment)) => Some(segment),
-            _ => None,
-        }
+        Instruction::decode(self.words.get(word)?).ok()?.segment()
     }
 
     /// The instructions, including the end instruction.
@@ -190,10 +187,6 @@ impl<'a> Program<'a> {
 
     /// The segments, in the program's order.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + use<'a> {
-        self.instructions()
-            .filter_map(|instruction| match instruction {
-                Instruction::Segment(segment) => Some(segment),
-                _ => None,
-            })
+        self.instructions().filter_map(Instruction::segment)
     }
 }

@@ -1,9 +1,7 @@
 //! Tests of the gyroscope's calibration: results, rejected samples, and tracking of the bias at rest.
 
-use glint_core::calibration::{
-    Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
-};
-use glint_core::orientation::Sample;
+use glint_core::calibration::{Calibration, Progress, Report, SAMPLES, SampleError};
+use glint_core::orientation::{RestBias, Sample, Units};
 
 use crate::random::Random;
 

@@ -2,7 +2,7 @@
 
 use glint_core::camera::{HALF_WIDTH, View};
 use glint_core::fixed::{Q8_24, Q32_32, Turns};
-use glint_core::framing::{FramingError, Sphere};
+use glint_core::framing::{BoundingSphere, FramingError};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::{IndexedTriangle, Mesh, Vertex, encode};
 use proptest::prelude::*;
@@ -26,11 +26,11 @@ fn mesh(points: &[[i16; 3]]) -> Vec<u8> {
     .expect("a mesh of points")
 }
 
-fn sphere(meshes: &[(&[u8], Matrix)]) -> Option<Sphere> {
+fn sphere(meshes: &[(&[u8], Matrix)]) -> Option<BoundingSphere> {
     let meshes = meshes
         .iter()
         .map(|(bytes, matrix)| (Mesh::new_checked(bytes).expect("a mesh"), *matrix));
-    Sphere::around(meshes)
+    BoundingSphere::around(meshes)
 }
 
 fn length(v: Vector) -> f64 {
@@ -156,7 +156,7 @@ fn all_meshes_are_within_the_sphere() {
     let moved = |x: i32| Matrix::translation([x, 0, 0].map(Q8_24::from_num)).unwrap();
     let both = sphere(&[(&bytes, moved(0)), (&bytes, moved(1))]);
     let one = sphere(&[(&mesh(&[[0, 0, 0], [32_767, 0, 0]]), Matrix::IDENTITY)]);
-    let eye = |sphere: Option<Sphere>| {
+    let eye = |sphere: Option<BoundingSphere>| {
         let view = sphere.unwrap().framed(Axis::Z, Turns(0), None).unwrap();
         view.eye().map(|x| x.to_num::<f64>())
     };

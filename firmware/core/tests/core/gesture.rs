@@ -2,8 +2,8 @@
 
 use glint_core::fixed::{Q4_28, Q32_32, Turns, U16_16};
 use glint_core::gesture::{
-    Blob, Control, Doubt, OneEuro, PATIENCE, POLE, Presence, Region, Setting, Statistics, Step,
-    Tuning, target,
+    Blob, Control, Doubt, EngineSetting, OneEuro, PATIENCE, POLE, Presence, Region, Statistics,
+    TimeStep, Tuning, target,
 };
 use proptest::prelude::*;
 
@@ -139,7 +139,7 @@ const TUNING: Tuning = Tuning {
 fn the_lag_behind_a_steady_motion_is_that_of_the_corner_frequency() {
     for speed in [0.0625, 0.25, 1.0] {
         for rate in [30.0, 60.0, 120.0] {
-            let step = Step::new((1e6 / rate) as u32);
+            let step = TimeStep::new((1e6 / rate) as u32);
             let mut filter = OneEuro::new(Q4_28::ZERO);
             let mut lag = 0.0;
             for frame in 0..(2.0 * rate) as u32 {
@@ -159,7 +159,7 @@ fn the_lag_behind_a_steady_motion_is_that_of_the_corner_frequency() {
 #[test]
 fn steps_are_followed_without_overshoot_to_the_end() {
     for micros in [1, 1_000, 8_333, 33_333, 100_000, u32::MAX] {
-        let step = Step::new(micros);
+        let step = TimeStep::new(micros);
         let mut filter = OneEuro::new(Q4_28::lit("-7.5"));
         let mut last = Q4_28::lit("-7.5");
         for _ in 0..20_000 {
@@ -176,7 +176,7 @@ fn a_hand_in_three_frames_steers_the_camera() {
     let mut run = Run::new();
     assert_eq!(
         (run.control.presence(), run.control.setting()),
-        (Presence::Absent, Setting::SEARCHING)
+        (Presence::Absent, EngineSetting::SEARCHING)
     );
     let start = run.pose();
     assert_eq!(start, [0.0, 90.0, 3.5]);
@@ -212,7 +212,7 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
     run.frames(5, &EMPTY);
     assert_eq!(run.control.presence(), Presence::Held);
     // The hand may have left the region for a hand at rest, so the region for a hand in motion is searched.
-    let larger = Setting::moving(&region.region, SIZE);
+    let larger = EngineSetting::moving(&region.region, SIZE);
     assert_eq!((run.pose(), run.control.setting()), (held, larger));
     // The hand comes back within the region: the camera follows at once, without a jump.
     assert!(run.frame(&hand(70, 60, 20)).is_ok());
@@ -225,7 +225,7 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
     run.frames(PATIENCE.div_ceil(FRAME) + 1, &EMPTY);
     assert_eq!(
         (run.control.presence(), run.control.setting()),
-        (Presence::Absent, Setting::SEARCHING)
+        (Presence::Absent, EngineSetting::SEARCHING)
     );
     let held = run.pose();
     // The hand comes back at the other side: the camera takes the shorter arc, across 180°.

@@ -1,6 +1,6 @@
 //! Tests of the calibration of a hand's colour.
 
-use glint_core::gesture::{CalibrationError, Window, calibrate};
+use glint_core::gesture::{ColourError, Window, calibrate};
 
 /// Samples of a picture of 40×30: the hand's colour in the middle, and another colour around it.
 fn picture(hand: impl Fn(usize) -> [u8; 2], rest: impl Fn(usize) -> [u8; 2]) -> Vec<[u8; 2]> {
@@ -45,10 +45,7 @@ fn pictures_without_a_hand_are_refused() {
     let grey = |_| [128, 128];
     let run =
         |samples: Vec<[u8; 2]>| calibrate(40, 30, samples.into_iter()).map(|found| found.windows);
-    assert_eq!(
-        run(picture(grey, grey)),
-        Err(CalibrationError::Outside(100))
-    );
+    assert_eq!(run(picture(grey, grey)), Err(ColourError::Outside(100)));
     let half = |place: usize| {
         if place.is_multiple_of(2) {
             [100, 128]
@@ -56,15 +53,15 @@ fn pictures_without_a_hand_are_refused() {
             [180, 128]
         }
     };
-    assert_eq!(run(picture(half, grey)), Err(CalibrationError::Colours(80)));
-    assert_eq!(run(vec![[128, 128]; 1_199]), Err(CalibrationError::Samples));
+    assert_eq!(run(picture(half, grey)), Err(ColourError::Colours(80)));
+    assert_eq!(run(vec![[128, 128]; 1_199]), Err(ColourError::Samples));
     assert_eq!(
         calibrate(8, 8, std::iter::repeat([0, 0])).map(|found| found.windows),
-        Err(CalibrationError::Samples)
+        Err(ColourError::Samples)
     );
     assert_eq!(
         calibrate(0, 0, std::iter::empty()).map(|found| found.windows),
-        Err(CalibrationError::Samples)
+        Err(ColourError::Samples)
     );
 }
 
@@ -86,6 +83,6 @@ fn large_pictures_are_counted() {
     assert_eq!(calibrated(2_048, 1_024, [0, 0]), Ok([100, 0]));
     assert_eq!(
         calibrated(8_192, 6_144, [200, 60]),
-        Err(CalibrationError::Outside(100))
+        Err(ColourError::Outside(100))
     );
 }

@@ -2,9 +2,9 @@
 
 use glint_core::calibration;
 use glint_core::fixed::Q32_32;
-use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::{CalibrationError, Follow, Imu};
 use glint_core::mpu6050::{Error, Identity, Measurement, Sink};
+use glint_core::steering::{Direction, Mounting};
 
 type TestImu = Imu<&'static str>;
 

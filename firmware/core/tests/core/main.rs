@@ -2,13 +2,14 @@
 //!
 //! All tests are in one program, because linking further programs takes time.
 
+mod allocator;
 mod calibration;
 mod camera;
 mod console;
+mod cordic;
 mod field;
 mod fixed;
 mod flash;
-mod follow;
 mod framing;
 mod gesture;
 mod gesture_colours;
@@ -20,10 +21,9 @@ mod matrix;
 mod mesh;
 mod mpu6050;
 mod orientation;
-mod polar;
 mod random;
-mod regions;
 mod shape;
+mod steering;
 mod stereo;
 mod trig;
 mod wire;

@@ -5,7 +5,7 @@ use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT};
 use glint_core::field::Field;
-use glint_core::framing::Sphere;
+use glint_core::framing::BoundingSphere;
 use glint_core::light::MeshLighting;
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
@@ -172,12 +172,12 @@ impl<'a> Subject<'a> {
     }
 
     /// The bounding sphere of all meshes; `None` without a mesh, and for a field, with or without a mesh.
-    pub fn sphere(&self) -> Option<Sphere> {
+    pub fn sphere(&self) -> Option<BoundingSphere> {
         let mesh = self.mesh_part().filter(|_| self.field_part().is_none());
         let mesh = mesh.map(|subject| (subject.mesh, Matrix::IDENTITY));
         let objects = self.objects().unwrap_or_default().iter();
         let objects = objects.map(|object| (object.subject.mesh, *object.placement.matrix()));
-        Sphere::around(mesh.into_iter().chain(objects))
+        BoundingSphere::around(mesh.into_iter().chain(objects))
     }
 
     /// The mesh with this number, and the colour that replaces its own colours; `None` after the last mesh.

@@ -5,7 +5,7 @@
 //! gradients, with the weight h/2k for the larger distance. The blended distance therefore changes no faster than
 //! a or b, and the same weight blends the colours of the two surfaces.
 
-use glint_core::field::{FixedSpheres, Sample, Surface};
+use glint_core::field::{FieldSample, FixedSpheres, Surface};
 
 /// Spheres in union with a flat solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl Blend {
 
     /// Combines the samples of a flat solid and of a sphere at one point: returns the sample with the smaller distance, or a blended
     /// sample on the fillet. At equal distances a sharp union returns the sample of the flat solid.
-    pub fn union(&self, flat: Sample, round: Sample) -> Sample {
+    pub fn union(&self, flat: FieldSample, round: FieldSample) -> FieldSample {
         let is_round = round.distance < flat.distance;
         let nearer = if is_round { round } else { flat };
         let (Surface::Face { axis, positive }, Surface::Round { number }, 1..) =
@@ -49,7 +49,7 @@ impl Blend {
         // The product has 28 fraction bits; the shift leaves 16. The weight is at most slightly above 1/2.
         let weight = (h * i64::from(self.inverse)) >> 12;
         let share = if is_round { (1 << 16) - weight } else { weight };
-        Sample {
+        FieldSample {
             // Adds −h·weight/2, rounded down; the weight has 16 fraction bits.
             distance: nearer.distance + ((-h * weight) >> 17) as i32,
             surface: Surface::Blended {

@@ -3,7 +3,7 @@
 use glint_core::camera::{Projection, View};
 use glint_core::feature::{PREPASS, SPHERES, STEREO};
 use glint_core::field::{
-    FRACTION, Field, FixedSpheres, Placed, Primitive, Sample, Solid, cropped, units,
+    FRACTION, Field, FieldSample, FixedSpheres, Placed, Primitive, Solid, cropped, units,
 };
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::Tint;
@@ -199,7 +199,7 @@ impl FieldSetup {
 
     /// Evaluates the field at a point with coordinates in s10.12. Returns the distance and the nearest surface; at equal
     /// distances of a face and a sphere, the face.
-    pub fn sample(&self, point: [i32; 3]) -> Sample {
+    pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         let flat = self.solid.sample(point);
         match &self.beside {
             Some(beside) if SPHERES.is_built => {

@@ -6,7 +6,7 @@ use core::ops::RangeInclusive;
 
 use glint_core::bits::Bits;
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::machine::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
+use glint_core::constants::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
 use glint_core::picture::Size;
 use glint_core::records::{PIECE_MARK, descriptor, piece as piece_fields, planes, stored_piece};
 
@@ -16,7 +16,7 @@ use crate::triangle::setup::{Plane, Setup};
 pub use contents::Contents;
 
 /// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
-pub const GROUP: i32 = machine::GROUP as i32;
+pub const GROUP: i32 = constants::GROUP as i32;
 
 /// A triangle after its setup, or a piece of a line, packed into words of 32 bits. The words for smooth shading, with the planes
 /// of light, come last: gateware without smooth shading reads only the words before them.

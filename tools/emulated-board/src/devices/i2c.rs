@@ -139,10 +139,10 @@ impl I2c {
 
     /// The operation of the current command; a stop after an error.
     fn operation(&self) -> Option<Operation> {
-        match self.error {
-            Error::None => self.commands.front().map(|command| command.operation()),
-            _ => Some(Operation::Stop),
+        if self.error != Error::None {
+            return Some(Operation::Stop);
         }
+        self.commands.front().map(|command| command.operation())
     }
 
     fn is_last_byte(&self, command: Command) -> bool {
@@ -250,7 +250,7 @@ impl I2c {
                 self.sda = true;
                 self.enter(State::Rise, now);
             }
-            _ => {
+            Operation::Read | Operation::Write => {
                 let sent = self.shift >> 8 & 1 == 1;
                 self.shift = self.shift << 1 & 0x1ff | u16::from(sda);
                 if !ninth && command.operation() == Operation::Write && sda != sent {
@@ -337,7 +337,8 @@ impl I2c {
         match self.state {
             State::Failed => false,
             State::Idle => !self.commands.is_empty(),
-            _ => true,
+            State::Held | State::Set | State::High | State::Low => true,
+            State::Fall | State::Rise | State::Free => true,
         }
     }
 }
@@ -425,7 +426,8 @@ impl Device for I2c {
                 match self.state {
                     State::Idle => self.begin(round, true),
                     State::Failed => {}
-                    _ => self.fail(Error::Late),
+                    State::Held | State::Set | State::High | State::Low => self.fail(Error::Late),
+                    State::Fall | State::Rise | State::Free => self.fail(Error::Late),
                 }
             }
         }

@@ -7,7 +7,7 @@ use clap::Args;
 use glint::view;
 use glint_core::camera::View;
 use glint_core::fixed::Turns;
-use glint_core::framing::Sphere;
+use glint_core::framing::BoundingSphere;
 use glint_core::matrix::Axis;
 use glint_core::stereo::Stereo;
 use glint_model::{MAX_EYE, RenderError};
@@ -38,9 +38,9 @@ pub struct CameraArguments {
 
 /// Subject of a picture whose camera is not given.
 #[derive(Default)]
-pub struct Shown<'a> {
+pub struct CameraSubject<'a> {
     /// The bounding sphere of the model; `None` for a field, with or without a mesh.
-    pub sphere: Option<Sphere>,
+    pub sphere: Option<BoundingSphere>,
     /// The name of the model's file or generator, if any.
     pub model: Option<&'a str>,
     /// Whether a mesh limits the distance of the camera.
@@ -62,7 +62,7 @@ impl CameraArguments {
     }
 
     /// The camera.
-    pub fn view(&self, options: &OptionArguments, shown: &Shown) -> anyhow::Result<View> {
+    pub fn view(&self, options: &OptionArguments, shown: &CameraSubject) -> anyhow::Result<View> {
         if let Some(sphere) = shown.sphere.filter(|_| !self.is_given(options)) {
             let up = self.up_of(shown.model);
             return framed(options, &sphere, shown, up, Turns::default());
@@ -89,7 +89,7 @@ impl CameraArguments {
             return Err(bad_value("--up", "a model", "a --scene").into());
         }
         match self.is_given(options) {
-            true => self.view(options, &Shown::default()),
+            true => self.view(options, &CameraSubject::default()),
             false => options.camera(view),
         }
     }
@@ -99,7 +99,7 @@ impl CameraArguments {
     pub fn turn(
         &self,
         options: &OptionArguments,
-        shown: &Shown,
+        shown: &CameraSubject,
         steps: u16,
     ) -> anyhow::Result<Vec<View>> {
         let Some(sphere) = shown.sphere.filter(|_| !self.is_given(options)) else {
@@ -132,8 +132,8 @@ impl CameraArguments {
 /// The camera that shows the whole model, `turned` about the axis `up`.
 fn framed(
     options: &OptionArguments,
-    sphere: &Sphere,
-    shown: &Shown,
+    sphere: &BoundingSphere,
+    shown: &CameraSubject,
     up: Axis,
     turned: Turns,
 ) -> anyhow::Result<View> {
@@ -154,7 +154,7 @@ pub fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
 }
 
 /// Rejects a camera that is too far away for a mesh. `source` names the option that gave the camera.
-fn check_eye(view: &View, shown: &Shown, source: &str) -> anyhow::Result<()> {
+fn check_eye(view: &View, shown: &CameraSubject, source: &str) -> anyhow::Result<()> {
     let eyes = shown.stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
     let far = eyes.iter().find(|eye| !eye.is_within(MAX_EYE));
     if let Some(eye) = far.filter(|_| shown.has_mesh) {

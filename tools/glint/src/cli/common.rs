@@ -116,7 +116,7 @@ impl LineArguments {
     pub fn unsynchronised_board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         match name {
             BoardName::Serial(port) => Ok(Box::new(self.open(port)?)),
-            simulated => self.board(simulated),
+            BoardName::Emulated | BoardName::Virtual => self.board(name),
         }
     }
 
@@ -176,7 +176,7 @@ impl TransferArguments {
             (ModelOrBoard::Model, Some((option, _))) => {
                 Err(bad_value(option, "a board", "--board model"))
             }
-            _ => Ok(()),
+            (ModelOrBoard::Model, None) | (ModelOrBoard::Board(_), _) => Ok(()),
         }
     }
 }

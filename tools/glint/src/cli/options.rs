@@ -5,7 +5,7 @@ use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use glint::error::{InputError, quote};
 use glint_core::camera::View;
-use glint_core::console::{self, FORMS, Forms, HostOption, Row, Setting, Turn, accepted_words};
+use glint_core::console::{self, FORMS, Forms, HostOption, Order, Row, Setting, accepted_words};
 use glint_core::fixed::Turns;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::picture::Backend;
@@ -44,13 +44,13 @@ impl Args for OptionArguments {
 
 fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
     let Forms {
-        turn,
+        order,
         with,
         without,
         is_list,
         ..
     } = row.forms;
-    let is_of_subject = turn == Turn::Option;
+    let is_of_subject = order == Order::Option;
     let argument = Arg::new(row.key()).long(option.name).help(option.help);
     // The camera of a scene can be replaced.
     let argument = match is_of_subject {
@@ -127,9 +127,11 @@ impl Given {
 
     /// The lines of the console that set the values. Commas separate the numbers of a camera.
     fn lines(&self) -> impl Iterator<Item = String> {
-        self.values.iter().map(|value| match self.row.forms.turn {
-            Turn::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
-            _ => format!("{} {value}", self.row.command),
+        self.values.iter().map(|value| match self.row.forms.order {
+            Order::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
+            Order::Size | Order::Lens | Order::Option | Order::Subject => {
+                format!("{} {value}", self.row.command)
+            }
         })
     }
 
@@ -196,7 +198,7 @@ impl OptionArguments {
     /// A value is invalid, or the option requires a field.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), InputError> {
         let given = self.given.iter();
-        for given in given.filter(|given| given.row.forms.turn == Turn::Option) {
+        for given in given.filter(|given| given.row.forms.order == Order::Option) {
             given.check(scene.field.is_some())?;
             given.apply(scene)?;
         }
@@ -213,7 +215,7 @@ impl OptionArguments {
             ..Scene::new(Backend::Gateware)?
         };
         let given = self.given.iter();
-        for given in given.filter(|given| given.row.forms.turn != Turn::Option) {
+        for given in given.filter(|given| given.row.forms.order != Order::Option) {
             given.apply(&mut scene)?;
         }
         Ok(scene.view)

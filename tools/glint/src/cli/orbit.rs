@@ -1,6 +1,6 @@
 //! `glint orbit`.
 
-use super::camera::{CameraArguments, Shown, turn};
+use super::camera::{CameraArguments, CameraSubject, turn};
 use super::common::{SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
@@ -119,7 +119,7 @@ impl OrbitArguments {
         let object = object.map(|mesh| scene.object(&place, mesh));
         let frame = shown(&mut scene, mesh, object.as_slice());
         let frame = frame?.ok_or_else(|| nothing("--field or --scene"))?;
-        let shown = Shown {
+        let shown = CameraSubject {
             sphere: frame.subject.sphere(),
             model: self.model.as_deref(),
             has_mesh: mesh.is_some(),

@@ -1,6 +1,6 @@
 //! `glint render`.
 
-use super::camera::{CameraArguments, Shown};
+use super::camera::{CameraArguments, CameraSubject};
 use super::common::{Opened, SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
@@ -21,7 +21,7 @@ use glint_core::mesh::Mesh;
 use glint_core::object::Place;
 use glint_core::picture::{Backend, Size};
 use glint_model::Object;
-use glint_scene::{Content, Kind, Scene};
+use glint_scene::{Assets, Kind, Scene};
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -146,7 +146,7 @@ impl RenderArguments {
         }
         let frame = shown(&mut scene, mesh, &objects);
         let frame = frame?.ok_or_else(|| nothing("--field, --object or --scene"))?;
-        let shown = Shown {
+        let shown = CameraSubject {
             sphere: frame.subject.sphere(),
             model: self.model.as_deref(),
             has_mesh: mesh.is_some(),
@@ -306,7 +306,7 @@ pub fn shown<'a>(
     let is_empty = objects.is_empty() && mesh.is_none() && scene.field.is_none();
     let program = scene::program()?;
     Ok((!is_empty).then(|| {
-        scene.frame(Content {
+        scene.frame(Assets {
             mesh,
             objects,
             program,

@@ -10,10 +10,9 @@ use crate::formats::write;
 use crate::generate;
 use crate::image;
 use crate::polygons::{Corner, Polygons, Rgb8};
-use glint_core::calibration::Units;
 use glint_core::flash::CONTENTS;
-use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
+use glint_core::orientation::{Sample, Units};
 use glint_core::wireframe::text::assemble;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 

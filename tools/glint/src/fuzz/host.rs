@@ -9,7 +9,7 @@ use crate::imu::{replay, sensor};
 use crate::render::BoardRenderer;
 use crate::transfer::{download, upload};
 use crate::{flash, gesture, view};
-use glint_core::calibration::Units;
+use glint_core::orientation::Units;
 use glint_core::orientation::log::{self as image, HEADER_BYTES};
 
 /// Keywords of a board's output.

@@ -5,12 +5,12 @@ use crate::board::{Board, Route};
 use crate::console::{self, Console, ConsoleError};
 use crate::error::{FormatError, Location};
 use crate::transfer::{self, TransferError};
-use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress as Going, Report, Units};
+use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress as Going, Report};
 use glint_core::orientation::log::{
     self as image, HEADER_BYTES, LogError, RECORD_BYTES, Setup, attitude, from_bytes, record,
     to_bytes,
 };
-use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
+use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample, Units};
 
 /// Options of a replay.
 #[derive(Clone, Copy, Debug)]

@@ -6,8 +6,7 @@ use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Replayed, Stage};
 use glint::render::Route;
 use glint::transfer;
-use glint_core::calibration::Units;
-use glint_core::orientation::Counts;
+use glint_core::orientation::{Counts, Units};
 
 /// A log with events of every kind: rest, tumbling, coning, saturation of both sensors, shocks, and time stamps with jitter,
 /// repetitions, backward steps and a gap.

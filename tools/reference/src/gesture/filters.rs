@@ -1,7 +1,7 @@
 //! Filters of the camera's control, and their errors along paths of a hand.
 
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::gesture::{ANGLE, Backlash, CHANNELS, OneEuro, Step, Tuning};
+use glint_core::gesture::{ANGLE, Backlash, CHANNELS, OneEuro, TimeStep, Tuning};
 use glint_variants::filter::{AlphaBeta, Average, LowPass};
 
 use super::path::{Sample, between};
@@ -116,7 +116,7 @@ impl Filter {
 
     /// Filters the targets of samples at a rate in frames per second; returns azimuth and polar angle in turns.
     pub fn run(self, samples: &[Sample], rate: f64) -> Vec<[f64; 2]> {
-        let step = Step::new((1e6 / rate).round() as u32);
+        let step = TimeStep::new((1e6 / rate).round() as u32);
         let Some(first) = samples.first() else {
             return vec![];
         };
@@ -135,7 +135,7 @@ impl Filter {
 }
 
 impl Channel {
-    fn next(&mut self, input: Q4_28, step: Step) -> Q4_28 {
+    fn next(&mut self, input: Q4_28, step: TimeStep) -> Q4_28 {
         match self {
             Self::None => input,
             Self::Average2(filter) => filter.next(input),

@@ -1,6 +1,6 @@
 //! Camera frames as masks of the hand's colour, and the gesture engine's statistics of a frame.
 
-use glint_core::gesture::{Region, Setting, Statistics};
+use glint_core::gesture::{EngineSetting, Region, Statistics};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -178,7 +178,7 @@ impl Frame {
     }
 
     /// The gesture engine's statistics, without runs shorter than the minimum length. Runs are cut at the region's border.
-    pub fn statistics(&self, setting: Setting) -> Statistics {
+    pub fn statistics(&self, setting: EngineSetting) -> Statistics {
         let Region { first, last } = setting.region;
         let least = usize::from(setting.least_run.max(1));
         let mut statistics = Statistics {
@@ -226,7 +226,7 @@ pub fn centre_errors(
     noise: &Noise,
     places: u32,
     random: &mut Pcg64Mcg,
-    setting: impl Fn(&Region) -> Setting,
+    setting: impl Fn(&Region) -> EngineSetting,
 ) -> Vec<f64> {
     let start = Drawn::new(shape, [0.0; 2], area);
     let mut errors = Vec::new();
@@ -237,7 +237,7 @@ pub fn centre_errors(
         ];
         let hand = start.moved(place);
         let exact = Frame::draw(&[hand], &Noise::NONE, random);
-        let mut bounds = exact.statistics(Setting::SEARCHING).bounds;
+        let mut bounds = exact.statistics(EngineSetting::SEARCHING).bounds;
         let exact = exact.centre();
         for _ in 0..FRAMES {
             let noisy = Frame::draw(&[hand], noise, random).statistics(setting(&bounds));

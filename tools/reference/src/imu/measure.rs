@@ -1,10 +1,8 @@
 //! Measurements of attitude errors, shared by the tests and the report.
 
-use glint_core::calibration::{
-    Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
-};
+use glint_core::calibration::{Calibration, Progress, Report, SAMPLES, SampleError};
 use glint_core::fixed::Q32_32;
-use glint_core::orientation::{Scale, TIME_CONSTANT, Tilt, Tracker};
+use glint_core::orientation::{RestBias, Scale, TIME_CONSTANT, Tilt, Tracker, Units};
 
 use super::filter::{Estimator, Filter};
 use super::method::{Integrator, Method};

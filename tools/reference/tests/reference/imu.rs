@@ -2,8 +2,8 @@
 //!
 //! With `GLINT_IMU=long`, long motions have their full duration of an hour each.
 
-use glint_core::calibration::Units;
 use glint_core::orientation;
+use glint_core::orientation::Units;
 use glint_reference::imu::measure::{
     Largest, against_f64, calibrated, inclination, method_error, yaw_drift,
 };

@@ -6,8 +6,8 @@ use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
 use crate::field::limits::{MAX_EXTENT, PERIOD, SMALLEST, largest_half};
-use crate::field::shape::{FlatConstants, FlatSolid, Placed, SCALE, Shape, scale_of};
-use crate::field::surface::{FRACTION, Sample, cropped, units};
+use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed, SCALE, scale_of};
+use crate::field::surface::{FRACTION, FieldSample, cropped, units};
 use crate::fixed::Q32_32;
 
 /// A box about the origin.
@@ -33,7 +33,7 @@ pub struct Planes {
     pub half: Q32_32,
 }
 
-impl Shape for Cuboid {
+impl FieldKind for Cuboid {
     type Solid = FixedBox;
 
     const NAME: &'static str = "box";
@@ -63,7 +63,7 @@ impl Shape for Cuboid {
     }
 }
 
-impl Shape for Cubes {
+impl FieldKind for Cubes {
     type Solid = FixedBox;
 
     const NAME: &'static str = "cubes";
@@ -95,7 +95,7 @@ impl Shape for Cubes {
     }
 }
 
-impl Shape for Planes {
+impl FieldKind for Planes {
     type Solid = FixedBox;
 
     const NAME: &'static str = "planes";
@@ -138,7 +138,7 @@ impl FlatSolid for FixedBox {
 
     /// Computes the distance as the maximum of |x| − half over the axes, with the opposite sign in a room.
     #[inline]
-    fn sample(&self, point: [i32; 3]) -> Sample {
+    fn sample(&self, point: [i32; 3]) -> FieldSample {
         // A period of 64 field units is 2^18 in s10.12, so the lowest 18 bits of a coordinate, as a signed number, are the
         // coordinate relative to the centre of its cell.
         let wrap = |x: i32| {
@@ -156,7 +156,7 @@ impl FlatSolid for FixedBox {
             [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));
         let big = largest(outside);
         let nearest = p[big].with(outside[big]).negated_if(self.room);
-        Sample {
+        FieldSample {
             distance: nearest.value,
             surface: nearest.face(),
         }

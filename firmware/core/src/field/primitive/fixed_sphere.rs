@@ -3,7 +3,7 @@
 
 use crate::feature::SPHERES;
 use crate::field::limits::MAX_SPHERES;
-use crate::field::surface::{Sample, Surface, magnitude};
+use crate::field::surface::{FieldSample, Surface, magnitude};
 
 /// A sphere with lengths in field units, which have 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,8 +51,8 @@ const MOST: i32 = (1 << 21) - 1;
 impl FixedSpheres {
     /// Returns the distance to the nearest sphere, and the number of this sphere. If several spheres are equally near, the first
     /// one is returned.
-    pub fn sample(&self, point: [i32; 3]) -> Sample {
-        let mut nearest = Sample {
+    pub fn sample(&self, point: [i32; 3]) -> FieldSample {
+        let mut nearest = FieldSample {
             distance: MOST,
             surface: Surface::Round { number: 0 },
         };
@@ -61,7 +61,7 @@ impl FixedSpheres {
             // Before saturation to `MOST`, the distance is below 2^23.
             let distance = length(self.from(sphere, point)) - sphere.radius;
             if distance < nearest.distance {
-                nearest = Sample {
+                nearest = FieldSample {
                     distance,
                     surface: Surface::Round { number },
                 };

@@ -5,8 +5,8 @@ use core::fmt;
 use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
-use crate::field::shape::{FlatConstants, FlatSolid, Placed, Shape};
-use crate::field::surface::{FRACTION, Sample, magnitude};
+use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed};
+use crate::field::surface::{FRACTION, FieldSample, magnitude};
 use crate::fixed::Q32_32;
 
 /// The largest number of levels of holes.
@@ -19,7 +19,7 @@ pub struct Menger {
     pub depth: u8,
 }
 
-impl Shape for Menger {
+impl FieldKind for Menger {
     type Solid = FixedSponge;
 
     const NAME: &'static str = "menger";
@@ -78,7 +78,7 @@ impl FlatSolid for FixedSponge {
     /// the holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations preserve the maximum
     /// norm.
     #[inline]
-    fn sample(&self, point: [i32; 3]) -> Sample {
+    fn sample(&self, point: [i32; 3]) -> FieldSample {
         let mut p = Folded::of(point);
         for &s in self.levels.iter().take(usize::from(self.depth)) {
             p = p.map(|x| x.negated_if(x.value >= 0).plus(s));
@@ -89,7 +89,7 @@ impl FlatSolid for FixedSponge {
         }
         let p = p.map(|x| x.negated_if(x.value < 0));
         let big = p[largest(p.map(|x| x.value))];
-        Sample {
+        FieldSample {
             distance: big.value - self.half,
             surface: big.face(),
         }

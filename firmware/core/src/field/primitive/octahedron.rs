@@ -5,8 +5,8 @@ use core::fmt;
 use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::limits::{MAX_EXTENT, SMALLEST};
-use crate::field::shape::{FlatConstants, FlatSolid, Placed, SCALE, Shape};
-use crate::field::surface::{Sample, Surface, magnitude, units};
+use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed, SCALE};
+use crate::field::surface::{FieldSample, Surface, magnitude, units};
 use crate::fixed::Q32_32;
 
 /// A regular octahedron about the origin, with corners on the axes.
@@ -16,7 +16,7 @@ pub struct Octahedron {
     pub size: Q32_32,
 }
 
-impl Shape for Octahedron {
+impl FieldKind for Octahedron {
     type Solid = FixedOctahedron;
 
     const NAME: &'static str = "octahedron";
@@ -55,10 +55,10 @@ impl FlatSolid for FixedOctahedron {
     /// most 3r, so the distance is (|x| + |y| + |z| − size)/3. The product with 85/256, rounded down, approximates this
     /// third from below outside the solid.
     #[inline]
-    fn sample(&self, point: [i32; 3]) -> Sample {
+    fn sample(&self, point: [i32; 3]) -> FieldSample {
         let sum: u32 = point.map(magnitude).iter().sum();
         let positive = |i: usize| u8::from(point[i] >= 0) << i;
-        Sample {
+        FieldSample {
             distance: ((sum as i32 - self.size) * 85) >> 8,
             surface: Surface::Octant {
                 signs: positive(0) | positive(1) | positive(2),

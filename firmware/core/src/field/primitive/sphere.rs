@@ -7,7 +7,7 @@ use super::fixed_sphere::{FixedSphere, FixedSpheres};
 use crate::field::argument::{Arguments, check};
 use crate::field::error::FieldError;
 use crate::field::limits::{MAX_EXTENT, MAX_SPHERES, PERIOD, SMALLEST, largest_half};
-use crate::field::shape::{Placed, SCALE, Shape, scale_of};
+use crate::field::shape::{FieldKind, Placed, SCALE, scale_of};
 use crate::field::surface::units;
 use crate::fixed::{Q2_30, Q32_32, Turns};
 use crate::trig::sin_cos_q30;
@@ -91,7 +91,7 @@ pub struct MovingSphere {
     pub angle: Turns,
 }
 
-impl Shape for CentredSphere {
+impl FieldKind for CentredSphere {
     type Solid = FixedSpheres;
 
     const NAME: &'static str = "sphere";
@@ -118,7 +118,7 @@ impl Shape for CentredSphere {
     }
 }
 
-impl Shape for Spheres {
+impl FieldKind for Spheres {
     type Solid = FixedSpheres;
 
     const NAME: &'static str = "spheres";
@@ -158,7 +158,7 @@ impl Shape for Spheres {
     }
 }
 
-impl Shape for Lattice {
+impl FieldKind for Lattice {
     type Solid = FixedSpheres;
 
     const NAME: &'static str = "lattice";
@@ -193,7 +193,7 @@ impl Shape for Lattice {
     }
 }
 
-impl Shape for MovingSphere {
+impl FieldKind for MovingSphere {
     type Solid = FixedSpheres;
 
     const NAME: &'static str = "moving";

@@ -2,17 +2,25 @@
 
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
-use glint_core::console::{Command, GestureAction, LINE_MAX, ObjectAction, Setting};
+use glint_core::console::{Command, GestureAction, LINE_MAX, ObjectAction, Setting, write_help};
 use glint_core::field::{Field, Menger};
 use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
-use glint_core::follow::{Direction, Mounting};
 use glint_core::light::{Light, Material};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::object::Place;
 use glint_core::quality::Quality;
+use glint_core::steering::{Direction, Mounting};
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::words::Words;
 use proptest::prelude::*;
+
+/// The names of all commands, as the help lists them.
+fn names() -> Vec<String> {
+    let mut help = String::new();
+    write_help(&mut help, None).expect("strings take all text");
+    let names = help.lines().filter_map(|line| line.split(' ').next());
+    names.map(str::to_owned).collect()
+}
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
@@ -24,7 +32,7 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orthographic", "zoom", "fit", "orbit", "quality", "size", "load", "object", "leds", "help"][..]),
+        name in proptest::sample::select(names()),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));

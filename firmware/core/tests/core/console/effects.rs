@@ -22,9 +22,16 @@ fn uploads_are_apart_from_settings() {
     for line in ["load 16 0", "unload a", "program 16 0", "replay 16 0"] {
         assert_eq!(parse(line).effect(), Effect::Uploads, "{line}");
     }
-    let settings = "scene a, program, field off, object add a, object remove all, orbit, imu look, imu off, gesture on, fov 60, zoom 2, \
-        fit, quality fast, size 320 180, backend cpu";
+    let settings = "field off, object add a, object remove all, fov 60, zoom 2, fit, quality fast, size 320 180, backend cpu";
     for line in settings.split(", ") {
-        assert_eq!(parse(line).effect(), Effect::Picture, "{line}");
+        let Command::Set(setting) = parse(line) else {
+            panic!("{line} sets no option");
+        };
+        assert_eq!(parse(line).effect(), Effect::Option(&setting), "{line}");
+    }
+    assert_eq!(parse("scene a").effect(), Effect::Subject("a"));
+    assert_eq!(parse("program").effect(), Effect::Wireframe);
+    for line in ["orbit", "imu look", "imu off", "gesture on"] {
+        assert_eq!(parse(line).effect(), Effect::Motion, "{line}");
     }
 }

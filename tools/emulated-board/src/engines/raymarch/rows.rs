@@ -60,7 +60,7 @@ fn strip(
         if stored > 0 && setup.stereo.is_none() {
             let code = match outcome.state {
                 State::Hit(_) => setup.depth_code(ray, outcome.reached()),
-                _ => 0,
+                State::Miss | State::Undecided => 0,
             };
             hidden += u32::from(code < stored);
         }

@@ -12,9 +12,9 @@ use glint::console::Console;
 use glint::error::quote;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Prepared, Replayed, Stage};
-use glint_core::calibration::{Report, Units};
+use glint_core::calibration::Report;
 use glint_core::fixed::{Q2_30, Q32_32};
-use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale};
+use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale, Units};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -138,7 +138,10 @@ impl ReplayArguments {
         let entries = read_log(&self.log)?;
         let prepared = replay::prepare(&entries, &options).map_err(|error| match error {
             replay::Error::Still(error) => error.in_path(&self.log).into(),
-            error => anyhow::Error::from(error),
+            replay::Error::Log(_)
+            | replay::Error::Transfer(_)
+            | replay::Error::Console(_)
+            | replay::Error::Attitude(_) => anyhow::Error::from(error),
         })?;
         let replayed = self.replay(prepared)?;
         out.write(|out| write(out, &entries, &replayed.attitudes))?;

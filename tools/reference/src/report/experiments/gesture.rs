@@ -2,7 +2,7 @@
 //! filters; and stiff cases.
 
 use anyhow::{Context, Result};
-use glint_core::gesture::{RUN_MOVING, RUN_RESTING, RUN_SEARCHING, Region, Setting};
+use glint_core::gesture::{EngineSetting, RUN_MOVING, RUN_RESTING, RUN_SEARCHING, Region};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -115,11 +115,11 @@ fn whole(_: &Region) -> Region {
 }
 
 fn small(bounds: &Region) -> Region {
-    Setting::resting(bounds, SIZE).region
+    EngineSetting::resting(bounds, SIZE).region
 }
 
 fn large(bounds: &Region) -> Region {
-    Setting::moving(bounds, SIZE).region
+    EngineSetting::moving(bounds, SIZE).region
 }
 
 /// The compared settings of the engine.
@@ -155,7 +155,7 @@ pub fn centres(places: u32, only_shipped: bool) -> Vec<Centre> {
                 continue;
             }
             let mut random = Pcg64Mcg::seed_from_u64(1);
-            let setting = |bounds: &Region| Setting {
+            let setting = |bounds: &Region| EngineSetting {
                 region: (compared.region)(bounds),
                 least_run: compared.least_run,
             };

@@ -212,7 +212,7 @@ pub fn measure_cpu(only: Option<&str>) -> Result<Vec<CpuRow>> {
 }
 
 /// A scene on a virtual board. Its first frame has been compared with the model's.
-struct Shown<'r, 'b> {
+struct ShownScene<'r, 'b> {
     renderer: &'r mut BoardRenderer<'b, SimulatedBoard>,
     view: View,
     /// Statistics of the first frame.
@@ -226,7 +226,7 @@ fn measure_cases<R: Send>(
     only: Option<&str>,
     cases: impl Iterator<Item = &'static Case>,
     backend: Backend,
-    measure: impl Fn(&Case, &mut Shown) -> Result<R> + Sync,
+    measure: impl Fn(&Case, &mut ShownScene) -> Result<R> + Sync,
 ) -> Result<Vec<R>> {
     let firmware = built_firmware(None)?;
     let cases: Vec<_> = cases
@@ -257,7 +257,7 @@ fn measure_cases<R: Send>(
         );
         measure(
             case,
-            &mut Shown {
+            &mut ShownScene {
                 renderer: &mut renderer,
                 view: frame.view,
                 stats,
@@ -268,7 +268,7 @@ fn measure_cases<R: Send>(
 }
 
 /// Measures the engine in the displayed scene.
-fn measure_engine(case: &Case, shown: &mut Shown) -> Result<Row> {
+fn measure_engine(case: &Case, shown: &mut ShownScene) -> Result<Row> {
     // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. So the frame is
     // drawn once into each of the two frame buffers before the measurement.
     shown.renderer.look(&shown.view)?;

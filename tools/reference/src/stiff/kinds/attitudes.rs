@@ -1,10 +1,12 @@
 //! Quaternions at the poles, and samples of a motion sensor at the ends of their ranges.
 
 use anyhow::Result;
-use glint_core::calibration::{Calibration, Progress, Units};
+use glint_core::calibration::{Calibration, Progress};
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::log::{Setup, record, replay, to_bytes};
-use glint_core::orientation::{Angles, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker};
+use glint_core::orientation::{
+    Angles, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, Tracker, Units,
+};
 use serde::Deserialize;
 
 use crate::stiff::kind::Kind;

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use glint_core::camera::{View, ViewError};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
-use glint_core::framing::Sphere;
+use glint_core::framing::BoundingSphere;
 use glint_core::matrix::{Axis, Matrix};
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
@@ -108,7 +108,7 @@ fn fit(input: Fitted) -> Result<Outcome> {
     let place = Matrix::translation(input.place.map(number))?;
     let matrix = Matrix::scale([number(input.scale); 3])?.then(&place)?;
     let meshes = std::iter::once((mesh(&bytes), matrix));
-    let sphere = Sphere::around(meshes).context("no mesh")?;
+    let sphere = BoundingSphere::around(meshes).context("no mesh")?;
     let angle = input
         .angle
         .map(|x| Turns::from_degrees(Q32_32::from_num(x)));

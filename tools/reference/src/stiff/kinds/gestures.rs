@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glint_core::fixed::{Q4_28, U16_16};
 use glint_core::gesture::{
-    Backlash, Control, OneEuro, Region, Statistics, Step, Tuning, calibrate, low_pass_gain,
+    Backlash, Control, OneEuro, Region, Statistics, TimeStep, Tuning, calibrate, low_pass_gain,
     quotient, target, towards,
 };
 use glint_core::root::root;
@@ -30,7 +30,7 @@ pub fn kinds() -> Vec<Kind> {
             Ok(Outcome::exact(root(square).to_string()))
         }),
         Kind::new("hand-gain", |Filtered { cutoff, step }| {
-            let gain = low_pass_gain(U16_16::from_bits(cutoff), Step::new(step));
+            let gain = low_pass_gain(U16_16::from_bits(cutoff), TimeStep::new(step));
             Ok(Outcome::exact(format!("{gain}/2^16")))
         }),
         Kind::new("hand-step", |Way { from, to, gain }| {
@@ -161,7 +161,7 @@ fn filter(run: OneEuroRun) -> Result<Outcome> {
     let last = run.inputs.last().copied().unwrap_or(run.start);
     let repeats = std::iter::repeat_n(last, run.repeats);
     for input in run.inputs.into_iter().chain(repeats) {
-        output = filter.next(Q4_28::from_bits(input), &tuning, Step::new(run.step));
+        output = filter.next(Q4_28::from_bits(input), &tuning, TimeStep::new(run.step));
     }
     Ok(Outcome::exact(output.to_bits().to_string()))
 }
@@ -176,7 +176,7 @@ struct Zone {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Shown {
+struct SmallPicture {
     columns: u16,
     rows: u16,
     /// Cr and Cb of the samples in the middle, a cyclic sequence; `rest` of all other samples.
@@ -187,7 +187,7 @@ struct Shown {
 }
 
 /// The windows of the hand's colour calibrated from a small picture.
-fn calibration(shown: Shown) -> Result<Outcome> {
+fn calibration(shown: SmallPicture) -> Result<Outcome> {
     let (columns, rows) = (usize::from(shown.columns), usize::from(shown.rows));
     let within = |number: usize, length: usize| (length * 3 / 8..length * 5 / 8).contains(&number);
     let sample = |place: usize| {

@@ -2,9 +2,9 @@
 
 use anyhow::Result;
 use glint_core::colour::Rgb565;
+use glint_core::cordic::to_polar;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::orientation::Gain;
-use glint_core::polar::polar;
 use glint_core::trig::sin_cos_q30;
 use glint_core::vector::unit;
 use glint_model::DepthScale;
@@ -26,7 +26,7 @@ pub fn kinds() -> Vec<Kind> {
             Ok(Outcome::of(number, |angle| format!("{}/2^32", angle.0)))
         }),
         Kind::new("polar", |[x, y]: [i64; 2]| {
-            let (length, angle) = polar(x, y);
+            let (length, angle) = to_polar(x, y);
             Ok(Outcome::exact(format!(
                 "length {length}, angle {}/2^32",
                 angle.0

@@ -1,7 +1,7 @@
 //! The memory of uploads: regions of extreme lengths, the number of regions, and gaps.
 
 use anyhow::Result;
-use glint_core::regions::{Region, Regions};
+use glint_core::allocator::{Allocator, Region};
 use serde::Deserialize;
 
 use crate::stiff::kind::Kind;
@@ -31,12 +31,12 @@ enum Step {
 
 /// Runs steps on a memory of at most four regions; states the result of each step, and the final gaps.
 fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
-    let mut memory = Regions::<4>::new(length);
+    let mut memory = Allocator::<4>::new(length);
     let mut kept: Vec<Region> = Vec::new();
     let mut said = Vec::new();
     for step in steps {
         match step {
-            Step::Keep(length) => match memory.keep(length) {
+            Step::Keep(length) => match memory.allocate(length) {
                 Some(region) => {
                     said.push(format!("kept {:?}", memory.range(region)));
                     kept.push(region);
@@ -44,7 +44,7 @@ fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
                 None => said.push("no room".to_owned()),
             },
             Step::Release(number) => memory.release(kept[number]),
-            Step::CloseGaps => memory.close_gaps(|from, to| said.push(format!("{from:?} to {to}"))),
+            Step::CloseGaps => memory.compact(|from, to| said.push(format!("{from:?} to {to}"))),
         }
     }
     said.push(format!("gap {:?}, free {}", memory.gap(), memory.free()));

@@ -1,10 +1,11 @@
 //! Parts of the computation from a motion sensor's registers to an attitude: times, temperatures, tilt, bias at rest, and products.
 
 use anyhow::{Context, Result};
-use glint_core::calibration::{RestBias, Units};
 use glint_core::fixed::{Q2_30, Q32_32};
 use glint_core::mpu6050::{Identity, Pace, degrees_per_second};
-use glint_core::orientation::{Integrator, Quaternion, Sample, Scale, TIME_CONSTANT, Tilt, log};
+use glint_core::orientation::{
+    Integrator, Quaternion, RestBias, Sample, Scale, TIME_CONSTANT, Tilt, Units, log,
+};
 use serde::Deserialize;
 
 use crate::stiff::kind::Kind;

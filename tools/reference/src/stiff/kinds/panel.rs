@@ -11,11 +11,11 @@ use crate::stiff::outcome::Outcome;
 
 pub fn kinds() -> Vec<Kind> {
     vec![
-        Kind::new("digits", |shown: Shown| {
+        Kind::new("digits", |shown: DigitsInput| {
             let display = match shown {
-                Shown::Number(number) => Display::number(number.parse()?),
-                Shown::Error(number) => Display::error(number),
-                Shown::Text(text) => Display::of(format_args!("{text}")),
+                DigitsInput::Number(number) => Display::number(number.parse()?),
+                DigitsInput::Error(number) => Display::error(number),
+                DigitsInput::Text(text) => Display::of(format_args!("{text}")),
             };
             Ok(Outcome::exact(seen(display.digits())?))
         }),
@@ -26,7 +26,7 @@ pub fn kinds() -> Vec<Kind> {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Shown {
+enum DigitsInput {
     /// A number as text, because it may have 64 bits.
     Number(String),
     Error(u8),

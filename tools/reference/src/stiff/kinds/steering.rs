@@ -3,8 +3,8 @@
 use anyhow::{Context, Result};
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
-use glint_core::follow::{Direction, Mounting, Steering, free_look, orbit};
 use glint_core::orientation::{Angles, Quaternion};
+use glint_core::steering::{Direction, Mounting, Steering, free_look, orbit};
 use serde::Deserialize;
 
 use crate::basis;

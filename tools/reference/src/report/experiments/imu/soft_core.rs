@@ -6,7 +6,7 @@ use glint::board::{self, Board, Route, built_firmware};
 use glint::console::Console;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Stage};
-use glint_core::calibration::Units;
+use glint_core::orientation::Units;
 use serde::{Deserialize, Serialize};
 
 use crate::imu::motion::Motion;

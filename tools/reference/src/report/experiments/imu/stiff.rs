@@ -1,7 +1,6 @@
 //! Experiment: stiff and extreme inputs of the attitude computation, for which simple filters and integrators diverge or drift.
 
-use glint_core::calibration::{RestBias, Units};
-use glint_core::orientation::{Gain, Sample};
+use glint_core::orientation::{Gain, RestBias, Sample, Units};
 use serde::{Deserialize, Serialize};
 
 use super::motions::{DAY, SPIN, TUMBLE};

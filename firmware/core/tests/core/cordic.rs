@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use glint_core::cordic::to_polar;
 use glint_core::fixed::Turns;
-use glint_core::polar::polar;
 
 /// Returns the difference between an angle and a number of turns, in units of 2^−32 turns.
 fn apart(angle: Turns, turns: f64) -> f64 {
@@ -24,7 +24,7 @@ fn angles_and_lengths_are_within_a_unit() {
     let (mut angle_error, mut length_error) = (0.0_f64, 0.0_f64);
     for x in numbers().step_by(3) {
         for y in numbers() {
-            let (length, angle) = polar(x, y);
+            let (length, angle) = to_polar(x, y);
             // Vectors shorter than 2^32 are left out, because the errors are stated for lengths of at least 2^32. The relative
             // rounding error of f64 is 2^-53, which is negligible.
             let (fx, fy) = (x as f64, y as f64);

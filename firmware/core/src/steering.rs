@@ -7,9 +7,9 @@ use core::fmt;
 
 use crate::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, RADIUS, View, ViewError};
 use crate::choice::choices;
+use crate::cordic::to_polar;
 use crate::fixed::{Q2_23, Q2_30, Q32_32, Turns};
 use crate::orientation::Quaternion;
-use crate::polar::polar;
 use crate::trig::sin_cos_q30;
 
 /// A direction along one of the sensor's axes.
@@ -225,7 +225,7 @@ fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
     if sine == 0 {
         return Quaternion::IDENTITY;
     }
-    let (_, half) = polar(w << 30, sine << 30);
+    let (_, half) = to_polar(w << 30, sine << 30);
     // The product is at most 8 times a quarter of a turn; the conversion to 32 bits drops whole turns.
     let half = Turns(((u64::from(half.0) * u64::from(sensitivity)) >> 8) as u32);
     let (sin, cos) = sin_cos_q30(half);

@@ -1,7 +1,8 @@
 //! Tracking of a gyroscope's bias while the sensor is at rest.
 
-use super::Units;
-use crate::orientation::{Gain, Sample};
+use super::gain::Gain;
+use super::sample::Sample;
+use super::units::Units;
 
 /// Time constant, in µs, of the running means of rates and forces; rest is detected by the differences from these means.
 const NOTICE: u32 = 500_000;

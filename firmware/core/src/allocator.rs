@@ -16,13 +16,13 @@ impl Region {
 
 /// A memory of a certain length, with at most `N` regions.
 #[derive(Clone, Debug)]
-pub struct Regions<const N: usize> {
+pub struct Allocator<const N: usize> {
     length: usize,
     /// The range of each region; an entry with an empty range is free.
     ranges: [Range<usize>; N],
 }
 
-impl<const N: usize> Regions<N> {
+impl<const N: usize> Allocator<N> {
     /// A memory without regions.
     pub const fn new(length: usize) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl<const N: usize> Regions<N> {
 
     /// Allocates a region of `length` bytes, rounded up to [`ALIGNMENT`], at the start of the largest gap. `None` if the gap is
     /// shorter, or if `N` regions exist.
-    pub fn keep(&mut self, length: usize) -> Option<Region> {
+    pub fn allocate(&mut self, length: usize) -> Option<Region> {
         let gap = self.gap();
         let length = length.max(1).checked_next_multiple_of(ALIGNMENT)?;
         let number = self.ranges.iter().position(Range::is_empty)?;
@@ -79,7 +79,7 @@ impl<const N: usize> Regions<N> {
     /// Moves all regions to the start of the memory in their order, so that one gap remains. Calls `copy(range, to)` for each
     /// region that moves, in the order of their addresses; `to` is the new position of the region's first byte. `to` is below
     /// `range.start` and not below the end of any region already moved.
-    pub fn close_gaps(&mut self, mut copy: impl FnMut(Range<usize>, usize)) {
+    pub fn compact(&mut self, mut copy: impl FnMut(Range<usize>, usize)) {
         let mut end = 0;
         let later = |range: &&mut Range<usize>, end| range.start < range.end && range.start >= end;
         while let Some(range) = (self.ranges.iter_mut())

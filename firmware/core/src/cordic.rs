@@ -22,7 +22,7 @@ const LEAD: u32 = 60;
 ///
 /// The error of the angle is at most 0.53·2^−32 turns for lengths of at least 2^32 units; the error of the length is at most 1
 /// unit plus 2^−31 of the length. Components saturate to ±2^61.
-pub fn polar(x: i64, y: i64) -> (i64, Turns) {
+pub fn to_polar(x: i64, y: i64) -> (i64, Turns) {
     const LIMIT: i64 = 1 << 61;
     let [x, y] = [x, y].map(|number| number.clamp(-LIMIT, LIMIT));
     let Some(lead) = (x.unsigned_abs() | y.unsigned_abs()).checked_ilog2() else {

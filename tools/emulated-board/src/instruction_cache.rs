@@ -13,7 +13,7 @@ pub type Page = [Instruction; PAGE as usize / 4];
 
 /// The pages of decoded instructions. As in the CPU's instruction cache, writes to memory do not change a cached instruction
 /// until [`clear`](Self::clear).
-pub struct Code {
+pub struct InstructionCache {
     /// Pages of the memories, one memory after another.
     pages: Vec<Option<Box<Page>>>,
     /// Numbers of the pages that are present.
@@ -33,7 +33,7 @@ fn empty() -> Box<Page> {
     Box::new([Instruction::UNKNOWN; PAGE as usize / 4])
 }
 
-impl Code {
+impl InstructionCache {
     /// An empty cache of decoded instructions.
     pub fn new() -> Self {
         let count = MEMORIES.into_iter().map(pages).sum();

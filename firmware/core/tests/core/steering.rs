@@ -3,8 +3,8 @@
 use glint_core::camera::{View, ViewError};
 use glint_core::choice::Choice;
 use glint_core::fixed::{Q2_23, Q32_32, Turns};
-use glint_core::follow::{Direction, Mounting, NATURAL, Steering, free_look, orbit};
 use glint_core::orientation::{Angles, Quaternion};
+use glint_core::steering::{Direction, Mounting, NATURAL, Steering, free_look, orbit};
 
 const ORIGIN: [Q32_32; 3] = [Q32_32::ZERO; 3];
 

@@ -1,22 +1,22 @@
 //! Tests of the allocation of memory regions.
 
-use glint_core::regions::{ALIGNMENT, Region, Regions};
+use glint_core::allocator::{ALIGNMENT, Allocator, Region};
 use proptest::prelude::*;
 
 const LENGTH: usize = 4096;
 
 /// Regions with known content, in a memory of bytes.
 struct Memory {
-    regions: Regions<6>,
+    regions: Allocator<6>,
     bytes: Vec<u8>,
     kept: Vec<(Region, Vec<u8>)>,
 }
 
 impl Memory {
-    fn keep(&mut self, content: Vec<u8>) {
+    fn allocate(&mut self, content: Vec<u8>) {
         let gap = self.regions.gap();
         let fits = content.len().next_multiple_of(ALIGNMENT) <= gap.len() && self.kept.len() < 6;
-        let region = self.regions.keep(content.len());
+        let region = self.regions.allocate(content.len());
         assert_eq!(region.is_some(), fits);
         let Some(region) = region else { return };
         let range = self.regions.range(region);
@@ -48,20 +48,20 @@ proptest! {
     #[test]
     fn regions_keep_their_content(steps in proptest::collection::vec((0..4_u8, 1..1500_usize, any::<u8>()), 1..60)) {
         let mut memory = Memory {
-            regions: Regions::new(LENGTH),
+            regions: Allocator::new(LENGTH),
             bytes: vec![0; LENGTH],
             kept: Vec::new(),
         };
         for (step, length, byte) in steps {
             match step {
-                0 | 1 => memory.keep((0..length).map(|i| byte.wrapping_add(i as u8)).collect()),
+                0 | 1 => memory.allocate((0..length).map(|i| byte.wrapping_add(i as u8)).collect()),
                 2 if !memory.kept.is_empty() => {
                     let (region, _) = memory.kept.remove(length % memory.kept.len());
                     memory.regions.release(region);
                 }
                 _ => {
                     let Memory { regions, bytes, .. } = &mut memory;
-                    regions.close_gaps(|from, to| bytes.copy_within(from, to));
+                    regions.compact(|from, to| bytes.copy_within(from, to));
                     prop_assert_eq!(regions.gap().len(), regions.free());
                 }
             }

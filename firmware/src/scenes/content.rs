@@ -1,0 +1,37 @@
+//! What scenes and lists consist of.
+
+/// Content of a scene or a list.
+#[derive(Clone, Copy, Debug)]
+pub enum Content {
+    /// The console commands, one per line, that set the picture and start camera motion, on top of the default scene.
+    Lines(&'static str),
+    /// The names of other scenes; lists do not nest.
+    Scenes(List),
+}
+
+/// The names of a list of scenes.
+#[derive(Clone, Copy, Debug)]
+pub enum List {
+    /// A list of the flash: one name per line.
+    Flash(&'static str),
+    /// A built-in list.
+    BuiltIn(&'static [&'static str]),
+}
+
+impl List {
+    /// Number of scenes.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Flash(names) => names.lines().count(),
+            Self::BuiltIn(names) => names.len(),
+        }
+    }
+
+    /// The name of a scene by its number, from 0.
+    pub fn name(&self, number: usize) -> Option<&'static str> {
+        match self {
+            Self::Flash(names) => names.lines().nth(number),
+            Self::BuiltIn(names) => names.get(number).copied(),
+        }
+    }
+}
