@@ -1,7 +1,7 @@
 """Numbers that gateware, firmware and host share.
 
 `cargo xtask pac` writes them as the SystemVerilog packages `picture_pkg`, `band_pkg` and `list_pkg`, and
-as `firmware/core/src/constants.rs`. Numbers of a single block are in the description of that block.
+as `firmware/core/src/gateware/constants.rs`. Numbers of a single block are in the description of that block.
 """
 
 from dataclasses import dataclass

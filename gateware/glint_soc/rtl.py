@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 RTL = ROOT / "gateware" / "rtl"
-CORE = ROOT / "firmware" / "core" / "src"
+CORE = ROOT / "firmware" / "core" / "src" / "gateware"
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 _DEFINITION = re.compile(r"^\s*(module|package)\s+(\w+)", re.M)

@@ -12,45 +12,28 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+mod board;
+mod drawing;
+mod gateware;
+mod math;
+mod motion;
+mod text;
+
 pub mod allocator;
-pub mod appearance;
-pub mod bits;
-pub mod block;
-pub mod calibration;
-pub mod camera;
-pub mod choice;
-pub mod colour;
 pub mod console;
-#[rustfmt::skip]
-pub mod constants;
-pub mod cordic;
-pub mod demo;
-pub mod digits;
 pub mod feature;
 pub mod field;
-pub mod fixed;
 pub mod flash;
-pub mod framing;
 pub mod gesture;
 pub mod image_sensor;
-pub mod imu;
-pub mod light;
-pub mod matrix;
 pub mod mesh;
-pub mod mpu6050;
-pub mod object;
-pub mod orientation;
-pub mod picture;
-pub mod quality;
-#[rustfmt::skip]
-pub mod records;
-pub mod root;
 pub mod shape;
-pub mod steering;
-pub mod stereo;
-pub mod tasks;
-pub mod trig;
-pub mod vector;
 pub mod wire;
 pub mod wireframe;
-pub mod words;
+
+pub use board::*;
+pub use drawing::*;
+pub use gateware::*;
+pub use math::*;
+pub use motion::*;
+pub use text::*;

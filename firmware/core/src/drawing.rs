@@ -1,0 +1,11 @@
+//! What a picture depends on besides meshes and fields: size, camera, colours, lights and objects.
+
+pub mod appearance;
+pub mod camera;
+pub mod colour;
+pub mod framing;
+pub mod light;
+pub mod object;
+pub mod picture;
+pub mod quality;
+pub mod stereo;

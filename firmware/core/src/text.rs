@@ -1,0 +1,4 @@
+//! Words, and names of values.
+
+pub mod choice;
+pub mod words;
