@@ -3,13 +3,13 @@
 use super::common::{bad_value, named};
 use super::messages::note;
 use super::options::OptionArguments;
+use super::subject::CameraSubject;
 use clap::Args;
 use glint::view;
 use glint_core::camera::View;
 use glint_core::fixed::Turns;
 use glint_core::framing::BoundingSphere;
 use glint_core::matrix::Axis;
-use glint_core::stereo::Stereo;
 use glint_model::{MAX_EYE, RenderError};
 use std::path::{Path, PathBuf};
 
@@ -36,19 +36,6 @@ pub struct CameraArguments {
     up: Option<Axis>,
 }
 
-/// Subject of a picture whose camera is not given.
-#[derive(Default)]
-pub struct CameraSubject<'a> {
-    /// The bounding sphere of the model; `None` for a field, with or without a mesh.
-    pub sphere: Option<BoundingSphere>,
-    /// The name of the model's file or generator, if any.
-    pub model: Option<&'a str>,
-    /// Whether a mesh limits the distance of the camera.
-    pub has_mesh: bool,
-    /// The two eyes.
-    pub stereo: Option<Stereo>,
-}
-
 impl CameraArguments {
     /// Whether an option gives a camera; lens options alone do not.
     fn is_given(&self, options: &OptionArguments) -> bool {
@@ -61,9 +48,12 @@ impl CameraArguments {
         self.view.as_deref()
     }
 
-    /// The camera.
+    /// The camera. The lens options also apply to the camera of a scene.
     pub fn view(&self, options: &OptionArguments, shown: &CameraSubject) -> anyhow::Result<View> {
-        if let Some(sphere) = shown.sphere.filter(|_| !self.is_given(options)) {
+        if shown.scene.is_some() && self.up.is_some() {
+            return Err(bad_value("--up", "a model", "a --scene").into());
+        }
+        if let Some(sphere) = self.framing(options, shown) {
             let up = self.up_of(shown.model);
             return framed(options, &sphere, shown, up, Turns::default());
         }
@@ -72,6 +62,9 @@ impl CameraArguments {
             (_, Some(text)) => {
                 let view = view::look(text).map_err(|error| error.in_file("--look"))?;
                 (view, "--look".to_owned())
+            }
+            _ if shown.scene.is_some() && !self.is_given(options) => {
+                return options.camera(shown.frame.view);
             }
             _ => {
                 let view = view::spherical(DEFAULT).map_err(|error| error.in_file("camera"))?;
@@ -83,15 +76,10 @@ impl CameraArguments {
         Ok(view)
     }
 
-    /// The camera for a picture of a scene whose own camera is `view`. The lens options also apply to the scene's camera.
-    pub fn of_scene(&self, options: &OptionArguments, view: View) -> anyhow::Result<View> {
-        if self.up.is_some() {
-            return Err(bad_value("--up", "a model", "a --scene").into());
-        }
-        match self.is_given(options) {
-            true => self.view(options, &CameraSubject::default()),
-            false => options.camera(view),
-        }
+    /// The sphere to show, if no camera is given.
+    fn framing(&self, options: &OptionArguments, shown: &CameraSubject) -> Option<BoundingSphere> {
+        let is_free = shown.scene.is_none() && !self.is_given(options);
+        shown.frame.subject.sphere().filter(|_| is_free)
     }
 
     /// The cameras of a full turn in the given number of steps, starting with the camera of [`view`](Self::view). A camera that
@@ -102,7 +90,7 @@ impl CameraArguments {
         shown: &CameraSubject,
         steps: u16,
     ) -> anyhow::Result<Vec<View>> {
-        let Some(sphere) = shown.sphere.filter(|_| !self.is_given(options)) else {
+        let Some(sphere) = self.framing(options, shown) else {
             return turn(&self.view(options, shown)?, steps);
         };
         let up = self.up_of(shown.model);
@@ -155,9 +143,11 @@ pub fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
 
 /// Rejects a camera that is too far away for a mesh. `source` names the option that gave the camera.
 fn check_eye(view: &View, shown: &CameraSubject, source: &str) -> anyhow::Result<()> {
-    let eyes = shown.stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
+    let eyes = shown.frame.stereo;
+    let eyes = eyes.map_or([*view; 2], |stereo| stereo.eyes(view));
     let far = eyes.iter().find(|eye| !eye.is_within(MAX_EYE));
-    if let Some(eye) = far.filter(|_| shown.has_mesh) {
+    let has_mesh = shown.scene.is_none() && shown.frame.subject.meshes().next().is_some();
+    if let Some(eye) = far.filter(|_| has_mesh) {
         let found = RenderError::Eye(eye.eye()).to_string();
         return Err(bad_value(source, "a camera", found).into());
     }

@@ -9,6 +9,7 @@ use glint::board::{
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
+use glint::render::BoardRenderer;
 use glint::scene::Changes;
 use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
@@ -178,6 +179,38 @@ impl TransferArguments {
             }
             (ModelOrBoard::Model, None) | (ModelOrBoard::Board(_), _) => Ok(()),
         }
+    }
+}
+
+/// Options of a command that draws.
+#[derive(clap::Args)]
+pub struct DrawingArguments {
+    /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
+    /// (the verilated SoC) or a serial port.
+    #[arg(long, default_value = "model")]
+    pub board: ModelOrBoard,
+    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
+    #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
+    backend: Option<Backend>,
+    #[command(flatten)]
+    pub transfer: TransferArguments,
+}
+
+impl DrawingArguments {
+    /// Rejects board options if the model draws.
+    pub fn check(&self) -> Result<(), InputError> {
+        self.transfer.check(&self.board, self.backend)
+    }
+
+    /// The renderer on the board `name`.
+    pub fn renderer<'b>(
+        &self,
+        board: &'b mut (dyn Board + 'b),
+        name: &BoardName,
+    ) -> BoardRenderer<'b, dyn Board + 'b> {
+        BoardRenderer::new(Console::new(board))
+            .with_backend(self.backend)
+            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)))
     }
 }
 

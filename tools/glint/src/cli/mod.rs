@@ -22,6 +22,7 @@ mod ports;
 mod progress;
 mod render;
 mod scene;
+mod subject;
 mod terminal;
 mod wireframe;
 

@@ -1,24 +1,16 @@
 //! `glint orbit`.
 
-use super::camera::{CameraArguments, CameraSubject, turn};
-use super::common::{SizeArguments, TransferArguments, bad_value, named};
-use super::convert::load;
-use super::field::FieldArguments;
+use super::common::{DrawingArguments, bad_value};
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
 use super::progress::count_bar;
-use super::render::{nothing, shown};
+use super::subject::SubjectArguments;
 use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
-use glint::console::Console;
 use glint::picture::Animation;
-use glint::render::{BoardRenderer, Frame, Rendered, Route, Subject, on_model, remarks};
-use glint::scene;
+use glint::render::{Frame, Rendered, Subject, on_model, remarks};
 use glint_core::camera::View;
-use glint_core::mesh::Mesh;
-use glint_core::object::Place;
-use glint_core::picture::Backend;
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::io::{self, BufWriter, Seek, Write};
@@ -30,16 +22,8 @@ use std::path::PathBuf;
 /// it goes around the origin about the z axis, starting with the camera of `glint render`.
 #[derive(Args)]
 pub struct OrbitArguments {
-    /// A mesh file, `-` for standard input, or a generator's name. With --field, the mesh is drawn in the field.
-    model: Option<String>,
-    /// A scene: the name of a built-in scene (`glint scene list`), a scene file (docs/scenes.md), or `-` for standard input. It
-    /// sets camera, quality and size; the camera options, --quality and --size override them.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
-    scene: Option<String>,
     #[command(flatten)]
-    field: FieldArguments,
-    #[command(flatten)]
-    camera: CameraArguments,
+    subject: SubjectArguments,
     /// Animation to write: an animated PNG, or a GIF, which has 256 colours per frame. `-` is standard output, for a PNG.
     #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif")]
     out: PathBuf,
@@ -49,17 +33,8 @@ pub struct OrbitArguments {
     /// Frames per second of the animation. The frame time of a GIF is a multiple of 1/100 s.
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=50))]
     rate: u16,
-    /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
-    /// (the verilated SoC) or a serial port.
-    #[arg(long, default_value = "model")]
-    board: ModelOrBoard,
-    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
-    #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
-    backend: Option<Backend>,
     #[command(flatten)]
-    size: SizeArguments,
-    #[command(flatten)]
-    transfer: TransferArguments,
+    drawing: DrawingArguments,
 }
 
 /// Output of `--json`.
@@ -81,70 +56,18 @@ struct Outcome<'a> {
 
 impl OrbitArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        self.transfer.check(&self.board, self.backend)?;
-        match &self.scene {
-            Some(name) => self.run_scene(&glint_scene_file::read(name)?),
-            None => self.run_subject(),
-        }
-    }
-
-    fn run_scene(&self, scene: &SceneFile) -> anyhow::Result<()> {
-        let out = self.open(Some(scene))?;
-        scene::draw(scene, &self.size.changes()?, |frame| {
-            if let Subject::Wireframe(_) = frame.subject {
+        self.drawing.check()?;
+        let instead = "--field or --scene";
+        self.subject.with_frame(&[], false, instead, |shown| {
+            let inputs = self.subject.inputs(shown.scene);
+            let out = Output::open(&self.out, ANIMATION, inputs)?;
+            if let Subject::Wireframe(_) = shown.frame.subject {
                 let expected = "a scene with a camera";
                 return Err(bad_value("--scene", expected, "a wireframe program").into());
             }
-            let views = turn(
-                &self.camera.of_scene(&self.field.options, frame.view)?,
-                self.frames,
-            )?;
-            self.write(out, frame, &views, Some(scene))
-        })?
-    }
-
-    fn run_subject(&self) -> anyhow::Result<()> {
-        let out = self.open(None)?;
-        let mut scene = self.field.scene(&self.size)?;
-        let model = self.model.as_deref().map(|name| load(name, false));
-        let model = model.transpose()?;
-        let mesh = model.as_ref().map(|model| Mesh::new_checked(&model.mesh));
-        let mesh = mesh.transpose()?;
-        let colour = self.field.mesh_colour(&scene)?;
-        let place = Place {
-            colour,
-            ..Place::default()
-        };
-        let object = mesh.filter(|_| colour.is_some());
-        let object = object.map(|mesh| scene.object(&place, mesh));
-        let frame = shown(&mut scene, mesh, object.as_slice());
-        let frame = frame?.ok_or_else(|| nothing("--field or --scene"))?;
-        let shown = CameraSubject {
-            sphere: frame.subject.sphere(),
-            model: self.model.as_deref(),
-            has_mesh: mesh.is_some(),
-            stereo: frame.stereo,
-        };
-        let options = &self.field.options;
-        let views = self.camera.turn(options, &shown, self.frames)?;
-        self.write(out, &frame, &views, None)
-    }
-
-    /// Opens the output file, which must not be one of the inputs.
-    fn open(&self, scene: Option<&SceneFile>) -> anyhow::Result<Output> {
-        let names = [
-            self.model.as_deref(),
-            self.scene.as_deref(),
-            self.field.file(),
-        ];
-        let names = names.into_iter().flatten();
-        let meshes = scene
-            .into_iter()
-            .flat_map(SceneFile::meshes)
-            .map(String::as_str);
-        let files = names.chain(meshes).map(PathBuf::from);
-        let camera = self.camera.file().map(PathBuf::from);
-        Output::open(&self.out, ANIMATION, files.chain(camera))
+            let views = self.subject.turn(shown, self.frames)?;
+            self.write(out, shown.frame, &views, shown.scene)
+        })
     }
 
     /// Renders a frame for each camera, and writes the animation.
@@ -176,15 +99,15 @@ impl OrbitArguments {
             (sum / u128::from(self.frames)) as u64
         });
         let outcome = Outcome {
-            model: self.model.as_deref(),
-            field: self.field.name(),
-            scene: self.scene.as_deref(),
-            board: self.board.to_string(),
+            model: self.subject.model.as_deref(),
+            field: self.subject.field.name(),
+            scene: self.subject.scene.as_deref(),
+            board: self.drawing.board.to_string(),
             size: frame.size.pixels(),
             frames: self.frames,
             cycles,
         };
-        if self.transfer.json {
+        if self.drawing.transfer.json {
             return print_json(&outcome);
         }
         let shown = outcome.model.or(outcome.field).or(outcome.scene);
@@ -194,7 +117,7 @@ impl OrbitArguments {
             self.frames,
             shown.unwrap_or_default(),
             frame.size,
-            self.board
+            self.drawing.board
         ))
     }
 
@@ -225,7 +148,7 @@ impl OrbitArguments {
             bar.inc();
             take(drawn)
         };
-        match &self.board {
+        match &self.drawing.board {
             ModelOrBoard::Model => {
                 for &view in views {
                     take(on_model(&Frame { view, ..*frame })?)?;
@@ -246,12 +169,9 @@ impl OrbitArguments {
         scene: Option<&SceneFile>,
         take: &mut dyn FnMut(Rendered) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
-        let mut board = self.transfer.line.board(name)?;
-        let route = self.transfer.transfer.unwrap_or(Route::of(name));
-        let mut renderer = BoardRenderer::new(Console::new(&mut *board))
-            .with_backend(self.backend)
-            .with_scene(scene.cloned())
-            .with_route(route);
+        let mut board = self.drawing.transfer.line.board(name)?;
+        let renderer = self.drawing.renderer(&mut *board, name);
+        let mut renderer = renderer.with_scene(scene.cloned());
         for (number, &view) in views.iter().enumerate() {
             let stats = match number {
                 0 => renderer.show(&Frame { view, ..*frame })?,

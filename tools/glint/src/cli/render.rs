@@ -1,27 +1,17 @@
 //! `glint render`.
 
-use super::camera::{CameraArguments, CameraSubject};
-use super::common::{Opened, SizeArguments, TransferArguments, bad_value, named};
-use super::convert::load;
-use super::field::FieldArguments;
+use super::common::{DrawingArguments, Opened, bad_value};
 use super::messages::{print_json, say, warn};
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
 use super::progress::{advance, bar, spinner};
+use super::subject::SubjectArguments;
 use anyhow::Context;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard};
-use glint::console::Console;
 use glint::object::Description;
-use glint::render::{
-    BoardRenderer, Frame, Parts, RayCounts, Rendered, Route, Stats, on_model, remarks,
-};
-use glint::scene;
-use glint_core::mesh::Mesh;
-use glint_core::object::Place;
-use glint_core::picture::{Backend, Size};
-use glint_model::Object;
-use glint_scene::{Assets, Kind, Scene};
+use glint::render::{Frame, Parts, RayCounts, Rendered, Stats, on_model, remarks};
+use glint_core::picture::Size;
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -29,30 +19,15 @@ use std::path::PathBuf;
 /// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// A mesh file, `-` for standard input, or a generator's name. With --field, the mesh is drawn in the field.
-    model: Option<String>,
-    /// A scene: the name of a built-in scene (`glint scene list`), a scene file (docs/scenes.md), or `-` for standard input. It
-    /// sets camera, quality and size; the camera options, --quality and --size override them.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
-    scene: Option<String>,
+    #[command(flatten)]
+    subject: SubjectArguments,
     /// An additional model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S`
     /// or `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour
     /// RRGGBB`.
     #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"])]
     object: Vec<String>,
     #[command(flatten)]
-    field: FieldArguments,
-    #[command(flatten)]
-    camera: CameraArguments,
-    /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
-    /// (the verilated SoC) or a serial port.
-    #[arg(long, default_value = "model")]
-    board: ModelOrBoard,
-    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
-    #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
-    backend: Option<Backend>,
-    #[command(flatten)]
-    size: SizeArguments,
+    drawing: DrawingArguments,
     /// Picture file to write; `-` is standard output.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
@@ -73,8 +48,6 @@ pub struct RenderArguments {
     /// Source of a board's picture: its memory, or the monitor of the emulated or the virtual board.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
     capture: Capture,
-    #[command(flatten)]
-    transfer: TransferArguments,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -109,56 +82,27 @@ struct Totals<'a> {
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        self.transfer.check(&self.board, self.backend)?;
-        if let Some(name) = &self.scene {
-            let scene = glint_scene_file::read(name)?;
-            return scene::draw(&scene, &self.size.changes()?, |frame| {
-                let view = self.camera.of_scene(&self.field.options, frame.view)?;
-                self.write(&Frame { view, ..*frame }, Some(&scene))
-            })?;
-        }
-        let mut scene = self.field.scene(&self.size)?;
-        let model = self.model.as_deref();
-        let model = model.map(|name| load(name, self.keep_scale)).transpose()?;
-        let mesh = model.as_ref().map(|model| Mesh::new_checked(&model.mesh));
-        let mesh = mesh.transpose()?;
-        let descriptions = self.objects()?;
-        let models = descriptions
-            .iter()
-            .map(|object| load(&object.model, self.keep_scale))
-            .collect::<anyhow::Result<Vec<_>>>()?;
-        let colour = self.field.mesh_colour(&scene)?;
-        let place = Place {
-            colour,
-            ..Place::default()
-        };
-        let model = mesh.filter(|_| !descriptions.is_empty() || colour.is_some());
-        let mut objects: Vec<_> = model
-            .into_iter()
-            .map(|mesh| scene.object(&place, mesh))
-            .collect();
-        for (Description { place, .. }, model) in descriptions.iter().zip(&models) {
-            let place = Place {
-                colour: place.colour.or(colour),
-                ..*place
-            };
-            objects.push(scene.object(&place, Mesh::new_checked(&model.mesh)?));
-        }
-        let frame = shown(&mut scene, mesh, &objects);
-        let frame = frame?.ok_or_else(|| nothing("--field, --object or --scene"))?;
-        let shown = CameraSubject {
-            sphere: frame.subject.sphere(),
-            model: self.model.as_deref(),
-            has_mesh: mesh.is_some(),
-            stereo: frame.stereo,
-        };
-        let view = self.camera.view(&self.field.options, &shown)?;
-        self.write(&Frame { view, ..frame }, None)
+        self.drawing.check()?;
+        let objects = self.objects()?;
+        let instead = "--field, --object or --scene";
+        self.subject
+            .with_frame(&objects, self.keep_scale, instead, |shown| {
+                let view = self.subject.view(shown)?;
+                self.write(
+                    &Frame {
+                        view,
+                        ..*shown.frame
+                    },
+                    shown.scene,
+                )
+            })
     }
 
     /// Renders a frame, and writes its pictures and statistics; `scene` is the scene of the frame, if any.
     fn write(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<()> {
-        let inputs = self.inputs(scene)?;
+        let mut inputs = self.subject.inputs(scene);
+        let objects = self.objects()?.into_iter();
+        inputs.extend(objects.map(|object| object.model.into()));
         let open = |path, extensions| Output::open(path, extensions, &inputs);
         let out = open(&self.out, PICTURE)?;
         let depth = self.depth.as_deref().map(|path| open(path, DEPTH));
@@ -189,11 +133,11 @@ impl RenderArguments {
         if let Some(out) = statistics {
             out.write_json(&totals)?;
         }
-        if self.transfer.json {
+        if self.drawing.transfer.json {
             let outcome = Outcome {
-                model: self.model.as_deref(),
-                field: self.field.name(),
-                board: self.board.to_string(),
+                model: self.subject.model.as_deref(),
+                field: self.subject.field.name(),
+                board: self.drawing.board.to_string(),
                 size: frame.size.pixels(),
                 stats: &totals,
             };
@@ -207,8 +151,8 @@ impl RenderArguments {
         let Some(text) = &self.supersample else {
             return Ok((size, 1));
         };
-        if self.board != ModelOrBoard::Model {
-            let found = format!("--board {}", self.board);
+        if self.drawing.board != ModelOrBoard::Model {
+            let found = format!("--board {}", self.drawing.board);
             return Err(bad_value("--supersample", "--board model", found).into());
         }
         let factor = if text == "2" { 2 } else { 4 };
@@ -221,21 +165,6 @@ impl RenderArguments {
         Ok((drawn?, factor as usize))
     }
 
-    /// Names of the files that the command reads; includes names of generators.
-    fn inputs(&self, scene: Option<&SceneFile>) -> anyhow::Result<Vec<PathBuf>> {
-        let mut names = self
-            .objects()?
-            .into_iter()
-            .map(|object| object.model)
-            .collect::<Vec<_>>();
-        names.extend(self.model.clone());
-        names.extend(self.scene.clone());
-        names.extend(self.field.file().map(str::to_owned));
-        names.extend(scene.into_iter().flat_map(SceneFile::meshes).cloned());
-        let files = names.into_iter().map(PathBuf::from);
-        Ok(files.chain(self.camera.file().map(PathBuf::from)).collect())
-    }
-
     fn objects(&self) -> anyhow::Result<Vec<Description>> {
         let objects = self
             .object
@@ -246,18 +175,18 @@ impl RenderArguments {
 
     fn render(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
-            self.board.is_simulated() || self.capture == Capture::Frame,
+            self.drawing.board.is_simulated() || self.capture == Capture::Frame,
             "--capture monitor: expected the emulated or the virtual board, found --board {}",
-            self.board
+            self.drawing.board
         );
-        match &self.board {
+        match &self.drawing.board {
             ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
                 let rendered = on_model(frame)?;
                 spinner.finish();
                 Ok(rendered)
             }
-            ModelOrBoard::Board(name) => match self.transfer.line.open_any(name)? {
+            ModelOrBoard::Board(name) => match self.drawing.transfer.line.open_any(name)? {
                 Opened::Serial(mut board) => self.render_on(&mut board, name, frame, scene),
                 Opened::Simulated(mut board) => {
                     let mut rendered = self.render_on(&mut board, name, frame, scene)?;
@@ -280,10 +209,10 @@ impl RenderArguments {
         scene: Option<&SceneFile>,
     ) -> anyhow::Result<Rendered> {
         let bar = bar("mesh and frames");
-        let mut renderer = BoardRenderer::new(Console::new(board))
-            .with_backend(self.backend)
+        let mut renderer = self
+            .drawing
+            .renderer(board, name)
             .with_scene(scene.cloned())
-            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)))
             .with_progress(advance(&bar));
         let parts = Parts {
             colour: self.capture == Capture::Frame,
@@ -291,33 +220,6 @@ impl RenderArguments {
         };
         Ok(renderer.render(frame, parts)?)
     }
-}
-
-/// The frame of a scene with its field, mesh or objects; `None` for a scene without any of them.
-pub fn shown<'a>(
-    scene: &'a mut Scene,
-    mesh: Option<Mesh<'a>>,
-    objects: &'a [Object<'a>],
-) -> anyhow::Result<Option<Frame<'a>>> {
-    if !objects.is_empty() {
-        scene.kind = Kind::Objects;
-    }
-    scene.with_mesh = mesh.is_some();
-    let is_empty = objects.is_empty() && mesh.is_none() && scene.field.is_none();
-    let program = scene::program()?;
-    Ok((!is_empty).then(|| {
-        scene.frame(Assets {
-            mesh,
-            objects,
-            program,
-        })
-    }))
-}
-
-/// The error for a command without anything to draw; `options` are the alternatives to a model.
-pub fn nothing(options: &str) -> anyhow::Error {
-    let expected = format!("a mesh file or a generator such as teapot, or {options} in its place");
-    bad_value("MODEL", &expected, "none").into()
 }
 
 /// Prints the statistics of a frame as text.

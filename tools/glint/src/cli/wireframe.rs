@@ -1,18 +1,17 @@
 //! `glint wireframe`.
 
-use super::common::{TransferArguments, bad_value, named, size};
+use super::common::{DrawingArguments, bad_value, named, size};
 use super::messages::{print_json, say};
 use super::output::{Output, PICTURE, PROGRAM, STATISTICS};
 use super::progress::{advance, bar, spinner};
 use super::render::print_stats;
 use clap::{Args, Subcommand};
 use glint::board::{BoardName, ModelOrBoard};
-use glint::console::Console;
 use glint::model;
-use glint::render::{BoardRenderer, Frame, Rendered, Route, Subject, WireframeSubject, on_model};
+use glint::render::{Frame, Rendered, Subject, WireframeSubject, on_model};
 use glint::view;
 use glint::wireframe::{self, Action, Form, Made, MotionForm, Played};
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::Size;
 use glint_core::wireframe::{Program, Viewing};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -115,21 +114,14 @@ pub struct RenderArguments {
     /// step.
     #[arg(long, value_parser = named(MotionForm::ALL, MotionForm::name), default_value = "drift-free")]
     motion: MotionForm,
-    /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
-    /// (the verilated SoC) or a serial port.
-    #[arg(long, default_value = "model")]
-    board: ModelOrBoard,
-    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
-    #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
-    backend: Option<Backend>,
+    #[command(flatten)]
+    drawing: DrawingArguments,
     /// Size of the picture: 320x180, 640x360 or 1280x720.
     #[arg(long, value_name = "WxH", default_value = "640x360")]
     size: String,
     /// Write the counts of segments, lines and pixels as JSON.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
-    #[command(flatten)]
-    transfer: TransferArguments,
 }
 
 impl WireframeCommand {
@@ -261,7 +253,7 @@ impl MakeArguments {
 
 impl RenderArguments {
     fn run(self) -> anyhow::Result<()> {
-        self.transfer.check(&self.board, self.backend)?;
+        self.drawing.check()?;
         let size = size(&self.size)?;
         let press = self.press.as_deref();
         let script = press.map(wireframe::script).transpose();
@@ -277,7 +269,7 @@ impl RenderArguments {
             pose,
             refused,
         } = wireframe::play(&wireframe::check(&bytes)?, &script, self.motion);
-        let Rendered { image, stats } = match &self.board {
+        let Rendered { image, stats } = match &self.drawing.board {
             ModelOrBoard::Model => {
                 let program = wireframe::check(&bytes)?;
                 let subject = Subject::Wireframe(WireframeSubject { program, pose });
@@ -298,7 +290,7 @@ impl RenderArguments {
         if let Some(out) = statistics {
             out.write_json(&stats)?;
         }
-        if self.transfer.json {
+        if self.drawing.transfer.json {
             return print_json(&stats);
         }
         print_stats(&stats)?;
@@ -317,12 +309,10 @@ impl RenderArguments {
         script: &[Action],
         size: Size,
     ) -> anyhow::Result<Rendered> {
-        let mut board = self.transfer.line.board(name)?;
+        let mut board = self.drawing.transfer.line.board(name)?;
         let bar = bar("program and frame");
-        let mut renderer = BoardRenderer::new(Console::new(&mut *board))
-            .with_backend(self.backend)
-            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)))
-            .with_progress(advance(&bar));
+        let renderer = self.drawing.renderer(&mut *board, name);
+        let mut renderer = renderer.with_progress(advance(&bar));
         Ok(renderer.play(program, script, size)?)
     }
 }

@@ -1,0 +1,136 @@
+//! The subject of `glint render` and `glint orbit`: a model, a field, a model in a field, or a scene, with its camera.
+
+use super::camera::CameraArguments;
+use super::common::{SizeArguments, bad_value};
+use super::convert::load;
+use super::field::FieldArguments;
+use clap::Args;
+use glint::object::Description;
+use glint::render::Frame;
+use glint::scene;
+use glint_core::camera::View;
+use glint_core::mesh::Mesh;
+use glint_core::object::Place;
+use glint_scene::{Assets, Kind};
+use glint_scene_file::SceneFile;
+use std::path::PathBuf;
+
+/// What a picture shows, with its camera and size.
+#[derive(Args)]
+pub struct SubjectArguments {
+    /// A mesh file, `-` for standard input, or a generator's name. With --field, the mesh is drawn in the field.
+    pub model: Option<String>,
+    /// A scene: the name of a built-in scene (`glint scene list`), a scene file (docs/scenes.md), or `-` for standard input. It
+    /// sets camera, quality and size; the camera options, --quality and --size override them.
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
+    pub scene: Option<String>,
+    #[command(flatten)]
+    pub field: FieldArguments,
+    #[command(flatten)]
+    camera: CameraArguments,
+    #[command(flatten)]
+    size: SizeArguments,
+}
+
+/// A frame of the subject, whose camera is that of its scene, or not set.
+#[derive(Clone, Copy)]
+pub struct CameraSubject<'a> {
+    pub frame: &'a Frame<'a>,
+    /// The name of the model's file or generator, if any.
+    pub model: Option<&'a str>,
+    /// The scene of the frame, if any.
+    pub scene: Option<&'a SceneFile>,
+}
+
+impl SubjectArguments {
+    /// Calls `draw` with the frame. `others` are objects beside the model; `instead` names the options in place of a model.
+    ///
+    /// # Errors
+    /// There is nothing to draw, a file cannot be read, or an option does not apply.
+    pub fn with_frame<T>(
+        &self,
+        others: &[Description],
+        keep_scale: bool,
+        instead: &str,
+        draw: impl FnOnce(&CameraSubject) -> anyhow::Result<T>,
+    ) -> anyhow::Result<T> {
+        let model = self.model.as_deref();
+        if let Some(name) = &self.scene {
+            let file = glint_scene_file::read(name)?;
+            let scene = Some(&file);
+            return scene::draw(&file, &self.size.changes()?, |frame| {
+                draw(&CameraSubject {
+                    frame,
+                    model,
+                    scene,
+                })
+            })?;
+        }
+        let mut scene = self.field.scene(&self.size)?;
+        let loaded = model.map(|name| load(name, keep_scale)).transpose()?;
+        let mesh = loaded.as_ref().map(|model| Mesh::new_checked(&model.mesh));
+        let mesh = mesh.transpose()?;
+        let models = others.iter().map(|object| load(&object.model, keep_scale));
+        let models = models.collect::<anyhow::Result<Vec<_>>>()?;
+        let colour = self.field.mesh_colour(&scene)?;
+        let place = Place {
+            colour,
+            ..Place::default()
+        };
+        let model_object = mesh.filter(|_| !others.is_empty() || colour.is_some());
+        let model_object = model_object.map(|mesh| scene.object(&place, mesh));
+        let mut objects: Vec<_> = model_object.into_iter().collect();
+        for (Description { place, .. }, model) in others.iter().zip(&models) {
+            let place = Place {
+                colour: place.colour.or(colour),
+                ..*place
+            };
+            objects.push(scene.object(&place, Mesh::new_checked(&model.mesh)?));
+        }
+        if objects.is_empty() && mesh.is_none() && scene.field.is_none() {
+            let expected =
+                format!("a mesh file or a generator such as teapot, or {instead} in its place");
+            return Err(bad_value("MODEL", &expected, "none").into());
+        }
+        if !objects.is_empty() {
+            scene.kind = Kind::Objects;
+        }
+        scene.with_mesh = mesh.is_some();
+        let frame = scene.frame(Assets {
+            mesh,
+            objects: &objects,
+            program: scene::program()?,
+        });
+        draw(&CameraSubject {
+            frame: &frame,
+            model,
+            scene: None,
+        })
+    }
+
+    /// The camera.
+    pub fn view(&self, shown: &CameraSubject) -> anyhow::Result<View> {
+        self.camera.view(&self.field.options, shown)
+    }
+
+    /// The cameras of a full turn in this number of steps, starting with that of [`view`](Self::view).
+    pub fn turn(&self, shown: &CameraSubject, steps: u16) -> anyhow::Result<Vec<View>> {
+        self.camera.turn(&self.field.options, shown, steps)
+    }
+
+    /// The files that the command reads, and possibly names of generators.
+    pub fn inputs(&self, scene: Option<&SceneFile>) -> Vec<PathBuf> {
+        let names = [
+            self.model.as_deref(),
+            self.scene.as_deref(),
+            self.field.file(),
+        ];
+        let meshes = scene.into_iter().flat_map(SceneFile::meshes);
+        let names = names
+            .into_iter()
+            .flatten()
+            .chain(meshes.map(String::as_str));
+        let camera = self.camera.file().map(PathBuf::from);
+        names.map(PathBuf::from).chain(camera).collect()
+    }
+}
