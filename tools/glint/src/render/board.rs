@@ -265,24 +265,23 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         size: Size,
         parts: Parts,
     ) -> Result<Rendered, Error> {
-        // The gateware writes depth codes on request only. Over the serial line, the download requests them.
-        let render = match self.route {
-            Route::Memory if parts.depth => "render depth",
-            _ => "render",
-        };
         // The commands are sent in one write, so that the board draws no frame before `render` arrives.
-        let lines = commands.iter().map(String::as_str).chain([render]);
+        let lines = commands.iter().map(String::as_str).chain(["render"]);
         let text: String = lines.flat_map(|line| [line, "\r"]).collect();
         self.console.board().write(text.as_bytes())?;
         for command in commands {
             self.console.reply(command)?;
         }
-        let stats = stats_of(&self.console.reply(render)?)?;
+        let stats = stats_of(&self.console.reply("render")?)?;
         let mut image = Image::empty(size);
         if parts.colour {
             image.colour = self.colour(size)?;
         }
         if parts.depth {
+            // The gateware writes depth codes only on request. Over the serial line, `frame depth` requests them.
+            if self.route == Route::Memory {
+                self.console.command("render depth")?;
+            }
             let bytes = self.download("depth", "frame depth", 4 * size.pixel_count())?;
             let words = bytes.as_chunks().0.iter();
             image.depth = words.map(|word| u32::from_le_bytes(*word)).collect();
