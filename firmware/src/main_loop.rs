@@ -276,7 +276,7 @@ impl MainLoop {
             self.indicators.poll(devices, demo, picture, *heartbeat);
         };
         if begins {
-            models.update_objects(scene, &mut progress);
+            models.update(scene, &mut progress);
         }
         let Some(drawn) = renderer.draw(models, scene, picture, progress) else {
             return Turn::worked(renderer.is_ready());

@@ -46,6 +46,9 @@ pub struct Models {
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
     objects: Objects,
+    /// The mesh of the scene of the last [`update`](Models::update): a frame is made at each step of its drawing, and to find a mesh by
+    /// its name takes a thousand clock cycles.
+    shown: Mesh<'static>,
     revision: u32,
 }
 
@@ -61,11 +64,13 @@ impl Models {
         turned: Arena,
         cube_program: Program<'static>,
     ) -> Result<Self, MeshError> {
+        let shapes = Shapes::new(shapes)?;
         Ok(Self {
             arena,
             meshes: Vec::new(),
             program: None,
-            shapes: Shapes::new(shapes)?,
+            shown: shapes.cube(),
+            shapes,
             cube_program,
             objects: Objects::new(turned),
             revision: 0,
@@ -82,17 +87,19 @@ impl Models {
         self.known(&scene.mesh).unwrap_or(self.shapes.cube())
     }
 
-    /// The frame of `scene`. Its objects are as of the last [`update`](Self::update_objects).
+    /// The frame of `scene`, with mesh and objects as of the last [`update`](Self::update).
     pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
         scene.frame(Assets {
-            mesh: Some(self.mesh(scene)),
+            mesh: Some(self.shown),
             objects: self.objects.all(),
             program: *self.program(),
         })
     }
 
-    /// Prepares the objects of `scene`, if it shows objects, for the next frame. Calls `progress` at short intervals.
-    pub fn update_objects(&mut self, scene: &Scene, progress: &mut dyn FnMut()) {
+    /// Prepares mesh and objects of `scene` for the next frame. Calls `progress` at short intervals.
+    pub fn update(&mut self, scene: &Scene, progress: &mut dyn FnMut()) {
+        let mesh = known(&self.meshes, &self.shapes, &scene.mesh);
+        self.shown = mesh.unwrap_or(self.shapes.cube());
         if scene.shows_objects() {
             let Self {
                 objects,
@@ -219,6 +226,7 @@ impl Models {
     fn revise(&mut self) {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);
+        self.shown = self.shapes.cube();
     }
 
     /// Checks lent memory as a wireframe program, and keeps the program; it replaces the last program. No frame may be in progress.
@@ -289,9 +297,9 @@ impl Models {
     /// The first `length` bytes of a region, for a mesh or a program that borrows them.
     fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
         let bytes = self.arena.bytes(region, length);
-        // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `meshes`, `program` and
-        // `objects`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its region, and
-        // `compact` before it moves the regions; the arena lends only gaps mutably.
+        // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `meshes`, `program`,
+        // `objects` and `shown`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its
+        // region, and `compact` before it moves the regions; the arena lends only gaps mutably.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }
 }
