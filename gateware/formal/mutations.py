@@ -328,8 +328,8 @@ MUTATIONS = {
     ],
     "classify": [
         _classify("known        <= !in_ready && !leaves;", "known        <= !in_ready && !known;", "exception.valid_stays"),
-        _held("if (enables[i / LOADS])", "if (1'b1)", "in_order"),
-        _held("if (enables[i / LOADS])", "if (1'b1)", "regular.payload_stable"),
+        _held("if (enables[i]) out", "if (1'b1) out", "in_order"),
+        _held("if (enables[i]) out", "if (1'b1) out", "regular.payload_stable"),
         _classify("if (leaves) count", "if (known) count", "counted"),
         _classify("if (leaves) count", "if (known) count", "exception.payload_stable"),
         _classify("known && !to_regular && !to_exception;", "known && !to_regular;", "leaves_one_way"),
@@ -353,7 +353,7 @@ MUTATIONS = {
     ],
     "band_entry": [
         _entry(".leaves(out_ready)", ".leaves(1'b1)", "shown.valid_stays"),
-        _held("if (enables[i / LOADS])", "if (1'b1)", "shown.payload_stable"),
+        _held("if (enables[i]) out", "if (1'b1) out", "shown.payload_stable"),
         _entry("pass == ROWS_KNOWN && count == '0;", "1'b0;", "nothing_made_up"),
         # Fault: the next triangle overwrites the held one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
