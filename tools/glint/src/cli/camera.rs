@@ -3,14 +3,15 @@
 use super::common::{bad_value, named};
 use super::messages::note;
 use super::options::OptionArguments;
-use super::subject::CameraSubject;
 use clap::Args;
+use glint::render::Frame;
 use glint::view;
 use glint_core::camera::View;
 use glint_core::fixed::Turns;
 use glint_core::framing::BoundingSphere;
 use glint_core::matrix::Axis;
 use glint_model::{MAX_EYE, RenderError};
+use glint_scene_file::SceneFile;
 use std::path::{Path, PathBuf};
 
 /// The camera without a subject and without options.
@@ -34,6 +35,16 @@ pub struct CameraArguments {
     /// z].
     #[arg(long, value_parser = named(Axis::ALL, Axis::name), conflicts_with_all = ["camera", "lookat"])]
     up: Option<Axis>,
+}
+
+/// A frame of the subject, whose camera is that of its scene, or not set.
+#[derive(Clone, Copy)]
+pub struct CameraSubject<'a> {
+    pub frame: &'a Frame<'a>,
+    /// The name of the model's file or generator, if any.
+    pub model: Option<&'a str>,
+    /// The scene of the frame, if any.
+    pub scene: Option<&'a SceneFile>,
 }
 
 impl CameraArguments {

@@ -1,12 +1,11 @@
 //! The subject of `glint render` and `glint orbit`: a model, a field, a model in a field, or a scene, with its camera.
 
-use super::camera::CameraArguments;
+use super::camera::{CameraArguments, CameraSubject};
 use super::common::{SizeArguments, bad_value};
 use super::convert::load;
 use super::field::FieldArguments;
 use clap::Args;
 use glint::object::Description;
-use glint::render::Frame;
 use glint::scene;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -30,16 +29,6 @@ pub struct SubjectArguments {
     camera: CameraArguments,
     #[command(flatten)]
     size: SizeArguments,
-}
-
-/// A frame of the subject, whose camera is that of its scene, or not set.
-#[derive(Clone, Copy)]
-pub struct CameraSubject<'a> {
-    pub frame: &'a Frame<'a>,
-    /// The name of the model's file or generator, if any.
-    pub model: Option<&'a str>,
-    /// The scene of the frame, if any.
-    pub scene: Option<&'a SceneFile>,
 }
 
 impl SubjectArguments {

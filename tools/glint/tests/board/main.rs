@@ -21,6 +21,7 @@ mod scenes;
 mod scripts;
 mod sensor;
 mod serial_boot;
+mod soc;
 mod stays;
 mod stereo;
 mod terminal;

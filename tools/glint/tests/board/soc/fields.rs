@@ -11,8 +11,8 @@ use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 
+use super::compare;
 use crate::common::{mesh, plain, renderer, running_board};
-use crate::compare;
 use glint_vectors::Camera;
 
 /// Representative fields.

@@ -11,13 +11,10 @@
 //! board     load 0, draw 0      load 1, d 1   load 2, d 2   load 3, d 3
 //! ```
 
-#[allow(dead_code, reason = "the tests of boards use all of it")]
-#[path = "../board/common.rs"]
-mod common;
 mod fields;
 mod objects;
 
-use common::{counts, info, mesh, plain, running_board};
+use super::common::{counts, info, mesh, plain, running_board};
 use glint::board::Uart;
 use glint::board::{Board, BoardError, Memory, SimulatedBoard};
 use glint::console::Console;

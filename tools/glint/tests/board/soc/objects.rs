@@ -10,8 +10,8 @@ use glint_core::picture::Size;
 use glint_model::Clip;
 use glint_vectors::Camera;
 
+use super::compare;
 use crate::common::{mesh, object, renderer, running_board};
-use crate::compare;
 
 /// Placements of the objects that the gateware draws. The first object is around the eye of the last camera, and others cross its
 /// near plane, so that triangles of several objects are clipped.
