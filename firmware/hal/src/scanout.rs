@@ -91,8 +91,8 @@ impl Scanout {
         if self.registers.scale().read() != scale as u8
             || self.registers.control().read() == disabled
         {
-            // A vertical blanking may come between any two of these writes. The picture is then switched off, so that
-            // no frame is shown with the scale of another frame.
+            // A vertical blanking may begin between any two of these writes. Scan-out is disabled during these writes, so that it never
+            // shows a frame with the scale of another frame.
             self.registers.control().write(disabled);
             self.registers.scale().write(scale as u8);
             self.registers.fb_next().write(address);

@@ -196,7 +196,7 @@ impl Scene {
         }
     }
 
-    /// Writes the command that sets an option to its value, unless the value is equal in the scene `from`.
+    /// Writes the command that sets an option to its value, unless the option has the same value in the scene `from`.
     fn put<T: Display + PartialEq>(
         &self,
         name: &str,

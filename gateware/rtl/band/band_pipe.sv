@@ -13,8 +13,8 @@
 // neighbouring triangles do along their common edge, pass without a stall, because each lane is a separate memory.
 //
 // Stream protocol at the input: an item moves in a clock in which valid and ready are high; `group_ready` comes from registers
-// and from `open`, which admits groups. `empty` is high when every accepted group is written, so that a read of any row
-// includes it.
+// and from `open`, which admits groups. `empty` is high when no group is in the pipeline; a read of a row then returns the pixels of all
+// accepted groups.
 
 `default_nettype none
 

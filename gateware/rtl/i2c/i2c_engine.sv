@@ -99,8 +99,8 @@ module i2c_engine #(
     logic [PHASE_BITS-1:0] phase;
     logic                  held, expired, waiting;
     logic [STRETCH_BITS:0] stretched;
-    // `started`: set by a start condition, after which SDA is low. In LOW without a start condition, the engine clocks a device that pulls
-    // SDA low.
+    // `started`: high after a start condition, which pulls SDA low. In state LOW of a START command, a low `started` means that a device
+    // keeps SDA low; the engine then generates SCL clocks until the device releases SDA (bus recovery).
     logic                  last_byte, ninth, started;
     logic                  again, due, late, begins;
     logic [23:0]           elapsed;

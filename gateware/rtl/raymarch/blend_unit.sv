@@ -23,8 +23,8 @@ module blend_unit (
     output logic [7:0]                  share,
     output raymarch_pkg::nearest_t         nearest
 );
-    // By clock (the suffix of a name): 1 difference of the distances, 2 h, 5 weight of the larger distance,
-    // 8 blended distance.
+    // The suffix of a name is the signal's clock: 1 for the difference of the distances, 2 for h, 5 for the weight of the farther surface,
+    // 8 for the blended distance.
     logic signed [22:0] apart_1;
     logic [21:0]        away_1;
     logic [17:0]        left_1;

@@ -67,8 +67,9 @@ module ray_paint #(
         if (rst) valid <= '0;
     end
 
-    // The step of t to the plane of the face takes FIRST clocks: 2 for the inverse of the slope, 3 for the product, 1 for the
-    // sum. The clock numbers below count from `ending_0`, the end after this step.
+    // The hit point moves to the plane of its face in FIRST clocks: 2 for the reciprocal of `slope`, 3 for the product of this reciprocal
+    // and `gap`, 1 for the sum of this product and t. The clock numbers below count from `ending_0`, the end of the ray with this sum as
+    // its t.
     raymarch_pkg::end_t    ending_0, waited;
     logic [16:0]        slope_inverse;
     logic [11:0]        gap_waits;

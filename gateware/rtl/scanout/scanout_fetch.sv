@@ -41,7 +41,7 @@ module scanout_fetch #(
     localparam int unsigned OFFSET_BITS = Y_BITS + WORD_BITS;
     localparam logic [WORD_BITS-1:0] FULL_LINE = WORD_BITS'(LINE_WORDS);
 
-    // Multiplies by LINE_WORDS with shifts and adds, two for 160 words: synthesis would use a DSP48 for `*`.
+    // Multiplies by LINE_WORDS as a sum of shifted terms (two terms for 160 words), because synthesis would use a DSP48 for `*`.
     function automatic logic [OFFSET_BITS-1:0] times_line_words(input logic [Y_BITS-1:0] factor);
         times_line_words = '0;
         for (int i = 0; i < WORD_BITS; i++)

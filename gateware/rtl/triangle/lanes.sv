@@ -79,8 +79,8 @@ module lanes (
 
         assign best = in_group.best[k];
 
-        // Stage n subtracts if `less_n` is high, and adds otherwise, by subtracting the inverse of the slope and 1. The added bit
-        // below the lowest bit borrows this 1.
+        // Stage n subtracts the slope if `less_n` is high, and adds it otherwise. The addition is a subtraction of the slope's one's
+        // complement and of 1; the extra bit below the lowest bit subtracts this 1 as a borrow.
         assign less_2 = !rest_1[23];
         assign less_3 = !rest_2[23];
         assign sum_1  = {1'b0, best[22:2]} - {2'd0, in_group.slope[k]};

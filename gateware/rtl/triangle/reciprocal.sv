@@ -1,8 +1,8 @@
 // Computes the reciprocal y = 2^47/m of a mantissa m in [2^23, 2^24), from a table and two Newton steps
 // (docs/formats/triangle.md, "The reciprocal").
 //
-// `out_y` comes with `out_valid` (one clock) 15 clocks after m, and holds until the next result; never stalls. Throughput:
-// `in_ready` admits one m per 10 clocks. One DSP48 makes the four products:
+// The result `out_y` appears 15 clocks after m, with `out_valid` high for one clock, and holds until the next result. The pipeline never
+// stalls. Throughput: `in_ready` admits one m per 10 clocks. One DSP48 computes the four products:
 //
 //   clock  0      1       2        5             8           11            14         15
 //          m ─▶ seed ─▶ y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1

@@ -1,6 +1,6 @@
-// The vertex stage: computes the position on the screen and the depth of mesh vertices, in order. It performs steps 1 to 8 of
-// docs/formats/triangle.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on); with `orthographic` the
-// steps of "Orthographic projection", in the same clocks.
+// The vertex stage: computes the position on the screen and the depth of mesh vertices, in order. docs/formats/triangle.md, "Vertex stage",
+// defines the computation (steps 1 to 8) and the letters f, m, y, X, Y, X' and Y'. If `orthographic` is high, the vertex stage computes
+// "Orthographic projection" of the same document instead, in the same number of clocks.
 //
 // A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work in a fixed
 // schedule of 6 clocks, which repeats for each vertex: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1

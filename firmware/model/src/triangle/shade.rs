@@ -39,8 +39,8 @@ impl Lit {
         Self([2 * r, g, 2 * b].map(|x| x as u16))
     }
 
-    /// Returns the value P of each channel, which a plane of light interpolates: the light of the channel times (`w` plus
-    /// half a code), where `w` is the vertex's depth code before rounding (u18.6). P is u18.6, rounded to nearest.
+    /// Returns the value P = L·(w + ½) of each channel, u18.6, rounded to nearest. L is the channel's light, and `w` is the vertex's depth
+    /// code before it is rounded to an integer (u18.6). Between the vertices P is interpolated linearly.
     pub fn weighted(self, w: u32) -> [u32; 3] {
         // The product has 24 + 14 bits.
         self.0

@@ -51,8 +51,8 @@ fn a_sphere_is_a_disc_without_holes() {
     }
 }
 
-/// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws the sphere
-/// turned inside out with culling, so that its far side is visible.
+/// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws the sphere with
+/// reversed windings: culling now removes its near side, so its far side is visible.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);

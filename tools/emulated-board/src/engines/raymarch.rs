@@ -109,7 +109,8 @@ impl Raymarcher {
         }
     }
 
-    /// Ends the field if its time has passed; otherwise returns the cycle in which it ends.
+    /// Ends the field if the cycle `now` has reached its end. Returns the cycle in which the running field will end, or `u64::MAX` if no
+    /// field is running.
     pub(crate) fn settle(&mut self, now: u64) -> u64 {
         match self.running {
             Some(pass) if pass.end <= now => {

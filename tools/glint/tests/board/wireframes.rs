@@ -179,7 +179,7 @@ fn a_session_with_commands() {
     assert!(motion.apply(Key::Right.step(false)));
     assert!(shown(console)[0] == picture(&program, &motion));
 
-    // Another scene ends the session; `scene wireframe` then starts it again.
+    // Another scene ends the session; the command `program` then starts it again.
     console.command("scene cube").unwrap();
     assert!(console.command("press up").is_err());
     console.command("program").unwrap();

@@ -82,7 +82,7 @@ impl Fault {
 /// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CaseResult {
-    /// Presence of the hand at half of the fault's time.
+    /// Presence of the hand half a second after the start of the fault.
     pub presence: Presence,
     /// Reason for not using the last frame of the fault; `None` if it was used.
     pub doubt: Option<Doubt>,

@@ -6,8 +6,9 @@ use crate::camera::Ray;
 /// Finds the first hit of a ray with copies of a solid. The copies' centres are the points whose coordinates are integer
 /// multiples of the period.
 ///
-/// `hit` returns the hit of a given ray with the copy about the origin. The cells around the centres are visited in the order along the
-/// ray, up to the parameter `t_max` (Amanatides and Woo 1987). Every point of a copy must be nearest to the copy's own centre.
+/// `hit` returns the hit of a given ray with the copy about the origin. Each centre is the centre of a cubic cell. The function visits the
+/// cells in the order in which the ray crosses them, up to the ray parameter `t_max` (Amanatides and Woo 1987). Every point of a copy must
+/// be nearest to the copy's own centre.
 pub(super) fn nearest(
     period: f64,
     ray: &Ray,

@@ -275,7 +275,8 @@ fn instruction(code: &mut Vec<u32>, start: usize, random: &mut Random) {
         97 => 0x0000_0073,
         _ => illegal(random),
     };
-    // The only generated instructions with the opcode of `ecall`.
+    // Of the instructions with the opcode SYSTEM and funct3 0, only `ecall` and `ebreak` are generated; random other instructions become
+    // `ecall`.
     let is_system = one & 0x707f == 0x73 && ![0x73, 0x0010_0073].contains(&one);
     code.push(if is_system { 0x73 } else { one });
 }

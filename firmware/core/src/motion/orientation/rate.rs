@@ -215,8 +215,8 @@ impl Axis {
         let before = half_up(upper(self.difference << 3, weights.stretch));
         let second = half_up(upper((e1 - before) << 2, weights.half));
         let third = second - narrow(wide(weights.stretch_squared, self.second));
-        // `curve` is the term (2·S + D·…)/12 of A. The weights contain the factor 8/12: the division by 12, the change from 8 to
-        // 12 fraction bits, and the factor 2 of S and D.
+        // `curve` is the term (2·S + D·…)/12 of A, with 12 fraction bits. The division by 12 and the change from 8 to 12 fraction bits are
+        // together a factor of 4/3 for 2·S, and of 2/3 (in `far`) for 2·D.
         let curve = wide(second, FOUR_THIRDS) + wide(third, weights.far);
         let curve = ((curve + (1 << 14)) >> 15) as i32;
         let mean = ((rate + self.last) << 3) - curve;

@@ -46,7 +46,8 @@ pub struct GeometryTime {
 }
 
 impl GeometryTime {
-    /// Adds a segment of several pieces: 31 cycles, 28 more for a depth step, 1 for each pixel and each piece.
+    /// Adds the cycles of a segment whose line is cut into `pieces` pieces, one per band: 31 cycles for each segment, 28 more if the depth
+    /// changes along the line, 1 for each pixel, and 1 for each piece.
     pub fn add_line(&mut self, segment: &Segment, pieces: u64) {
         let line = Line::new(&segment.ends);
         let division = line.is_some_and(|line| line.depth_step != 0);

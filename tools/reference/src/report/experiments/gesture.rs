@@ -60,7 +60,7 @@ pub struct Row {
 pub struct Stiff {
     /// Content of the frames for one second.
     pub case: String,
-    /// Presence of the hand half a second later.
+    /// Presence of the hand half a second after the start of the case.
     pub presence: String,
     /// Reason for not using the frames; empty if the frames are used.
     pub reason: String,

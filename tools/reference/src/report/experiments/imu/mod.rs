@@ -1,10 +1,10 @@
-//! Experiments on the errors of the attitude from gyroscope and accelerometer.
+//! Experiments on the errors of attitudes that are computed from gyroscope and accelerometer.
 //!
-//! - `targets`: errors with a requirement.
-//! - `methods`, `filters`: errors of integration methods and of filters, compared with the true attitude.
-//! - `time`: growth of the errors over time.
-//! - `stiff`: stiff and extreme inputs.
-//! - `soft_core`: cycles on the soft core.
+//! - `targets`: errors that must not exceed a required limit.
+//! - `methods`, `filters`: deviations of integration methods and of filters from the true attitude.
+//! - `time`: growth of the firmware's errors over time.
+//! - `stiff`: errors for difficult and extreme inputs.
+//! - `soft_core`: number of the soft core's cycles per sample.
 
 pub mod filters;
 pub mod methods;

@@ -44,7 +44,7 @@ impl Path {
     /// Both paths.
     pub const ALL: [Self; 2] = [Self::Rest, Self::Turning];
 
-    /// Name of the path and of the study.
+    /// Name of the path in the results and on the progress bar.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -126,7 +126,7 @@ struct Bench {
     path: Path,
     board: Emulated,
     measured: Arc<Mutex<Measured>>,
-    /// Excess of the chip's measurements over the firmware's samples.
+    /// Difference between the number of the chip's measurements and the number of the firmware's samples, at the start.
     ahead: u64,
     /// The rotation about the vertical at the start of the motion.
     heading: f64,
@@ -231,13 +231,13 @@ impl Bench {
         })
     }
 
-    /// Excess of the chip's measurements over the samples of a new status.
+    /// Number of the chip's measurements that the samples of a new status do not include.
     fn excess(&self, status: &Status) -> Result<u64> {
         Ok(self.count()?.saturating_sub(status.samples))
     }
 
-    /// The firmware's newest status, and the smallest excess of the chip's measurements over the samples of several statuses.
-    /// Larger excesses include the firmware's backlog.
+    /// Polls the firmware's status [`POLLS`] times. Returns the last status, and the smallest difference between the number of the chip's
+    /// measurements and the number of samples in a status. A larger difference includes samples that the firmware has not yet processed.
     fn newest(&mut self) -> Result<(Status, u64)> {
         let mut status = self.status()?;
         let mut ahead = self.excess(&status)?;

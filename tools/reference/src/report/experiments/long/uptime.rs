@@ -98,7 +98,7 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
         })?;
         bench.sensor_is_off()?;
         bench.engine_counters()?;
-        // Without a sensor, whose transfers would take most of the host's time.
+        // No sensor is plugged in here: the emulation of its transfers would take most of the host's time.
         let wait = hours * 3_600_000 - bench.milliseconds();
         bench.run(wait);
         bench.board.inner().plug(resting_sensor());
