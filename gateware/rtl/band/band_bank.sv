@@ -1,12 +1,12 @@
-// One memory of the band buffer: 2^ROW_BITS rows of eight lanes, a lane being WIDTH bits of one pixel. Each lane is a separate
-// block RAM, so that it has its own write enable. With HALVES = 2, each half of a lane has a write enable; block RAM has a write enable
-// for every nine bits.
+// One memory of the band buffer: 2^ROW_BITS rows of eight lanes. A lane holds WIDTH bits of one pixel. Each lane is a separate block RAM,
+// so that it has its own write enable. With HALVES = 2, each half of a lane has a write enable; block RAM has a write enable for every nine
+// bits.
 //
 //   read_row ─▶ register ─▶ RAM ─▶ register ─▶ read_data     3 clocks from `read_row` to its data
 //   write_*  ─▶ register ─▶ RAM                              a `read_row` one clock after `write_row` reads the written data
 //
-// One read and one write in every clock. If a lane is read and written in the same clock, the read may return the old or the
-// new value: users must not rely on either.
+// The memory accepts one read and one write in each clock. If a lane is read and written in the same clock, the read may return the old or
+// the new value, so users must not rely on the value of such a read.
 
 `default_nettype none
 

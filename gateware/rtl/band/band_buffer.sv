@@ -13,9 +13,9 @@
 //
 // A row of these memories holds eight neighbouring pixels. Its address is line * (W/8) + column, with W the width of the
 // picture, line = y in the band, and column = x/8. Besides its colour each pixel has a written bit; a bank is clear when no written bit is
-// set. A pixel whose bit is 0 has depth 0 and the clear colour, but neither value is stored. Both banks can therefore share one depth
-// memory, and the clear colour may change from band to band. The flush resets the bits of each row that it has read, so no clock is spent
-// on clearing. The buffer takes 25 RAMB36.
+// set. A pixel whose written bit is 0 has depth 0 and the clear colour, but neither value is stored. Both banks can therefore share one
+// depth memory, and the clear colour may change from band to band. The flush resets the written bits of each row that it has read, so
+// clearing takes no clock of its own. The buffer takes 25 RAMB36.
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits.
 // Lane i is written if mask[i] is set and code[i] is at least the stored depth code. With STEREO a group may belong to one eye:
@@ -25,22 +25,23 @@
 // mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
-// 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first
-// clock of `band_valid` belong to the band. After that no group is taken until the item has moved. The item moves when the last
-// group is written and the previous band is in memory; in this clock the banks are exchanged.
+// 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups accepted up to and including the first clock
+// of `band_valid` belong to the band. After this clock no group is accepted until the item has moved. The item moves when the last group is
+// written and the previous band is in memory; in this clock the banks are exchanged.
 //
 // There are two frame buffers in memory, `slot` 0 and 1. For each line of their pictures (from `first_line` on) the band buffer stores one
 // extent: the words of the line that may differ from the clear colour since the last flush to this slot. The union of that extent and of
-// the words drawn now is written to memory. With `whole` all words are written to memory. `whole` is required unless the lines in the
-// frame buffer are as the last flush to this slot left them, with the same clear colour and stride.
+// the words drawn now is written to memory. With `whole` all words are written to memory. `whole` is required if the lines in the frame
+// buffer have changed since the last flush to this slot, or if the clear colour or the stride differs from that flush.
 //
 // `with_depth` is for debugging: the depths of the whole band are also written to memory, as 32-bit words from `depth_base` on, and
 // `whole` is implied. The next band is drawn only after this flush, which writes three words per row.
 //
-// `restart` (and reset) drops the band being drawn and stops the flush; words already read, at most 16, still come out. Then
-// both banks are cleared: for 2,048 clocks `clearing` is high and no group or band is taken, even if memory accepts no words.
-// The next flush to the interrupted slot of the lines that were being flushed (after reset: of all lines, in both slots) must
-// be `whole`. The renderers must also be restarted, because the band buffer accepts all groups and bands that they offer afterwards.
+// `restart` (and reset) drops the band that is being drawn and stops the flush. Words that were already read, at most 16, are still sent to
+// memory. Then both banks are cleared: for 2,048 clocks `clearing` is high, and no group or band is accepted. This time does not depend on
+// memory. After `restart`, the next flush of the interrupted band's lines to the same slot must be `whole`; after a reset, the first flush
+// of every line to each slot. The renderers must also be restarted, because the band buffer accepts all groups and bands that they offer
+// afterwards.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds
 // until it has moved. Words for memory: see band_flush. `flushed` is high when memory has taken all words of all bands.
@@ -89,8 +90,8 @@ module band_buffer #(
 );
     localparam int unsigned ROW_BITS = 11;
 
-    // `drawn` is the number of the colour bank that is drawn; the other bank is flushed. `closing` is high while the drawn band
-    // waits for its end, and `swap` in the clock in which the banks are exchanged.
+    // `drawn` is the number of the colour bank that is drawn; the other bank is flushed. `closing` is high while the band waits for its
+    // last groups and for the end of the flush. `swap` is high in the clock in which the banks are exchanged.
     logic drawn, closing, swap;
 
     // State of band_pipe, which draws, and its signals to and from the memories.

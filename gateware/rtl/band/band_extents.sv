@@ -8,20 +8,22 @@
 //                          │ last, slot 0/1├─────────┘
 //                          └───────────────┘
 //
-// The extent of a line is its first and its last drawn column, a column being eight pixels. The memory `now` in LUTs holds the
-// extents of the lines of a band, once for each colour bank. A group updates the extent of its line in two clocks, a read and a
-// write; an extent that is being written is forwarded to a read of the same line in that clock. The last update ends 2 clocks after
-// its group. The memory `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent goes from the
-// largest column down to 0, which is the neutral element of the union; the largest column, all ones, must therefore not be drawn.
+// The extent of a line is its first and its last drawn column, a column being eight pixels. The memory `now`, in LUTs, holds the extents of
+// the lines of two bands, one for each colour bank. A group updates the extent of its line in two clocks, a read and a write; if a line's
+// extent is read in the clock of its write, the read returns the written value. The last update ends 2 clocks after its group. The memory
+// `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent has the largest column as its first column
+// and 0 as its last column, so the union of an empty extent and another extent is the other extent. The largest column, all ones, must
+// therefore not be drawn.
 //
 // `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on, the other bank
 // is drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line` of the picture. For
 // every non-empty line, in order, the output has a span: the first and the last row to write in the band buffer. With `whole` every line
-// has a span of all its rows. `busy` falls when the last span has been taken. The extents of the lines have then moved from `now` to
-// `last`. Latency 6 clocks from `start` to the first span; throughput one line per clock, empty or not.
+// has a span of all its rows. `busy` falls when the last span has been taken. At this time the extents of the lines have been moved from
+// `now` to `last`. Latency 6 clocks from `start` to the first span; throughput one line per clock, empty or not.
 //
-// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a running plan. The extents of
-// its lines in `last` are then unknown (after reset: the extents of all lines), and the next band with any of these lines must be `whole`.
+// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a running plan. After a sweep
+// the extents in `last` of the lines of this plan are undefined, after a reset the extents of all lines. The next band with any of these
+// lines must be `whole`.
 
 `default_nettype none
 
@@ -77,12 +79,13 @@ module band_extents #(
 
     assign plan = planning && advance;
 
-    // Update of the extent `old` by the column of a group: `_1` reads it, `_2` writes it.
+    // Update of the extent `old` by the column of a group: signals with the suffix `_1` belong to the clock of the read, signals with `_2`
+    // to the clock of the write.
     logic                   adds_1, adds_2, sweeps_1, sweeps_2, drawn_1, to_write;
     logic [COLUMN_BITS-1:0] column_1, column_2;
     logic [EXTENT_BITS-1:0] old, updated;
 
-    // For each bank: the extent that is read, and whether the same line is written in this clock.
+    // For each bank: the extent that is read, and whether the extent of the same line is written in this clock.
     logic [EXTENT_BITS-1:0] kept [0:1];
     logic [1:0]             same;
 

@@ -20,7 +20,7 @@
 // a row is read, so `out_ready` may stay low for any time.
 //
 // `restart` and reset cancel the band and clear all 2^ROW_BITS rows of both banks, one row per clock, while `sweeping` is high.
-// Nothing may be drawn then. Words that were already read are output during the sweep or later.
+// No group may be drawn during this time. Words that were already read are output during the sweep or later.
 
 `default_nettype none
 
@@ -141,7 +141,7 @@ module band_flush #(
         end
     end
 
-    // Delays the kind and the address of each requested word, in step with the bank's read.
+    // Delays the kind and the address of each requested word by the latency of the bank's read.
     logic  asked_0, asked_1, asked_2;
     part_t part_0, part_1, part_2;
     logic [ADDRESS_BITS-1:0] address_1, address_2, address;

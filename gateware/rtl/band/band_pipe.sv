@@ -70,8 +70,8 @@ module band_pipe #(
     assign read_row    = issued.row;
     assign empty       = !issued_valid && occupied == '0;
 
-    // A group is compared with the earlier groups at the input, so that `group_ready` does not depend on the comparison. A
-    // stage without a group has an empty mask, so it never conflicts.
+    // Compares the group at the input with the earlier groups before it is accepted, so that `group_ready` does not depend on the
+    // comparison. A stage without a group has an empty mask, so it never conflicts.
     logic conflict_issued, conflict_0, conflict_1;
     assign conflict_issued = issued_valid && group_row == issued.row && (group_mask & issued.mask) != '0;
     assign conflict_0      = group_row == reading_0.row && (group_mask & reading_0.mask) != '0;
@@ -84,7 +84,7 @@ module band_pipe #(
             else if (conflict_0) hold <= 3'b011;
             else if (conflict_1) hold <= 3'b001;
         end
-        // Loads an invalid payload if there is no group, so that only one register drives the enable.
+        // The registers also load their inputs if no group is valid, so that their enable depends only on the register `hold`.
         if (!held) begin
             issued_valid <= group_valid && open;
             issued       <= {group_row, group_mask};

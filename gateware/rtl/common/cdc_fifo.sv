@@ -9,8 +9,8 @@
 //         head ─────┼─▶ head_seen ─┤        the pointers cross in Gray code, through cdc_level: one bit changes at a time, so the
 //      tail_seen ◀──┼───────────  tail      other side sees the pointer from before or after the change
 //
-// An entry is not read before its pointer has crossed, so its content is stable. The pointers have no reset, because a reset of only one
-// side would output stale items.
+// An entry is not read before the pointer behind it has crossed, so its content is stable. The pointers have no reset, because a reset of
+// only one side would output stale items.
 
 `default_nettype none
 
@@ -31,8 +31,8 @@ module cdc_fifo #(
 
     typedef logic [PLACE_BITS:0] pointer_t;
 
-    // The pointers have one bit more than the index of an entry. The Gray codes of pointers DEPTH apart differ in exactly the two highest
-    // bits.
+    // The pointers have one bit more than the index of an entry. The Gray codes of two pointers whose difference is DEPTH differ in exactly
+    // the two highest bits.
     localparam pointer_t FULL = pointer_t'(3) << (PLACE_BITS - 1);
 
     /* verilator lint_off PROCASSINIT */ // The configuration of the FPGA sets these registers.

@@ -1,14 +1,14 @@
-// Request from one clock domain to another, and completion back: a four-phase handshake of two levels.
+// Transfers a request from one clock domain to another, and its completion back, by a four-phase handshake of two levels.
 //
 //   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
 //
 // Payloads do not pass through this module: the other side reads the registers directly. Data from the source must be stable from `start`
-// until `finished`; data from the destination must be stable from `done` until the next `request`. Data are then stable for at least one
-// clock of the receiving side before their use.
+// until `finished`; data from the destination must be stable from `done` until the next `request`. The data are therefore stable for at
+// least one clock of the receiving side before this side uses them.
 //
 // The signals are levels, not toggles, because each side may be reset alone: after a reset, a destination sees the request again, and a
-// source withdraws the request. One request at a time; `start` is ignored while `busy`. Latency of a round trip: about 3 clocks of each
-// side, plus the work.
+// source withdraws the request. There is at most one request at a time; `start` is ignored while `busy` is high. Latency from `start` to
+// `finished`: about 3 clocks of each side, plus the time until `done`.
 
 `default_nettype none
 

@@ -1,17 +1,17 @@
-// A FIFO at the end of a long pipeline that cannot be stopped, with a credit for each entry. An item takes a credit when it is
-// sent into the pipeline, and gives it back when it leaves the FIFO, so the FIFO has a free entry for every item in the pipeline. The
-// stages of the pipeline have no enable: only valid bits travel with the items.
+// A FIFO at the end of a long pipeline that cannot be stopped, with a credit for each entry. An item uses a credit when it is sent into the
+// pipeline, and returns the credit when it leaves the FIFO, so the FIFO has a free entry for every item in the pipeline. The stages of the
+// pipeline have no enable: only valid bits travel with the items.
 //
 //            ┌──────────┐    ┌────────────┐
 //   start ──▶│ pipeline │───▶│ FIFO       │──▶ out
 //     ▲      └──────────┘    └────────────┘
 //     └─── credits ◀────────────────┘
 //
-// An item is sent in a clock in which `sent` and `credit` are high, and arrives here some clocks later, `in_valid`; no item may be dropped
-// in the pipeline (pipeline_fifo allows drops, but must keep one entry free per clock of the pipeline). `credit` comes from a register.
-// `idle` is high while no item is in the pipeline or in the FIFO.
+// An item is sent in a clock in which `sent` and `credit` are high, and arrives at the FIFO some clocks later, with `in_valid` high. No
+// item may be dropped in the pipeline (pipeline_fifo allows drops, but must keep one entry free per clock of the pipeline). `credit` comes
+// from a register. `idle` is high while no item is in the pipeline or in the FIFO.
 //
-// Latency 2 clocks, throughput one item per clock if DEPTH is at least the clocks from `sent` to `in_valid` plus 4. DEPTH is a
+// Latency 2 clocks, throughput one item per clock if DEPTH is at least the number of clocks from `sent` to `in_valid` plus 4. DEPTH is a
 // power of two.
 
 `default_nettype none
@@ -33,8 +33,8 @@ module credit_fifo #(
 );
     localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2);
 
-    // Free credits. There are DEPTH + 1 credits, because of the FIFO's output register. The count lags by one clock, so `credit` falls
-    // while one credit is left: it covers an item sent before the previous one is counted.
+    // Free credits. There are DEPTH + 1 credits, because of the FIFO's output register. The count is one clock late, so `credit` already
+    // falls at the last credit. This credit is for an item that is sent before the previous item has been counted.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 

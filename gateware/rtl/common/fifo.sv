@@ -1,6 +1,7 @@
 // A FIFO for DEPTH + 1 items: DEPTH in LUTRAM and one in the output register. With BLOCK it holds DEPTH + 2 items: DEPTH in block
-// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE, read
-// register and output register hold one item together: the block RAM keeps the item at the output, whose register then needs no enable.
+// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE, the
+// read register and the output register hold the same item: the read register keeps the item until it leaves the output register, which
+// therefore needs no enable.
 //
 // Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with PAUSE. Stream protocol on both sides:
 // an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
@@ -30,7 +31,8 @@ module fifo #(
 );
     localparam int unsigned PLACE_BITS = $clog2(DEPTH);
 
-    // The pointers have one bit more than the index of an entry: equal pointers mean empty, pointers DEPTH apart mean full.
+    // The pointers have one bit more than the index of an entry: if the pointers are equal, the FIFO is empty; if they differ by DEPTH, its
+    // memory is full.
     logic [PLACE_BITS:0] head, tail;
     logic                stored, load, read_valid, read_ready;
 

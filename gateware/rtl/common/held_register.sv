@@ -1,5 +1,5 @@
-// A wide register that loads its input in each clock while it is free, and then holds an item until the item leaves. The enable has a copy
-// for every LOADS flip-flops, so that no copy drives more than LOADS.
+// A wide register that loads its input in each clock while it is free, and then holds an item until the item leaves. The enable has one
+// copy for every LOADS flip-flops, so that no copy drives more than LOADS flip-flops.
 //
 //   in_valid, leaves ─▶ copies of `free` ─┬─┬─┬─▶
 //   in ──────────────────────────────────▶ register ──▶ out

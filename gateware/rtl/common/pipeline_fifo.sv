@@ -6,13 +6,13 @@
 //     ▲      └───────────────────────┘    └────────────┘
 //     └───────────────── room ──────────────────┘
 //
-// FLIGHT: the number of clocks from the clock in which an item is sent to the clock in which it arrives here, `in_valid`. An item may also
-// be dropped in the pipeline. `room` comes from a register. `room` follows the count of items two clocks later, so it falls while FLIGHT +
-// 2 entries are still free.
+// FLIGHT is the number of clocks from the clock in which an item is sent to the clock in which it arrives at the FIFO, with `in_valid`
+// high. An item may also be dropped in the pipeline. `room` comes from a register and depends on the number of items two clocks earlier, so
+// it already falls when FLIGHT + 2 entries are free.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two; more than 2
-// * (FLIGHT + 2) entries keep the output busy until `room` is high again. `idle` is high while the FIFO is empty; it does not count items
-//   in the pipeline.
+// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two. If DEPTH
+// exceeds 2·(FLIGHT + 2), the FIFO does not run empty before `room` is high again. `idle` is high while the FIFO is empty; items in the
+// pipeline have no effect on `idle`.
 
 `default_nettype none
 
@@ -36,7 +36,7 @@ module pipeline_fifo #(
     localparam int unsigned LEVEL_BITS = $clog2(DEPTH + 3);
     localparam int unsigned MOST       = DEPTH - FLIGHT - 2;
 
-    // Number of items in the FIFO, with those in its registers.
+    // Number of items in the FIFO, including the items in its registers.
     logic [LEVEL_BITS-1:0] level;
     logic                  gone, in_ready;
 

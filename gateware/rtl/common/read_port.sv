@@ -11,7 +11,7 @@
 //
 // Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client, or 4 with BLOCK. `ask_ready` comes directly from
 // registers, because the ready of the memory's command is the end of a long path in LiteDRAM. `drop`, held until `idle`, cancels all
-// requests: no further commands are sent, and words still to come from memory are discarded.
+// requests: no further commands are sent, and requested words that memory has not yet returned are discarded.
 //
 //   ask ──┐           ┌──▶ skid_buffer ──▶ command
 //   ask ──┼──▶ turn ──┤
@@ -53,8 +53,8 @@ module read_port #(
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
     // The client of the next command (`turn`) is chosen one clock before the command: the current client while it may continue, otherwise
-    // the next client with a request. The choice does not depend on requests in the clock of the command. If the chosen client then has no
-    // request, no command is sent.
+    // the next client with a request. The choice does not depend on requests in the clock of the command. If the chosen client has no
+    // request in that clock, no command is sent.
     logic [CLIENT_BITS-1:0] turn, first, chosen;
     logic [CLIENTS-1:0]     servable;
     logic                   given, any, moves, commands;

@@ -1,4 +1,4 @@
-// Synchronises an input pin and suppresses spikes: the output takes a new level after the input has had it for LENGTH clocks.
+// Synchronises an input pin and suppresses spikes: the output changes to a new level when the input has held this level for LENGTH clocks.
 //
 // Latency: 2 to 3 clocks for the synchronisation, and LENGTH clocks. The output is high after a reset.
 

@@ -1,5 +1,5 @@
-// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs: for words so wide that this saves more LUTs than
-// the address counter takes. The module delay uses shift registers, one LUT per bit.
+// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs. The module `delay` uses shift registers instead,
+// one LUT per bit. This module is smaller for wide words, because it also needs LUTs for an address counter.
 //
 //   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
 //

@@ -1,5 +1,5 @@
-// A wide register with an enable that is known one clock ahead. The enable has a copy for every LOADS flip-flops, so that no copy drives
-// more than LOADS.
+// A wide register whose enable arrives one clock early. The enable has one copy for every LOADS flip-flops, so that no copy drives more
+// than LOADS flip-flops.
 //
 //   next ─▶ copies of the enable ─┬─┬─┬─▶
 //   in ──────────────────────────▶ register ──▶ out

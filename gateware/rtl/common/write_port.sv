@@ -11,8 +11,8 @@
 //        └─▶ words ─────────────▶ data
 //
 // Latency 2 clocks from a word to its command during a burst, throughput one word per clock. `idle` is high when memory
-// has taken all words; it rises one clock after the last word. The ready signals of memory, which end a long path in LiteDRAM,
-// only move the FIFOs. `in_ready` is a register, so that no path goes from the FIFOs through the sources of the words.
+// has taken all words; it rises one clock after the last word. The ready signals of memory, which end a long path in LiteDRAM, only control
+// the outputs of the FIFOs. `in_ready` is a register, so that no path goes from the FIFOs through the sources of the words.
 
 `default_nettype none
 
@@ -45,7 +45,8 @@ module write_port #(
 
     assign move = in_valid && in_ready;
 
-    // `in_ready` implies that the data fit their FIFO. An address leaves its FIFO before its data, so the address fits too.
+    // `in_ready` is high only if the FIFO of the data has a free entry. An address leaves its FIFO before its data leave theirs, so the
+    // FIFO of the addresses then has a free entry too.
     /* verilator lint_off PINCONNECTEMPTY */
     fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(DEPTH)) addresses (
         .clk       (clk),

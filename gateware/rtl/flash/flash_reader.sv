@@ -1,8 +1,8 @@
 // Reads words of 32 bits from a SPI flash with four data lines.
 //
 // The command is 0x6b, fast read with quad output: command and address go out on line 0, eight clocks pass, and the bytes are received on
-// all four lines, the high half first. The flash continues with the next address while it is selected, so a request for the word after the
-// last word gets its data at once:
+// all four lines, the high half of each byte first. The flash continues with the next address while it is selected, so a request for the
+// next word needs no new command:
 //
 //   cs_n  ‾‾‾‾‾‾‾╲_______________________________________________ … stays low
 //         8 bits │ 0x6b │ 24 bits of address │ 8 clocks │ 8 × 4 bits │     │ 8 × 4 bits │
@@ -11,9 +11,11 @@
 // flash is selected: the flash needs a pause between two commands, and the primitive STARTUPE2 of 7-series FPGAs suppresses the first
 // three clocks after configuration.
 //
-// A bit from the flash is sampled when `sclk` falls, just before the flash changes it, so its path has two periods of `clk`.
+// A bit from the flash is sampled when `sclk` falls, just before the flash changes it, so the path from the flash may take two periods of
+// `clk`.
 //
-// `request` and `address` hold until `done`, when `data` is valid, for one clock. The byte of the lowest address is in bits 7:0.
+// `done` is high for one clock, in which `data` is valid; `request` and `address` must hold until then. Bits 7:0 of `data` are the byte
+// with the lowest address.
 
 `default_nettype none
 
@@ -36,7 +38,7 @@ module flash_reader #(
 
     typedef enum logic [2:0] {IDLE, DESELECT, SEND, SKIP, RECEIVE} state_t;
     state_t state;
-    // Number of bits so far in this state, without and with the current bit.
+    // Number of bits transferred in this state, without and with the current bit.
     logic [4:0] count, next_count;
     logic last;
     // The second half of a bit, in which `sclk` is high.
@@ -63,7 +65,7 @@ module flash_reader #(
             end
         end else begin
             second <= !second;
-            // No clock edge when the flash becomes selected.
+            // `sclk` stays low in the clock in which the flash becomes selected.
             sclk <= !second && !(state == DESELECT && last);
             if (second) begin
                 count <= last ? 5'd0 : next_count;

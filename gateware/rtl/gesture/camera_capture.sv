@@ -4,11 +4,11 @@
 //   pins ─▶ risen, fallen ─▶ sample ─▶ pairs of bytes ─▶ token
 //
 // A byte is valid while HREF is active and VSYNC is not. VSYNC is active between two frames: its start ends the frame and an unfinished
-// line. The first byte of a line is the first byte of a pixel. A token is valid for one clock; if it is not taken, the next token that is
-// taken has `lost` set. The settings may come from any domain, because software only changes them while the engine is off. `beat` changes
-// every 8 clocks.
+// line. The first byte of a line is the first byte of a pixel. A token is valid for one clock; if it is not accepted, `lost` is set in the
+// next accepted token. The settings may come from any domain, because software only changes them while the engine is off. `beat` changes
+// its level every 8 clocks of `pclk`, which shows that this clock runs.
 //
-// Latency 3 clocks of `pclk` from the last byte of a pixel to its token. There is no reset: every state ends with a frame.
+// Latency 3 clocks of `pclk` from the last byte of a pixel to its token. No reset is needed, because the end of a frame ends every state.
 
 `default_nettype none
 

@@ -1,10 +1,10 @@
-// Converts a pixel to 8-bit channels and tests two of them: the pixel is marked if each is in its window (docs/formats/gesture.md,
-// "Gestures").
+// Converts a pixel to 8-bit channels and tests two of these channels. The pixel is marked if each of the two is in its window
+// (docs/formats/gesture.md, "Gestures").
 //
 //   pixel ─▶ green's share ─▶ + red's ─▶ + blue's ─▶ two channels ─▶ mark
 //
-// A share is a constant times 5 or 6 bits: a table that fits one LUT per bit, the LUT of the adder's bit. Latency 5 clocks, throughput one
-// pixel per clock.
+// A share is the product of a constant and a colour of 5 or 6 bits. The table of these products takes one LUT per bit, which also contains
+// that bit's adder. Latency 5 clocks, throughput one pixel per clock.
 
 `default_nettype none
 

@@ -1,10 +1,10 @@
 // Counts columns and lines, and checks each frame: a frame is whole if it has `height` lines of `width` pixels, without a fault
 // (docs/formats/gesture.md, "Gestures").
 //
-// Outputs come one clock after `item`: `x` and `y` belong to the pixel, or to the clock after the end of the line; `inside_region` is high
-// if they are in the region. `whole` is valid with `out_item.frame`. The first frame begins at the first end of a frame after `enable` has
-// risen. If the sensor's clock stops, the current frame is dropped, and a new frame begins at the next end of a frame. Throughput one item
-// per clock.
+// Outputs appear one clock after `item`. `x` and `y` are the position of the pixel; in the clocks after the end of a line, `x` continues to
+// count. `inside_region` is high if this position is in the region. `whole` is valid while `out_item.frame` is high. The first frame begins
+// at the first end of a frame after `enable` has risen. If the sensor's clock stops, the current frame is dropped, and a new frame begins
+// at the next end of a frame. Throughput one item per clock.
 
 `default_nettype none
 

@@ -1,32 +1,33 @@
-// The gesture engine: finds a hand by its colour in the frames of an image sensor. The results of each whole frame are number, sums and
-// bounding box of the pixels in the hand's colour; software divides and filters (docs/gesture.md; docs/formats/gesture.md, "Gestures").
+// The gesture engine: finds a hand by its colour in the frames of an image sensor. The results of each whole frame are the number, the sums
+// of coordinates and the bounding box of the pixels in the hand's colour. Software computes the hand's centre from them, and filters it
+// (docs/gesture.md; docs/formats/gesture.md, "Gestures").
 //
 //    pclk                              clk
 //   pins ─▶ camera_capture ─▶ cdc_fifo ─▶ item ─▶ colour_window ─▶ frame_check ─┬▶ run_filter ─▶ mask_sums ─▶ results
 //                                                                              └▶ snapshot
 //
 // The pipeline in `clk` never stalls: only valid bits travel with the pixels. After each line the FIFO pauses for 15 clocks, in which
-// run_filter ends the line's last run, and after each frame for 15 clocks, in which the results and the settings of the next frame are
-// latched. Throughput one pixel per clock outside of the pauses; 9 clocks from the FIFO to the sums.
+// run_filter ends the line's last run, and after each frame for 15 clocks, in which the results of this frame and the settings for the next
+// frame are latched. Throughput one pixel per clock outside of the pauses; 9 clocks from the FIFO to the sums.
 //
-// The sensor's clock may stop at any time: `status.running` is low when it has not ticked for 2^TIMEOUT_BITS clocks. The pins of the
-// camera's control bus only pass through this module for synchronisation to `clk`.
+// The sensor's clock may stop at any time: `status.running` is low when this clock has had no edge for 2^TIMEOUT_BITS periods of `clk`. The
+// pins of the camera's control bus only pass through this module for synchronisation to `clk`.
 
 `default_nettype none
 
 module gesture_engine #(
     parameter bit          MOMENTS       = 1'b0,
-    parameter int unsigned CLOCK_DIVIDER = 4,   // of `clk`, for the sensor's input clock: even
+    parameter int unsigned CLOCK_DIVIDER = 4,   // periods of `clk` in a period of the sensor's input clock: even
     parameter int unsigned TIMEOUT_BITS  = 12
 ) (
     input  wire                                         clk,
     input  wire                                         rst,
     input  wire  gesture_registers_pkg::pins_t          pins,     // polarities and order of bytes
     input  wire                                         enable,
-    input  wire  gesture_registers_pkg::frame_settings_t settings, // taken at the start of each frame
+    input  wire  gesture_registers_pkg::frame_settings_t settings, // sampled at the start of each frame
     input  wire  gesture_registers_pkg::snapshot_t      snapshot_request,
     output gesture_registers_pkg::status_t              status,
-    output logic                                        latched,  // one clock: new results
+    output logic                                        latched,  // high for one clock when `results` are new
     output logic [15:0]                                 sequence_number,
     output gesture_registers_pkg::results_t             results,
     output gesture_registers_pkg::snapshot_state_t      snapshot_state,

@@ -9,15 +9,15 @@ package gesture_pkg;
     localparam logic [1:0] TOKEN_FRAME = 2'd2; // the end of a frame, and the start of the next one
     /* verilator lint_on UNUSEDPARAM */
 
-    // A token from the image sensor. `data` of a pixel is its colour, RGB565; of a line, bit 0 is set if its number of bytes was odd, bit
-    // 1 if VSYNC cut it. `lost`: tokens before this one are missing.
+    // A token from the image sensor. The `data` of a pixel is its RGB565 colour. In the `data` of a line, bit 0 is set if the line had an
+    // odd number of bytes, and bit 1 if VSYNC cut the line off. `lost` is set if tokens before this token are missing.
     typedef struct packed {
         logic        lost;
         logic [1:0]  kind;
         logic [15:0] data;
     } token_t;
 
-    // The contents of a clock in the pipeline: one of the first five bits, or none. A line is followed by 14 clocks `blank` and one
+    // The contents of a clock in the pipeline: at most one of the first five bits is set. A line is followed by 14 clocks `blank` and one
     // `next`, which act as unmarked pixels past its end; a frame is followed by 15 clocks without any of these bits.
     typedef struct packed {
         logic pixel;

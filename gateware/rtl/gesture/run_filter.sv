@@ -4,11 +4,11 @@
 //   marked    . M . M M M M . .        reach 2
 //   run       0 1 0 1 2 3 3 0 0        marked pixels before this clock, at most 15
 //   full      . . . . . F F . .        the last of three marked pixels in a row
-//   kept      . . . . . K K K K  for columns two to the left: those of the run
+//   kept      . . . . . K K K K        for the column two to the left: the pixels of the run
 //
 // The decision about a pixel needs the `reach` pixels after it, so `out_x` lags by `reach`. The clocks `blank` and `next`
-// after the end of a line count as unmarked pixels. No memory of the marks is needed: every pixel within `reach` of a full run was marked.
-// Latency one clock, throughput one pixel per clock.
+// after the end of a line count as unmarked pixels. No memory of the marks is needed: when `full` is high, the current pixel and the
+// `reach` pixels before it are marked. Latency one clock, throughput one pixel per clock.
 
 `default_nettype none
 

@@ -19,12 +19,12 @@
 //   SDA  ═══════════════╳═════════════════════════
 //        HIGH ││ LOW     │ SET    │ HIGH     ││
 //
-// The phase of a high SCL begins when SCL is seen high, so a device may stretch the clock. Between two commands of a transaction, and
-// while the FIFO of received bytes is full, SCL is kept low. A bit takes 3 phases, and 7 clocks until SCL is seen high. A start takes 3
-// phases, or 4 within a transaction; a stop takes 4 phases.
+// The phase with a high SCL begins when the engine has detected the high level, so a device may stretch the clock. The engine keeps SCL low
+// between two commands of a transaction, and while the FIFO of received bytes is full. A bit takes 3 phases, plus the 7 clocks until the
+// engine has detected the high SCL. A start takes 3 phases, or 4 within a transaction; a stop takes 4 phases.
 //
-// A start checks SDA. A low SDA means that a device is still in the middle of a byte. The device then gets up to nine SCL
-// clocks, and the start condition follows in the first of these clocks in which SDA is released, which resets the device.
+// A start checks SDA. A low SDA means that a device is still in the middle of a byte. The engine then generates up to nine SCL clocks. In
+// the first of these clocks in which the device has released SDA, the engine generates the start condition, which resets the device.
 //
 // Repetition: while `repeats` is high, a finished command goes back into the queue, and a transaction begins every `period` + 1
 // clocks, the first one `period` + 1 clocks after `repeats` rises. At that time the queue must hold a whole transaction, from start to
@@ -81,8 +81,8 @@ module i2c_engine #(
     localparam int unsigned PHASE_BITS = $clog2(PHASE);
     localparam logic [3:0]  LAST_CLOCK = 4'd8;
 
-    // States: in IDLE the bus is free; HELD is a wait within a transaction; SET, HIGH and LOW are phases of a bit; FALL makes a
-    // start condition, RISE a stop condition; FREE is the bus free time after a stop; FAILED follows an error, until `rst`.
+    // States: in IDLE the bus is free; HELD is a wait within a transaction; SET, HIGH and LOW are phases of a bit; FALL generates a start
+    // condition, RISE a stop condition; FREE is the bus free time after a stop; FAILED follows an error, until `rst`.
     typedef enum logic [3:0] {IDLE, HELD, SET, HIGH, LOW, FALL, RISE, FREE, FAILED} state_t;
     state_t state;
 
@@ -144,7 +144,7 @@ module i2c_engine #(
         endcase
     end
 
-    // The reset comes before a device can see an edge.
+    // The wires are released from the configuration of the FPGA on, so that devices see no edge before the reset.
     initial begin
         scl_out = 1'b1;
         sda_out = 1'b1;
@@ -197,7 +197,7 @@ module i2c_engine #(
                         scl_out <= 1'b0;
                         state   <= LOW;
                         shift   <= {shift[7:0], sda};
-                        // SDA differs from the bit that is sent: another device pulls SDA low during a 1.
+                        // SDA differs from the sent bit if another device pulls SDA low during a 1.
                         if (!ninth && command.operation == WRITE && sda != shift[8]) begin
                             error   <= DATA;
                             scl_out <= 1'b1;
