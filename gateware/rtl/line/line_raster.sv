@@ -1,18 +1,18 @@
-// Draws the pieces of lines that are in a band (docs/formats/line.md, "Lines"): from a piece to groups of eight pixels, of which one is
-// set.
+// Draws the pieces of lines that are in a band (docs/formats/line.md, "Lines"): converts a piece to groups of eight pixels, in each of
+// which one pixel is covered.
 //
 //   piece ─▶ walk: one pixel per clock ─▶ code, 5 * line ─▶ * stride / 5 + column ─▶ pipeline_fifo ─▶ group
 //                   ▲                                                                    │
 //                   └────────────────────────────── room ────────────────────────────────┘
 //
-// A group is {row = address in the band buffer, line, column, mask, code and colour of its only pixel}, see band_buffer. A piece
-// ends with its last pixel, with its last pixel in the band, or a clock after the line has left the picture. The next piece
-// follows without a gap.
+// A group is {row = address in the band buffer, line, column, mask, code and colour of its only pixel}, see band_buffer. A piece ends with
+// its last pixel, with its last pixel in the band, or one clock after the line has left the picture. The next piece begins in the next
+// clock.
 //
 // Streams are valid/ready. The stages after the walk cannot be stopped; the walk stops while the FIFO cannot hold all pixels in these
 // stages. Latency 5 clocks, throughput one pixel per clock. `size` and `first_row`, the size code of the picture and the first row of the
-// band, must hold while pieces are inside. If memory is damaged and a piece leaves the band, only its pixels in the band are drawn. `idle`
-// is low from the clock after a piece is taken until its last group is taken.
+// band, must hold while the module contains pieces. If memory is damaged and a piece leaves the band, only its pixels in the band are
+// drawn. `idle` is low from the clock after a piece is taken until its last group is taken.
 
 `default_nettype none
 
@@ -38,7 +38,7 @@ module line_raster (
     logic [4:0]     blocks;
     band_pkg::cut_t cut;
 
-    // The size is constant since before the first piece. The width of the picture is 64 times `blocks`.
+    // Values derived from `size`, which must not change while pieces are drawn. The width of the picture is 64 times `blocks`.
     always_ff @(posedge clk) begin
         cut       <= band_pkg::cut(size);
         last_line <= cut.lines - 1'b1;
@@ -46,11 +46,11 @@ module line_raster (
 
     assign blocks = cut.stride[7:3];
 
-    // The piece, at its current pixel. `error` belongs to the next pixel.
+    // State of the piece at its current pixel; only `error` belongs to the next pixel.
     logic               active, x_major, left, up;
     logic [15:0]        colour;
     logic [11:0]        column;
-    logic [11:0]        not_count; // complement of the pixels up to the end, which is counted up: fewer LUTs
+    logic [11:0]        not_count; // complement of the number of remaining pixels: counting up takes fewer LUTs
     logic [5:0]         line;
     logic signed [20:0] error, fall;
     logic [19:0]        minor;

@@ -1,5 +1,5 @@
-// Set-up of segments (docs/formats/line.md, "Lines"): finds the first pixel, the error and the depth of each line, follows the line
-// through the bands of the picture, and sends a piece for each band in which it has a pixel.
+// Set-up of segments (docs/formats/line.md, "Lines"): computes the first pixel of each line with its error and its depth, follows the line
+// through the bands of the picture, and sends a piece for each band in which the line has a pixel.
 //
 //        A╲         ┌ first pixel, error, depth
 //      ════╳══════  piece 1 from here
@@ -12,26 +12,27 @@
 //
 //   at          subtractor                  multiplier                       divider, 32 clocks
 //    0 to  9    |dx|, |dy|, their signs
-//   10 to 15    pixels and places of B, A
+//   10 to 15    pixels of B, A, positions in them
 //   16 to 18    minor, major                minor * ahead - tie
 //   19 to 23                                + major * (above - 256)          depth step
 //   24 to 28                                depth step * ahead + bias
 //
-// On an axis along which the segment runs backward, coordinates are mirrored (`~(x - 1)`), so both coordinates increase in the walk.
-// `edge_row`, also mirrored, is the first row past the line's current band; `entered` is high until the piece of this band is made. A
-// piece is copied, so that the walk continues while the piece waits at the output.
+// On an axis along which the segment runs backward, coordinates are mirrored (`~(x - 1)`), so both coordinates increase along the walk.
+// `edge_row`, also mirrored, is the first row past the current band of the walk; `entered` is high until the piece of this band has been
+// copied to the output. The walk continues while a copied piece waits at the output.
 //
-// Streams are valid/ready. A segment moves after its last piece, so its fields need no copy. It takes 31 clocks, or 59 with a depth
-// step (not with equal depths, nor if it is less than a pixel long); one for each pixel, including those before the picture, until the
-// line leaves the picture; one for each piece; and one for each band that the line crosses in the picture, of which 28 overlap with the
-// division. A piece waits until the previous piece has moved. `size` and `bias` must hold while a segment is inside.
+// Streams are valid/ready. A segment leaves the input stream after its last piece, so its fields need no copy. A segment takes 31 clocks,
+// or 59 if a depth step is computed (if the depths of its ends differ and it is at least one pixel long). One clock is added for each pixel
+// until the line leaves the picture, including pixels before the line enters the picture, one for each piece, and one for each band that
+// the line crosses in the picture. Up to 28 clocks for bands overlap with the division. A piece waits until the previous piece has moved.
+// `size` and `bias` must hold while a segment is processed.
 
 `default_nettype none
 
 module line_setup (
     input  wire                    clk,
     input  wire                    rst,
-    // Size code of the picture, and the bias in depth codes by which lines are moved nearer.
+    // Size code of the picture; and the bias, in depth codes, that moves lines nearer to the eye.
     input  wire  [1:0]             size,
     input  wire  [15:0]            bias,
     input  wire                    in_valid,
@@ -64,7 +65,7 @@ module line_setup (
     assign fetch_b = at[1] || at[3] || at[10] || at[11] || at[4] && left || at[5] && !left || at[6] && up || at[7] && !up
                   || at[14] && back_minor || at[15] && !back_minor || at[16] && back_major || at[17] && !back_major;
 
-    // Positions are of the coordinate less 1: in that step the subtractor subtracts 1 instead of the previous coordinate.
+    // A position is the coordinate less 1: while `locates` is high, the subtractor subtracts 1 instead of the previous coordinate.
     assign locates    = at[11] || at[12] || at[13] || at[14];
     assign difference = {fetched[19], fetched} + ~{previous[19], previous} + 21'(!locates);
 
@@ -87,7 +88,8 @@ module line_setup (
         end
     end
 
-    // An end point on both axes, less 1, and mirrored: the index of its pixel, and the position in the pixel.
+    // Coordinates of an end point along both axes, less 1; `on_minor` and `on_major` are also mirrored. The high bits are the index of the
+    // pixel, the low eight bits the position in the pixel.
     logic [20:0] minor_place, major_place, on_minor, on_major;
     logic [6:0]  beside;
     logic        below, passed;
@@ -106,7 +108,8 @@ module line_setup (
     assign distance = {1'b0, beside} + {1'b0, on_major[6:0]} + 8'(below);
     assign passed   = on_major[7] && distance[7];
 
-    // Distances to the first pixel's centre along the major axis, and to the border of its row, or column, less 256.
+    // Distances from the end point: `ahead` to the first pixel's centre along the major axis; `above` to the border of the pixel along the
+    // minor axis, less 256.
     logic signed [9:0] ahead, above;
     logic              tie;
 
@@ -115,8 +118,8 @@ module line_setup (
     assign above = 10'(!back_minor) + {2'b11, on_minor[7:0]};
     assign tie   = x_major ? left || minor == '0 : !left;
 
-    // The depth step: a dividend shifts out and a quotient shifts in. For a negative difference of the depths both are inverted, so that
-    // the quotient is rounded down.
+    // Divider of the depth step. The register `quotient` shifts the dividend out and the quotient in. For a negative difference of the
+    // depths the bits of dividend and quotient are complemented, so that the quotient is rounded down.
     logic signed [24:0] depth_difference;
     logic               falls, divides, dividing;
     logic [31:0]        quotient;
@@ -144,7 +147,7 @@ module line_setup (
         if (rst) dividing <= 1'b0;
     end
 
-    // The multiplier. With a factor of 0, and its sum as the addend, it holds its sum.
+    // The multiplier adds its product to `addend`. If a factor is 0 and the addend is the previous sum, the sum does not change.
     logic signed [24:0] factor;
     logic signed [17:0] other;
     logic signed [41:0] addend, sum;
@@ -164,7 +167,7 @@ module line_setup (
 
     multiply_add #(.BITS(42)) multiplier (.clk, .enable(1'b1), .a(factor), .b(other), .c(addend), .p(sum));
 
-    // The current pixel, its depth, and the error of the next pixel. They start at 0.
+    // The current pixel, its depth, and the error of the next pixel. All of them start at 0.
     logic               clear, walks, pending;
     logic signed [12:0] at_major, at_minor, end_major, major_change, minor_change;
     logic signed [13:0] remaining;
@@ -209,7 +212,7 @@ module line_setup (
     logic [4:0]         blocks;
     band_pkg::cut_t     cut;
 
-    // The size is constant since before the segment. The width of the picture is 64 times `blocks`.
+    // Values derived from `size`, which must not change while a segment is processed. The width of the picture is 64 times `blocks`.
     always_ff @(posedge clk) begin
         cut          <= band_pkg::cut(size);
         height       <= 10'(picture_pkg::HEIGHT) << size;
@@ -265,7 +268,7 @@ module line_setup (
         end
     end
 
-    // The first pixel of the piece at the output.
+    // State of the walk at the first pixel of the piece at the output.
     logic [33:0] first_depth;
     logic [20:0] first_error;
     logic [11:0] count;

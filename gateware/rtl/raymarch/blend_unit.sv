@@ -3,9 +3,9 @@
 //
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
 //
-// a is the distance of the flat solid, b the distance of the sphere, k the parameter `solid.blend_width`, and w the weight of the
+// a is the distance to the flat solid, b the distance to the sphere, k the parameter `solid.blend_width`, and w the weight of the
 // farther surface. Latency 8 clocks, throughput one point per clock, no handshake; `solid` must hold. `takes_round` must be high if the
-// sphere is the nearer or the only surface. The output `nearest` is the input `known`, delayed to match the distance.
+// sphere is the nearer or the only surface. The output `nearest` is the input `known`, delayed by the latency of the distance.
 
 `default_nettype none
 
@@ -40,7 +40,7 @@ module blend_unit (
 
     assign width  = solid.flat_too ? solid.blend_width : '0;
     assign blends = width != '0;
-    // `away_1` is |a - b|, or |a - b| - 1 for a negative difference. `left_1` is k - |a - b| in both cases.
+    // `away_1` is |a - b|, or |a - b| - 1 if a - b is negative. `left_1` is k - |a - b| for either sign.
     assign away_1 = apart_1[21:0] ^ {22{apart_1[22]}};
     assign left_1 = {1'b0, width} + {1'b1, ~away_1[16:0]} + 18'(!apart_1[22]);
 
@@ -66,7 +66,8 @@ module blend_unit (
     );
     assign distance = sum_8[38:17];
 
-    // The share of the sphere in the colour, in units of 2^-16. The nearer surface has more than half of the colour.
+    // Weight of the sphere's colour in the pixel's colour, in units of 2^-16. The colour of the nearer surface has a weight of at least one
+    // half.
     assign share_5 = round_5 ? 17'h1_0000 - weight_5 : weight_5;
     always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}} | {8{!blends}};
     delay #(.WIDTH(8), .CLOCKS(2)) share_waits (.clk, .enable(1'b1), .in(share_6), .out(share));

@@ -1,11 +1,11 @@
-// Table of the results of a picture's cones: for each block of pixels, the depth up to which no ray of the block meets a surface
+// Table of the results of a picture's cones: for each block of pixels, the depth up to which no ray of the block hits a surface
 // (docs/formats/raymarch.md, "Cones").
 //
-//   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
+//   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 depths ─▶ near plane of a block
 //
 // A write takes 6 clocks; throughput one write per clock. A read takes 2 clocks; throughput one read per clock. A read does not return a
-// write that is still in the pipeline. With ROUND, and while `round` is high, the length of a cone is Euclidean, and its inverse comes
-// from a second table.
+// write that is still in the pipeline. With ROUND, and while `round` is high, the length of a cone is Euclidean, and a second table
+// contains the reciprocal of the length.
 
 `default_nettype none
 
@@ -23,7 +23,7 @@ module cone_table #(
     input  wire  [13:0] number,
     output logic [22:0] cleared
 );
-    // Depth up to which each cone meets no surface, u11.7.
+    // Depth up to which each cone hits no surface, u11.7.
     (* ram_style = "block", no_rw_check *) logic [17:0] depths [0:16383];
 
     logic [16:0]        largest_inverse_2, inverse_2;

@@ -23,7 +23,7 @@ module depth_code (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // By clock (the suffix of a name): 3 the mantissa m of the depth, 4 its seed y0. Only ~m is used from then on.
+    // The suffix of a name is the signal's clock: 3 for the mantissa m of the depth, 4 for its seed y0. Later clocks only use ~m.
     logic [23:0] m_3, not_m_4, not_m_10;
     logic [5:0]  lead_3;
     logic [9:0]  y0_4, y0_6, y0_7, y0_9;
@@ -40,8 +40,8 @@ module depth_code (
     delay #(.WIDTH(10), .CLOCKS(1)) y0_for_step (.clk, .enable(1'b1), .in(y0_6), .out(y0_7));
     delay #(.WIDTH(10), .CLOCKS(2)) y0_for_y1 (.clk, .enable(1'b1), .in(y0_7), .out(y0_9));
 
-    // By clock (the suffix of a name): 7 e0 = -m·y0, made as ~m·y0 + y0; 10 y1 = y0 + y0·e0; 13 e1 = -m·y1; 16 y1·e1;
-    // 17 the reciprocal y.
+    // The suffix of a name is the signal's clock: 7 for e0 = -m·y0, computed as ~m·y0 + y0; 10 for y1 = y0 + y0·e0; 13 for e1 = -m·y1; 16
+    // for y1·e1; 17 for the reciprocal y.
     logic signed [36:0] e0_7, sum_10, e1_13, step_16;
     logic [16:0]        y1_10, y1_12, y1_13, y1_16;
     logic [24:0]        sum;
@@ -63,8 +63,8 @@ module depth_code (
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
-    // In clock 20 the product mantissa·y is valid. It is then divided by 2^(22 + shift). A divisor below 2^22 would give more than the
-    // largest code, so a negative shift saturates the code.
+    // In clock 20 the product mantissa·y is valid. The code is this product divided by 2^(22 + shift). With a negative shift the quotient
+    // would exceed the largest code, so the code is saturated.
     logic signed [42:0] product_20;
     logic [5:0]         lead_19;
     logic signed [7:0]  shift_20;

@@ -1,10 +1,10 @@
-// Distance to a box, in the maximum norm: single or repeated every 64 units, from outside or inside (docs/formats/raymarch.md,
+// Distance to a box, in the maximum norm: a single box or boxes repeated every 64 units, from outside or inside (docs/formats/raymarch.md,
 // "Fields").
 //
 //   point ─▶ |x| - half of each coordinate ─▶ largest ─▶ distance, surface
 //
-// Latency 3 clocks, throughput one point per clock, no handshake. `half` has the half sides of the box. Bit i of `has` is 1 if
-// the box is bounded along axis i. With `room` the solid is the space outside of the box. The parameters must hold.
+// Latency 3 clocks, throughput one point per clock, no handshake. `half` is half the length of the box along each axis. Bit i of `has` is 1
+// if the box is bounded along axis i. While `room` is high, the solid is the space outside of the box. The parameters must hold.
 
 `default_nettype none
 
@@ -33,8 +33,9 @@ module field_box (
     logic [2:0]         negative_1, negative_2;
     logic               z_over_x, z_over_y, x_over_y, big_is_z, big_is_x;
 
-    // Distance of a coordinate to the box's side, positive inside, less 1: side − |k| − 1, the complement of the distance |k| − side.
-    // Yosys puts the absolute value into the LUTs of this sum, but uses separate LUTs for the absolute value of a minuend.
+    // Returns side − |k| − 1, which is the complement of |k| − side, the distance from the coordinate k to the box's face. If the box is
+    // not bounded along the axis (`there` is low), the result is the largest value. Yosys puts the absolute value into the LUTs of this
+    // sum, but uses separate LUTs for the absolute value of a minuend.
     function automatic logic signed [22:0] depth_within(input logic [21:0] k, input logic [21:0] side, input logic there);
         depth_within = there ? $signed({1'b0, side}) + $signed(~{2'b0, k[20:0] ^ {21{k[21]}}}) : {1'b0, {22{1'b1}}};
     endfunction

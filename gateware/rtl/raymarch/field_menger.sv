@@ -4,11 +4,12 @@
 //   point ─┬─▶ order of the low bits ─────────▲                 ├─▶ ... ─▶ |x| ─▶ largest ─▶ - half ─▶ distance, surface
 //          └─▶ low bits ─▶ wait ─▶ mirrored, in their places ───┘
 //
-// The sides of the first four levels are integers. These levels only mirror and exchange the low LOW bits of the coordinates. The low bits
-// are therefore delayed outside of the levels, which only need their order for each pair. Further levels get all bits.
+// The sides of the first four levels are integers. These levels do not change the low LOW bits of the coordinates except by mirroring and
+// exchanging coordinates. The low bits therefore bypass these levels, which only need the order of the low bits in each pair of
+// coordinates. Further levels get all bits.
 //
-// With BOX the module serves boxes too: while `is_box` is high, no level is in use, and the distance is the distance to a box (field_box).
-// The last stage of a sponge is then also a box: a cube of half side `cube_half`.
+// With BOX the module can also compute the distance to a box (field_box): while `is_box` is high, no level is in use. field_box is then
+// also the last stage for a sponge, as a cube of half side `cube_half`.
 //
 // Latency 3 * LEVELS + 3 clocks, throughput one point per clock, no handshake. `levels` has a bit for each level in use, the
 // first level in bit 0; `cube_half` is half the side of the smallest solid cubes; the other inputs are as in field_box. All parameters
@@ -32,13 +33,13 @@ module field_menger #(
     output logic signed [21:0] distance,
     output logic [2:0]         surface
 );
-    // In each of the first SPLIT levels, the low bits of half the side of the cubes are 0.
+    // In the first SPLIT levels, the low LOW bits of half the cubes' side are 0.
     localparam int unsigned LOW   = raymarch_pkg::LOW_BITS;
     localparam int unsigned SPLIT = LEVELS < 4 ? LEVELS : 4;
-    // Whether the low bits are delayed until the distance is computed.
+    // Whether the low bits bypass all levels, up to menger_cube.
     localparam bit          APART = LEVELS == SPLIT && !BOX;
 
-    // Coordinates between the levels; in the first levels without their low bits.
+    // Coordinates between the levels; between the first SPLIT levels without their low bits.
     logic [LEVELS:0][2:0][21:0]   points;
     logic [LEVELS-1:0][2:0][21:0] entering;
     logic [LEVELS:0][2:0][2:0]    grows;
@@ -55,7 +56,7 @@ module field_menger #(
         pair(point[2][LOW-1:0], point[0][LOW-1:0]), pair(point[2][LOW-1:0], point[1][LOW-1:0]), pair(point[0][LOW-1:0], point[1][LOW-1:0])
     };
 
-    // The low bits of the three coordinates in the clock in which they are needed again.
+    // The low bits of the three coordinates, delayed until all bits are used together.
     logic [2:0][LOW-1:0] low;
 
     delay #(.WIDTH(3 * LOW), .CLOCKS(3 * SPLIT + (APART ? 2 : 0))) low_waits (
@@ -82,7 +83,7 @@ module field_menger #(
     end
 
     if (BOX) begin : with_boxes
-        // The point folded by all levels, with all bits.
+        // The point after all levels, with its low bits.
         logic [65:0] folded, half_sides;
         logic [8:0]  grows_late;
         logic [2:0]  bounded, local_surface, growing;
@@ -104,7 +105,7 @@ module field_menger #(
         );
         delay #(.WIDTH(9), .CLOCKS(3)) grows_wait (.clk, .enable(1'b1), .in(grows[LEVELS]), .out(grows_late));
 
-        // `local_surface` is a surface in the folded space.
+        // `local_surface` is the surface in the folded space, which is converted to a surface in the world.
         assign growing = local_surface[2] ? grows_late[8:6] : local_surface[1] ? grows_late[5:3] : grows_late[2:0];
         assign surface = growing ^ {2'b0, !local_surface[0]};
         wire _unused = &{1'b0, orders[LEVELS]};

@@ -2,9 +2,9 @@
 //
 //   point ─▶ |x|, |y|, |z| ─▶ |x| + |y|, |z| - size ─▶ sum ─▶ * 5 ─▶ * 17 ─▶ / 256 ─▶ distance
 //
-// Moving a point by r along every axis changes |x| + |y| + |z| by 3r at most, so the distance is at least a third of the sum
-// |x| + |y| + |z| - size. The module computes 85/256 of this sum, rounded down: a lower bound of a third, without a multiplier.
-// `surface` is {z, y, x}, with a 1 for each positive component of the face's normal.
+// If every coordinate of a point changes by at most r, |x| + |y| + |z| changes by at most 3r. The distance is therefore at least a third of
+// |x| + |y| + |z| - size. The module computes 85/256 of this value, rounded down, which is a lower bound of the third and needs no
+// multiplier. `surface` is {z, y, x}, with a 1 for each positive component of the face's normal.
 //
 // Latency 5 clocks, throughput one point per clock, no handshake. `size` must hold.
 

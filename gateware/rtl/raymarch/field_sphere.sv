@@ -1,15 +1,15 @@
-// Distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats/raymarch.md, "Round fields").
+// Distance from a point to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats/raymarch.md, "Round fields").
 //
 //   point - centre ─▶ |x|, |y|, |z| ─▶ shift ─▶ three squares, one sum ─▶ root ─▶ shift back ─▶ - radius ─▶ distance
 //                                        │                                            ▲
 //                                        └──────────── shift ─────────────────────────┘
 //
-// The shift makes the largest coordinate fill 17 bits. The root is a linear interpolation between two entries of a table. The
-// computed length is never above the exact one, and below it by at most 3 units of 2^-12 plus a relative 2^-15. Distances of
-// 2^21 units of 2^-12 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is then 0.
+// After the shift the largest coordinate has 17 bits. The root is a linear interpolation between two entries of a table. The computed
+// length never exceeds the exact length; it is too small by at most 3·2^-12 plus 2^-15 of the length. Distances of 2^9 and more saturate at
+// 2^9 - 2^-12. While `repeated` is high, the sphere is repeated every 64 units, and its centre must be 0.
 //
-// Latency 18 clocks, throughput one point per clock, no handshake. `number` comes one clock before its point. Spheres are
-// written one per clock, while the pipeline is empty. `repeated` must hold.
+// Latency 18 clocks, throughput one point per clock, no handshake. `number` must arrive one clock before its point. One sphere per clock
+// can be written, while the pipeline is empty. `repeated` must hold.
 
 `default_nettype none
 
@@ -41,8 +41,8 @@ module field_sphere (
         radius_17 <= radii[number_16];
     end
 
-    // By clock (the suffix of a name): 1 the point relative to the centre; 2 magnitudes of the coordinates, and their bitwise
-    // OR; 3 and 4 the magnitudes shifted left until the highest bit of the OR is one of the top two bits.
+    // The suffix of a name is the signal's clock: 1 for the point relative to the centre; 2 for the magnitudes of the coordinates and their
+    // bitwise OR; 3 and 4 for the magnitudes, shifted left until the highest bit of the OR is one of the top two bits.
     logic [2:0][22:0] apart_1;
     logic [2:0][21:0] size_2, by_8, shifted_8;
     logic [2:0][17:0] by_2;
@@ -98,7 +98,7 @@ module field_sphere (
         places_4 <= {eights_3, twos, 1'b0};
     end
 
-    // In clock 9 the sum of the squares is valid, from 2^32 to 3·2^34.
+    // In clock 9 the sum of the squares is valid; it is 2^32 to 3·2^34.
     logic [2:0][16:0]   part_4;
     logic [16:0]        part_y_5, part_z_6;
     logic signed [36:0] x_7, x_y_8, square_9;
@@ -121,8 +121,8 @@ module field_sphere (
         .clk, .enable(1'b1), .a({8'b0, part_z_6}), .b({1'b0, part_z_6}), .c(x_y_8), .p(square_9)
     );
 
-    // By clock (the suffix of a name): 10 the sum, divided by 4 if it is too large for the table; 12 the entry of the
-    // table; 15 the root, 2^18 to 2^19.
+    // The suffix of a name is the signal's clock: 10 for the sum, divided by 4 if it is too large for the table; 12 for the entry of the
+    // table; 15 for the root, which is 2^18 to 2^19.
     logic [17:0]        base_12, base_14;
     logic [9:0]         slope_12;
     logic [16:0]        rest_12;
@@ -137,7 +137,7 @@ module field_sphere (
         .clk, .enable(1'b1), .a({15'b0, slope_12}), .b({1'b0, rest_12}), .c({1'b0, 1'b1, base_14, 17'b0}), .p(root_15)
     );
 
-    // By clock (the suffix of a name): 16 and 17 the length, shifted back; 18 the distance.
+    // The suffix of a name is the signal's clock: 16 and 17 for the length, shifted back; 18 for the distance.
     logic [4:0]         back_11, back_15;
     logic [2:0]         back_16;
     logic [22:0]        length_16, length_17;

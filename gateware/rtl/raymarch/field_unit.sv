@@ -1,13 +1,13 @@
-// The distance field of a lane: all fields of the build in parallel, and a multiplexer that selects one of them by `solid`.
+// The distance field of a lane: computes all fields of the build in parallel, and selects one of their distances by `solid`.
 //
 // Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput one point per clock, no handshake. `solid` must
-// hold during a frame. A field that is not in the build costs nothing; a single field needs no multiplexer.
+// hold during a frame. A field that is not in the build takes no LUTs; a single field needs no multiplexer.
 //
-// Spheres are evaluated one after the other, one in each pass of a point. `pass` is the number of the sphere, and comes one
-// clock before the point. `so_far` is the nearest sphere of the point's earlier passes; `nearest` includes this pass. The distance, to the
-// nearest sphere or to the flat field, is valid in the last pass. BLEND requires spheres and a flat field, and adds the fillet between the
-// two: `round` is then set, `face` is the surface of the flat field, and `share` the weight of the sphere's colour. Without a fillet
-// `share` is all ones.
+// Spheres are evaluated one after the other, one in each pass of a point. `pass` is the number of the sphere, and must arrive one clock
+// before the point. `so_far` is the nearest sphere in the earlier passes of the point; `nearest` also includes the sphere of this pass. The
+// distance is valid in the last pass; it is the distance to the nearest sphere or to the flat field. BLEND requires spheres and a flat
+// field, and adds a fillet between them. With a fillet `round` is high, `face` is the surface of the flat field, and `share` is the weight
+// of the sphere's colour. Without a fillet `share` is all ones.
 
 `default_nettype none
 
@@ -48,8 +48,8 @@ module field_unit #(
     end
 
     if (ROUND) begin : spheres
-        // KNOWN: clock in which the nearest sphere is known. BOTH: clock in which the nearest sphere and the distance of the
-        // flat field are both known.
+        // KNOWN: clock in which the nearest sphere is valid. BOTH: first clock in which the nearest sphere and the distance to the flat
+        // field are both valid.
         localparam int unsigned KNOWN = 19;
         localparam int unsigned BOTH  = FLAT_CLOCKS > KNOWN ? FLAT_CLOCKS : KNOWN;
 

@@ -2,8 +2,8 @@
 //
 //   point ─▶ |x| ─▶ largest ─▶ - half ─▶ distance, surface
 //
-// With LOW the lowest bits of the coordinates come separately from `point`, as in menger_level: `order` compares them, and `low` holds the
-// bits 2 clocks later. Latency 3 clocks, throughput one point per clock, no handshake. `half` must hold.
+// If LOW is not 0, the LOW lowest bits of the coordinates are not in `point`, as in menger_level. `order` is the result of comparing these
+// bits, and `low` holds the bits, 2 clocks later. Latency 3 clocks, throughput one point per clock, no handshake. `half` must hold.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
 // One level of the Menger sponge: folds space by mirrors, so that one cube represents all of the level's 3x3x3 cubes
-// (docs/formats/raymarch.md, "Fields"). S is the side of this cube.
+// (docs/formats/raymarch.md, "Fields"). S is the side length of this cube.
 //
 //         ┌───┬───┬───┐
 //         │   │   │   │     1  S - |x| of each coordinate: above S/2 in the middle third
@@ -9,20 +9,21 @@
 //         │   │   │   │
 //         └───┴───┴───┘ 3S wide
 //
-// An integer coordinate k represents k + 1/2, so that -x is ~k. `grows` holds for each coordinate the world direction in which it
-// increases, {axis, positive}. Latency 3 clocks, throughput one point per clock, no handshake. While `enable` is low, points pass
-// unchanged; `enable` must hold.
+// An integer coordinate k represents k + 1/2, so that -x is ~k. For each coordinate, `grows` is the world direction in which the coordinate
+// increases, {axis, positive}. Latency 3 clocks, throughput one point per clock, no handshake. While `enable` is low, points are not
+// changed. `enable` must hold while points are in the module.
 //
-// The bits of a coordinate that are 0 in S/2 are only ever mirrored and exchanged. The LOW lowest bits do not pass through this module:
-// they are ignored in `in` and 0 in `out`. `in_order` holds their comparison for each pair of coordinates before mirroring: a coordinate
-// that is not positive in `in_grows` has been mirrored. With LOW = 0, all pairs in `in_order` are equal.
+// The lowest bits of S/2 are 0, so a level changes the lowest bits of a coordinate only by mirroring and exchanging coordinates. The LOW
+// lowest bits bypass this module: they are ignored in `in` and 0 in `out`. For each pair of coordinates, `in_order` is the result of
+// comparing these bits before all mirroring; a coordinate has been mirrored if it is not positive in `in_grows`. With LOW = 0, all pairs in
+// `in_order` are equal.
 
 `default_nettype none
 
 module menger_level #(
     parameter int unsigned BITS = 22,
     parameter int unsigned LOW  = 11,
-    // Side S of the cube that remains after the folds, an even number.
+    // Side length S of the cube after the folds, an even number.
     parameter int          S    = 27 << 12
 ) (
     input  wire                         clk,
@@ -49,7 +50,7 @@ module menger_level #(
         folded = (k ^ {HIGH{on && !k[HIGH-1]}}) + (on ? HIGH'(SIDE) : '0);
     endfunction
 
-    // Whether the coordinate {a, low bits} is above {b, low bits}.
+    // Returns whether {a, low bits of a} exceeds {b, low bits of b}; `low_above` is the comparison of the low bits.
     function automatic logic above(input logic signed [HIGH-1:0] a, input logic signed [HIGH-1:0] b, input logic low_above);
         above = $signed({a, low_above}) > $signed({b, 1'b0});
     endfunction
@@ -78,7 +79,7 @@ module menger_level #(
         big       = big_is_z ? z_2 : big_is_x ? x_2 : y_2;
         big_grows = big_is_z ? grows_2[2] : big_is_x ? grows_2[0] : grows_2[1];
         mirror    = enable && (big_is_z ? low_2[2] : big_is_x ? low_2[0] : low_2[1]);
-        // `mirror` implies `enable`, so this adds -SIDE if only `enable` is high.
+        // `mirror` is only high if `enable` is high, so -SIDE is added if `enable` is high and `mirror` is low.
         mirrored  = (HIGH'(-SIDE) & {HIGH{enable ^ mirror}}) + (big ^ {HIGH{mirror}});
     end
 

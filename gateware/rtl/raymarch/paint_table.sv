@@ -1,7 +1,7 @@
 // Two tables in one block RAM, with 256 entries of 8 bits each: the share of fog in a pixel's colour, by depth, and the share
 // of light, by the number of evaluations (docs/formats/raymarch.md, "Ends").
 //
-// Latency 2 clocks, throughput one pair of entries per clock, one of each table. In the clock of a write, the fog table is not read.
+// Latency 2 clocks, throughput one entry of each table per clock. The fog table is not read in the clock of a write.
 
 `default_nettype none
 

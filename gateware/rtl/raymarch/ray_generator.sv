@@ -6,21 +6,21 @@
 //                                        └─▶ start: the largest of the near plane and of the entries into the box;
 //                                            an entry is outside·inverse, with a second product for the remaining distance
 //
-// D is the direction of a ray before normalisation. 32-bit additions compute the formula of D exactly. `outside`
+// D is the direction of a ray before normalisation. D is computed exactly, by 32-bit additions. `outside`
 // is the distance of the eye from the box about the field, along each axis. Rays come band by band, each band line by line from the top,
-// each line from the left; with `stereo` each line comes for the left eye, then for the right eye.
+// each line from the left. With `stereo` each line is generated first for the left eye, then for the right eye.
 //
 // With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces the
-// largest component of D, and a second table of inverses replaces the first.
+// largest component of D, and a table of 1/sqrt replaces the table of reciprocals.
 //
-// While `cones` is high, the module generates cones instead of rays: through the middle of blocks of 2^`block` by 2^`block`
-// pixels, in the same order, each with its number. Columns and lines are then columns and lines of blocks; `offset` and `spread` are the
-// middle and the radius of a block in units of D; and cones start at the near plane. With `prepass` and without `cones`, the depth that a
-// block's cone has cleared becomes the near plane of the block's rays, if it is farther: `number` requests this depth, and `cleared`
-// returns it 2 clocks later. `fine` means 160 blocks in a line instead of 80.
+// While `cones` is high, the module generates cones instead of rays: one cone through the middle of each block of 2^`block` by 2^`block`
+// pixels, in the same order as rays, with the cone's number. Columns and lines are then columns and lines of blocks; `offset` and `spread`
+// are the middle and the radius of a block in units of D; and cones start at the near plane. While `prepass` is high and `cones` is low, a
+// ray starts at the depth that its block's cone has cleared, if this depth exceeds the depth of the near plane: `number` requests this
+// depth, and `cleared` returns it 2 clocks later. While `fine` is high, a line has 160 blocks instead of 80.
 //
-// The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end admits rays. A missing credit only stops D
-// and the position counters.
+// The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end limits the number of rays inside. Without a
+// credit, only D and the position counters stop.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 27
 // clocks, 30 with ROUND; throughput one ray per clock. `busy` falls two clocks after the last ray has left. The output is a
@@ -66,7 +66,8 @@ module ray_generator #(
     input  wire                       out_ready,
     output raymarch_pkg::ray_t           out_ray
 );
-    // SUM: additional latency of the sum of squares compared with the largest component of D. LAST: latency of the pipeline in clocks.
+    // SUM: number of clocks that the sum of squares takes in addition to those for the largest component of D. LAST: latency of the
+    // pipeline in clocks.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
@@ -76,7 +77,7 @@ module ray_generator #(
     logic [5:0]    band;
     logic [2:0][31:0] d, inverted_row, inverted_start, step_across, step_down;
 
-    // Increments of D from one column and from one line to the next, constant from the clock after `start`.
+    // Increments of D from one column to the next and from one line to the next, constant from the clock after `start`.
     if (PREPASS) begin : steps_of_blocks
         always_ff @(posedge clk)
             for (int i = 0; i < 3; i++) begin
@@ -141,8 +142,8 @@ module ray_generator #(
         end
     end
 
-    // By clock (the suffix of a name): 0 the high bits of D; 1 the first ten bits of the magnitude of each component; 2 the
-    // largest of them, made larger for a cone; 4 its inverse.
+    // The suffix of a name is the signal's clock: 0 for the high bits of D; 1 for the first ten bits of the magnitude of each component; 2
+    // for the largest of these magnitudes, increased for a cone; 4 for the reciprocal of this magnitude.
     raymarch_pkg::place_t place_now;
     logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10;
     logic [16:0] largest_inverse_4, inverse_4;
@@ -181,8 +182,8 @@ module ray_generator #(
 
     wide_delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .in(d_0), .out(d_4));
 
-    // `part` is the factor by which the near plane's depth is multiplied: the largest component of D, or with `round` the
-    // length of D, computed from the index in the table of inverses and the entry there.
+    // `part` is the factor by which the near plane's depth is multiplied: the largest component of D, or while `round` is high the length
+    // of D. The length is the product of the squared length, which is the index into the table of 1/sqrt, and the entry of the table.
     logic [10:0] part_10, part_18;
 
     if (ROUND) begin : by_squares
@@ -197,7 +198,7 @@ module ray_generator #(
         delay #(.WIDTH(17), .CLOCKS(1)) y_waits (.clk, .enable(1'b1), .in(y_now), .out(y_late));
         delay #(.WIDTH(17), .CLOCKS(2)) z_waits (.clk, .enable(1'b1), .in(z_now), .out(z_late));
 
-        // The addend covers the truncated bits, so that the sum is at least |D|^2, with 34 fraction bits.
+        // The addend compensates for the truncated bits, so that the sum is at least |D|^2, with 34 fraction bits.
         multiply_add #(.BITS(37)) x_squared (
             .clk, .enable(1'b1), .a({8'b0, x_now}), .b({1'b0, x_now}), .c(37'd1 << 19), .p(x_square)
         );
@@ -235,7 +236,7 @@ module ray_generator #(
         wire _unused = round;
     end
 
-    // By clock (the suffix of a name): 7 the direction, 9 the inverses of its components.
+    // The suffix of a name is the signal's clock: 7 for the direction, 9 for the reciprocals of its components.
     logic [2:0][17:0] direction_7;
     logic [2:0][9:0]  index_7;
     logic [2:0][16:0] inverse_9;
@@ -255,8 +256,8 @@ module ray_generator #(
     delay #(.WIDTH(1), .CLOCKS(9)) eye_waits (.clk, .enable(1'b1), .in(STEREO && place_0.eye), .out(eye_9));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable(1'b1), .in(part_10), .out(part_18));
 
-    // For each axis: the distance outside of the box, and the first estimate of t at the entry into the box, by clock (the suffix of a
-    // name).
+    // For each axis: the distance of the eye from the box, and the first estimate of t at the entry into the box. The suffix of a name is
+    // the signal's clock.
     logic [2:0][23:0] outside_9, outside_16;
     logic [2:0][22:0] t_13, t_19;
 
@@ -277,9 +278,9 @@ module ray_generator #(
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable(1'b1), .in(direction_7[i][17]), .out(backwards_9));
         assign negative_9 = eye_9 ? origins[1][i][24] : origins[0][i][24];
 
-        // By clock (the suffix of a name): 12 outside·inverse; 13 this product, saturated, as a first estimate of t; 16 t·(|d| + 1), the
-        // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse, plus the first estimate;
-        // 21 this sum, saturated: t at the entry into the box.
+        // The suffix of a name is the signal's clock: 12 for outside·inverse; 13 for this product, saturated, which is the first estimate
+        // of t; 16 for t·(|d| + 1), the distance covered up to this t; 17 for the remaining distance to the box; 20 for the remaining
+        // distance times the reciprocal, plus the first estimate; 21 for this sum, saturated, which is t at the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [24:0]        left_17;
         logic signed [41:0] product_12, gone_16;
@@ -301,7 +302,7 @@ module ray_generator #(
         multiply_add #(.BITS(42)) covered (
             .clk, .enable(1'b1), .a({2'b0, t_13[i]}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
         );
-        // A negative distance means a point inside of the box: nothing is added.
+        // If the remaining distance is negative, the point at the first estimate is inside of the box, and 0 is added.
         multiply_add #(.BITS(43)) rest (
             .clk, .enable(1'b1), .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17 & {17{!left_17[24]}}}), .c({11'b0, t_19[i], 9'b0}),
             .p(sum_20)
@@ -321,8 +322,8 @@ module ray_generator #(
     );
     assign near_21 = near_product[32:10];
 
-    // Clocks 22 and 23 select the start of the ray: the largest of the four values of t of clock 21: of the near plane, and of the entry
-    // into the box along each axis.
+    // Clocks 22 and 23 select the start of the ray, the largest of the four values of t in clock 21: one for the near plane, and one for
+    // the entry into the box along each of the three axes.
     logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin
@@ -339,7 +340,7 @@ module ray_generator #(
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
 
-        // Number of a line within its row of blocks, and number of the first block of that row.
+        // Number of the current line within its row of blocks, and number of the first block of that row.
         logic [3:0]         line;
         logic [13:0]        row_number, number_1, counted;
         logic signed [42:0] spread_7;
@@ -365,8 +366,8 @@ module ray_generator #(
             place_now = place;
             if (cones) {place_now.odd, place_now.line, place_now.column} = {1'b0, 3'b0, counted};
         end
-        // With `round` the margin applies to the square of the length: (|D| + s)^2 - |D|^2 is at most 2 s + s^2, with s
-        // (`spread`) at most 2^-4.
+        // While `round` is high, the margin is added to the square of the length: (|D| + s)^2 - |D|^2 is at most 2·s + s^2, where s is
+        // `spread`, at most 2^-4.
         always_ff @(posedge clk) begin
             if (!cones)     margin <= '0;
             else if (round) margin <= {1'b0, spread[13:7]} + {6'b0, spread[13:12]} + 8'd2;

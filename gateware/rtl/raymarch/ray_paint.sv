@@ -6,17 +6,16 @@
 //             ├─▶ steps ─▶ light ─────┐        ▼                                    │
 //             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
 //
-// First, the hit point moves from the last t to the plane of its face: t grows by `gap` divided by the component of the direction along
-// the normal (`slope`).
+// First, the hit point is moved onto the plane of its face: t is increased by `gap` / `slope`, where `gap` is the distance to this plane
+// and `slope` is the component of the direction along the plane's normal.
 //
-// A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask of one pixel, one depth code, and
-// one colour for all pixels of the group. With `stereo` the colour holds the pixel's luminance twice, and `out_eye` selects
-// the valid half.
+// A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask with one bit set, one depth code, and one colour
+// for all pixels of the group. With `stereo` the colour holds the pixel's luminance twice, and `out_eye` selects the valid half.
 //
-// With ROUND, the end of a ray on a sphere or fillet comes with its colour, `in_colour`, and `round` means that rays are
-// scaled by their Euclidean length. Streams are valid/ready. Latency 37 clocks, throughput one pixel per clock. The parameters
-// must hold while pixels are in the pipeline, which cannot be stopped: valid bits travel with the pixels, and credit_fifo at its
-// end admits ends.
+// With ROUND, the end of a ray on a sphere or fillet arrives with its colour, `in_colour`. While `round` is high, rays are scaled by their
+// Euclidean length. Streams are valid/ready. Latency 37 clocks, throughput one pixel per clock. The parameters must hold while pixels are
+// in the pipeline, which cannot be stopped: valid bits travel with the pixels, and credit_fifo at its end limits the number of pixels
+// inside.
 
 `default_nettype none
 
@@ -91,7 +90,7 @@ module ray_paint #(
         ending_0.t = reached[22:0] | {23{reached[23]}};
     end
 
-    // By clock (the suffix of a name): 2 the inverse of the length, 5 the depth.
+    // The suffix of a name is the signal's clock: 2 for the reciprocal of the length, 5 for the depth.
     logic [16:0]        inverse_2, largest_inverse_2;
     logic [22:0]        t_2;
     logic signed [42:0] product_5;
@@ -115,7 +114,7 @@ module ray_paint #(
         .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
     );
 
-    // By clock (the suffix of a name): 7 the indices into the tables of fog and light, 9 the entries that were read.
+    // The suffix of a name is the signal's clock: 7 for the indices into the tables of fog and light, 9 for the entries of the tables.
     logic [18:0] deep_6;
     logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
 
@@ -131,8 +130,8 @@ module ray_paint #(
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
     );
 
-    // By clock (the suffix of a name): 7 the state and the surface of the end, 8 the colours between which the highest bit of the
-    // surface selects, 9 the colour of the surface, 10 the shares of light and fog in 256ths.
+    // The suffix of a name is the signal's clock: 7 for the state and the surface of the end; 8 for two colours, of which the highest bit
+    // of the surface selects one; 9 for the colour of the surface; 10 for the shares of light and fog in 256ths.
     raymarch_pkg::state_t state_7, state_8, state_9;
     logic [2:0]        surface_7;
     logic              upper_8;
@@ -145,7 +144,7 @@ module ray_paint #(
         .clk, .enable(1'b1), .in({ending_0.state, ending_0.surface}), .out({state_7, surface_7})
     );
 
-    // The end of a ray on a sphere or fillet comes with a colour that includes the light.
+    // The end of a ray on a sphere or fillet arrives with a colour that includes the light.
     logic        lit_8;
     logic [23:0] lit_colour_8;
 
@@ -168,8 +167,8 @@ module ray_paint #(
         endcase
     endfunction
 
-    // The colour of a miss is the last of the upper four colours, and the colour of an undecided ray the last but one. With OCTANTS these
-    // colours belong to faces.
+    // The colour of a miss is the last of the four colours for surfaces 4 to 7, and the colour of an undecided ray is the last but one.
+    // With OCTANTS these colours belong to faces.
     logic       hit_7;
     logic [2:0] number_7;
 
@@ -198,7 +197,8 @@ module ray_paint #(
 
     delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable(1'b1), .in(fog_10), .out(fog_14));
 
-    // By clock (the suffix of a name): 13 the darkened colour, 14 its difference to the horizon's colour, 17 the colour blended with fog.
+    // The suffix of a name is the signal's clock: 13 for the darkened colour, 14 for its difference from the horizon's colour, 17 for the
+    // colour blended with fog.
     logic [2:0][7:0] faded_17;
 
     for (genvar i = 0; i < 3; i++) begin : channels

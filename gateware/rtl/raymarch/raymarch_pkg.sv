@@ -5,8 +5,8 @@
 package raymarch_pkg;
     // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // Widths of the ray parameter t, u11.12; of a point's coordinate at the input of a field, s10.12; of a point's coordinate
-    // before that, s13.12; and of a component of a ray's direction, s1.17.
+    // Widths of: the ray parameter t, u11.12; a point's coordinate at the input of a field, s10.12; a point's coordinate before its range
+    // is reduced for the field, s13.12; and a component of a ray's direction, s1.17.
     localparam int unsigned T_BITS         = 23;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
@@ -37,7 +37,8 @@ package raymarch_pkg;
         logic [2:0][DIRECTION_BITS-1:0] direction;
     } ray_t;
 
-    // Returns the number of low bits of a ray_t that a build uses, with or without the prepass: only cones have a spread.
+    // Returns the number of low bits of a ray_t that a build uses. A build without the prepass does not use the highest field, the spread
+    // of a cone.
     function automatic int unsigned ray_bits(input bit prepass);
         ray_bits = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS + (prepass ? SPREAD_BITS : 0);
     endfunction
@@ -75,8 +76,8 @@ package raymarch_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
-    // Comparison of the low bits of two coordinates a and b: a > b, a = b, a > ~b, a = ~b. They determine the order of both after
-    // mirroring, which inverts all bits of a coordinate.
+    // Comparison of the low bits of two coordinates a and b: a > b, a = b, a > ~b, a = ~b. These results also determine the order of a and
+    // b after mirroring, which complements all bits of a coordinate.
     typedef struct packed {
         logic above;
         logic equal;
@@ -106,7 +107,8 @@ package raymarch_pkg;
         low_part = (grow[2] ? low[2] : grow[1] ? low[1] : low[0]) ^ {LOW_BITS{!grow[0]}};
     endfunction
 
-    // Returns whether the low bits of a are above those of b. The low bits of a coordinate are mirrored if it is not positive.
+    // Returns whether the low bits of a exceed the low bits of b. The low bits of a coordinate are mirrored if the coordinate is not
+    // positive.
     function automatic logic low_above(input pair_t pair, input logic a_positive, input logic b_positive);
         unique case ({a_positive, b_positive})
             2'b11: low_above = pair.above;

@@ -11,17 +11,19 @@
 // high when all pixels of the band have been taken. `band_next` (one clock, only while `band_done` is high) then ends the band
 // and begins the next one; after the last band it ends the frame.
 //
-// While the last rays of a band are still in the lanes, up to EARLY rays of the next band already enter. Their ends wait in a FIFO in
-// block RAM. The lanes are therefore only idle at the end of the frame, and when a band ends with rays of very different lengths.
+// While the last rays of a band are still in the lanes, up to EARLY rays of the next band already enter the lanes. The ends of these early
+// rays wait in a FIFO in block RAM. Slots of the lanes are therefore only empty at the end of the frame, and when the rays at the end of a
+// band need very different numbers of evaluations.
 //
-// When rays with one evaluation follow rays with many, the lanes could take more rays than the generator makes, one per clock. A long ring
-// holds enough rays to bridge this gap; a lane with a short ring has a queue of rays.
+// When rays with one evaluation follow rays with many evaluations, the lanes could accept more rays than the generator produces, one per
+// clock. A long ring holds enough rays to keep the lane busy during this time; a lane with a short ring has a queue of rays for this
+// purpose.
 //
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. round_light then precedes ray_paint,
 // and takes one clock per light for a pixel on a sphere or fillet.
 //
-// With `prepass` the cones of the whole picture are marched before the rays, and cone_table stores the depth up to which each cone meets
-// no surface. There are 160×90 cones for one eye and a picture wider than 320, and 80×45 cones for each eye otherwise.
+// With `prepass` the cones of the whole picture are marched before the rays, and cone_table stores the depth up to which each cone hits no
+// surface. There are 160×90 cones for one eye and a picture wider than 320, and 80×45 cones for each eye otherwise.
 //
 // Each lane makes one evaluation of the field per clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
 // whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
@@ -108,8 +110,8 @@ module raymarcher #(
     logic reset;
     assign reset = rst || restart;
 
-    // The number of the band that is drawn (`band`) and its parity (`odd`), its pixels that have not been taken (`left`), and
-    // the rays of the next band that have entered (`early`).
+    // The number of the current band (`band`), its parity (`odd`), the number of its pixels that have not been taken (`left`), and the
+    // number of rays of the next band that have entered the lanes (`early`).
     logic                  odd, is_early, may_enter;
     logic [5:0]            band;
     logic [14:0]           left;
@@ -119,16 +121,16 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     raymarch_pkg::ray_t       ray;
 
-    // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone represents a block of 2^`block`
-    // by 2^`block` pixels, and `fine` means CONES_ACROSS blocks in a line instead of half as many. `cleared` is the depth from
-    // which the rays of block `number` start.
+    // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone represents a block of 2^`block` by 2^`block`
+    // pixels. While `fine` is high, a line has CONES_ACROSS blocks, otherwise half as many. `cleared` is the depth at which the rays of the
+    // block with the number `number` start.
     logic        cones, fine, generate_rays;
     logic [2:0]  block;
     logic [13:0] cones_left, number;
     logic [22:0] cleared;
 
-    // Numbers of the last column, of the last line of a band, and of the last band, from 0. Columns and lines count pixels for rays, and
-    // blocks for cones; a band of cones has half of CONES_DOWN lines of blocks.
+    // Numbers of the last column, of the last line of a band, and of the last band, counted from 0. Columns and lines are those of pixels
+    // for rays, and those of blocks for cones; a band of cones has CONES_DOWN / 2 lines of blocks.
     localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
     localparam int unsigned CONE_LINES   = picture_pkg::CONES_DOWN / 2;
     logic [10:0] column_ends;
@@ -176,7 +178,7 @@ module raymarcher #(
         end
     end
 
-    // Sends a ray to the first lane that can take it.
+    // Sends a ray to the first lane that can accept a ray.
     logic [LANES-1:0]   lane_ready, lane_valid, end_valid, end_taken, idles, evaluates, waits;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0] end_of;
 
@@ -212,8 +214,8 @@ module raymarcher #(
         );
     end
 
-    // In each clock one lane, chosen in rotation, may hand over the end of a ray. This suffices, because the generator makes at most one
-    // ray per clock.
+    // In each clock one lane, chosen in rotation, may output the end of a ray. This rate suffices, because the generator produces at most
+    // one ray per clock.
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
@@ -225,8 +227,8 @@ module raymarcher #(
     assign next_end   = end_of[turn];
     assign next_valid = end_valid[turn];
 
-    // Ends that have waited in the FIFO are painted first. An end of the next band goes to the FIFO, which is never full, because at most
-    // EARLY rays of the next band enter.
+    // Ends that have waited in the FIFO are painted first. An end of the next band is stored in the FIFO, which is never full, because at
+    // most EARLY rays of the next band enter the lanes.
     assign next_now      = next_valid && next_end.place.odd == odd && !cones;
     assign waiting_end   = raymarch_pkg::END_BITS'(kept);
     assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;

@@ -1,5 +1,5 @@
-// Lane of the raymarcher: a ring-shaped pipeline in which rays circulate. The field is evaluated once per round of a ray, and once per
-// clock in the lane.
+// Lane of the raymarcher: a ring-shaped pipeline in which rays circulate. Each ray has one evaluation of the field in each of its rounds
+// through the ring, and the lane makes one evaluation per clock.
 //
 //   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance ─▶ hit? miss? undecided? ─┐
 //             ▲                                                                   ├─▶ fifo ─▶ ends
@@ -8,14 +8,15 @@
 // The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. In the diagram, o is the eye, d the direction of a ray and t its
 // parameter. The point o + t·d is computed again in each round, so errors do not accumulate. A slot whose ray ends receives the next ray
 // in the same clock. A ray enters only if the FIFO of ends has a free entry for its end: the FIFO has PLACES entries, and each ray in the
-// ring reserves one. `evaluates` is high in clocks in which an occupied slot passes the field, `waits` in clocks in which a ray was
-// offered to an empty slot while no entry was free.
+// ring reserves one. `evaluates` is high in clocks in which an occupied slot passes field_unit, `waits` in clocks in which an empty slot
+// cannot receive a ray because the FIFO has no free entry.
 //
 // With ROUND a field may have spheres. A ray then makes one round for each sphere and keeps its t until the last of these rounds; its slot
-// also stores the nearest sphere so far. Its end includes its direction, and its limit of evaluations is four times the limit in `tuning`.
+// also stores the nearest of the spheres evaluated so far. Its end includes its direction, and its limit of evaluations is four times the
+// limit in `tuning`.
 //
-// While `cones` is high, the rays in the ring are cones, and `cones` must not change while rays are in the ring. A cone steps
-// by the distance minus its radius, which is t times its spread, and ends where the distance is close to the radius.
+// While `cones` is high, the rays in the ring are cones, and `cones` must not change while rays are in the ring. The t of a cone increases
+// by the distance minus the cone's radius, which is t times its spread. A cone ends where the distance is close to this radius.
 //
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
 // registers. Parameters hold while rays are in the ring. `rst` discards all rays.
@@ -29,7 +30,7 @@ module ring_lane #(
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
-    // Depth of the FIFO of ends, more than the number of slots: otherwise some slots would stay empty.
+    // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 64
 ) (
     input  wire                      clk,
@@ -84,7 +85,7 @@ module ring_lane #(
     logic [raymarch_pkg::T_BITS-1:0] t;
     logic [STEP_BITS-1:0] steps;
 
-    // The last stage of the ring, in which it is known whether the ray has ended. `early_cargo` is one stage before it.
+    // The last stage of the ring, in which the state of the ray is valid. `early_cargo` belongs to the stage before it.
     cargo_t            early_cargo, last_cargo;
     logic [raymarch_pkg::T_BITS-1:0] last_t;
     logic [STEP_BITS-1:0] last_steps;
@@ -113,7 +114,7 @@ module ring_lane #(
         end
     end
 
-    // Numbers of the slots in the first stage, in the last stage, and in the last but one.
+    // Numbers of the slots in the first stage, in the last stage, and in the last stage but one.
     logic [SLOT_BITS-1:0] first_slot, last_slot, early_slot;
 
     always_ff @(posedge clk) begin
@@ -123,7 +124,7 @@ module ring_lane #(
         if (rst) {early_slot, last_slot, first_slot} <= {SLOT_BITS'(2), SLOT_BITS'(1), SLOT_BITS'(0)};
     end
 
-    // Each stage has its own memory for the data that it reads. An empty slot may be written.
+    // Each stage that reads data of a slot has its own memory for these data. Writes to an empty slot are allowed.
     (* ram_style = "distributed" *) logic [CARGO_BITS-1:0] cargos [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [1+raymarch_pkg::SPREAD_BITS+3*raymarch_pkg::DIRECTION_BITS-1:0] aims [0:2**SLOT_BITS-1];
 
@@ -138,7 +139,7 @@ module ring_lane #(
         end
     end
 
-    // The point o + t·d. The origin o of the eye is selected two clocks after the slot, when the product t·d is valid.
+    // The point o + t·d. The position o of the eye is selected two clocks after the first stage, when the product t·d is valid.
     logic                  eye_2;
     logic [2:0]            backwards;
     logic [2:0][raymarch_pkg::WIDE_BITS-1:0] point;
@@ -167,7 +168,7 @@ module ring_lane #(
         wire _unused = &{1'b0, sum[16:0]};
     end
 
-    // `gone` is high if the point is outside of the box about the field along some axis, and the ray leads away from it.
+    // `gone` is high if, along some axis, the point is outside of the box about the field and the ray leads away from the box.
     logic [2:0] leaves;
     logic       gone, gone_late;
 
@@ -183,8 +184,8 @@ module ring_lane #(
     logic [2:0]         surface, face, face_end;
     logic [7:0]         share, share_end;
 
-    // The number of the sphere in the current pass and the nearest sphere of the earlier passes, by clock after the slot (the
-    // suffix of a name). `nearest` and `is_last`, the last pass, are aligned with the distance.
+    // The number of the sphere in the current pass, and the nearest sphere of the earlier passes. The suffix of a name is the number of
+    // clocks after the first stage. `nearest` and `is_last` (high in the last pass) are valid in the clock of the distance.
     logic                round, is_last_early, is_last, is_last_2;
     logic [2:0]          pass_2;
     raymarch_pkg::nearest_t so_far_3, nearest;
@@ -227,8 +228,8 @@ module ring_lane #(
         assign {is_last_early, is_last, is_last_2} = '1;
     end
 
-    // Values in the clock of the distance: t of this evaluation (`t_1`), t minus the radius of a cone (`from_1`), the threshold
-    // of a hit, and the number of earlier evaluations (`steps_1`).
+    // Values in the clock of the distance: t of this evaluation (`t_1`), t minus the radius of a cone (`from_1`), the distance below which
+    // a ray hits (`threshold`), and the number of earlier evaluations (`steps_1`).
     logic [raymarch_pkg::T_BITS-1:0] t_early, t_1;
     logic [raymarch_pkg::T_BITS:0]   from_early, from_1;
     logic [15:0]       footprint;
@@ -246,7 +247,7 @@ module ring_lane #(
         assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
 
         // Each coordinate of a point is truncated by less than 2^-12. This changes a Euclidean distance by less than 2·2^-12,
-        // so in a round field the width of a cone is 2^-12 larger.
+        // so the width of a cone is increased by 2^-12 in a field with spheres.
         multiply_add #(.BITS(43)) widening (
             .clk, .enable(1'b1), .a({2'b0, t}), .b({2'b0, widens}), .c({26'b0, ROUND && cones && solid.is_round, 16'b0}), .p(product)
         );
@@ -256,7 +257,7 @@ module ring_lane #(
         assign from_early = {1'b0, t_early} + ({24{cones && is_last_early}} & ~{8'b0, footprint});
         wire _unused = &{1'b0, product[15:0]};
     end else begin : rays_alone
-        // The footprint is t shifted right by `tuning.footprint`, which is 7 to 15: by 7, or by 8 plus its low three bits.
+        // The footprint is t, shifted right by `tuning.footprint` bits. This number is 7, or 8 plus the number in its low three bits.
         assign footprint  = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
         assign wide       = 1'b0;
         assign from_early = {1'b0, t_early};
@@ -271,7 +272,7 @@ module ring_lane #(
     end
 
     // One clock after the distance (suffix _2): whether the distance is below the threshold (`near_2`), the ray has left the
-    // box (`gone_2`), or the step limit is reached (`late_2`). A clock later: whether t is beyond the far limit, and the state
+    // box (`gone_2`), or the step limit is reached (`late_2`). One clock later: whether t exceeds the far limit (`beyond`), and the state
     // of the ray.
     logic            near_2, gone_2, late_2;
     logic [raymarch_pkg::T_BITS:0] next_2;
@@ -284,7 +285,7 @@ module ring_lane #(
     assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
     // `late_1` is high if the current evaluation reaches the step limit, `tuning.cap`. `patience` is the number of doublings of
-    // the threshold. Fields with spheres have four times the limit, and a threshold that does not grow.
+    // the threshold. In fields with spheres the limit is four times as large, and the threshold is not doubled.
     logic [1:0] patience;
     logic       late_1;
 
@@ -328,8 +329,8 @@ module ring_lane #(
         assign steps_end = last_steps;
     end
 
-    // Slope of the ray towards the face: the direction's component along the inward normal, or all ones for a ray that does not
-    // approach the face. Only the quotient of `gap` and `slope` is used.
+    // `slope` is the direction's component along the inward normal of the face, or all ones for a ray that does not approach the face. Only
+    // the quotient of `gap` and `slope` is used.
     logic [10:0] part;
     logic [9:0]  axis_slope, slope;
     logic [11:0] face_gap;
@@ -341,9 +342,9 @@ module ring_lane #(
     always_comb
         for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
 
-    // The slope against a face perpendicular to a diagonal takes one more clock, so the direction is needed one clock earlier.
-    // For such a face, `face_gap` and `slope` are both three quarters of their true values, which keeps
-    // the quotient: the slope is then the sum of three components divided by four, and needs no division by three.
+    // For a face perpendicular to a diagonal, `slope` takes one more clock, so the direction is read one clock earlier. For such a face the
+    // slope is a third of the sum of three components. To avoid the division by three, `face_gap` and `slope` are both three quarters of
+    // their true values, which does not change their quotient: `slope` is then a quarter of the sum.
     if (OCTANTS) begin : diagonals
         logic signed [11:0] x_y;
         logic signed [10:0] z;

@@ -1,7 +1,7 @@
 // Table of sqrt(x) for x from 1 to 4 in steps of 1/128, and of the difference to the next entry, both with 18 fraction bits and
 // rounded down (docs/formats/raymarch.md, "Round fields").
 //
-// `index` is 128·x; an index below 128 reads the entry of 128. `root` omits the leading bit of the root, which is 1. Latency 2
+// `index` is 128·x; for an index below 128 the result is the entry of 128. `root` omits the leading bit of the root, which is 1. Latency 2
 // clocks, throughput one result a clock.
 
 `default_nettype none
@@ -16,8 +16,8 @@ module root_table (
     logic [27:0] entries [0:511];
     logic [27:0] latched;
 
-    // An entry is {18 fraction bits of the root, difference to the next root}. Floating-point numbers are precise enough for the table, as
-    // in round_inverse.
+    // An entry is {18 fraction bits of the root, difference to the next root}. Floating-point numbers are precise enough to round the
+    // entries correctly, as in round_inverse.
     initial begin
         for (int i = 0; i < 512; i++)
             entries[i] = {

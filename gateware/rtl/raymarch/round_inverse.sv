@@ -1,4 +1,4 @@
-// Table of lower bounds of 1/sqrt(q) by the first ten bits i of q: sqrt(2^10/(i + 1)), reduced by a relative 2^-16, u8.9
+// Table of lower bounds of 1/sqrt(q), indexed by the first ten bits i of q: sqrt(2^10/(i + 1))·(1 - 2^-16), u8.9
 // (docs/formats/raymarch.md, "Rays").
 //
 // Latency 2 clocks, throughput one result a clock.
@@ -14,8 +14,8 @@ module round_inverse (
     logic [14:0] inverses [0:1023];
     logic [14:0] latched, given;
 
-    // Floating-point numbers are precise enough to truncate the root of an integer correctly. Tools evaluate this in a second;
-    // an integer loop for the root would take them a minute.
+    // Floating-point numbers are precise enough to truncate the root of an integer correctly. Tools evaluate this formula in a second; an
+    // integer loop for the root would take a minute.
     initial begin
         for (int i = 0; i < 1024; i++) inverses[i] = 15'($rtoi($sqrt($itor(((1 << 28) - (1 << 13)) / (i + 1)))));
     end

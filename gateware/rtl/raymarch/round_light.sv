@@ -1,12 +1,12 @@
 // Computes the light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats/raymarch.md, "Round fields").
 //
-//   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times its colour, summed ─▶ times the material ─▶ end, colour
-//                                   └──────────── once for each light ────────────┘
+//   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times light's colour, sum ─▶ times the material ─▶ end, colour
+//                                   └──────────── once for each light ─────────────┘
 //
-// All ends of rays pass in order; the colour of ends on other surfaces is undefined. An end on a sphere or fillet takes one
-// clock for each light, any other end one clock. With BLEND the colour is interpolated, by `share`, between the colours of the face, from
-// `palette`, and of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light after the first. The ends at the output
-// have no direction. Streams are valid/ready. Sphere writes and changes of parameters are only allowed while the pipeline is empty.
+// All ends of rays pass in order; the colour for ends on other surfaces is undefined. An end on a sphere or fillet takes one clock for each
+// light, any other end takes one clock. With BLEND the colour is interpolated, by `share`, between the colours of the face, from `palette`,
+// and of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light after the first. The ends at the output have no
+// direction. Streams are valid/ready. Sphere writes and changes of parameters are only allowed while the pipeline is empty.
 
 `default_nettype none
 
@@ -42,7 +42,7 @@ module round_light #(
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
 
-    // In clock 0 an end is held, for one clock per light.
+    // An end stays in clock 0 for one clock per light.
     logic            enable, held_valid, last_0;
     raymarch_pkg::end_t held;
     logic [1:0]      light_0;
@@ -68,7 +68,7 @@ module round_light #(
         end
     end
 
-    // The constants of the sphere, each read so that it is valid in the clock of its use.
+    // Constants of the sphere. Each constant is read from its memory just before the clock in which it is used.
     logic [2:0]       number_2, number_8, number_11, number_18;
     logic [2:0][21:0] centre_3;
     logic [4:0]       shift_9;
@@ -95,8 +95,8 @@ module round_light #(
         end
     end
 
-    // By clock (the suffix of a name): 3 the point where the ray ends; 4 the point relative to the centre, and the
-    // direction of the light.
+    // The suffix of a name is the signal's clock: 3 for the point where the ray ends; 4 for the point relative to the sphere's centre, and
+    // for the direction of the light.
     logic              eye_2;
     logic [1:0]        light_3, light_14;
     logic              first_17;
@@ -144,8 +144,8 @@ module round_light #(
         wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
     end
 
-    // By clock (the suffix of a name): 9 the scalar product of the point and the light's direction; 11 the product, shifted to 17 bits or
-    // more; 12 the shifted product, saturated at 17 bits.
+    // The suffix of a name is the signal's clock: 9 for the scalar product of the point and the light's direction; 11 for this product
+    // after a shift to 17 bits or more; 12 for the shifted product, saturated at 17 bits.
     logic [22:0]        apart_y_5, apart_z_6;
     logic [17:0]        towards_y_5, towards_z_6;
     logic signed [42:0] x_7, x_y_8, product_9;
@@ -182,8 +182,8 @@ module round_light #(
         end
     end
 
-    // By clock (the suffix of a name): 15 cosine between normal and light in 256ths, 18 sum over the lights, 19 the
-    // sum, saturated at 255.
+    // The suffix of a name is the signal's clock: 15 for the cosine of the angle between normal and light, in 256ths; 18 for the sum over
+    // the lights; 19 for the sum, saturated at 255.
     logic signed [36:0] cosine_15;
     logic [8:0]         share_15;
     logic [23:0]        colour_15;
@@ -224,8 +224,8 @@ module round_light #(
         wire _unused = &{1'b0, sum_18[7:0], coloured[25:16], coloured[7:0]};
     end
 
-    // By clock (the suffix of a name): 22 the colour of the face, 23 its difference to the sphere's colour, 26 their mixture
-    // by the sphere's weight.
+    // The suffix of a name is the signal's clock: 22 for the colour of the face; 23 for its difference from the sphere's colour; 26 for the
+    // interpolation between both colours by `share`.
     if (BLEND) begin : between
         logic [2:0]      face_21;
         logic [7:0]      share_22;
