@@ -7,7 +7,7 @@
 //                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
 //
 // Once a frame, when the vertical blanking begins, the sys side latches `frame_base`, `scale` and `enable`, counts the frame
-// and pulses `vblank`. The pix side does not request line 0 before that, so all lines of a picture come from one frame in memory.
+// and pulses `vblank`. The pix side requests line 0 only after this, so all lines of a picture come from one frame in memory.
 // The video timing never stalls: a late line is replaced by the previous line, and counted as an underflow.
 //
 // Throughput: one pixel per pix_clk, at most one memory word per sys_clk. Latency: 4 pix_clk from scanout_timing to the video
@@ -33,17 +33,17 @@ module scanout #(
     input  wire                     sys_rst,
     input  wire                     pix_clk,
     input  wire                     pix_rst,
-    // Settings requested by software, latched at vblank. The base is an address in words of 16 bytes, the scale is 4, 2 or 1.
+    // Settings requested by software, latched at vblank. `frame_base` is an address in words of 16 bytes; `scale` is 4, 2 or 1.
     input  wire                     enable,
     input  wire  [2:0]              scale,
     input  wire  [ADDRESS_BITS-1:0] frame_base,
-    // In force.
+    // Settings in use.
     output logic                    enabled,
     output logic [2:0]              scale_current,
     output logic [ADDRESS_BITS-1:0] frame_current,
     output logic                    fetching,
-    output logic [1:0]              error,      // of the last frame: 0 none, 1 no such scale, 2 underflow
-    output logic                    vblank,     // one clock
+    output logic [1:0]              error,      // of the last frame: 0 none, 1 invalid scale, 2 underflow
+    output logic                    vblank,     // high for one clock per frame
     // Free-running counters.
     output logic [31:0]             frames,
     output logic [31:0]             underflows,
@@ -93,7 +93,7 @@ module scanout #(
 
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // `enabled` crosses as a level, so that a reset of the sys side blanks the screen at once.
+    // `enabled` crosses to pix_clk as a level, so that a reset of the sys side blanks the screen at once.
     logic pix_enabled;
     cdc_level cross_enabled (.clk(pix_clk), .level(enabled), .synced(pix_enabled));
 
@@ -126,7 +126,7 @@ module scanout #(
         end
         if (sys_underflow) underflow_seen <= 1'b1;
 
-        // Registers before the counters, because memory's signals end long paths in LiteDRAM.
+        // Registers precede the counters, because memory's signals end long paths in LiteDRAM.
         stalled <= cmd_valid && !cmd_ready;
         stored  <= store;
 

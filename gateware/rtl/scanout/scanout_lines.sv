@@ -1,16 +1,18 @@
-// Control of the line ring, two slots of one source line each: decides which slot is shown, and which source line (a line of the
-// frame in memory) is fetched into the other, hidden slot.
+// Control of the line ring, which has two slots of one source line (a line of the frame in memory) each: decides which slot is shown, and
+// which source line is fetched into the other, hidden slot.
 //
-// It decides once per output line, at the tick (the leading edge of hsync, when the last pixel has left):
+// This module decides once per output line, at the tick (the leading edge of hsync, when the line's last pixel has left):
 //
 //   1. if the hidden slot holds the source line that the next output line needs, the slots are exchanged;
-//   2. if it does not, and this is the first use of that source line, there is an underflow: the shown slot is shown again, or black if
-//      this frame has not shown a slot yet. Later output lines of the same source line check the slot again;
-//   3. if the hidden slot is free, the source line after the needed one is requested, even after an underflow. During vertical blanking
+//   2. otherwise, if the next output line is the first one that needs this source line, an underflow occurs: the shown slot is shown again,
+//      or black if no slot has been shown in this frame. Later output lines of the same source line check the slot again;
+//   3. if the hidden slot is free, the source line after the needed source line is requested, even after an underflow. During vertical
+//      blanking
 //      line 0 is requested, as soon as the frame's parameters are latched (`frame_begun`).
 //
 // A slot is written only while it is hidden, and a frame only shows lines requested after its vblank, so the screen never mixes frames. A
-// slow fetch delays later fetches, never the video timing. `fetch_line` and `fetch_slot` are stable from `fetch` until `fetch_busy` falls.
+// slow fetch delays later fetches, but never the video timing. `fetch_line` and `fetch_slot` are stable from `fetch` until `fetch_busy`
+// falls.
 
 `default_nettype none
 
@@ -49,7 +51,7 @@ module scanout_lines #(
         first_use   = (tick_line & group_mask) == '0;
         needed      = tick_line >> shift;
         next        = in_picture ? needed + 1'b1 : '0;
-        // No source line follows the last source line, whose output lines end with the last line of the picture.
+        // The source line whose output lines end with the last line of the picture is the last source line.
         next_exists = (tick_line | group_mask) != Y_BITS'(V_ACTIVE - 1);
     end
 

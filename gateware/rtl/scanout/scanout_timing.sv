@@ -1,12 +1,12 @@
-// Generates the video timing: counters of pixels and lines, both syncs, and a tick in each line.
+// Generates the video timing: counters of pixels and lines, the signals hsync and vsync, and a tick in each line.
 //
-// A line consists of active pixels, front porch, sync and back porch; a frame has the same four parts in lines. Both syncs are active
-// high, and vsync changes with the leading edge of hsync, as in CEA-861. The only inputs are clock and reset. The last
-// V_BORDER lines of the back porch and the first V_BORDER lines of the front porch are visible lines around the picture.
+// A line consists of active pixels, front porch, sync and back porch; a frame consists of lines in the same four parts. hsync and vsync are
+// active high, and vsync changes with the leading edge of hsync, as in CEA-861. The only inputs are clock and reset. The last V_BORDER
+// lines of the back porch and the first V_BORDER lines of the front porch are visible lines around the picture.
 //
 // `tick` is the first clock of hsync. `tick_line` is then the number of the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE
 // and more in the vertical blanking; the tick with V_ACTIVE begins the blanking. Throughput one pixel per clock; the outputs are
-// registers. Reset sets the counters to the end of the last active line, so that a vertical blanking comes first.
+// registers. Reset sets the counters to the end of the last active line, so that the first frame begins with a vertical blanking.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// Evaluates the edge functions E' and the depth of a triangle at the row where it enters the band: `first` in the drawing is
-// the triangle's first row, or the first row of the band if the triangle begins above it.
+// Evaluates the edge functions E' and the depth of a triangle at the row where it enters the band. This row, `first` in the drawing, is the
+// triangle's first row, or the first row of the band if the triangle begins above the band.
 //
 //        top ─────────▲            E' and depth there are start + step_y * (first - top), and at the other end of the
 //                    ╱ ╲           group E' + 7 * step_x: exact, E' in 34 bits and depth modulo 2^32
@@ -7,7 +7,7 @@
 //         band     ╱     ╲
 //      ═══════════════════════════
 //
-// One multiply_add computes E' and the depth in eight passes, one per clock, and a second one computes `beside`, the value of E'
+// One multiply_add computes E' and the depth in eight passes, one per clock, and a second multiply_add computes `beside`, the value of E'
 // one lane outside of the group (see raster_pkg):
 //
 //   pass   product              plus           gives
@@ -19,11 +19,11 @@
 //   7      its high 8 bits      pass 5         depth in lane 0
 //
 // `offset` is the number of rows from the triangle's top to `first`. Streams are valid/ready, and ready comes from registers.
-// Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous triangle finishes, or is held
-// until the output is free, and the next one waits at the input. Triangles leave at least two clocks apart. A triangle without a row in
-// the band is taken and dropped. The band's first row `in_y0` and the parity `in_odd` of its number come with the triangle; bit b of
-// `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must hold while triangles are inside.
-// With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
+// Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous triangle completes, or is held
+// until the output is free, and the next triangle waits at the input. Triangles leave at least two clocks apart. A triangle without a row
+// in the band is taken and dropped. `in_y0`, the band's first row, and `in_odd`, the parity of the band's number, arrive with the triangle;
+// bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must hold while triangles are
+// inside. With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
 
 `default_nettype none
 
@@ -45,30 +45,30 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Outputs that come, and hold, one clock later than `out_triangle`, and the planes of light LIGHT_LATER clocks after that. The planes
-    // have the format of `in_planes`, with their values at the triangle's first row in the band, in lane 0.
+    // `out_late` is valid one clock later than `out_triangle`, and `out_planes` LIGHT_LATER clocks after `out_late`. `out_planes` has the
+    // format of `in_planes`, but contains the values of the planes in lane 0 of the triangle's first row in the band.
     output raster_pkg::placed_late_t       out_late,
     output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
     localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST_BUT_ONE = 3'd6, LAST = 3'd7;
 
-    // Stages of a triangle: first its passes (`busy`), then three clocks in which the last products arrive (`ending`), then the
-    // held stage, in which it waits for the output register.
+    // Stages of a triangle: first its passes (`busy`), then three clocks in which its last products arrive (`ending`), then the held stage,
+    // in which the triangle waits for the output register.
     records_pkg::descriptor_t triangle;
     logic [9:0]  y0;
     logic        busy, dropped, odd, held_valid, held_odd, advance, moved, out_free;
     logic [2:0]  pass;
     logic [3:1]  ending;
 
-    // A new triangle may enter while no triangle is in its passes, and in the last pass.
+    // A new triangle may enter while no triangle is in its passes, or during the last pass of a triangle.
     held_register #(.WIDTH($bits(in_descriptor) + 10 + 1)) inputs (
         .clk, .rst, .free(in_ready), .in_valid, .in({in_odd, in_y0, in_descriptor}),
         .leaves(dropped || pass == LAST_BUT_ONE), .out({odd, y0, triangle})
     );
 
-    // The first result of a triangle overwrites the first result of the previous one, so the passes stall until that
-    // triangle has left the held stage.
+    // The first result of a triangle overwrites the first result of the previous triangle, so the passes stall until the previous triangle
+    // has left the held stage.
     assign advance   = pass != STALLS || !held_valid || !out_valid;
 
     for (genvar b = 0; b < 2; b++) begin : bands
@@ -76,8 +76,8 @@ module band_entry #(
                         || out_valid && out_odd == 1'(b);
     end
 
-    // Rows of the triangle, counted from the first row of the band: its first row, the row after its last row, and the number of rows.
-    // Before that, `top` and `bottom` are not limited to the rows of the band.
+    // Rows of the triangle in the band, counted from the first row of the band: the first row, the row after the last row, and the number
+    // of rows. `top` and `bottom` are these rows before they are limited to the band.
     logic [10:0] above, top, bottom;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
@@ -189,8 +189,8 @@ module band_entry #(
         assign step_y[k] = steps.y;
     end
 
-    // The held triangle: its results stay in their registers, its other fields are copied here in the last pass. Two registers enable the
-    // copy, one for each half of the fields. Each depends on itself, because synthesis would otherwise merge them.
+    // The held triangle: its results stay in their registers, and its other fields are copied in the last pass. Two registers enable the
+    // copy, one for each half of the fields. Each of these registers depends on itself, because synthesis would otherwise merge them.
     (* keep *) logic [1:0] copies;
 
     always_ff @(posedge clk) begin
@@ -218,7 +218,7 @@ module band_entry #(
     if (SMOOTH) begin : light
         logic smooth, held_smooth, give;
 
-        // A held triangle stays unchanged until its planes have come.
+        // The held planes are sent LIGHT_LATER clocks after the held triangle has moved.
         delay #(.WIDTH(1), .CLOCKS(raster_pkg::LIGHT_LATER)) give_delay (.clk, .enable(1'b1), .in(moved), .out(give));
 
         always_ff @(posedge clk) begin
@@ -239,7 +239,7 @@ module band_entry #(
         wire _unused = &{1'b0, in_planes};
     end
 
-    // The output register only loads while it is empty, so that its enable is a register; this costs one clock between two triangles.
+    // The output register only loads while it is empty, so that its enable is a register. This takes one clock between two triangles.
     assign out_valid = !out_free;
 
     held_register #(.WIDTH($bits(placed) + 1)) result (

@@ -1,20 +1,20 @@
 // Writes the results of the setup to memory: each descriptor once, the descriptor's number to the list of every band that the triangle
 // touches, and the numbers of exceptions to a separate list.
 //
-// Layout in words of 16 bytes, entries being u32 (docs/formats/triangle.md "Band lists"):
+// Layout in words of 16 bytes; entries are u32 (docs/formats/triangle.md "Band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
 //   lists         list_base                            16 words: the lengths of 64 lists
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries per word
 //   exceptions    exception_base                       4 entries per word
 //
-// Up to three entries of each list are kept in this module until a fourth entry completes the word, so that each word is written whole.
+// This module keeps up to three entries of each list until a fourth entry completes the word, so that whole words are written.
 // Memory needs several clocks to switch between descriptors and a list, and writes of four entries make these switches rare.
 //
 // With LINES, `in_line` selects `in_piece` as the input: a piece of a line, which is in one band and replaces a
 // triangle's descriptor (records_pkg::stored_piece_t). `in_line` must hold from `restart` until `done`.
 //
-// Throughput 6 clocks per descriptor, or 9 with SMOOTH, plus 2 for each band after the first. A descriptor is written directly from the
-// input, so it moves one clock after its last word. `in_ready` is a register.
+// Throughput 6 clocks per descriptor, or 9 with SMOOTH, plus 2 for each band after the first. A descriptor is written to memory directly
+// from the input stream, so it leaves the stream one clock after its last word. `in_ready` is a register.
 //
 //   clock  1      2, 3, 4       5          6                 7, 8 …
 //          IDLE   WORD          LOOK       ENTRY             LOOK, ENTRY
@@ -114,7 +114,7 @@ module binner #(
         assign piece     = in_piece;
         assign first_row = in_line ? in_piece.row : in_descriptor.top;
 
-        // The unused words of a piece repeat its lower bits, so that a word has as few sources as possible.
+        // The unused words of a piece repeat lower bits of the piece, so that the multiplexer of a word has few inputs.
         always_comb begin
             word_data = in_line ? piece[127:0] : words[128 * word +: 128];
             if (in_line && word[1]) word_data[127:64] = {in_piece.colour, records_pkg::PIECE_MARK, 8'd0, piece[165:128]};
@@ -146,10 +146,10 @@ module binner #(
         endcase
     end
 
-    // The band of a row, two clocks later. The row is the first row of the descriptor at the input, when `top_comes[2]` is high, and
-    // its last row from the first LOOK clock on. The few bands of the smallest picture are found by comparisons. In all other pictures a
-    // band has 3·2^n rows (glint_soc/constants.py), so one division by 3 suffices: v/3 is v·171/512, which is exact for 8 bits, and 171 is
-    // 2·5·17 + 1.
+    // Computes the band of a row in two clocks. The row is the first row of the descriptor at the input while `top_comes[2]` is high, and
+    // the descriptor's last row from the first LOOK clock on. In the smallest picture, which has few bands, comparisons determine the band.
+    // In all other pictures a band has 3·2^n rows (glint_soc/constants.py), so one division by 3 suffices: v/3 is v·171/512, which is exact
+    // for 8 bits, and 171 is 2·5·17 + 1.
     localparam int unsigned SMALL_ROWS   = band_pkg::lines(2'd0);
     localparam int unsigned SMALL_BANDS  = picture_pkg::HEIGHT / SMALL_ROWS;
     localparam int unsigned SMALL_BITS   = $clog2(SMALL_BANDS);

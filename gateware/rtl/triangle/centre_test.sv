@@ -1,6 +1,6 @@
-// Tests whether a tiny triangle covers one of 2×2 pixel centres: evaluates its three edge functions there (docs/formats/triangle.md,
-// "Triangle setup"). A triangle is tiny if it has at most 2×2 pixel centres in its bounds, so its extents are below 3 pixels, and
-// differences of coordinates fit 11 bits. Other triangles pass.
+// Tests whether a tiny triangle covers at least one of 2×2 pixel centres: evaluates its three edge functions at these centres
+// (docs/formats/triangle.md, "Triangle setup"). A triangle is tiny if it has at most 2×2 pixel centres in its bounds, so its extents are
+// below 3 pixels, and differences of coordinates fit 11 bits. Other triangles pass.
 //
 // P is the upper left centre, (px, py) its position relative to the vertex at which an edge begins, E = dx·py − dy·px the edge
 // function at P. Edges 0 → 1 and 2 → 0 are evaluated from vertex 0, edge 1 → 2 from vertex 1.
@@ -29,7 +29,7 @@ module centre_test (
 );
     logic [2:0][10:0] steps_x, steps_y;
     logic [10:0]      px_0, py_0;
-    // Whether the edge of this clock is the first, and whether it is the second.
+    // Bit 0: the edge of this clock is the first one. Bit 1: it is the second one.
     logic [1:0]       now;
 
     always_ff @(posedge clk) begin
@@ -48,7 +48,7 @@ module centre_test (
     always_comb begin
         step_x = now[0] ? steps_x[0] : now[1] ? steps_x[1] : steps_x[2];
         step_y = now[0] ? steps_y[0] : now[1] ? steps_y[1] : steps_y[2];
-        // dx and −dy of the edge from vertex 0 give the position relative to vertex 1.
+        // dx and −dy of the edge 0 → 1 convert the position relative to vertex 0 to the position relative to vertex 1.
         px     = px_0 - (now[1] ? steps_y[0] : '0);
         py     = py_0 + (now[1] ? steps_x[0] : '0);
         bias   = step_x[10] || step_x == '0 && step_y[10];
@@ -61,7 +61,8 @@ module centre_test (
         later_step_y <= step_y;
     end
 
-    // The functions at P less their biases. The product of the second multiplier comes one clock after the product of the first.
+    // The edge functions at P minus their biases. The product of the second multiplier is valid one clock after the product of the first
+    // multiplier.
     logic signed [24:0] at_first, at_p;
 
     multiply_add #(.BITS(25)) along (
@@ -71,7 +72,7 @@ module centre_test (
         .clk, .enable(1'b1), .a(25'(later_step_y)), .b(18'(later_py)), .c(at_first), .p(at_p)
     );
 
-    // The steps of the edge whose function comes next, in flip-flops (`keep`), because shift registers would take LUTs.
+    // The steps of the edge whose edge function is valid next, in flip-flops (`keep`), because shift registers would take LUTs.
     (* keep *) logic signed [10:0] step_x_1, step_x_2, step_x_3, step_x_4, step_y_1, step_y_2, step_y_3, step_y_4;
     logic signed [11:0] both;
 
@@ -87,8 +88,9 @@ module centre_test (
         both     <= 12'(step_x_3) + 12'(step_y_3);
     end
 
-    // Whether a centre is outside of one of the edges so far: P, the centre to the right, the centre below, and the diagonal one. A centre
-    // is inside an edge if the edge function is at least its bias; centres are 256 units apart, so the low 8 bits are not needed.
+    // For P, the centre to its right, the centre below it, and the diagonal centre: whether the centre is outside of at least one of the
+    // edges evaluated so far. A centre is inside an edge if the edge function is at least its bias; centres are 256 units apart, so the low
+    // 8 bits are not needed.
     logic signed [13:0] value, right, below, across;
     logic [3:0]         beyond, outside;
 
@@ -99,7 +101,7 @@ module centre_test (
         across = value + 14'(both);
     end
 
-    // Bit k of `since` is high when a triangle came k + 1 clocks ago, and bit k of `tiny` when it is tiny.
+    // Bit k of `since` is high if a triangle entered k + 1 clocks ago; bit k of `tiny` is high if that triangle is tiny.
     logic [8:0] since, tiny;
 
     always_ff @(posedge clk) begin

@@ -2,12 +2,12 @@
 // goes to the firmware's clipper as an exception, or it is dropped.
 //
 //   all vertices behind, or none behind and all beyond the same side of the picture   dropped, with a pulse of `unseen`
-//   otherwise, a vertex behind or beyond the guard band                            exception: its number goes out
+//   otherwise, a vertex behind or beyond the guard band                            exception: its number is sent out
 //   otherwise                                                                      regular: goes to the setup
 //
 // Latency 2 clocks. Throughput: one triangle per 3 clocks, in which `vertex_cache` collects the vertices of the next triangle. The module
-// holds one triangle, so `in_ready` comes directly from registers. `width` and `height` must hold while it is inside. Triangles are
-// numbered in the order in which they come, from 0 after `restart`.
+// holds one triangle, so `in_ready` comes directly from registers. `width` and `height` must hold while a triangle is inside. Triangles are
+// numbered in the order of their arrival, from 0 after `restart`.
 
 `default_nettype none
 
@@ -35,8 +35,8 @@ module classify #(
     input  wire                      exception_ready,
     output logic [31:0]              exception_number
 );
-    // Returns the sides of the picture beyond which a vertex lies: left, right, above, below. x and y are the integer parts
-    // of its position.
+    // Returns the sides of the picture beyond which a vertex lies: left, right, top, bottom. x and y are the integer parts of the vertex's
+    // position.
     function automatic logic [3:0] off_sides(input logic [12:0] x, input logic [12:0] y);
         off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction
@@ -46,7 +46,7 @@ module classify #(
     logic [2:0]      behind, beyond;
     logic            is_unseen, is_exceptional;
 
-    // The first clock examines each vertex, the second classifies the triangle, which is then `known`.
+    // The first clock examines each vertex, and the second clock classifies the triangle; the result is valid while `known` is high.
     assign idle           = in_ready;
     assign is_unseen      = behind == '1 || behind == '0 && (off[0] & off[1] & off[2]) != '0;
     assign is_exceptional = behind != '0 || beyond != '0;

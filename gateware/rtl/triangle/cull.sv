@@ -1,7 +1,7 @@
 // The first part of the triangle setup: computes the area, the facing, the bounds in pixels, and the start group (the eight
 // pixels in which rasterization begins). A triangle is dropped, with a pulse of `culled`, if it has no area, if it is a back
 // face while `cull_back` is high, or if its bounds contain no pixel centre. The bounds of a triangle beyond one side of the
-// picture are empty. A tiny triangle, with at most 2×2 centres in its bounds, is also dropped if it covers none of them. `mirror`
+// picture are empty. A tiny triangle, with at most 2×2 centres in its bounds, is also dropped if it covers none of these centres. `mirror`
 // exchanges front and back faces.
 //
 // Throughput: one triangle per 3 clocks, or per 6 if it is 512 pixels high or more; latency 18 or 21. The module holds two triangles, in
@@ -10,10 +10,10 @@
 //   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─┬▶ FIFO ───────────────▶ drop or out
 //        │ area, minima, maxima; or twice 3 │  │ bounds, start; then verdict │ └▶ centre_test ─▶ FIFO ───▲
 //
-// The stages cannot be stopped. A triangle is only accepted if the FIFO can hold all triangles inside, so culled triangles leave while
-// earlier triangles wait for `out`, up to the depth of the FIFO. This hides that the later parts of the setup take longer per triangle.
-// The result of centre_test comes after the triangle has entered the FIFO; a dropped triangle leaves the FIFO in two clocks. `in_ready` is
-// a register, decided a clock ahead.
+// The stages cannot be stopped. A triangle is only accepted if the FIFO can hold all triangles inside, so culled triangles can be dropped
+// while up to PLACES earlier triangles wait for `out`. The FIFO thereby compensates for the longer time per triangle of the later parts of
+// the setup. The result of centre_test is valid after the triangle has entered the FIFO; a dropped triangle leaves the FIFO in two clocks.
+// `in_ready` is a register, whose value is computed one clock ahead.
 
 `default_nettype none
 
@@ -50,7 +50,7 @@ module cull #(
         logic [15:0]          colour;
         logic [2:0][15:0]     normal;
         logic [20:0]          x10, x20, y01, y20;
-        // `y_21`: vertex 2 is above vertex 1. `y_same`: vertices 1 and 2 have the same height.
+        // `y_21` is high if vertex 2 is above vertex 1, `y_same` if vertices 1 and 2 have equal y.
         logic                 y_21, y_same;
     } triangle_t;
 
@@ -59,7 +59,8 @@ module cull #(
     assign v1 = in_vertices[1];
     assign v2 = in_vertices[2];
 
-    // `tall`: the products of `first` need both halves of its height, in two turns of 3 clocks; `second` is high in the last turn.
+    // `tall` is high if the products of the triangle `first` need both halves of its height, one in each of two turns of 3 clocks; `second`
+    // is high in the last turn.
     logic [1:0] phase;
     logic       room, queue_idle, verdict, drop, kept, skip, tall, second, again;
     logic       first_valid, last_valid, first_x_21;
@@ -76,12 +77,12 @@ module cull #(
         precedes = $signed(a) < $signed(b);
     endfunction
 
-    // Whether a number with these highest bits, from bit 17 on, fits the 18 bits of a factor, with its sign.
+    // Returns whether a signed number fits the 18 bits of a factor. `highest` are its bits from bit 17 on.
     function automatic logic fits(input logic [3:0] highest);
         fits = highest == '0 || highest == '1;
     endfunction
 
-    // The next triangle. `takes` is high one clock before it moves in.
+    // The next triangle. `takes` is high one clock before this triangle is accepted.
     triangle_t taken;
     logic      takes;
 
@@ -143,15 +144,15 @@ module cull #(
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p(area));
 
-    // Left and top of the bounds, then right and bottom: selected in phases 0 and 1, rounded up to a pixel's centre one clock
-    // later, and then clamped to the picture.
+    // Left and top of the bounds (selected in phase 0), then right and bottom (selected in phase 1). One clock later these values are
+    // rounded up to a pixel's centre, and then clamped to the picture.
     logic [20:0] extreme_x, extreme_y, rounded_x, rounded_y;
     logic [12:0] pixel_x, pixel_y, first_x, first_y, columns, rows;
     logic [10:0] cut_x, cut_y, left, right;
     logic [9:0]  top, bottom;
 
-    // Returns the number of the vertex with the smallest coordinate, or with `largest` the largest. before_10: vertex 1 comes before
-    // vertex 0 in this order, and so on.
+    // Returns the number of the vertex with the smallest coordinate, or with the largest coordinate if `largest` is high. `before_10` is
+    // high if vertex 1 precedes vertex 0 in this order, and so on.
     function automatic logic [1:0] choose(input logic largest, input logic before_10, input logic before_20, input logic before_21);
         unique case ({largest, before_10})
             2'b00:   choose = before_20 ? 2'd2 : 2'd0;
@@ -192,7 +193,7 @@ module cull #(
 
     always_comb begin
         // `topmost` is the number of the highest vertex on the screen, after the swap of vertices 1 and 2.
-        // Among equally high vertices it is the smallest number.
+        // If several vertices are equally high, it is the smallest of their numbers.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
@@ -258,7 +259,7 @@ module cull #(
         oriented.x0          = last.v0.x;
     end
 
-    // setup_light, the user of the light, selects it by `swap`.
+    // setup_light, which uses the light of the vertices, exchanges vertices 1 and 2 according to `swap`.
     logic [LIT_BITS-1:0] lit;
 
     if (SMOOTH) begin : light
@@ -283,7 +284,7 @@ module cull #(
     assign skip      = queued && tested && !covers && !verdict;
     assign pop       = out_valid && out_ready || skip;
 
-    // `room` is updated for an item before the next triangle can move in, so at most the two triangles in the stages are not counted.
+    // `room` includes an item before the next triangle can be accepted, so at most the two triangles in the stages are not counted.
     pipeline_fifo #(.WIDTH($bits(oriented) + LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
         .clk, .rst, .idle(queue_idle), .room, .in_valid(kept), .in_data({lit, oriented}),
         .out_valid(queued), .out_ready(pop), .out_data({out_lit, out_triangle})
@@ -293,7 +294,8 @@ module cull #(
     logic [2:0][10:0] step_x, step_y;
 
     always_comb begin
-        // Each difference of the vertices 1 and 2 is a single sum, because a swap of them inverts both operands.
+        // Each difference between vertices 1 and 2 is a single sum: a swap of these vertices negates the difference, which is done by
+        // complementing both operands.
         step_x = {oriented.y20[10:0], (last.v1.y[10:0] ^ {11{swap}}) + ~(last.v2.y[10:0] ^ {11{swap}}) + 11'd1, oriented.y01[10:0]};
         step_y = {oriented.x02[10:0], (last.v2.x[10:0] ^ {11{swap}}) + ~(last.v1.x[10:0] ^ {11{swap}}) + 11'd1, oriented.x10[10:0]};
     end

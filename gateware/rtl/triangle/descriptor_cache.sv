@@ -1,5 +1,5 @@
-// A cache of descriptors (triangles after the setup): descriptor numbers in, descriptors out. A triangle is drawn in several
-// bands, one after the other, and with the cache its descriptor is usually read from memory only once.
+// A cache of descriptors (triangles after the setup). The input is descriptor numbers, the output descriptors. A triangle may be drawn in
+// several bands, one after the other; with the cache its descriptor is usually read from memory only once.
 //
 //                 ┌──────┐ miss                              ┌───────┐
 //   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
@@ -7,14 +7,15 @@
 //                    └─────────────▶ marks ──────── fill ───▶│       │
 //                                                            └───────┘
 //
-// The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order
-// of the numbers, the second stage fills lines and the third reads them in the same order. A number that hits therefore finds the
-// descriptor of its tag. The FIFO `marks` controls the second stage for each item: fill a line, or pass the item on. Even a descriptor
-// that missed is read from its line, so no multiplexer follows the block RAM. An item without a descriptor (`in_end`) passes in order.
+// The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order of the
+// numbers, the second stage fills lines in this order, and the third stage reads lines in this order. A number that hits therefore finds
+// the descriptor of its tag. The FIFO `marks` controls the second stage for each item: fill a line, or pass the item on. After a miss, too,
+// the descriptor is read from its line, so no multiplexer follows the block RAM. An item without a descriptor (`in_end`) passes in order.
 //
-// Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput one hit per 4 clocks, or one miss per 5
-// clocks, 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request is in
-// the cache, starts to invalidate all lines, one line per clock; numbers wait until all lines are invalid.
+// Latency: 8 clocks for a hit, 11 clocks plus the latency of memory for a miss. Throughput one hit per 4 clocks, or one miss per 5
+// clocks, 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. If `forget` is high for one clock, all lines are
+// invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while no request is in the
+// cache.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
 // moved. Memory: a client of read_port.
@@ -58,8 +59,8 @@ module descriptor_cache #(
     // A tag consists of the set, the high bits of the number, and a valid bit.
     localparam int unsigned TAG_BITS  = COUNT_BITS - LINE_BITS + 2;
 
-    // First stage: an item waits three clocks while the tag of its line is read from block RAM (`latched`, `found`) and compared,
-    // then until the FIFO `marks` and, for a miss, the request of addresses can take it.
+    // First stage: for three clocks the tag of the item's line is read from block RAM (`latched`, `found`) and compared. The item then
+    // waits until the FIFO `marks` has a free entry and, for a miss, until the descriptor's addresses can be requested.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [TAG_BITS-1:0]     tags [0:2**LINE_BITS-1];
     logic                    looked, read_out, compared, is_end, set, hit, passes, asks;
@@ -139,7 +140,7 @@ module descriptor_cache #(
         .out_valid(marked), .out_ready(reads_again), .out_data({mark_end, mark_hit, mark_line})
     );
 
-    // Second stage: the words of a descriptor that missed go to its cache line, one per clock.
+    // Second stage: after a miss, the words of the descriptor are written to its cache line, one per clock.
     logic [WORD_BITS-1:0] words;
     logic                 takes;
 
@@ -154,9 +155,9 @@ module descriptor_cache #(
     end
 
     // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM holds two words of each
-    // line, because one word of each line fills only half of it. The first word is read one clock before the second. The block RAM holds
-    // the second word at its output until the item has moved, so the register after it needs no enable. The last word of an odd number is
-    // split into two words of 64 bits. The second of them is written one clock late, still before it is read.
+    // line, because one word of each line would fill only half of the RAM. The first word is read one clock before the second. The block
+    // RAM holds the second word at its output until the item has moved, so the register after it needs no enable. The last word of an odd
+    // number is split into two words of 64 bits. The second of these is written one clock late, but before it is read.
     logic                 read_valid, arrives;
     logic [128*WORDS-1:0] descriptor;
 
@@ -169,7 +170,7 @@ module descriptor_cache #(
         logic [WIDTH-1:0] lines [0:2**(LINE_BITS+1)-1];
         logic [WIDTH-1:0] part, cached;
         logic             stores, second;
-        // A copy of `reads_again` for each block RAM, so that it enables no more than 128 flip-flops. `reads` is never high in two
+        // A copy of `reads_again` for each block RAM, so that no copy enables more than 128 flip-flops. `reads` is never high in two
         // successive clocks; each copy depends on itself, because synthesis would otherwise merge registers with equal inputs.
         logic             first_is_read;
 

@@ -1,8 +1,8 @@
-// An edge function along the walk: its value E' in the best lane of the current group, a snapshot of that value at an earlier
-// group, and whether the edge fails beside the group (`best` and `beside` in raster_pkg).
+// Computes an edge function along the walk: its value E' in the best lane of the current group, a snapshot of this value at an earlier
+// group, and whether the edge fails beside the group. raster_pkg explains `best` and `beside`.
 //
-// From group to group E' changes by eight times the slope. It increases with a move to the right if the edge rises, to the left otherwise:
-// the better side. In each clock with `advance`:
+// From one group to the next E' changes by eight times the slope. The better side is the side on which E' increases: the right side if the
+// edge rises, the left side otherwise. In each clock with `advance`:
 //
 //   move               best becomes                    beside becomes the sign of
 //   to the better side from + 8 * slope                from
@@ -14,7 +14,7 @@
 // `keep` preserves the snapshot; without `keep` the snapshot takes the new value. Sums are modulo 2^34.
 //
 // `move` is the last signal to arrive in the walker's critical loop. All sums are therefore computed in parallel with the move, which only
-// selects one of them. For the same reason `resume` comes one clock ahead, as `next_resume`. Latency 1 clock, throughput one move per
+// selects one of them. For the same reason `resume` is an input one clock ahead, as `next_resume`. Latency 1 clock, throughput one move per
 // clock.
 
 `default_nettype none
@@ -39,7 +39,7 @@ module edge_stepper (
     logic [29:0] not_beyond;
     logic        sideways, select, next_beside_fails;
 
-    // `resume`, for the side of the edge that is to the right.
+    // `resume` for a move to the better side and for a move to the worse side; only the right side can resume.
     logic better_resumes, worse_resumes;
 
     always_ff @(posedge clk) begin
@@ -49,7 +49,7 @@ module edge_stepper (
     assign better_from = better_resumes ? snapshot : best;
     assign worse_from  = worse_resumes ? snapshot : best;
 
-    // A difference a - b is computed as the inverse of b + ~a, so that one operand of each adder comes from a register: a sum then takes
+    // A difference a - b is computed as the complement of b + ~a, so that one operand of each adder comes from a register. A sum then takes
     // one LUT per bit.
     assign better      = {11'd0, slope} + better_from[33:3];
     assign not_worse   = {11'd0, slope} + ~worse_from[33:3];

@@ -1,10 +1,10 @@
-// Flat shading (docs/formats/triangle.md, "Pixels" and "Light on meshes"): intensity = clamp(nearest(∓N·l·2^8), 0, 1), with N the normal of
-// the triangle, l the row of the light, and − for a front face; then the share of each channel, min(1, ambient +
-// nearest(light·intensity)), and colour·share, rounded to nearest.
+// Flat shading (docs/formats/triangle.md, "Pixels" and "Light on meshes"). The intensity is clamp(nearest(∓N·l·2^8), 0, 1), where N is the
+// normal of the triangle and l the row of the light, with − for a front face. The share of each channel is min(1, ambient +
+// nearest(light·intensity)). The lit colour is colour·share, rounded to nearest.
 //
-// One multiplier makes nine products: three for N·l, one for each share, and one for each channel of the colour. The module
-// `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The
-// inputs hold during a beat; the colour comes a beat after the normal, and the lit colour is valid from clock 9 of that beat on. For two
+// One multiplier computes nine products: three for N·l, one for each share, and one for each channel of the colour. The module
+// `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The inputs
+// must hold during a beat. The colour arrives one beat after the normal, and the lit colour is valid from clock 9 of that beat on. For two
 // consecutive triangles:
 //
 //   count      0 … 2     3 … 5              6 … 8
@@ -22,7 +22,7 @@ module flat_shade (
     input  wire  [2:0][8:0]  ambient,
     input  wire              front,
     input  wire  [2:0][15:0] normal,
-    input  wire  [15:0]      colour,       // of the triangle before
+    input  wire  [15:0]      colour,       // of the previous triangle
     output logic [15:0]      lit
 );
     logic signed [24:0] a;
@@ -53,7 +53,7 @@ module flat_shade (
         endcase
         b = count < 4'd3 ? 18'(towards) : {9'b0, head};
 
-        // The addend comes two clocks after the factors of its product.
+        // The addend is selected two clocks after the factors of its product.
         unique case (count)
             4'd2:             addend = 44'd1 << 28;
             4'd5, 4'd6, 4'd7: addend = 44'd1 << 7;

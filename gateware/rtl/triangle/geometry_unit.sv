@@ -1,4 +1,4 @@
-// Computes the descriptors (triangles after the setup) and the band lists (their numbers in each band) of a frame from the
+// Computes the descriptors (triangles after the setup) and the band lists (the numbers of the descriptors in each band) of a frame from the
 // mesh in memory.
 //
 //              ┌───────────┐   ┌──────────────┐   ┌──────────┐   ┌───────┐   ┌────────┐
@@ -10,20 +10,22 @@
 //   segments ─────────────────▶ line_setup ───────────────────────────────────────┘ pieces of lines
 //
 // `start` (one clock, not while `busy`) begins a frame. The parameters must hold from a clock before `start` until `done` (one
-// clock), when all results are in memory. With `done`, two errors mark an incomplete frame: `mesh_error` (a chunk without
-// vertices or beyond the mesh's end) and `full` (not all descriptors, list entries or exceptions fit their memory). The lists then contain
-// only descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
+// clock), when all results are in memory. When `done` is high, two errors report an incomplete frame: `mesh_error` (a chunk has no vertices
+// or extends beyond the mesh's end) and `full` (not all descriptors, list entries or exceptions fit their memory). The lists of an
+// incomplete frame contain only descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until
+// read_port is idle.
 //
-// A frame of several meshes takes a start for each. With `flags.append` the results are appended to the descriptors, lists, exceptions,
-// counts and `full` of the previous mesh; size, addresses and `list_shift` must be equal. The number of an exception is its number in its
-// own mesh. After `restart`, `append` has no effect, and the lists are emptied.
+// A frame of several meshes needs a `start` for each mesh. With `flags.append` the results are appended to the descriptors, lists,
+// exceptions, counts and `full` of the previous mesh; size, addresses and `list_shift` must be equal to those of the previous mesh. The
+// number of an exception is the number of the triangle in its own mesh. After `restart`, `append` has no effect, and the lists are emptied.
 //
 // With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats/line.md, "Segments in memory"): mesh_walk reads
-// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which take the place of descriptors.
+// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which replace descriptors.
 //
-// The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled one, 6 per vertex
-// that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 for each of its bands after the first. Memory:
-// two clients of a read_port, two native write ports. `results` has the counts of triangles and descriptors of the frame.
+// The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled triangle, 6 per vertex
+// that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 clocks for each band of the triangle after the
+// first. Memory: two clients of a read_port, two native write ports. `results` contains the numbers of triangles and descriptors of the
+// frame.
 
 `default_nettype none
 
@@ -60,7 +62,7 @@ module geometry_unit #(
 );
     // Number of bits of a triangle's colour and normal together.
     localparam int unsigned SIDE_BITS = 64;
-    // Number of bits of the light of a vertex: a triangle_pkg::light_t, or without SMOOTH one bit, 0.
+    // Number of bits of the light of a vertex, which is a triangle_pkg::light_t, or without SMOOTH one bit that is 0.
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
     localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;
@@ -74,7 +76,7 @@ module geometry_unit #(
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
 
-    // `has_lists`: the lists belong to a frame that was not cancelled.
+    // `has_lists` is high if the lists belong to a frame that was not cancelled.
     logic clear, has_lists, walk_busy, lists_idle, lists_done, drained, hurry;
     logic [1:0] writes_idle;
 
@@ -85,7 +87,7 @@ module geometry_unit #(
         done <= 1'b0;
         case (state)
             IDLE:    if (start) state <= PREPARE;
-            // Waits until binner has emptied all band lists.
+            // Waits until the binner has emptied all band lists.
             PREPARE: if (lists_idle) state <= BEGIN;
             BEGIN:   state <= WALK;
             WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
@@ -276,8 +278,8 @@ module geometry_unit #(
     assign hurry       = state == FINISH || state == IDLE;
     assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
 
-    // Descriptors are written to consecutive addresses, words of lists are not. Each kind has its own port, so that lists do not make the
-    // descriptors' port switch between memory banks.
+    // Descriptors are written to consecutive addresses, but words of lists are not. Descriptors and lists have separate ports, so that the
+    // port of the descriptors seldom switches between memory banks.
     assign descriptors_write_request.wdata_strobe = '1;
 
     /* verilator lint_off PINCONNECTEMPTY */
@@ -301,7 +303,7 @@ module geometry_unit #(
         .wdata_strobe(lists_write_request.wdata_strobe)
     );
 
-    // Number of triangles that have left mesh_walk and have not yet been dropped, or accepted by binner.
+    // Number of triangles that have left mesh_walk and have not yet been dropped or accepted by the binner.
     logic [FLIGHT_BITS-1:0] flight;
     logic                   came, was_unseen, was_culled, was_kept, was_exception;
 

@@ -1,5 +1,5 @@
-// Computes the values of an accumulator in the eight lanes of a group, modulo 2^32, by doubling: lane 4 from lane 0, then lanes
-// 2 and 6 from these two, then the odd lanes from these four.
+// Computes the values of an accumulator in the eight lanes of a group, modulo 2^32, by doubling: first lane 4 from lane 0, then lanes 2 and
+// 6 from lanes 0 and 4, then the odd lanes from the even lanes.
 //
 // Latency 3 clocks, throughput one group per clock.
 

@@ -1,14 +1,15 @@
 // Determines the pixels (lanes) of a group of eight that a triangle covers, and their depth codes (docs/formats/triangle.md, "Pixels").
 //
-// Coverage: E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a lane if E' is at least
-// 0 there. E' is largest in the edge's best lane, lane 7 of a rising edge and lane 0 of a falling edge, and falls by
-// |step_x| from lane to lane. If E' is at least 0 in the best lane, the edge passes in that lane and in the next min(7,
-// floor(E' / |step_x|)) lanes; the quotient comes from three steps of a division. From E' = 2^23 on, which exceeds 7 * 2^20, the
-// edge passes in all lanes.
+// Coverage: E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a lane if E' is at least 0
+// in this lane. E' is largest in the edge's best lane, which is lane 7 of a rising edge and lane 0 of a falling edge, and decreases by
+// |step_x| from lane to lane. If E' is at least 0 in the best lane, the edge passes in that lane and in the next min(7, floor(E' /
+// |step_x|)) lanes; the quotient is computed in three steps of a division. If E' is at least 2^23, which exceeds 7 * 2^20, the edge passes
+// in all lanes.
 //
 // The division is non-restoring: stages 1 to 3 add 4, 2 and 1 times |step_x| to the remainder, or subtract it, so that the remainder
 // approaches 0. A remainder of at least 0 after stages 1, 2 and 3 gives a 1 in bits 2, 1 and 0 of the quotient, `count` in the table.
-// Depth, line and colour of a group come one clock after its other fields, see raster_pkg. `lane_values` computes the depths of the lanes.
+// Depth, line and colour of a group arrive one clock after its other fields, see raster_pkg. `lane_values` computes the depths of the
+// lanes.
 //
 //   stage    1           2            3             4            5
 //   count    bit 2       bit 1        bit 0         mask         kept if not 0
@@ -54,8 +55,8 @@ module lanes (
         end
     end
 
-    // For each edge and pipeline stage (the suffix of a name): `count`, the number of lanes besides the best lane in which the edge
-    // passes, `rises`, whether the edge rises to the right, and `all`, whether it passes in all lanes.
+    // Signals of each edge; the suffix of a name is the pipeline stage. `count` is the number of lanes besides the best lane in which the
+    // edge passes, `rises` is high if the edge rises to the right, and `all` is high if the edge passes in all lanes.
     logic [2:0]      rises_1, rises_2, rises_3;
     logic [2:0]      all_1, all_2, all_3;
     logic [2:0][2:0] count_3;
@@ -118,7 +119,7 @@ module lanes (
         end
     end
 
-    // Position and colour of a group, delayed to match its mask and depths.
+    // Position and colour of a group, delayed by the latency of its mask and depths.
     logic [7:0]  column_4;
     logic [5:0]  line_4;
     logic [15:0] colour_4;

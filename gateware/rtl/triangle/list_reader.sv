@@ -1,18 +1,18 @@
-// Reads the descriptors (triangles after the setup) of a frame, band by band, in the order of the band lists: in each band
-// first the set written by the geometry unit, then an optional second set written by the firmware (clipped triangles). The
-// layout in memory is described in binner.
+// Reads the descriptors (triangles after the setup) of a frame, band by band, in the order of the band lists: in each band first the set
+// that the geometry unit has written, then an optional second set that the firmware has written (clipped triangles). The module `binner`
+// describes the layout in memory.
 //
 //             words               entries   ┌──────────────────┐
 //   lengths ─────────▶ lists ────────┬─────▶│ descriptor_cache │──▶ out
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
-// Each part reads ahead of the next part until its FIFO is full, even past the ends of lists and bands: the lengths of up
-// to 16 bands, up to 8 jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). This
-// hides the latency of memory. Three clients of a read_port read the lengths of the lists, the lists, and the descriptors.
-// Throughput one descriptor per 4 clocks, or per 7 with SMOOTH; a list takes at least 4 clocks.
+// Each of the three parts reads ahead until its FIFO is full, even past the ends of lists and bands: the lengths of up to 16 bands, up to 8
+// jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). Reading ahead hides the latency of memory.
+// Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput one descriptor per 4 clocks, or
+// per 7 with SMOOTH; a list takes at least 4 clocks.
 //
-// `list_error` is high if since `start` a list was longer than the largest length and was read as empty, or an entry was not
-// below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.
+// `list_error` is high if, since `start`, the length of a list exceeded the largest length (such a list is read as empty), or an entry was
+// not below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.
 //
 // `start` (one clock, not while a frame is read) begins with band 0. `forget` invalidates the descriptor_cache. An item of
 // `out` is a descriptor, or with `out_end` the end of a band; the end of `last_band` is the last item. Streams: an item moves
@@ -58,8 +58,8 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Requests the lengths of the lists, one read for each list. A word of the table of lengths holds the lengths of four bands,
-    // and is read again for each of them, because the lists of the two sets alternate.
+    // Requests the lengths of the lists, with one read for each list. A word of the table of lengths holds the lengths of four bands. The
+    // word is read again for each of these bands, because the lists of the two sets alternate.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
 
@@ -81,8 +81,8 @@ module list_reader #(
         if (rst) asks_lengths <= 1'b0;
     end
 
-    // Requests the words of the lists. For each list a job is first sent to the next part: the length of the list, or 0 if the list is too
-    // long or its set is absent.
+    // Requests the words of the lists. For each list a job is first sent to the next part. A job is the length of the list, or 0 if the
+    // list is too long or its set is absent.
     typedef enum logic [2:0] {IDLE, LENGTH, CHECK, JOB, WORDS} list_state_t;
     list_state_t list_state;
 

@@ -1,12 +1,12 @@
 // Reads the triangles of a mesh in memory, chunk by chunk (docs/formats/mesh.md, "Mesh in memory").
 //
-// Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertex stage
-// reads the vertices of the chunk, from `vertex_base` on. Triangles that were sent still need the vertices of their chunk, so
-// the next chunk begins only when the following pipeline is empty (`drained`): this costs some hundred clocks for each chunk of
-// up to 65,535 vertices. Throughput within a chunk: one triangle per clock, unless memory is slower.
+// This module reads words of 16 bytes as a client of read_port: a chunk's header, then the chunk's triangles one after the other. The
+// vertex stage reads the vertices of the chunk, from `vertex_base` on. Triangles in the following pipeline still need the vertices of their
+// chunk, so the next chunk begins only when this pipeline is empty (`drained`). This wait takes some hundred clocks for each chunk of up to
+// 65,535 vertices. Throughput within a chunk: one triangle per clock, unless memory is slower.
 //
 // `start` (one clock, not while `busy`) begins at `first`, the address of the mesh's first chunk; `past` is the address
-// of the first word after the mesh. A chunk without vertices or beyond `past` ends the walk with `error`, which holds
+// of the first word after the mesh. A chunk that has no vertices or extends beyond `past` ends the walk with `error`, which holds
 // until the next start.
 
 `default_nettype none
@@ -42,8 +42,8 @@ module mesh_walk #(
 
     assign read_header = data;
 
-    // Bits of counts, and of sums of an address and two counts. Values from memory may be arbitrary: a larger count is `wild`, and the
-    // sums of other counts do not wrap around.
+    // Numbers of bits: of a count, and of the sum of an address and two counts. Values from memory may be arbitrary: if a count has more
+    // bits, `wild` is high; the sums of other counts do not wrap around.
     localparam int unsigned COUNT_BITS = ADDRESS_BITS + 1;
     localparam int unsigned SUM_BITS   = ADDRESS_BITS + 3;
 
@@ -66,7 +66,7 @@ module mesh_walk #(
     assign wild         = too_many || vertices == '0 || end_base > SUM_BITS'(past);
 
     always_ff @(posedge clk) begin
-        // Whether the next clock has an address to request.
+        // `more` is high if an address remains to be requested in the next clock.
         more  <= asks_left < (asked ? COUNT_BITS'(-2) : '1);
         chunk <= 1'b0;
 

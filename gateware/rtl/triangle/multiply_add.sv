@@ -5,8 +5,8 @@
 //                                   c
 //
 // Latency 3 clocks in which `enable` is high, counted from `a` and `b`, and 1 clock counted from `c`. Throughput one product per clock.
-// `c` may depend on `p`, to accumulate: an expression `select ? p : other` is mapped to the DSP48, without LUTs. Users multiply a factor
-// that is too wide for an input in pieces: unsigned pieces of 17 bits, and a signed piece with the highest bits.
+// `c` may depend on `p`, to accumulate products: an expression `select ? p : other` is mapped to the DSP48 without LUTs. A factor that is
+// too wide for an input must be split by the user into unsigned parts of 17 bits and a signed part with the highest bits.
 
 `default_nettype none
 

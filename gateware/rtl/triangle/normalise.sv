@@ -1,5 +1,5 @@
-// Normalises an unsigned 40-bit number that is not 0: in is about m·2^(lead − 23), with lead = floor(log2 in) and m =
-// floor(in·2^(23 − lead)) in [2^23, 2^24).
+// Normalises an unsigned 40-bit number that is not 0: `in` is about m·2^(lead − 23), where lead = floor(log2 in), and m = floor(in·2^(23 −
+// lead)) is in [2^23, 2^24).
 //
 // Latency 3 clocks for m and lead, throughput one number per clock. The shift has three parts: by multiples of 16, of 4 and of 1.
 

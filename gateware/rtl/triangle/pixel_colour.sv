@@ -1,4 +1,4 @@
-// Computes the colour of a pixel from its accumulators of depth and light: divides each light by the depth, with a table of
+// Computes the colour of a pixel from its accumulators of depth and light: divides the light of each channel by the depth, with a table of
 // reciprocals (docs/formats/triangle.md, "Smooth shading").
 //
 //   clock   0          1           2               3                      4, 5, 6        7
@@ -70,7 +70,7 @@ module pixel_colour (
             .clk, .enable(1'b1), .a({1'b0, light_3}), .b({1'b0, inverse}), .c(half >> (BITS - 5)), .p(product)
         );
 
-        // High if the light is below 0, which rounding may cause for a light of 0. The channel is then 0.
+        // High if the light is negative, which rounding may cause if the exact light is 0. The channel is then 0.
         assign dark = light_3[23:18] == '1;
 
         delay #(.WIDTH(1), .CLOCKS(3)) dark_delay (.clk, .enable(1'b1), .in(dark), .out(dark_6));

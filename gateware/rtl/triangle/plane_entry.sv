@@ -1,8 +1,9 @@
 // Evaluates a plane of light (the linear function of one colour channel, see triangle_pkg) at the row where the triangle enters
-// the band: start + step_y * offset, modulo 2^32, with `offset` the number of rows from the triangle's first row to that row.
+// the band: computes start + step_y * offset, modulo 2^32. `offset` is the number of rows from the triangle's first row to the row of the
+// entry.
 //
-// The module `band_entry` drives the control inputs and counts the passes, steps 0 to 7 of a triangle: the low 24 bits of
-// step_y are multiplied in pass 6, its high 8 bits in pass 7, and the start is added to the first product.
+// The module `band_entry` drives the control inputs and counts the passes 0 to 7 of a triangle. The low 24 bits of step_y are multiplied in
+// pass 6, the high 8 bits in pass 7, and the start is added to the first product.
 
 `default_nettype none
 
@@ -13,15 +14,15 @@ module plane_entry (
     input  wire         advance,
     input  wire  [9:0]  offset,
     input  wire         hold,      // the triangle moves to the held stage
-    input  wire         begins,    // the first product comes
+    input  wire         begins,    // the first product is valid
     input  wire         result,    // the value is computed
-    input  wire         give,      // the held value goes out
+    input  wire         give,      // the held value is sent out
     input  wire  [95:0] in_plane,  // {step_y, step_x, start}
     output logic [95:0] out_plane  // {step_y, step_x, value at the row}
 );
     localparam logic [2:0] LOW = 3'd6;
 
-    // `late_start` holds the start until the first product comes, because the next triangle may then have entered.
+    // `late_start` holds the start until the first product is valid, because the next triangle may have entered by then.
     logic [31:0]        start, late_start, step_x, step_y, held_step_x, held_step_y, held;
     logic signed [24:0] a;
     logic signed [17:0] b;

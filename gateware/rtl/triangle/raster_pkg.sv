@@ -4,10 +4,10 @@
 
 package raster_pkg;
     // A triangle at the row where it enters the band, in its start group. A group is eight neighbouring pixels of a row, lanes
-    // 0 (left) to 7. E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a lane if its
-    // E' is at least 0 there. E' is linear, so within a group its largest value is in lane 7 if the edge rises to the right,
-    // and in lane 0 otherwise: `best`. `beside` is E' one lane outside of the opposite end of the group, in lane -1 if the edge
-    // rises, and in lane 8 otherwise. It shows whether the edge passes anywhere in the next group on that side.
+    // 0 (left) to 7. E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a lane if its E'
+    // is at least 0 in this lane. E' is linear, so within a group its largest value, `best`, is in lane 7 if the edge rises to the right,
+    // and in lane 0 otherwise. `beside` is E' one lane outside of the opposite end of the group, in lane -1 if the edge rises, and in lane
+    // 8 otherwise. The sign of `beside` shows whether the edge passes anywhere in the next group on that side.
     typedef struct packed {
         logic [2:0][33:0] best;         // E' in the lane where it is largest
         logic [2:0]       beside_fails; // E' < 0 in lane -1 or lane 8, as explained above
@@ -21,7 +21,7 @@ package raster_pkg;
         logic [7:0]       group_start;
     } placed_t;
 
-    // The fields of the same triangle that do not affect the walk. They come one clock later.
+    // The fields of the same triangle that do not affect the walk. These fields are valid one clock later.
     typedef struct packed {
         logic [31:0] depth;        // depth accumulator in lane 0, with half a depth code added
         logic [31:0] depth_step_x;
@@ -34,8 +34,8 @@ package raster_pkg;
     // triangle.
     typedef enum logic [1:0] {DOWN, LOAD, LEFT, RIGHT} move_t;
 
-    // A group of eight pixels that the triangle may cover, because every edge passes in at least one of its lanes: every `best`
-    // is at least 0. The fields have the same meaning as those of placed_t, here at this group.
+    // A group of eight pixels that the triangle may cover, because every edge passes in at least one of its lanes (every `best` is at least
+    // 0). The fields have the same meanings as the fields of placed_t, at this group.
     typedef struct packed {
         logic [7:0]       group;
         logic [2:0][32:0] best;
@@ -43,7 +43,7 @@ package raster_pkg;
         logic [2:0]       rises;
     } candidate_t;
 
-    // The other fields of the same group. They come one clock later.
+    // The other fields of the same group. These fields are valid one clock later.
     typedef struct packed {
         logic [5:0]  line;
         logic [31:0] depth;
@@ -51,8 +51,8 @@ package raster_pkg;
         logic [15:0] colour;
     } late_t;
 
-    // Number of clocks by which the planes of light come later than the other late fields, so that the light of a group comes together
-    // with the mask from `lanes`.
+    // Number of clocks from the other late fields to the planes of light. With this delay the light of a group is valid in the same clock
+    // as the mask from `lanes`.
     localparam int unsigned LIGHT_LATER = 3;
 endpackage
 

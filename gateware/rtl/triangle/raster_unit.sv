@@ -7,9 +7,9 @@
 //   pixels of a field, from a raymarcher ────────────────────┘
 //
 // `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is in
-// memory. A band takes the time of its groups of eight pixels, plus about 16 clocks until its flush begins; during these clocks,
-// descriptors are read ahead and the first triangles of the next band are prepared. `restart` (any time) cancels the frame; the next start
-// must wait until the unit is `ready` and read_port is idle.
+// memory. The time of a band is the time for its groups of eight pixels, plus about 16 clocks until its flush begins. During these 16
+// clocks, descriptors are read ahead and the first triangles of the next band are prepared. `restart` (any time) cancels the frame; the
+// next start must wait until the unit is `ready` and read_port is idle.
 //
 // With FIELDS, a raymarcher outside of this unit draws a distance field into each frame with `field_source.enable`.
 // `field_sink.start` begins the field. When the triangles of a band are drawn, `open` admits the field's pixels of this band
@@ -17,19 +17,20 @@
 // luminances of two eyes become colours, see band_flush.
 //
 // With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of
-// the lists: when the kind changes, the next item waits about 30 clocks, until the last group of the previous items is taken.
+// the lists: when a piece follows a triangle or a triangle a piece, the next item waits about 30 clocks until the last group of the
+// previous items is taken.
 //
 // Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
 // must then be low, and the unit reads no memory.
 //
-// `slot` is the number of the frame buffer that is drawn. Only words that can differ from the last frame in the same slot are
-// written. `whole` writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another
-// size or clear colour, a write by the CPU). `depth` implies `whole`. All words are also written if the slot holds no complete
-// frame: after reset, and after a cancelled frame.
+// `slot` is the number of the frame buffer into which the frame is drawn. Only words that can differ from the last frame in the same slot
+// are written. `whole` writes all words; `whole` is required when the contents of the frame buffer are unknown (after a change of its
+// address, of the picture's size or of the clear colour, or after a write by the CPU). `depth` implies `whole`. All words are also written
+// if the slot holds no complete frame: after reset, and after a cancelled frame.
 //
 // Memory: three clients of a read_port, and two native write ports, one for the words in even banks of the DDR3 memory and one
-// for the words in odd banks. A port only switches to another bank when the previous bank is idle, a dozen clocks later, and consecutive
-// lines of a band lie in different banks. While one port waits for its bank, the other port therefore writes.
+// for the words in odd banks. Consecutive lines of a band lie in different banks, and a port only switches to another bank when the
+// previous bank is idle, a dozen clocks later. With two ports, one port writes while the other port waits for its bank.
 
 `default_nettype none
 
@@ -70,13 +71,13 @@ module raster_unit #(
     input  wire triangle_registers_pkg::write_answer_t odd_write_answer,
     output triangle_registers_pkg::events_t events
 );
-    // Values derived from the size of the picture: its last band, the rows of a band, the groups of a row, and the 128-bit
-    // words of a band.
+    // Values derived from the size of the picture: the number of its last band, and the numbers of rows of a band, of groups of a row, and
+    // of 128-bit words of a band.
     logic [5:0]  last_band, rows;
     logic [7:0]  stride;
     logic [10:0] words;
 
-    // The size is constant since before `start`.
+    // `flags.size` must not change during a frame, nor in the clock before `start`.
     always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
     typedef enum logic [2:0] {IDLE, DRAW, FIELD, HAND_OVER, FLUSH} state_t;
@@ -139,7 +140,7 @@ module raster_unit #(
         end
     end
 
-    // Groups of one pixel, of lines or of the field.
+    // A group of one pixel, of a line or of the field.
     typedef struct packed {
         logic [1:0]  halves;
         logic [10:0] row;
@@ -178,7 +179,7 @@ module raster_unit #(
         records_pkg::descriptor_t descriptor;
         logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-        // The first row and the parity of the band whose triangles are read, which is the band being drawn or the next one.
+        // The first row and the parity of the band whose triangles are read, which is the current band or the next band.
         logic [9:0] read_row;
         logic       read_odd;
 
@@ -234,8 +235,8 @@ module raster_unit #(
             assign stored  = descriptor;
             assign is_line = stored.mark == records_pkg::PIECE_MARK;
 
-            // The descriptor stays until the clock after its piece is taken, so that no path leads from the walk along a line to
-            // list_reader.
+            // The descriptor stays at the input until the clock after line_raster has taken its piece, so that no path leads from the walk
+            // along a line to list_reader.
             assign piece_valid = item_valid && !band_ends && is_line && from_line && read_odd == band[0] && !piece_taken;
 
             always_ff @(posedge clk) begin
@@ -273,7 +274,7 @@ module raster_unit #(
         wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
-    // Whether groups come from the raymarcher in this clock; without TRIANGLES they always do.
+    // Whether groups come from the raymarcher in this clock; without TRIANGLES all groups come from the raymarcher.
     logic from_field;
 
     assign from_field = FIELDS && (field_sink.open || !TRIANGLES);

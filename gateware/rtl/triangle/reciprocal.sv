@@ -8,7 +8,7 @@
 //          m ─▶ seed ─▶ y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
 //
 // −m·y is computed as ~m·y + y, so that there is no adder before the multiplier. The residues are e0 = 2^33 − m·y0 and
-// e1 = 2^40 − m·y1; only their bits 8 to 25 are used, in which 2^33 and 2^40 are 0.
+// e1 = 2^40 − m·y1; only bits 8 to 25 of the residues are used, in which 2^33 and 2^40 are 0.
 
 `default_nettype none
 

@@ -1,24 +1,24 @@
-// Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats/triangle.md, "Triangle
-// setup"). The *start* is the pixel at which the edge functions and the depth in a descriptor_t are given.
+// Culling, setup and flat shading of triangles: computes a descriptor from three vertices on the screen (docs/formats/triangle.md,
+// "Triangle setup"). The *start* is the pixel for which a descriptor_t contains the values of the edge functions and of the depth.
 //
-//         3 clocks per triangle          11 clocks per triangle, all four in step with `count`
+//         3 clocks per triangle          11 clocks per triangle, numbered by `count`
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
 // Throughput: one drawn triangle per 11 clocks, or 33 with smooth shading, one culled triangle per 3; latency at most 86 clocks,
-// or 196. A beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if
-// the last clock is repeated, because the light takes longer or stage 4 waits for the output. All stages, even empty stages, move together
-// in the last clock of a beat, so a single triangle passes through without others behind it. A culled triangle leaves before stage 1. It
-// only waits for earlier triangles if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
+// or 196. A beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if the last
+// clock is repeated because the light takes longer or stage 4 waits for the output. All stages move together in the last clock of a beat,
+// even empty stages, so a triangle passes through the stages even if no triangle follows. A culled triangle leaves before stage 1. A culled
+// triangle only waits for earlier triangles if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
 // triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `mirror`, `row_light`,
-// `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.
+// `light_colour`, `ambient`, `smooth`) must hold while `busy` is high and in the clock in which a triangle enters.
 //
 // E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
-// vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This holds at every point: the
+// vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This equation holds at every point: the
 // differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
-// With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes its values P
-// at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then pass through one datapath in turn, in rounds of 11
+// With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes the values P of the
+// plane at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then pass through one datapath in turn, in rounds of 11
 // clocks; a beat of a frame with smooth shading has three rounds:
 //
 //   beat           2                       3                       4
@@ -30,7 +30,7 @@
 `default_nettype none
 
 module setup #(
-    // Number of the last clock of a beat, the time of a triangle in a stage; the formal proof of the control uses a smaller
+    // Number of the last clock of a beat. A beat is the time of a triangle in a stage. The formal proof of the control uses a smaller
     // number.
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
@@ -75,9 +75,9 @@ module setup #(
         logic [20:0] px, py;
     } origin_t;
 
-    // `beat` is high in the last clock of a beat, `enable` is low while the last clock is repeated. Both are registers, decided a
-    // clock ahead: `ending` is high if the next clock has the last count, `light_ends` if the light is ready then as well. The
-    // registers of a stage have copies of `beat`.
+    // `beat` is high in the last clock of a beat, `enable` is low while the last clock is repeated. Both signals are registers, whose
+    // values are computed one clock ahead: `ending` is high if the next clock has the last count, `light_ends` if the light is also ready
+    // in the next clock. The registers of a stage have copies of `beat`.
     logic [3:0] count;
     logic       enable, beat, ending, light_ends, beat_comes, waits;
     logic [4:1] valid;
@@ -164,16 +164,16 @@ module setup #(
         .clk, .enable, .count, .row_light, .light_colour, .ambient, .front(t.front), .normal(t.normal), .colour(colour_2),
         .lit(lit_2)
     );
-    // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 7 of stage 2 on, or earlier in stage 2 if
-    // the beat of stage 1 is longer than 11 clocks.
+    // The computation of the area's reciprocal starts in clock 3 of stage 1. The reciprocal is valid from clock 7 of stage 2 on, or earlier
+    // in stage 2 if the beat of stage 1 is longer than 11 clocks.
     normalise normalised (.clk, .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (
         .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
         .out_valid(reciprocal_done), .out_y(y)
     );
 
-    // Stage 2 computes (E1 − bias)/2^8 with E1 − bias = a − (E0 − bias) − (E2 − bias) − the sum of the three biases: of the
-    // lowest 8 bits only the carry is kept. The last products of flat shading are made at the same time.
+    // Stage 2 computes (E1 − bias)/2^8, where E1 − bias = a − (E0 − bias) − (E2 − bias) − (the sum of the three biases). Of the lowest 8
+    // bits only the carry is kept. The last products of flat shading are computed at the same time.
     passed_t            passed_2;
     origin_t            origin_2;
     logic        [45:0] nx_2, ny_2;
@@ -272,7 +272,7 @@ module setup #(
 
         wide_register #(.WIDTH(LIT_BITS)) lit_stage (.clk, .next(beat_comes), .in(first_lit), .out(lit_1));
 
-        // The channel whose normal this round computes.
+        // Inputs for the normal of the channel of this round.
         logic [24:0] w10, w20;
         logic [23:0] value;
 
@@ -281,7 +281,7 @@ module setup #(
             .front(t.front), .swap(lit_1[LIT_BITS-1]), .lights(lit_1[LIT_BITS-2:0]), .value, .p10(w10), .p20(w20)
         );
 
-        // The gradients of a triangle are computed from round 1 on, and its starts from round 2 on, for three rounds each.
+        // The gradients of a triangle are computed in three rounds from round 1 on, and its starts in three rounds from round 2 on.
         (* keep *) logic [23:0] value_3, value_4;
         logic [23:0] light_y;
         logic [5:0]  light_lead;

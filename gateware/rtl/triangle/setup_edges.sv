@@ -1,10 +1,9 @@
-// Computes the edge functions E of edges 0 and 2 of a triangle at the start pixel, minus their biases, with 8 fraction bits:
-// E − bias.
+// Computes E − bias for edges 0 and 2 of a triangle, with 8 fraction bits. E is the edge function at the start pixel.
 //
-// Both edges pass through vertex 0, and (px, py) is the centre of the start pixel relative to vertex 0. An edge takes four
-// products, first the two with the 17 low bits of its steps. The module `setup` drives `count`, the number of the clock in a
-// beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The inputs hold during a beat; E0 is valid from clock
-// 7 on, E2 in clock 10.
+// Both edges pass through vertex 0, and (px, py) is the centre of the start pixel relative to vertex 0. An edge needs four products: first
+// two products with the 17 low bits of its steps, then two products with the high bits. The module `setup` drives `count`, the number of
+// the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The inputs must hold during a beat; E0 is valid
+// from clock 7 on, E2 in clock 10.
 
 `default_nettype none
 
@@ -30,7 +29,7 @@ module setup_edges (
     logic        [16:0] low;
 
     // The factors follow from count = 4·k + 2·high + term: k is 0 for edge 0 and 1 for edge 2, high is 1 for the high bits of a
-    // step, term is 0 for the product with py and 1 for the product with px. The addend `c` comes two clocks after the factors of its
+    // step, term is 0 for the product with py and 1 for the product with px. The addend `c` is selected two clocks after the factors of its
     // product.
     always_comb begin
         a    = 25'($signed(count[0] ? px : py));

@@ -1,10 +1,10 @@
 // Computes the gradients of a plane (the depth, or one channel of light) before their rounding, from its normal (Nx, Ny) and
 // the reciprocal y of the area: floor(Nx·y·2^−(lead + 7)) modulo 2^41, and the same for Ny.
 //
-// Each gradient takes three products, with pieces of the normal of 17, 17 and 12 bits from the low end. A shift in three parts follows: by
-// multiples of 16, of 4 and of 1. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage
-// of `setup`, 11 clocks or more). The inputs hold during a beat; the result for Nx is valid from clock 8 on, for Ny in clock 10, even
-// while that clock is repeated.
+// Each gradient needs three products, in which the normal is split into parts of 17, 17 and 12 bits from the low end. A shift in three
+// parts follows: by multiples of 16, of 4 and of 1. The module `setup` drives `count`, the number of the clock in a beat (the time of a
+// triangle in a stage of `setup`, 11 clocks or more). The inputs must hold during a beat. The result for Nx is valid from clock 8 on, the
+// result for Ny in clock 10, even while that clock is repeated.
 
 `default_nettype none
 
@@ -44,7 +44,7 @@ module setup_gradient (
     assign twice_gy = 41'(by_4 >>> lead[1:0]);
 
     always_ff @(posedge clk) begin
-        // The sums of the three pieces come in successive clocks, so the completed bits are in the sums of the last two clocks.
+        // The sums of the three parts are valid in successive clocks, so the low bits of the result are in the sums of the last two clocks.
         middle <= p[16:0];
         low    <= middle;
         by_16  <= 56'($signed(product[69:7]) >>> {lead[5:4], 4'b0});

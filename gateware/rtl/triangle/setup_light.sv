@@ -1,10 +1,10 @@
 // Stage 1 of the triangle setup for smooth shading: computes P = nearest((w + 1/2)·L) of each vertex and channel
-// (docs/formats/triangle.md, "Smooth shading"), with w the depth of the vertex and L its light. The results are the inputs of a plane: P
-// at vertex 0 (`value`), and the differences of the other vertices from it (`p10`, `p20`).
+// (docs/formats/triangle.md, "Smooth shading"), where w is the depth of the vertex and L its light. The results are the inputs of a plane:
+// P at vertex 0 (`value`), and P at the other vertices minus P at vertex 0 (`p10`, `p20`).
 //
-// A round computes the three products of a channel, vertex after vertex, for the triangle in stage 1. The results wait in a queue
-// and belong to the same round of the next beat. The module `setup` drives `count`, the number of the clock in a round (11 clocks
-// or more), `round`, and `next`, which is high one clock before the last clock of a round. The inputs hold during a beat.
+// A round computes the three products of a channel, vertex after vertex, for the triangle in stage 1. The results wait in a queue until the
+// same round of the next beat. The module `setup` drives `count`, the number of the clock in a round (11 clocks or more), `round`, and
+// `next`, which is high one clock before the last clock of a round. The inputs must hold during a beat.
 //
 //   count        0 … 2      3 … 5      6 …        10
 //   factors      vertex 0   vertex 1   vertex 2
@@ -21,7 +21,7 @@ module setup_light (
     input  wire  [24:0] w10,
     input  wire  [24:0] w20,
     input  wire         front,
-    input  wire         swap,   // vertices 1 and 2 of the mesh change places
+    input  wire         swap,   // vertices 1 and 2 of the mesh are exchanged
     input  wire  [2:0][40:0] lights, // triangle_pkg::light_t each, numbered as in the mesh
     // Results for the triangle in stage 2, in the channel of the round.
     output logic [23:0] value,
@@ -43,7 +43,7 @@ module setup_light (
             2'd1:    light = lights[1];
             default: light = lights[2];
         endcase
-        // L of the vertex in this channel, with 14 fraction bits; 0 if it belongs to the other side of the triangle.
+        // L of the vertex in this channel, with 14 fraction bits; 0 if the light belongs to the other side of the triangle.
         unique case (round)
             2'd0:    lit = {light.red, 1'b0};
             2'd1:    lit = light.green;
@@ -52,7 +52,7 @@ module setup_light (
         if (light.back == front) lit = '0;
     end
 
-    // w·L + L/2 + 1/2, where half a depth code is 2^5 and half a unit of P is 2^13.
+    // The product is w·L + L/2 + 1/2. In units of w half a depth code is 2^5; in units of the product half a unit of P is 2^13.
     always_ff @(posedge clk) begin
         w    <= {1'b0, w0} + (vertex[0] ? w10 : vertex[1] ? w20 : '0);
         half <= {1'b0, lit} + 15'd256;

@@ -1,9 +1,9 @@
 // Computes the normal of a plane, a value w that is linear on the screen: Nx = w10·y20 + w20·y01 and Ny = w20·x10 + w10·x02,
 // s46. w10 is w1 − w0, y01 is y0 − y1, and so on.
 //
-// Each component takes four products: first the two with the four high bits of a coordinate difference, then the two with its
-// 17 low bits. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of
-// `setup`, 11 clocks or more). The inputs hold during a beat; Nx is valid from clock 7 on, Ny in clock 10.
+// Each component needs four products: first two products with the four high bits of a coordinate difference, then two products with its 17
+// low bits. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks
+// or more). The inputs must hold during a beat; Nx is valid from clock 7 on, Ny in clock 10.
 
 `default_nettype none
 
@@ -26,7 +26,7 @@ module setup_normal (
     logic        [20:0] factor;
 
     // The factors follow from count = 4·k + 2·low + term: k is 0 for Nx and 1 for Ny, low is 1 for the low bits, term is 0 or 1
-    // for the first or second product of the formula. The addend `c` comes two clocks after the factors of its product.
+    // for the first or second product of the formula. The addend `c` is selected two clocks after the factors of its product.
     always_comb begin
         a      = $signed(count[2] ^ count[0] ? w20 : w10);
         factor = count[2] ? (count[0] ? x02 : x10) : (count[0] ? y01 : y20);

@@ -3,9 +3,9 @@
 `default_nettype none
 
 package setup_pkg;
-    // A triangle that is accepted for drawing: its area is not 0, and its vertices are ordered clockwise on the screen. A name
-    // such as x10 is the difference x1 − x0 of vertices 1 and 0. x02 and y01 have the opposite sign of the differences in
-    // docs/formats/triangle.md, so that sums of products need no subtraction.
+    // A triangle that is accepted for drawing: its area is not 0, and its vertices are ordered clockwise on the screen. x10 is the
+    // difference x1 − x0 of vertices 1 and 0, and so on. x02 and y01 are the negated differences of docs/formats/triangle.md, so that sums
+    // of products need no subtraction.
     typedef struct packed {
         logic             front;
         logic [2:0][15:0] normal;      // s2.14
@@ -16,7 +16,7 @@ package setup_pkg;
         logic [7:0]       group_right;
         logic [7:0]       group_start;
         logic [39:0]      area;        // twice the area, a in docs/formats/triangle.md
-        logic [24:0]      not_w20;     // all bits of w20 inverted
+        logic [24:0]      not_w20;     // complement of w20
         logic [24:0]      not_w10;
         logic [20:0]      y20;
         logic [20:0]      x02;

@@ -3,8 +3,8 @@
 //
 // The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, or of a
 // channel of its light, 11 clocks or more), and `next`, which is high one clock before the last clock of a beat. The normal is valid
-// at the end of a beat. The reciprocal must hold in the next beat, and the inputs for vertex 0 in the beat after that, at the end
-// of which all outputs are valid.
+// at the end of a beat. The reciprocal must hold during the next beat, and the inputs for vertex 0 during the beat after that. All outputs
+// are valid at the end of the latter beat.
 
 `default_nettype none
 

@@ -2,9 +2,9 @@
 // Gy·py)/2^8) modulo 2^32. `value` is the plane's value at vertex 0, Gx and Gy are its gradients, and (px, py) is the start
 // relative to vertex 0.
 //
-// Each gradient takes three products, with pieces of 17, 17 and 6 bits from the low end; bits 8 to 39 of their sum are exact.
-// The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks
-// or more). The inputs hold during a beat; the result is valid from clock 9 on.
+// Each gradient needs three products, for which it is split into parts of 17, 17 and 6 bits from the low end; bits 8 to 39 of the products'
+// sum are exact. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11
+// clocks or more). The inputs must hold during a beat; the result is valid from clock 9 on.
 
 `default_nettype none
 
@@ -25,7 +25,7 @@ module setup_start (
     logic        [8:0]  low;
     logic        [16:0] middle, high;
 
-    // The factors follow from count = 2·piece + term, with term 0 for Gx and 1 for Gy. The addend `c` comes two clocks after
+    // The factors follow from count = 2·piece + term, where `term` is 0 for Gx and 1 for Gy. The addend `c` is selected two clocks after
     // the factors of its product.
     always_comb begin
         a        = 25'($signed(count[0] ? py : px));
@@ -39,7 +39,7 @@ module setup_start (
     end
 
     always_ff @(posedge clk) begin
-        // A sum comes in clocks 4, 6 and 8. The last sum holds from then on, even while clock 10 is repeated.
+        // The sums are valid in clocks 4, 6 and 8. The last sum holds afterwards, even while clock 10 is repeated.
         if (!count[0] && count != 4'd10) begin
             high   <= p[16:0];
             middle <= high;

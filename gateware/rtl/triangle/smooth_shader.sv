@@ -7,12 +7,12 @@
 //                                  └──────┘
 //
 // A group of a flat triangle takes one clock. A group of a smooth triangle takes one clock per pixel, from the first pixel (the fifth if
-// the first four are not covered) to the last covered pixel: some five on average, at most eight. Three multipliers then suffice for the
-// divisions of a pixel, instead of 24 for one group per clock.
+// the first four are not covered) to the last covered pixel: about five clocks on average, and at most eight. Three multipliers therefore
+// suffice for the divisions; one group per clock would need 24.
 //
-// Groups come from a pipeline that cannot be stopped. The pipeline only sends while `room` is high, FLIGHT clocks before a group arrives
-// (see pipeline_fifo). Latency 2 clocks for a flat group, 13 clocks plus one per pixel for a smooth group; groups stay in order. Output: a
-// valid/ready stream. `idle` is high while no group is inside.
+// Groups come from a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives FLIGHT clocks
+// after it is sent (see pipeline_fifo). Latency 2 clocks for a flat group, 13 clocks plus one per pixel for a smooth group; groups stay in
+// order. Output: a valid/ready stream. `idle` is high while no group is inside.
 
 `default_nettype none
 
@@ -21,7 +21,7 @@ module smooth_shader #(
     parameter int unsigned FLIGHT     = 5,
     // Depth of each FIFO, a power of two.
     parameter int unsigned GROUPS     = 16,
-    // Clocks of pixel_colour.
+    // Latency of pixel_colour in clocks.
     parameter int unsigned LATENCY    = 7
 ) (
     input  wire                   clk,
@@ -56,8 +56,8 @@ module smooth_shader #(
     assign group_gone  = out_ready && (!group_smooth || colours_valid);
     assign out_colours = group_smooth ? smooth_colours : {8{group_colour}};
 
-    // Four accumulators: the depth, then red, green and blue. The FIFO holds a subset of the groups in the other FIFO, so it is never full
-    // unless the other FIFO is.
+    // Four accumulators: the depth, then red, green and blue. This FIFO holds a subset of the groups in the FIFO of groups, so it is never
+    // full unless the FIFO of groups is full.
     logic             light_valid, light_room, takes, is_first, is_last, upper;
     logic [2:0]       lane, last_lane;
     logic [3:0][31:0] starts, steps, values;
@@ -116,7 +116,7 @@ module smooth_shader #(
             if (place == 3'(i)) collected[i] <= colour;
     end
 
-    // The FIFO only holds colours of groups that are in the first FIFO, so it is never full.
+    // This FIFO only holds colours of groups that are in the FIFO of groups, so it is never full.
     fifo #(.WIDTH(8 * 16), .DEPTH(GROUPS)) finished_colours (
         .clk, .rst, .in_valid(finished), .in_ready(colours_room), .in_data(collected),
         .out_valid(colours_valid), .out_ready(out_ready && group_valid && group_smooth), .out_data(smooth_colours)

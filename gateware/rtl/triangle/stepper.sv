@@ -30,7 +30,8 @@ module stepper (
 
     assign group_step = {step_x[28:0], 3'b000};
 
-    // All sums are differences, from - less - borrow: Yosys may exchange the operands of an addition, and then needs a third LUT per bit.
+    // Every sum is computed as a difference, from - less - borrow, because Yosys may exchange the operands of an addition, and then needs a
+    // third LUT per bit.
     always_comb begin
         case (move)
             raster_pkg::LEFT:  from = current;

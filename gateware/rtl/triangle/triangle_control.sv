@@ -3,22 +3,21 @@
 //   ask ──▶ pending ──▶ regions, one per clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
 //                                     └── refused ───────────────────────────────▲
 //
-// The parameters of a pass describe regions of memory: the byte address of the first 16-byte word of a region, in the CPU's
-// 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^MEMORY_BITS words from
-// BASE on) ends the pass with ERROR_ADDRESS before its first access to memory. A build without TRIANGLES ends each geometry
-// pass, and a raster pass with `first` or `second`, with ERROR_TRIANGLES; a build without LINES ends a geometry pass with `lines`
-// with ERROR_LINES.
+// The parameters of a pass contain regions of memory. A region is described by its length and by the byte address of its first 16-byte
+// word, in the CPU's 32-bit address space. A region that is not aligned or not within memory (2^MEMORY_BITS words from BASE on) ends the
+// pass with ERROR_ADDRESS before its first access to memory. A build without TRIANGLES ends each geometry pass, and a raster pass with
+// `first` or `second`, with ERROR_TRIANGLES; a build without LINES ends a geometry pass with `lines` with ERROR_LINES.
 //
 // A pass is requested by one clock of `ask`. `ended` (one clock) reports for each request that its pass is refused, done or cancelled;
 // `error` then holds until the next request of this pass.
 //
-// A pass is `active` from its request until its error is valid. A second request during that time does not stop the pass; the error is
-// then ERROR_BUSY, unless the pass ends with another error.
+// A pass is `active` from its request until its error is valid. A second request during this time does not stop the pass; the error at its
+// end is then ERROR_BUSY, unless the pass ends with another error.
 //
 // A request waits while the parameters of its pass are `loading`, from the next clock on. `kept` holds the flags of a pass from
 // its request on; all other parameters must hold from the end of `loading` until `ended`.
 //
-// `cancel` (one clock, at any time) ends both passes, even those requested in the same clock. Later requests wait until the
+// `cancel` (one clock, at any time) ends both passes, even a pass that is requested in the same clock. Later requests wait until the
 // engine is `ready`. Latency 15 clocks from `ask`, or from the end of `loading`, to `start`.
 
 `default_nettype none
@@ -108,7 +107,7 @@ module triangle_control #(
         else                                                  refusal = ERROR_NONE;
     end
 
-    // First address and length (in words) of the region that is checked, and the values from which this length is selected.
+    // First address and length (in words) of the region that is checked, and the candidates for its length.
     logic [31:0]          first;
     logic [WORD_BITS-1:0] words, mesh_words, list_words, frame_words, descriptor_words;
     logic [COUNT_BITS-1:0] count;

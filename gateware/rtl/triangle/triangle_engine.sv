@@ -1,4 +1,4 @@
-// The triangle engine: from a mesh in memory to a frame in memory, in two passes that may run at the same time for two frames.
+// The triangle engine: draws a mesh in memory into a frame in memory, in two passes. The passes of two frames may run at the same time.
 //
 //              ┌───────────────┐                        ┌─────────────┐
 //   mesh ─────▶│ geometry_unit │──▶ descriptors, lists ─▶│ raster_unit │──▶ frame, depth
@@ -13,15 +13,15 @@
 // clocks late.
 //
 // SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices is
-// interpolated with perspective correction, by a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then have
-// twice the words.
+// interpolated with perspective correction, which takes a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then
+// have twice the words.
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments instead of a mesh.
 //
 // FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws only the pixels of a raymarcher: the
 // geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
-// `geometry_start` must then stay low. Without DEPTHS as well, there is no depth test: a later pixel always replaces an earlier one, and
-// depths in memory are 0.
+// `geometry_start` must then stay low. Without TRIANGLES and without DEPTHS, there is no depth test: a later pixel always replaces an
+// earlier one, and depths in memory are 0.
 
 `default_nettype none
 
@@ -149,7 +149,7 @@ module triangle_engine #(
     logic [2:0] stalled_reads;
     logic [1:0] stalled_lists, stalled_frame;
 
-    // Registers, because the ready of a command ends a long path in LiteDRAM.
+    // These signals are registered, because the ready signal of a command ends a long path in LiteDRAM.
     always_ff @(posedge clk) begin
         stalled_reads <= {mesh_read_request.cmd_valid && !mesh_read_answer.cmd_ready,
                           vertex_read_request.cmd_valid && !vertex_read_answer.cmd_ready,
@@ -174,7 +174,7 @@ module triangle_engine #(
         port_events.cycles_busy = status.geometry_busy || status.raster_busy;
     end
 
-    // A register, because the paths of these conditions go through both units.
+    // The events are registered, because the paths of these conditions go through both units.
     always_ff @(posedge clk) events <= geometry_events | raster_events | port_events;
 endmodule
 

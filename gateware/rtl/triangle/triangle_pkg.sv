@@ -11,7 +11,7 @@ package triangle_pkg;
     } screen_vertex_t;
 
     // A vertex after the vertex stage. `behind` marks a vertex behind the near plane, and its `place` is 0. `beyond` marks a vertex
-    // outside the guard band; its `place` is saturated, and only shows the sides of the picture beyond which the vertex is.
+    // outside of the guard band; its `place` is saturated, and only shows beyond which sides of the picture the vertex lies.
     typedef struct packed {
         logic           behind;
         logic           beyond;

@@ -7,20 +7,20 @@
 //                                      ▲                                │
 //                                      └────────────── room ────────────┘
 //
-// With SMOOTH, a triangle comes with the planes of its three colour channels, and `smooth_shader` replaces
-// `pipeline_fifo`. It takes one clock for each pixel of a group of a smooth triangle.
+// With SMOOTH, a triangle arrives with the planes of its three colour channels, and `smooth_shader` replaces `pipeline_fifo`.
+// `smooth_shader` takes one clock for each pixel of a group of a smooth triangle.
 //
-// A group is {line = y - y0 with y0 the first row of the band, column = x / 8, row address in the band buffer = line * stride +
+// A group is {line = y - y0, where y0 is the first row of the band, column = x / 8, row address in the band buffer = line * stride +
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
-// 0. Each group that a triangle covers comes once; triangles keep their order.
+// 0. Each group that a triangle covers is sent once; triangles keep their order.
 //
 // Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stalls while
 // the FIFO cannot hold all groups in the lanes. Latency 21 clocks from a descriptor to its first group. Throughput: the walker tests one
 // group per clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row of the band, and `triangle_odd`, the parity of the
-// band's number, come with each triangle. `odd` is the parity of the band that is drawn. Triangles of the next band are accepted and
+// band's number, arrive with each triangle. `odd` is the parity of the band that is drawn. Triangles of the next band are accepted and
 // prepared, but wait until `odd` is the parity of their band. `idle` is low from the clock after a descriptor of the drawn band is taken
 // until the last group of that band is taken. `rows` (rows of a band) and `stride` (groups of a row: 40, 80 or 160) must hold while
-// triangles are inside. `events` come one clock late.
+// triangles are inside. `events` are one clock late.
 
 `default_nettype none
 
@@ -119,7 +119,7 @@ module triangle_raster #(
     );
 
     if (SMOOTH) begin : light
-        // The depth of a group is delayed until its mask is known; light comes at that time (LIGHT_LATER).
+        // The depth of a group is delayed until its mask is valid. The light is valid in the same clock (LIGHT_LATER).
         logic [63:0] found_depth;
 
         delay #(.WIDTH(64), .CLOCKS(FLIGHT - 1)) depth_delay (

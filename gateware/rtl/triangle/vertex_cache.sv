@@ -1,5 +1,5 @@
-// A cache of vertices, as computed by the vertex stage. Input: triangles as three vertex indices. Output: triangles with their three
-// vertices, in the same order.
+// A cache of vertices that the vertex stage has computed. Input: triangles, each as three vertex indices. Output: the triangles with their
+// three vertices, in the same order.
 //
 //           ┌──────┐  miss: index   ┌───────────────────────────┐ fetch                 memory, vertex stage
 //   in ────▶│ tags │───────────────▶│ 64 places                 │──────▶ … ─────────────┐
@@ -9,13 +9,13 @@
 //    └─────────────────────────────────────────────────── side ─────────▶└──────────┘              ▲
 //                                                              └───────────────────────────────────┘
 // The cache is direct mapped. The first stage looks up and replaces tags in the order of the indices, and queues a record for
-// each index: its slot, and whether it missed. The last stage takes the records in the same order. For a record that missed it
-// stores the next vertex of `projected` in the slot; for a record that hit it reads the slot. A hit therefore finds its vertex at any
-// latency of the vertex stage, and there is no hazard between the stages. A memory has no hazard either: a tag is read and replaced by one
-// access, which returns the old tag, and a record either reads its slot or writes it, through one port. `side` has the fields of a
-// triangle that only pass through.
+// each index: its slot, and whether it missed. The last stage takes the records in the same order. For a miss, the last stage stores the
+// next vertex of `projected` in the slot; for a hit, it reads the slot. A hit therefore finds its vertex at any latency of the vertex
+// stage, and there is no hazard between the stages. The memories have no hazard either: a tag is read and replaced by one access, which
+// returns the old tag, and a record either reads its slot or writes it, through one port. `side` has the fields of a triangle that only
+// pass through.
 //
-// `clear` (one clock) invalidates all vertices for the triangles that move in later, at the start of a chunk or a frame. A tag holds the
+// `clear` (one clock) invalidates all vertices for the triangles that enter later, at the start of a chunk or a frame. A tag holds the
 // number of its epoch, which is the time between two clears. All tags are therefore only reset after a reset and every 2^EPOCH_BITS − 1
 // clears, one slot per clock. Latency 15 clocks without a miss. Throughput without misses one index per clock, one triangle per 3 clocks.
 // Each stream is valid/ready.
@@ -52,8 +52,8 @@ module vertex_cache #(
     localparam int unsigned TAG_BITS   = 16 - SLOT_BITS;
     localparam int unsigned ENTRY_BITS = EPOCH_BITS + TAG_BITS;
     localparam int unsigned RECORDS    = 64;
-    localparam int unsigned PLACES     = 16; // for vertices whose triangle is incomplete
-    localparam int unsigned TRIANGLES  = 32; // more than 29, the triangles of all RECORDS, PLACES, and of both ends
+    localparam int unsigned PLACES     = 16; // entries for vertices whose triangle is incomplete
+    localparam int unsigned TRIANGLES  = 32; // more than 29, the triangles of all RECORDS, PLACES, and at both ends
 
     // First stage: looks up the indices of a triangle one by one, while the FIFO can take their records.
     logic [2:0][15:0]        indices;
@@ -140,8 +140,8 @@ module vertex_cache #(
         end
     end
 
-    // Both FIFOs have RECORDS entries. Each index in `fetches` also has a record in `waiting`, so the limit of `records` keeps
-    // both from overflowing.
+    // Both FIFOs have RECORDS entries. Each index in `fetches` also has a record in `waiting`, so the limit of `records` prevents overflow
+    // of both FIFOs.
     logic                 record_valid, record_missed, fetch_room, record_room;
     logic [SLOT_BITS-1:0] record_slot;
 

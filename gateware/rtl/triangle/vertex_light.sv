@@ -1,12 +1,12 @@
 // Computes the light of a vertex (docs/formats/triangle.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each
 // channel, and the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With `cull_back` only
-// front faces are visible, so the light is for front faces. Without `cull_back`, it is for the side towards the light; the other side is
-// dark, so ambient light is not allowed.
+// front faces are visible, so the light belongs to front faces. Without `cull_back`, the light belongs to the side that faces the light
+// source; the other side is dark, so ambient light is not allowed.
 //
-// One multiplier makes six products: three for N·l, and one for each share of a channel; a second multiplier makes the three products of
-// colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters vertex_stage.
-// The light waits in a FIFO until the position of its vertex leaves vertex_stage; `give` then removes the light from the FIFO. Latency 22
-// clocks.
+// One multiplier computes six products: three for N·l, and one for the share of each channel. A second multiplier computes the three
+// products of colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters
+// vertex_stage. The light waits in a FIFO until the position of its vertex leaves vertex_stage; `give` then removes the light from the
+// FIFO. Latency 22 clocks.
 //
 //   clocks after `take`   1…3: factors of N·l   6: N·l   7, 8: |N·l| rounded   9: intensity   10…12: factors of the shares
 //                         14…16: shares, factors of L   17…19: L
@@ -74,7 +74,7 @@ module vertex_light (
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
     multiply_add #(.BITS(44)) colours (.clk, .enable(1'b1), .a(channel), .b({9'b0, share}), .c('0), .p(product));
 
-    // The negation of a negative product v is ~v + 1. The added 1 carries into `high` only if all bits of v below `high` are 0.
+    // A negative product v is negated as ~v + 1. The added 1 carries into `high` only if all bits of v below `high` are 0.
     assign carry = !back && whole;
 
     always_ff @(posedge clk) begin
@@ -101,7 +101,7 @@ module vertex_light (
         if (rst) since <= '0;
     end
 
-    // The FIFO is never full, and never empty at `give`.
+    // The FIFO is never full, and never empty while `give` is high.
     logic room, valid;
 
     fifo #(.WIDTH(41), .DEPTH(PLACES)) finished (

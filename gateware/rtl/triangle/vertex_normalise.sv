@@ -1,5 +1,5 @@
-// Step 6 of the vertex stage (docs/formats/triangle.md): X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' = nearest(Y·2^−sh), by one
-// shifter.
+// Step 6 of the vertex stage (docs/formats/triangle.md): X' = nearest(X·2^−sh) and Y' = nearest(Y·2^−sh), saturated to 25 bits, with one
+// shifter for both.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`.
 //
@@ -32,7 +32,7 @@ module vertex_normalise (
 
     always_comb begin
         saturated = rounded[24:0];
-        // Rounding up may give 2^24, the first value that is out of range.
+        // Rounding up may result in 2^24, the first value that is out of range.
         if (overflow || rounded[25] != rounded[24]) saturated = {sign, {24{!sign}}};
     end
 

@@ -1,5 +1,5 @@
-// Step 5 of the vertex stage: y = recip(m), about 2^47/m, or 2^24 − m in orthographic projection; one result every 6 clocks.
-// Up to three vertices share one multiplier. docs/formats/triangle.md, "The reciprocal", defines y0, y1, e0' and e1'.
+// Step 5 of the vertex stage: computes y = recip(m), about 2^47/m, or in orthographic projection 2^24 − m. Throughput one result per 6
+// clocks. Up to three vertices share one multiplier. docs/formats/triangle.md, "The reciprocal", defines y0, y1, e0' and e1'.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //

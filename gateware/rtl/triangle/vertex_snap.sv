@@ -5,7 +5,7 @@
 //
 //   25, 26, 27   X', Y' and km times the low 17 bits of y
 //   28, 29, 30   the same factors times the high 7 bits, plus the high part of the first product
-//   31, 32       x and y; the first product included half a unit and the centre
+//   31, 32       x and y; the addend of the first product includes half a unit and the centre
 //   33…36        km·y is shifted to w, rounded and saturated
 //   37           `vertex` is valid
 //
@@ -32,9 +32,9 @@ module vertex_snap (
     input  wire  [23:0]       inverse,
     output triangle_pkg::projected_t vertex
 );
-    // w is the product km·y divided by 2^(16 + depth_shift), with km = `depth_mantissa`; it saturates for a negative
-    // depth_shift. `lead` of docs/formats/triangle.md is 40 − zeros. The registers `depth_shifts` and `behinds` shift every 6 clocks, so
-    // that their five entries follow the vertices through the stage, from clock 8 and from clock 9 of a vertex on.
+    // w is km·y / 2^(16 + depth_shift), where km is `depth_mantissa`. w saturates if depth_shift is negative. `lead` of
+    // docs/formats/triangle.md is 40 − zeros. The registers `depth_shifts` and `behinds` shift every 6 clocks, so that their five entries
+    // follow the vertices through the stage, from clock 8 and from clock 9 of a vertex on.
     logic [4:0][4:0]   depth_shifts;
     logic [4:0]        behinds;
     logic signed [4:0] depth_shift;

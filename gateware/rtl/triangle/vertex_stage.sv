@@ -2,8 +2,8 @@
 // defines the computation (steps 1 to 8) and the letters f, m, y, X, Y, X' and Y'. If `orthographic` is high, the vertex stage computes
 // "Orthographic projection" of the same document instead, in the same number of clocks.
 //
-// A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work in a fixed
-// schedule of 6 clocks, which repeats for each vertex: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1
+// Throughput one vertex per 6 clocks; latency 39 clocks, plus up to 5 clocks until the vertex's slot in the schedule. Four multipliers work
+// in a fixed schedule of 6 clocks, which repeats for each vertex: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1
 // to 6 of a vertex. Clock 0 is the vertex's entry. A vertex is only accepted if the FIFO at the end has a free entry for it, so the
 // schedule never stalls.
 //
@@ -11,8 +11,8 @@
 //     in ─▶ transform ─▶ lead ──────▶ m ─▶ reciprocal ──▶ y ─▶ snap ───▶ FIFO ─▶ out
 //                  └──▶ X, Y ─▶ normalise ──────────▶ X', Y' ─┘
 //
-// The frame's constants must hold from the entry of its first vertex until its last vertex has left. For a vertex behind the
-// near plane all fields but `behind` are 0; beyond the guard band x and y are saturated to s12.8.
+// The frame's constants must hold from the entry of its first vertex until its last vertex has left. For a vertex behind the near plane all
+// fields except `behind` are 0. For a vertex beyond the guard band x and y are saturated to s12.8.
 
 `default_nettype none
 
@@ -46,7 +46,7 @@ module vertex_stage (
     logic                    half, turn;
     logic [1:0]              element;
     logic [$clog2(PLACES):0] held;     // vertices inside the stage
-    logic [6:0]              ages;     // bit k: a vertex is in its clocks 6·k + 1 to 6·k + 6
+    logic [6:0]              ages;     // bit k: high if a vertex is in its clocks 6·k + 1 to 6·k + 6
     logic [2:0][15:0]        position;
 
     assign turn     = half && element == 2'd2;

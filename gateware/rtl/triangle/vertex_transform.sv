@@ -57,8 +57,8 @@ module vertex_transform (
         endcase
     end
 
-    // Two clocks after the factors of the first of three products, the accumulator takes the translation plus this product. In
-    // the next two clocks it adds the other products.
+    // Two clocks after the factors of the first of three products, the accumulator is set to the translation plus this product. In the next
+    // two clocks the other products are added.
     logic               first;
     logic signed [43:0] translation, addend_planar, addend_deep, sum, deep;
 
@@ -78,8 +78,8 @@ module vertex_transform (
 
     assign places = 4'd5 - depth_exponent;
 
-    // Compares Z with near in two halves. near_z has no bits above 38; `far` is high if Z has a bit set above 38. For a Z beyond the near
-    // plane the highest set bit is in bits 30 to 40.
+    // Compares Z with near in two halves. The highest bit of near_z is bit 38; `far` is high if Z has a set bit above bit 38. If Z is
+    // beyond the near plane, the highest set bit of Z is one of the bits 30 to 40.
     logic        negative, far, high_less, high_equal, low_less;
     logic [40:6] z;
 
@@ -108,7 +108,7 @@ module vertex_transform (
         if (orthographic) zeros <= places;
     end
 
-    // Shifts Z so that its highest set bit is at the top, first by multiples of four.
+    // Shifts Z to the left until its highest set bit is the top bit, first by multiples of four.
     logic [26:0] risen;
     logic [1:0]  rest;
 

@@ -16,25 +16,26 @@
 //    column b is further left. The covered columns lie on that side. The row is empty if two failing edges point to different
 //    sides, if the direction returns to a group where an edge has failed or leaves the bounds, or if a horizontal edge fails.
 //    Seeking therefore never abandons a row with coverage, and never ends in a group without coverage in such a row:
-//  * in a group g0…g7 where no edge fails everywhere, a <= g7 and b >= g0. In a row with coverage (a <= b) the covered columns of the
+//  * in a group of the columns g0…g7 in which every edge passes in at least one lane, a <= g7 and b >= g0. In a row with coverage (a <= b)
+//  the covered columns of the
 //    group are therefore max(a, g0)…min(b, g7). In an empty row the group is sent without coverage, and the row is done.
-//  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if
-//    lane 8 is. In a group where no edge fails everywhere, the rising edges decide lane -1 and the falling edges lane 8, because
-//    all other edges have an E' there that is at least as large as in any lane of this group. No edge therefore fails in a whole group
-//    that is reached in this way.
-// A group is sent at most once: seeking visits only groups that are not sent, and both directions lead away from the first
-// group. A row begins at the first group of the row above, or, if that row was empty, at the last group visited in it; any start
-// within the bounds is correct.
+//  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if lane 8 is
+//  covered. In a group in which every edge passes in at least one lane, the rising edges determine whether lane -1 is covered, and the
+//  falling edges whether lane 8 is covered: the E' of all other edges in that lane is at least as large as in any lane of the group. No
+//  edge therefore fails in a whole group that is reached in this way. A group is sent at most once: seeking visits only groups that have
+//  not been sent, and both directions lead away from the first group. A row begins at the first group of the row above, or, if the row
+//  above was
+//  empty, at the last group that was visited in that row. Any start within the bounds is correct.
 //
 // The walker stays within group_left…group_right and the rows, so edge functions are evaluated at most one pixel outside of the
 // picture and fit 34 bits.
 //
-// Both streams are valid/ready. `out_ready` is a register outside of the walker, and `in_ready` depends on it. Throughput one group per
-// clock, covered or not; the next triangle's first group follows the last group without a gap. `walking` is high in the clocks in which a
-// group is visited.
+// Both streams are valid/ready. `out_ready` is a register outside of the walker, and `in_ready` depends on it. Throughput one visited group
+// per clock; the next triangle's first group follows the last group without a gap. `walking` is high in the clocks in which a group is
+// visited.
 //
-// Only the edge functions and the group's number affect the next move. Depth, line and colour make the same moves one clock
-// later, and light another 1 + LIGHT_LATER clocks later.
+// Only the edge functions and the group's number affect the next move. The accumulators of depth, line and colour make the same moves one
+// clock later, and those of light 1 + LIGHT_LATER clocks after that.
 
 `default_nettype none
 
@@ -60,14 +61,14 @@ module walker #(
     // accumulator in lane 0}.
     output logic [VALUES_BITS-1:0]        out_light
 );
-    // The triangle.
+    // Constants of the current triangle.
     logic [2:0][19:0] slope;
     logic [2:0][20:0] step_y;
     logic [2:0][24:0] beside_step;
     logic [2:0]       rises, falls;
     logic [7:0]       group_left, group_right;
 
-    // The place.
+    // State at the current group.
     logic [2:0][33:0] best;
     logic [2:0]       beside_fails;
     logic [7:0]       group, snapshot;
@@ -124,7 +125,7 @@ module walker #(
             .best(best[k]), .beside_fails(beside_fails[k])
         );
 
-        // The change of E' beside the group for one row down, and one group to the worse side.
+        // The change of E' beside the group for a move by one row down and one group to the worse side.
         always_ff @(posedge clk) begin
             if (out_ready && leave)
                 beside_step[k] <= 25'(signed'(in_triangle.step_y[k])) - {2'd0, in_triangle.slope[k], 3'd0};
@@ -197,7 +198,7 @@ module walker #(
     assign out_group.slope = slope;
     assign out_group.rises = rises;
 
-    // The move of the previous clock, which depth, line and colour make in this clock.
+    // The move of the previous clock, which is applied to depth, line and colour in this clock.
     raster_pkg::move_t late_move;
     logic              late_keep, late_resume, late_advance;
     logic [31:0]       depth_step_y;
@@ -222,7 +223,8 @@ module walker #(
         .step_x(out_late.depth_step_x), .step_y(depth_step_y), .current(out_late.depth)
     );
 
-    // An earlier move, for light. Delaying the controls, instead of the light, takes far fewer bits.
+    // An earlier move, which is applied to the light in this clock. The delay of the controls takes fewer flip-flops than a delay of the
+    // light.
     if (SMOOTH) begin : light
         raster_pkg::move_t      early_move, light_move;
         logic                   early_keep, early_resume, early_advance, light_keep, light_resume, light_advance;
