@@ -1,5 +1,5 @@
-// Stand-in for the module pixel_colour in proofs, with a latency of 2 clocks. The colour is the low 7 bits of the light in red,
-// which identify the pixel.
+// Stand-in for the module pixel_colour in proofs, with a latency of 2 clocks. The colour is the low 7 bits of the red light, which identify
+// the pixel.
 
 `default_nettype none
 

@@ -1,5 +1,6 @@
-// Stand-in for the module cdc_level in proofs with several clocks. A level that changes near the clock's edge is sampled as before or
-// after its change, as a metastable flip-flop may settle either way. Several levels are sampled independently.
+// Stand-in for the module cdc_level in proofs with several clocks. If a level changes near the clock's edge, the sampled value is the level
+// before or after the change, because a metastable flip-flop may settle to either value. Each level is sampled independently of other
+// levels.
 
 `default_nettype none
 

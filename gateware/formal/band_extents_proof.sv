@@ -2,10 +2,10 @@
 // small: bands of one to four lines with one to three columns (words of eight pixels), and two frame buffers of four lines.
 // Bands, groups (each draws one column of a line), and the times at which spans are taken are arbitrary.
 //
-// The proof keeps a set of columns for each line of the current band (the columns drawn so far), and for each line of a frame buffer (the
-// columns drawn in the last band flushed to it). The expected span of a line goes from the first to the last column in either set. After
-// reset, and after a cancelled band, the second set is unknown for the lines concerned, and a band with such a line must be flushed
-// `whole`.
+// The proof stores a set of columns for each line of the current band (the columns drawn so far), and a set of columns for each line of a
+// frame buffer (the columns drawn there in the last flushed band). The expected span of a line is from the first to the last column of the
+// union of both sets. After a reset the second set is unknown for all lines, and after a cancelled band for the lines of that band; a band
+// with such a line must be flushed `whole`.
 
 `default_nettype none
 
@@ -21,7 +21,7 @@ module band_extents_proof (
     input wire       span_ready,
     input wire       restart
 );
-    // Upper bound on the clocks until the next expected span comes, and on the clocks from the last span until `busy` falls.
+    // Upper bound on the clocks until the next expected span is valid, and on the clocks from the last span until `busy` falls.
     localparam int unsigned WITHIN = 10;
 
     logic rst = 1'b1;
@@ -42,14 +42,14 @@ module band_extents_proof (
         .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
     );
 
-    // Sets of columns of each line. For the band: `marked` holds the drawn columns, `to_come` the columns of a span that is still
-    // expected. For each frame buffer: `left` holds the columns drawn in the last band there.
+    // Sets of columns of each line. `marked` is the set of the band's drawn columns, and `to_come` the set of columns of a span that is
+    // still expected. `left` is, for each frame buffer, the set of columns drawn in the last flushed band.
     logic [3:0][2:0]      marked, to_come;
     logic [1:0][3:0][2:0] left;
     logic [1:0][3:0]      known;
     logic [2:0]           all;
-    // First line and slot (number of the frame buffer) of the band whose spans come, and the number of clocks since the start of the
-    // sweep, which clears the extents after a reset or restart.
+    // First line and slot (number of the frame buffer) of the band whose spans are expected, and the number of clocks since the start of
+    // the sweep, which clears the extents after a reset or restart.
     logic [1:0]           band_line, swept;
     logic                 band_slot, all_known;
 
@@ -59,7 +59,8 @@ module band_extents_proof (
         hull = columns == 3'b101 ? 3'b111 : columns;
     endfunction
 
-    // Whether a span is expected (`comes`), and the next span's line, number of the line's first word in the band, and set of columns.
+    // Whether a span is expected (`comes`), and for the next span: its line, the number of this line's first word in the band, and its set
+    // of columns.
     logic       comes;
     logic [1:0] next_line;
     logic [3:0] next_row;
@@ -83,8 +84,8 @@ module band_extents_proof (
     end
 
     logic [3:0] without_span, without_end;
-    // Condition of the cover `both`: in a band that is not `whole`, a line has drawn columns, but not a column that the last band drew in
-    // this line of the frame buffer.
+    // Condition of the cover `both`: a band is not `whole`, and one of its lines has drawn columns, but not all columns that the last band
+    // has drawn in this line of the frame buffer.
     logic       united;
 
     always_ff @(posedge clk) begin

@@ -1,17 +1,18 @@
-// Proof of band_flush, which writes the rows of a band from a bank of the band buffer to memory and clears them. The size is
-// small: any of four rows in any spans (ranges of rows), and four words in flight. Back-pressure and restarts come at any time.
+// Proof of band_flush, which writes the rows of a band from a bank of the band buffer to memory and clears them. The size is small: a flush
+// has any of four rows in any spans (ranges of rows), and four words may be requested at a time. Back-pressure and restarts occur at any
+// time.
 //
 // Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. The expected words are therefore:
-// first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. Afterwards these rows are clear
-// and the other rows are not. The model of the bank has the latencies of band_bank; a cleared row loses its pixels.
+// first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. After the flush these rows must
+// be clear, and the other rows must not be clear. The model of the bank has the latencies of band_bank; a cleared row loses its pixels.
 
 `default_nettype none
 
 module band_flush_proof (
     input wire       clk,
     input wire       start,
-    // Mask of the rows to flush. The proof offers them to the module at any time (`gives`): neighbouring rows as one span, or row
-    // by row (`in_pieces`).
+    // Mask of the rows to flush. The proof offers these rows to the module at any time (`gives`): neighbouring rows as one span, or each
+    // row as a span (`in_pieces`).
     input wire [3:0] rows,
     input wire       gives,
     input wire       in_pieces,
@@ -80,8 +81,8 @@ module band_flush_proof (
         first_of = of_rows[0] ? 2'd0 : of_rows[1] ? 2'd1 : of_rows[2] ? 2'd2 : 2'd3;
     endfunction
 
-    // `to_give`: the rows that the module has not yet taken in a span. `lingering`: keeps `spans_busy` high, so that the module must wait
-    // for more spans even when no rows remain.
+    // `to_give` is the set of rows that the module has not yet taken in a span. `lingering` keeps `spans_busy` high, so that the module
+    // must wait for more spans even if no rows remain.
     logic [3:0] to_give;
     logic       offered, pieces, lingering;
 
@@ -111,8 +112,8 @@ module band_flush_proof (
         end
     end
 
-    // The expected words: masks of the rows whose colours and whose depths have not come out yet, and the half of a row's depths
-    // that comes next.
+    // The expected words: masks of the rows whose colours, and of the rows whose depths, have not been output yet, and the half of a row's
+    // depths that is expected next.
     logic [5:0] flush_base, flush_depth_base, expected_addr;
     logic [3:0] flush_rows, colour_rows, depth_rows;
     logic [1:0] colour_row, depth_row;
@@ -122,8 +123,8 @@ module band_flush_proof (
     assign colour_row = first_of(colour_rows);
     assign depth_row  = first_of(depth_rows);
     assign none_left  = colour_rows == '0 && depth_rows == '0;
-    // Whether a word holds depths. Its lowest 32 bits are either a depth, whose halves differ, or two neighbouring colours, which are
-    // equal.
+    // Whether the word holds depths. The lowest 32 bits of a word are either a depth, whose halves differ, or two neighbouring colours,
+    // which are equal.
     assign is_depth   = out_data[31:16] != out_data[15:0];
 
     logic [127:0] expected;
@@ -172,7 +173,7 @@ module band_flush_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data({out_addr, out_data})
     );
 
-    // The bank shows a row as clear two clocks after the request to clear it, so `drawn` is compared two clocks after a sweep.
+    // A row of the bank is clear two clocks after the request to clear it, so `drawn` is compared two clocks after a sweep.
     logic [1:0] settled;
     logic       fresh;
     always_ff @(posedge clk) begin
@@ -198,7 +199,7 @@ module band_flush_proof (
         ends:              assert (without_end < 4'd4);
         sweep_ends:        assert (sweep_clocks < 4'd5);
         all_swept:         assert (!(fresh && settled == 2'd2) || drawn == '0);
-        // After a flush exactly the flushed rows are clear.
+        // After a flush the flushed rows are clear, and all other rows are not clear.
         cleared_behind:    assert (!(flushing && idle) || dropped || drawn == ~flush_rows);
         flushed:           cover (flushing && idle && !dropped && flush_rows == 4'b1001);
         deep:              cover (flushing && idle && !dropped && flush_depth && flush_rows == 4'b0100);

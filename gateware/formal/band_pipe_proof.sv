@@ -1,8 +1,8 @@
 // Proof that band_pipe handles its read-modify-write hazard: the result equals the result with a memory without latency.
 //
-// The pipe works on two rows of a depth memory with the latencies of band_bank and a bit per pixel for written pixels; any groups (eight
-// pixels of a row) come at any time. The proof tracks one pixel, an arbitrary lane of an arbitrary row: each accepted group updates a copy
-// of this pixel at once. When the pipe is empty, the copy and the memory must agree.
+// The pipe works on two rows of a depth memory with the latencies of band_bank, which also has a written bit per pixel. Arbitrary groups
+// (eight pixels of a row) arrive at arbitrary times. The proof tracks one pixel, an arbitrary lane of an arbitrary row: each accepted group
+// updates a copy of this pixel at once. When the pipe is empty, the copy and the memory must agree.
 
 `default_nettype none
 
@@ -13,7 +13,7 @@ module band_pipe_proof (
     input wire            group_row,
     input wire [7:0]      group_mask,
     input wire [8*18-1:0] group_codes,
-    // Tag in all colours of the group, which distinguishes groups of equal depth.
+    // Tag in all colours of the group; the tag distinguishes groups of equal depth.
     input wire [1:0]      group_tag
 );
     // Upper bound (exclusive) on the clocks for which the pipe holds back a group.
@@ -36,8 +36,8 @@ module band_pipe_proof (
         .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_halves(), .write_codes, .write_colours, .empty, .held()
     );
 
-    // Model of the memory. It stores only the tracked pixel; every other pixel reads as an arbitrary value, because the result must not
-    // depend on other pixels.
+    // Model of the memory. The model stores only the tracked pixel. A read of any other pixel returns an arbitrary value, because the
+    // result must not depend on other pixels.
     logic        from_row, to_row, to_lane, latched_written, read_written, written;
     logic [17:0] to_store, latched, read, code;
     logic        latched_here, read_here;
@@ -86,8 +86,8 @@ module band_pipe_proof (
     assign given = group_codes[18*lane +: 18];
     assign taken = group_valid && group_ready;
 
-    // `empty` in the previous clock: writes reach the model of the memory one clock late, so it is compared with the copy only
-    // after two clocks of `empty`. `was_held`: whether a group was ever held back.
+    // `was_empty` is `empty` in the previous clock. Writes reach the model of the memory one clock late, so the model is compared with the
+    // copy only after two clocks of `empty`. `was_held` is high if any group has been held back.
     logic was_empty, was_held;
 
     always_ff @(posedge clk) begin

@@ -1,5 +1,5 @@
 // Proof that a buffer follows the stream protocol and keeps the order of its items, with any pattern of valid and ready on its input
-// and output. The buffer is the skid buffer, a FIFO of depth DEPTH, or a pipeline of FLIGHT clocks that ends in a credit_fifo.
+// and output. The buffer is one of: the skid buffer; a FIFO of depth DEPTH; a pipeline of FLIGHT clocks that ends in a credit_fifo.
 
 `default_nettype none
 
@@ -7,11 +7,11 @@ module buffer_proof #(
     parameter int unsigned WIDTH = 4,
     // Depth of the FIFO; 0 selects the skid buffer.
     parameter int unsigned DEPTH = 0,
-    // The FIFO is in block RAM.
+    // Whether the FIFO is in block RAM.
     parameter bit BLOCK = 1'b0,
-    // Each item of the FIFO in block RAM is followed by a clock without an item.
+    // Whether the FIFO in block RAM has a clock without an item after each item.
     parameter bit PAUSE = 1'b0,
-    // Clocks of the pipeline in front of the credit_fifo; 0 selects another buffer.
+    // Number of clocks of the pipeline before the credit_fifo; 0 selects one of the other buffers.
     parameter int unsigned FLIGHT = 0
 ) (
     input wire             clk,

@@ -1,6 +1,6 @@
-// Proof of `camera_capture` from any state of its registers, for any behaviour of the pins and of the FIFO at its output. The next token
-// reports the loss of a token that was not taken, and no other loss is reported. After a frame has ended, four clocks after the start or
-// later, no frame ends inside a line, and each line that ends has bytes.
+// Proof of `camera_capture` from any state of its registers, for any behaviour of the pins and of the FIFO at its output. The loss of a
+// token that was not taken is reported by the next token, and no other loss is reported. After the first end of a frame that is at least
+// four clocks after the start, no frame ends inside a line, and each line has at least one byte.
 
 `default_nettype none
 

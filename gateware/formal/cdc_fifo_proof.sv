@@ -1,6 +1,6 @@
-// Proof of `cdc_fifo` with two clocks that tick in any order, at any rate, and may stop, and with any pattern of valid and ready. A
-// pointer that changes during its crossing arrives with any subset of its changed bits. Items are numbered: each comes out once, unchanged
-// and in order, for any clocks.
+// Proof of `cdc_fifo` with two clocks whose edges occur in any order and at any rate and may stop, and with any pattern of valid and ready.
+// If a pointer changes while it crosses between the clocks, the received pointer has any subset of the changed bits. Items are numbered:
+// each item is output once, unchanged and in order.
 
 `default_nettype none
 

@@ -1,6 +1,5 @@
-// Proof that `classify` outputs each triangle once, as regular, exception or off screen, in order, with its own fields and number. The
-// limits count only clocks in which no triangle waits at an output for its consumer. A triangle at the input waits for at most 3 such
-// clocks.
+// Proof that `classify` outputs each triangle once, as regular, exception or off screen, in order, with its own fields and number. A
+// triangle at the input waits for at most 3 clocks, not counting clocks in which a triangle waits at an output for its consumer.
 
 `default_nettype none
 

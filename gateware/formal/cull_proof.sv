@@ -1,7 +1,6 @@
-// Proof of the control logic of the stage `cull`, with a FIFO of 8 entries at its output, for any triangles in any order. The limits count
-// only clocks in which no triangle waits at the output for the consumer. A triangle at the input waits for at most 12 such clocks.
-// Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 21 such clocks. The FIFO does not
-// overflow.
+// Proof of the control logic of the stage `cull`, with a FIFO of 8 entries at its output, for any triangles in any order. Each triangle
+// leaves once, culled or drawn, and the FIFO does not overflow. A triangle at the input waits for at most 12 clocks, and while triangles
+// are inside, a triangle leaves within 21 clocks. Clocks in which a triangle waits at the output for the consumer are not counted.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
-// Proof of `lanes`, which determines the pixels (lanes) of a group of eight that a triangle covers, with a FIFO at its output that signals
-// free space to the source, for any pattern of valid and ready on both sides. Groups are numbered, and either all or none of their pixels
-// are covered. Each group with covered pixels comes out once, in order, with all its fields; a group without covered pixels never comes
-// out. A group becomes valid at the output even if the consumer is not ready.
+// Proof of `lanes`, which determines the pixels (lanes) of a group of eight that a triangle covers, for any pattern of valid and ready on
+// both sides. At the output of `lanes` is a FIFO, which tells the source whether it has free entries. Groups are numbered, and either all
+// or none of their pixels are covered. Each group with covered pixels is output once, in order, with all its fields; a group without
+// covered pixels is never output. A group becomes valid at the output even if the consumer is not ready.
 
 `default_nettype none
 
@@ -32,8 +32,8 @@ module lanes_proof (
     logic [BITS-1:0]        kept = '0, went = '0, number, was_number;
     logic [3:0]             unseen = '0, refused = '0;
 
-    // Groups without covered pixels have the number `'1`, which must never reach the output. One of their edges passes only in lane 7 and
-    // another only in lane 0, so all edges pass in no lane.
+    // Groups without covered pixels have the number `'1`, which must never reach the output. One edge of such a group passes only in lane
+    // 7, and another edge only in lane 0, so there is no lane in which all edges pass.
     assign number = in_kept ? kept : '1;
 
     always_comb begin

@@ -1,6 +1,6 @@
 // Proof of `line_raster`, which draws pieces of lines one pixel per clock, for any pattern of valid and ready on both sides. Pieces are
 // horizontal and have one or two pixels; their pixels are numbered by column and depth code.
-// Each pixel of each piece comes out once, in order, with all its fields, and no other pixel does. A group becomes valid at the output
+// Each pixel of each piece is output once, in order, with all its fields, and no other pixel is output. A group becomes valid at the output
 // even if the consumer is not ready, and the wait of a piece at the input is bounded.
 
 `default_nettype none
@@ -32,7 +32,8 @@ module line_raster_proof (
     logic [BITS-1:0]   came = '0, went = '0, first;
     logic [3:0]        unseen = '0, refused = '0;
 
-    // Every fourth piece, from pixel 0 on, has two pixels. The colour of both pixels is the number of the first.
+    // A piece whose first pixel has a number that is a multiple of 4 has two pixels. The colour of a piece is the number of its first
+    // pixel.
     assign two   = came[1:0] == '0;
     assign first = went[1:0] == 2'd1 ? went - 1'b1 : went;
 

@@ -1,7 +1,7 @@
-// Proof of `line_setup`, which makes pieces of segments, for any pattern of valid and ready on both sides. Segments are at most a few
-// pixels long, and the multiplier returns any sums, so errors and depths are arbitrary.
-// A piece belongs to the segment at the input, stays until it is taken, and is the only one in its band. A segment is taken once, within a
-// bound on the clocks in which no piece waits, and at most one step of the program runs at a time.
+// Proof of `line_setup`, which cuts segments into pieces, for any pattern of valid and ready on both sides. Segments are at most a few
+// pixels long, and the multiplier returns arbitrary sums, so errors and depths are arbitrary. A piece belongs to the segment at the input,
+// stays until it is taken, and is the segment's only piece in its band. A segment is taken once, within a limit on the number of clocks in
+// which no piece waits. At most one state of the program is active at a time.
 
 `default_nettype none
 
@@ -35,7 +35,8 @@ module line_setup_proof (
     always_ff @(posedge clk) if (!rst) begin
         assume (near && in_segment.a_w == in_segment.b_w);
 
-        // A segment takes at most 41 clocks: the program, three pixels, a piece, and three more bands on the way up.
+        // A segment takes at most 41 clocks: the clocks of the program, three for pixels, one for a piece, and three for further bands if
+        // the line runs upward.
         waited <= in_valid && !in_ready ? waited + 6'(!out_valid || out_ready) : '0;
         sent   <= in_valid && !in_ready && (sent || out_valid && out_ready);
         ended  <= ended || in_ready;

@@ -1,8 +1,8 @@
-// Proof of the memory crossbar between three ports (read and write, read only, write only) and two banks, for any commands and data, any
-// completion times of the banks, and at most one command per clock. A model keeps the pending commands of each bank. A command in a clock
-// passes from one port to the queue of its bank, unchanged. A full queue never gets a command. The answer to each command goes to the
-// command's port, and the commands of a port are answered in order. An idle memory takes a command at once, and a port only waits for
-// pending commands of the bank that it requests, for its own pending commands, and a few clocks for its turn.
+// Proof of the memory crossbar between three ports (read and write, read only, write only) and two banks, for any commands and data and any
+// completion times of the banks. A model stores the pending commands of each bank. In each clock at most one command passes from a port to
+// the queue of its bank, unchanged, and only if the queue is not full. The answer to a command returns to the command's port, and the
+// commands of a port are answered in order. If no command is pending, a command is taken at once. A port waits only for pending commands of
+// the bank that it requests, for its own pending commands, and for a few clocks of arbitration.
 
 `default_nettype none
 
@@ -10,8 +10,8 @@ module memory_crossbar_proof #(
     localparam int unsigned PORTS   = 3,
     localparam int unsigned BANKS   = 2,
     localparam int unsigned PLACES  = 5,
-    // Upper bounds on the clocks in which a port waits for its turn, and in which no command passes although no bank has a pending
-    // command.
+    // Upper bounds: on the clocks of arbitration for which a port waits, and on the clocks in which no command passes although no bank has
+    // a pending command.
     localparam int unsigned WITHIN  = 5,
     localparam int unsigned IDLE_WITHIN = 3,
     localparam int unsigned COMMAND_BITS = 2 + 1 + 3
@@ -58,7 +58,7 @@ module memory_crossbar_proof #(
         assign cmd_addr[p] = {cmd_row[p], cmd_bank[p], kept[p]};
     end
 
-    // The port whose command is taken.
+    // Mask and number of the port whose command is taken.
     logic [PORTS-1:0] taken;
     logic [1:0]       from;
 
@@ -95,7 +95,7 @@ module memory_crossbar_proof #(
         end
     end
 
-    // The command that was completed one clock ago and two clocks ago.
+    // The commands that were completed one clock ago and two clocks ago.
     logic [2:1] was_done;
     command_t   done_1, done_2;
 
@@ -104,8 +104,9 @@ module memory_crossbar_proof #(
         {done_2, done_1} <= {done_1, oldest};
     end
 
-    // Waiting time of each port. `blocked`: the requested bank has commands of another port, or another port used this bank last and
-    // requests it again; or the port itself has the maximum number of commands, or commands in another bank.
+    // Waiting time of each port. A port is `blocked` in each of these cases: the requested bank has pending commands of another port;
+    // another port used this bank last and requests it again; the port itself has the maximum number of pending commands; the port has
+    // pending commands in another bank.
     logic [PORTS-1:0][2:0] inside, waited;
     logic [PORTS-1:0]      blocked, last_bank;
     logic [2:0]            unused_for;

@@ -1,6 +1,6 @@
 // Checks that a buffer outputs its items in order, unchanged, each once, and in time.
 //
-// Items are numbered: item n carries n, and the n-th output must be n. A buffer does not depend on its payload, so the proof
+// Items are numbered: the payload of item n is n, and the n-th output must be n. A buffer does not depend on its payload, so the proof
 // holds for any payload, as long as no two items in the buffer have the same number. A buffer that has an item must make it
 // valid within WITHIN clocks, and must accept an item within WITHIN clocks while its consumer is ready.
 

@@ -1,5 +1,5 @@
-// Stand-ins for the arithmetic parts of the triangle setup in proofs. Each part passes on one of its operands, which identifies
-// the triangle. The stand-in for `cull` derives the cull decision and the triangle's number from the colour.
+// Stand-ins for the arithmetic parts of the triangle setup in proofs. The result of each part is one of its operands, which identifies the
+// triangle. The stand-in for `cull` derives the cull decision and the triangle's number from the colour.
 
 `default_nettype none
 

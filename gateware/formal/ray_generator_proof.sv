@@ -1,5 +1,5 @@
-// Proof that the ray generator outputs the rays of a small frame for any pattern of `out_ready`: each once, in order, unchanged while it
-// waits, and in time. Products are 0, and the tables of inverses are arbitrary.
+// Proof that the ray generator outputs the rays of a small frame for any pattern of `out_ready`. Each ray is output once, in order,
+// unchanged while it waits, and in time. Products are 0, and the tables of reciprocals are arbitrary.
 
 `default_nettype none
 
@@ -17,7 +17,7 @@ module ray_generator_proof (
         begun <= begun || start;
     end
 
-    // The frame: one eye or two, and one or two lines and bands.
+    // The frame has one eye or two eyes, one or two bands, and one or two lines per band.
     (* anyconst *) logic stereo, two_lines, two_bands;
 
     logic               busy, out_valid, ends_eye, ends_band;

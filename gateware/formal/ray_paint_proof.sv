@@ -1,6 +1,6 @@
-// Proof that ray_paint outputs a pixel for each end of a ray, for any pattern of valid and ready on both sides: each once, in order, at
-// its position in the band, unchanged while it waits, and in time. Products are 0, and the tables are arbitrary. Ends are numbered by
-// their columns.
+// Proof that ray_paint outputs a pixel for each end of a ray, for any pattern of valid and ready on both sides. Each pixel is output once,
+// in order, at its position in the band, unchanged while it waits, and in time. Products are 0, and the tables are arbitrary. The column of
+// an end is its number.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
-// Checks the interface of read_port to one client: addresses become commands, and words arrive, in the order of the addresses, each once,
-// and in time.
+// Checks the interface of read_port to one client: each address is sent as a command once, each word is returned once, both in the order of
+// the addresses and in time.
 //
-// `delayed` is high in clocks in which the port waits for memory or for a client. Words that come during a drop are discarded.
+// `delayed` is high in clocks in which the port waits for memory or for a client. Words that memory returns during a drop are discarded.
 
 `default_nettype none
 
@@ -29,10 +29,10 @@ module read_client_checker #(
     output logic [NUMBER_BITS-1:0] asked,
     output logic [NUMBER_BITS-1:0] answered
 );
-    // Upper bound on the clocks until a word that memory has answered is valid.
+    // Upper bound on the clocks from the answer of memory until the word is valid at the client.
     localparam int unsigned SHOWN_WITHIN = 3;
-    // Upper bound on the clocks until an address is taken while `delayed` is low: a burst of the other client, the time until half of this
-    // client's FIFO is empty, and the arbitration.
+    // Upper bound on the clocks until an address is taken while `delayed` is low: the clocks of a burst of the other client, of the wait
+    // until half of this client's FIFO is empty, and of the arbitration.
     localparam int unsigned TAKEN_WITHIN = 11;
 
     // Number of commands that memory has taken, and of words that the client has taken.

@@ -1,8 +1,8 @@
 // Proof of read_port, at a small size: two clients with FIFOs of two entries. Clients send addresses and take words at any time, and
 // memory takes commands and answers at any time.
 //
-// Addresses are numbered: the n-th address of a client is n, with the client's number in the bits above, and the word at an address is the
-// address. The port does not depend on its payload, so the proof holds for any addresses and words.
+// Addresses are numbered: the n-th address of a client is n, with the client's number in the bits above, and the word at an address equals
+// the address. The port does not depend on its payload, so the proof holds for any addresses and words.
 
 `default_nettype none
 
@@ -18,7 +18,7 @@ module read_port_proof (
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
-    // Number of the addresses taken from each client, and number of its words that memory has answered.
+    // For each client, the number of its addresses that have been taken, and the number of its words that memory has returned.
     logic [1:0][NUMBER_BITS-1:0] asked, answered;
     logic [1:0]                  ask_ready, data_valid;
     logic [2*ADDRESS_BITS-1:0]   ask_addr;
@@ -26,7 +26,7 @@ module read_port_proof (
     logic                        idle, cmd_valid;
     logic [ADDRESS_BITS-1:0]     cmd_addr;
 
-    // The clients of the commands that memory has not answered, the oldest in bit 0, and their number.
+    // The clients of the commands that memory has not answered, the oldest in bit 0, and the number of these commands.
     logic [2*DEPTH-1:0] owners;
     logic [2:0]         pending;
     logic               owner;

@@ -11,8 +11,8 @@ module ring_lane_proof (
     input wire [9:0] in_length,
     input wire       out_ready
 );
-    // PLACES: capacity of the lane's FIFO of ends. WITHIN: upper bound on the clocks with a ready consumer from the entry of a ray until
-    // its end is taken: two rounds of 9 clocks, then the wait in the FIFO behind the other ray's end.
+    // PLACES: capacity of the lane's FIFO of ends. WITHIN: upper bound on the clocks from the entry of a ray until its end is taken, while
+    // the consumer is ready: two rounds of 9 clocks, then the wait in the FIFO behind the end of the other ray.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;
@@ -25,7 +25,7 @@ module ring_lane_proof (
     (* anyconst *) logic [10:0] followed;
     (* anyconst *) logic [9:0]  length;
 
-    // A ray carries its number as its column.
+    // The column of a ray is its number.
     always_comb begin
         ray = '0;
         ray.place.column = came;

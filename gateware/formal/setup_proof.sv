@@ -1,13 +1,13 @@
-// Proof of the control logic of `setup`, the triangle setup, with beats (steps of its pipeline) of three clocks and any pattern
-// of valid and ready on both sides. Each drawn triangle comes out once, in order, with its own value in every field. Every wait of a
-// triangle is bounded, with or without following triangles. `culled` and `drawn` count each triangle once, and `busy` is high while
-// triangles are inside.
+// Proof of the control logic of `setup`, the triangle setup, with beats (the times of a triangle in a stage) of three clocks and any
+// pattern of valid and ready on both sides. Each drawn triangle is output once, in order, with its own value in every field. Every wait of
+// a triangle is bounded, even if no triangle follows. Exactly one of `culled` and `drawn` is high once for each triangle, and `busy` is
+// high while triangles are inside.
 
 `default_nettype none
 
 module setup_proof #(
-    // Upper bound on the clocks, without back-pressure, in which no triangle enters or leaves while a triangle is inside: five beats and a
-    // clock.
+    // Upper bound on the clocks, without back-pressure, in which no triangle enters or leaves while a triangle is inside: five beats and
+    // one clock.
     parameter int unsigned WITHIN = 16
 ) (
     input wire clk,

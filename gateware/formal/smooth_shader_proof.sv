@@ -1,8 +1,8 @@
 // Proof of the queues of `smooth_shader`, for groups of flat and smooth triangles in any order, with any gaps between them and any
 // pattern of ready at the output. Groups are numbered; a group without a covered pixel is dropped on its way to the module. Each other
-// group comes out once, in order; the colours of its covered pixels are its number if it is flat, otherwise its number and the lane. Every
-// wait of a group is bounded. To keep the proof short, the FIFOs and the latency of a colour are shorter than in the engine, and a group
-// covers only pixels of its left half or only of its right half.
+// group is output once, in order. The colour of each covered pixel is the group's number if the group is flat, and the group's number and
+// the pixel's lane otherwise. Every wait of a group is bounded. To keep the proof short, the FIFOs and the latency of a colour are shorter
+// than in the engine, and a group covers only pixels of its left half or only of its right half.
 
 `default_nettype none
 
@@ -14,7 +14,8 @@ module smooth_shader_proof (
     input wire       out_ready
 );
     localparam int unsigned BITS = 4;
-    // Upper bound on the clocks in which a group is inside and no group is at the output: the latency of a smooth group with four pixels.
+    // Upper bound on the clocks in which a group is inside and no group is at the output. The bound is the latency of a smooth group with
+    // four pixels.
     localparam int unsigned WITHIN = 13;
 
     logic rst = 1'b1;

@@ -1,16 +1,16 @@
-// Proof that the walker visits the right groups (eight neighbouring pixels of a line) of each triangle, with any edge functions
+// Proof that the walker visits the correct groups (eight neighbouring pixels of a line) of each triangle, with any edge functions
 // and any pattern of valid and ready on both sides. Triangles are numbered in their colour; their bounds are up to three groups
 // wide and two lines high.
 //
-// Groups come out in the order of the accepted triangles, each at most once, within the lines and bounds of their triangle. If no edge
-// fails anywhere, every group of the bounds comes out. The walk over each triangle ends within a fixed number of clocks.
+// Groups are output in the order of the accepted triangles, each at most once, within the lines and bounds of their triangle. If no edge
+// fails anywhere, every group within the bounds is output. The walk over each triangle ends within a fixed number of clocks.
 
 `default_nettype none
 
 module walker_proof (
     input wire       clk,
     input wire       in_valid,
-    input wire       in_two,     // High if the triangle has two lines, low if it has one.
+    input wire       in_two,     // high if the triangle has two lines, low if it has one line
     input wire [1:0] in_left,
     input wire [1:0] in_right,
     input wire [1:0] in_start,
@@ -32,14 +32,13 @@ module walker_proof (
     raster_pkg::candidate_t   group;
     raster_pkg::late_t        late;
 
-    // A group's line and colour come one clock after the group, so groups are checked one clock late: `was_*` and `goes` are from the
-    // previous clock.
+    // A group's line and colour are valid one clock after the group, so groups are checked one clock late: `was_*` and `goes` are values of
+    // the previous clock.
     logic       was_taken = 1'b0, was_idle = 1'b0, was_two, goes = 1'b0;
     logic [3:0] was_columns;
     logic [7:0] was_group;
 
-    // The current triangle: its number, its groups (bit 4·line + column) in `bounds`, and the groups that have come out in
-    // `gone`.
+    // The current triangle: its number, its groups (bit 4·line + column) in `bounds`, and its groups that have been output, in `gone`.
     logic [BITS-1:0] came = '0, was_came = '0, number;
     logic            some = 1'b0;
     logic [7:0]      bounds, gone, group_bit;

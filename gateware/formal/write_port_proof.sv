@@ -1,5 +1,5 @@
-// Proof of write_port, at a small size: FIFOs of four entries, and bursts of two words. Words come at any time, and memory takes
-// commands and data at any time.
+// Proof of write_port, at a small size: FIFOs of four entries, and bursts of two words. Words arrive at any time, and memory takes commands
+// and data at any time.
 //
 // The words are numbered: word n has address n and data n. The port does not depend on its payload, so the proof holds for
 // any address and data. Memory takes the data of a command at any time, and ignores valid.
@@ -14,14 +14,15 @@ module write_port_proof (
     input wire wdata_ready
 );
     localparam int unsigned DEPTH = 4, NUMBER_BITS = 5;
-    // Upper bound on the clocks without a transfer of data while memory takes all words: the time of a word through both FIFOs when they
-    // are full.
+    // Upper bound on the clocks without a transfer of data while memory takes all words: the time that a word takes through both FIFOs when
+    // they are full.
     localparam int unsigned WITHIN = 8;
 
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
-    // Numbers of received words, words whose command was taken, and words whose data were taken, now and in the previous clock.
+    // Numbers of received words, of words whose command was taken, and of words whose data were taken, in this clock and in the previous
+    // clock.
     logic [NUMBER_BITS-1:0] came, commanded, went, went_before, cmd_addr;
     logic [127:0]           wdata;
     logic [15:0]            wdata_strobe;
@@ -39,8 +40,8 @@ module write_port_proof (
         .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
     );
 
-    // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` counts clocks in which the port holds words
-    // and must not wait for a full burst (`hurry` is high), `refused` counts clocks in which the port accepts no word.
+    // Numbers of successive clocks without a transfer of data, although memory takes all words: `unmoved` counts clocks in which the port
+    // holds words and must not wait for a full burst (`hurry` is high), `refused` counts clocks in which the port accepts no word.
     logic [3:0] unmoved, refused;
 
     always_ff @(posedge clk) begin

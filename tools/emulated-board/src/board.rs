@@ -1,4 +1,4 @@
-//! The board: The board: CPU, bus and devices, and the parts that a person connects or operates.
+//! The emulated board: CPU, bus, devices, and the sensors, buttons and switches at its pins.
 
 use glint_board_api::{BoardError, Frame, Simulation, Uart};
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
@@ -13,8 +13,8 @@ use crate::cpu::{Cpu, Difference, Executed, Pause};
 use crate::devices::Devices;
 use crate::error::Error;
 
-/// Factor by which the devices' time runs faster than the followed board's: an engine with an overestimated time must have ended
-/// before the program starts it again.
+/// Factor by which the devices' time runs faster than the time of the followed board. With this factor an engine whose time is
+/// overestimated also ends before the program starts it again.
 const FOLLOWING: u64 = 16;
 
 /// An emulated board.
@@ -48,11 +48,11 @@ impl EmulatedBoard {
         }
     }
 
-    /// Executes the next instruction, compares its address and result with the instruction `other` of another board's CPU.
+    /// Executes the next instruction, and compares its address and result with the instruction `other` of another board's CPU.
     ///
-    /// Takes an interrupt where the other CPU took one. Results that depend on time are copied from the other CPU: loads from
-    /// registers of devices, reads of counters and of pending interrupts. As on every emulated board, an engine does its whole
-    /// work when the program starts it.
+    /// Takes an interrupt where the other CPU took one. Results that depend on time are copied from the other CPU: loads from registers of
+    /// devices, and reads of counters and of pending interrupts. As on every emulated board, an engine does its whole work when the program
+    /// starts it.
     ///
     /// # Errors
     /// The CPUs execute different instructions, or leave different values in a register.
@@ -62,7 +62,7 @@ impl EmulatedBoard {
         self.cpu.follow(&mut self.bus, now, other)
     }
 
-    /// Instructions since the start.
+    /// Number of executed instructions since the start.
     #[must_use]
     pub fn instructions(&self) -> u64 {
         self.cpu.retired()
@@ -78,7 +78,7 @@ impl EmulatedBoard {
         self.bus.devices.i2c.sensor.take()
     }
 
-    /// Sets the block enable bits of the gateware's identity, to emulate a gateware without some blocks. The blocks stay.
+    /// Sets the block enable bits of the gateware's identity, to emulate a gateware without some blocks. The blocks still work.
     pub fn state_blocks(&mut self, blocks: u32) {
         self.bus.devices.identity.blocks = blocks;
     }
@@ -88,8 +88,8 @@ impl EmulatedBoard {
         self.bus.devices.gesture.sensor()
     }
 
-    /// Runs to the next vertical blanking, and returns the frame that is shown from then on; while the picture is switched off, a
-    /// black frame of the last size.
+    /// Runs to the next vertical blanking, and returns the frame that is shown from that time on. While scan-out is disabled, this frame is
+    /// black and has the last size.
     pub fn capture(&mut self) -> Frame {
         let blanking = self.bus.devices.scanout.next_blanking();
         self.run(blanking + 1 - self.cycles);
@@ -108,7 +108,7 @@ impl EmulatedBoard {
         self.bus.devices.scanout.blankings()
     }
 
-    /// Main memory from `address` on, an address of the CPU.
+    /// The `length` bytes of main memory from the CPU address `address` on.
     fn memory(&mut self, address: u32, length: usize) -> Result<&mut [u8], Error> {
         let place = self.bus.ram.bytes_mut(address, length);
         place.ok_or(Error::Address { address, length })
@@ -138,7 +138,7 @@ impl Uart for EmulatedBoard {
                 self.cpu.reset();
             }
         }
-        // The last instruction may have waited for the bus until after the time of an event.
+        // The last instruction may have waited for the bus beyond the time of an event.
         self.bus.devices.advance(self.cycles, &mut self.bus.ram);
     }
 

@@ -7,7 +7,7 @@ use virtual_flash::Flash;
 use crate::MainMemory;
 use crate::devices::{Devices, REGISTERS};
 
-/// Clock cycles after which the bus answers an access to an unused address.
+/// Number of clock cycles after which the bus answers an access to an unused address.
 const TIMEOUT: u64 = 1_000_000;
 
 /// Number of words of a cache line of the CPU; a line fill makes one bus access for each word.
@@ -25,7 +25,7 @@ pub struct Access {
     pub value: u32,
     /// Number of cycles that the CPU waits, in addition to the cycles of the instruction.
     pub cycles: u64,
-    /// Whether a device was accessed, which may change interrupts and the time of its next event.
+    /// Whether a device was accessed. Such an access may change interrupts and the time of the device's next event.
     pub device: bool,
 }
 
@@ -123,7 +123,7 @@ impl Bus {
                 Access::memory(0)
             }
             Target::Register(offset) => {
-                // The CPU repeats a byte or a half word in all byte lanes, and a register stores all lanes.
+                // The CPU repeats a byte or a half word in all byte lanes, and a register stores all byte lanes.
                 let value = match size {
                     1 => (value & 0xff) * 0x0101_0101,
                     2 => (value & 0xffff) * 0x0001_0001,
@@ -151,7 +151,7 @@ impl Bus {
     }
 }
 
-/// Target of an address outside main memory, with the offset from the start of that memory or window.
+/// Target of an address outside main memory, with the offset from the start of the target.
 enum Target {
     Rom(usize),
     Sram(usize),

@@ -1,4 +1,4 @@
-//! The CPU: An interpreter of decoded instructions for the CPU VexRiscv `full`: rv32im with machine mode.
+//! The CPU VexRiscv `full` (rv32im with machine mode), as an interpreter of decoded instructions.
 
 mod lockstep;
 
@@ -9,20 +9,20 @@ use crate::instruction_cache::{InstructionCache, PAGE};
 
 pub use lockstep::{Difference, Executed};
 
-/// Estimated clock cycles of an instruction: the mean of the real CPU.
+/// Estimated number of clock cycles per instruction: the mean of the real CPU.
 pub const CYCLES: u64 = 1;
 
 /// The CPU.
 pub struct Cpu {
-    /// The registers; the elements from 32 on take results that are discarded. The length covers every value of a masked register
+    /// The registers; results that are discarded are written to the elements from 32 on. The length covers every value of a masked register
     /// number.
     x: [u32; 64],
     pc: u32,
     csrs: Csrs,
     code: InstructionCache,
-    /// Instructions since the start.
+    /// Number of executed instructions since the start.
     retired: u64,
-    /// Whether the last instruction was `wfi` and no interrupt has come since.
+    /// Whether the last instruction was `wfi` and no interrupt has become pending since then.
     asleep: bool,
 }
 
@@ -55,18 +55,18 @@ impl Cpu {
         self.retired = retired;
     }
 
-    /// Instructions since the start.
+    /// Number of executed instructions since the start.
     pub fn retired(&self) -> u64 {
         self.retired
     }
 
-    /// Discards decoded instructions, after a write to memory by another master than the CPU.
+    /// Discards all decoded instructions, after a write to memory by a device or the host.
     pub fn forget_code(&mut self) {
         self.code.clear();
     }
 
-    /// Runs from cycle `now` to cycle `limit` at least; returns the cycle after the last instruction. Returns earlier with a
-    /// pause, and after each access to a device, which may change the interrupt `lines`.
+    /// Runs from cycle `now` to cycle `limit` or slightly beyond. Returns the cycle after the last instruction, and the reason of the
+    /// return. Returns earlier when the CPU sleeps, and after each access to a device, which may change the interrupt `lines`.
     pub fn run(&mut self, bus: &mut Bus, now: u64, limit: u64, lines: u32) -> (u64, Pause) {
         self.csrs.lines = lines;
         if self.asleep {
@@ -105,7 +105,7 @@ impl Cpu {
         (at, pause)
     }
 
-    /// Runs instructions of the page at the program counter, up to the first one that leaves the page or has an effect beyond
+    /// Runs instructions of the page at the program counter, up to the first instruction that leaves the page or has an effect beyond
     /// registers and memory.
     #[inline(never)]
     fn run_page(&mut self, bus: &mut Bus, began: u64, mut now: u64, limit: u64) -> End {
@@ -218,7 +218,7 @@ impl Cpu {
                         *place = Instruction::decode(word);
                         continue;
                     }
-                    // The bus answers after a time-out with an illegal instruction word.
+                    // After a time-out the bus returns an illegal instruction word.
                     let access = bus.fetch(pc, now);
                     waited += access.cycles;
                     now += access.cycles + CYCLES;
@@ -344,7 +344,7 @@ impl Cpu {
 /// Reason why [`Cpu::run_page`] returned, and the cycle after the last instruction.
 struct End {
     now: u64,
-    /// Number of these cycles in which no instruction retired: time-outs of the bus, and traps.
+    /// Number of cycles without a retired instruction, because of time-outs of the bus or traps.
     waited: u64,
     reason: Reason,
 }
@@ -356,6 +356,6 @@ enum Reason {
     Device,
     /// A control register was accessed, or the program returned from a trap handler.
     Control,
-    /// The instruction `wfi`.
+    /// The instruction `wfi` was executed.
     Wait,
 }

@@ -13,9 +13,9 @@ const PRIVILEGE_BEFORE: u32 = 3 << 11;
 const MSTATUS_BITS: u32 = PRIVILEGE_BEFORE | INTERRUPTS_BEFORE | INTERRUPTS;
 /// Bits of `mcause` that VexRiscv implements.
 const MCAUSE_BITS: u32 = 1 << 31 | 0xf;
-/// Register that describes VexRiscv's data cache: size of the cache in bytes, and of a line in bytes from bit 20 on.
+/// Register that describes VexRiscv's data cache: size of the cache in bytes, and size of a line in bytes from bit 20 on.
 const CACHE: u32 = 32 << 20 | 4096;
-/// Values of `mvendorid` and `marchid` of VexRiscv, and of `mimpid`, by which the firmware identifies the emulated board.
+/// Values of `mvendorid` and `marchid` (those of VexRiscv) and of `mimpid`, by which the firmware identifies the emulated board.
 const IDENTIFIERS: [u32; 3] = [11, 22, litex_pac::EMULATED];
 
 /// Causes of exceptions, as in `mcause`.
@@ -32,18 +32,18 @@ pub mod cause {
     pub const CALL: u32 = 11;
 }
 
-/// Whether the value of register `number` depends on time or on the kind of board: counters, pending interrupts, implementation
+/// Whether the value of register `number` depends on time or on the kind of board: counters, pending interrupts, and the implementation
 /// number.
 pub fn depends_on_time(number: u32) -> bool {
     matches!(number, 0x344 | 0xfc0 | 0xb00..=0xb8f | 0xc00..=0xc8f | 0xf13)
 }
 
-/// The CPU's counters at an instruction.
+/// Values of the CPU's counters at an instruction.
 #[derive(Clone, Copy)]
 pub struct Counts {
-    /// Clock cycles since the start.
+    /// Number of clock cycles since the start.
     pub cycles: u64,
-    /// Instructions since the start.
+    /// Number of instructions since the start.
     pub retired: u64,
 }
 
@@ -57,7 +57,7 @@ pub struct Csrs {
     mtval: u32,
     mscratch: u32,
     misa: u32,
-    /// Interrupt lines that reach the CPU: VexRiscv's register 0xBC0.
+    /// Mask of the interrupt lines that reach the CPU: VexRiscv's register 0xBC0.
     mask: u32,
     /// Levels of the interrupt lines.
     pub lines: u32,
@@ -83,15 +83,15 @@ impl Csrs {
         }
     }
 
-    /// Executes a control register instruction with the operand `source`. Returns the value for the destination register; `None`
-    /// for an illegal access.
+    /// Executes the instruction `word`, which accesses a control register, with the operand `source`. Returns the value for the destination
+    /// register; `None` for an illegal access.
     pub fn execute(&mut self, word: u32, source: u32, counts: Counts) -> Option<u32> {
         let number = word >> 20;
         let field = word >> 15 & 31;
         let (reads, kind) = (word >> 7 & 0x7f != 0x20, word >> 12 & 3);
         let value = self.read(number, counts)?;
         if number >> 10 == 3 {
-            // A read-only register: VexRiscv ignores the write of an instruction that also reads.
+            // The register is read-only. If an instruction reads and writes such a register, VexRiscv ignores the write.
             return reads.then_some(value);
         }
         let operand = if word >> 14 & 1 == 1 { field } else { source };
@@ -161,7 +161,7 @@ impl Csrs {
         u32::from(self.mask & self.lines != 0) << EXTERNAL
     }
 
-    /// Whether an enabled interrupt is pending; it ends `wfi`.
+    /// Whether an enabled interrupt is pending; such an interrupt ends `wfi`.
     pub fn wakes(&self) -> bool {
         self.pending() & self.mie != 0
     }

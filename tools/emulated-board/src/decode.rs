@@ -1,4 +1,4 @@
-//! Instructions, decoded once for many executions.
+//! Decoded instructions: each instruction is decoded once and executed many times.
 
 /// Operation of an instruction. The names are those of the RISC-V specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,13 +62,13 @@ pub enum Operation {
     Csr,
 }
 
-/// Index in the register file that takes the results for register 0.
+/// Index in the register file to which the results for register 0 are written.
 pub const NOWHERE: u8 = 32;
 
 /// A decoded instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// Its operation.
+    /// Operation of the instruction.
     pub operation: Operation,
     /// Register of the result; [`NOWHERE`] for register 0.
     pub rd: u8,
@@ -90,8 +90,8 @@ impl Instruction {
         immediate: 0,
     };
 
-    /// Decodes an instruction word. The instructions that VexRiscv `full` executes are legal: VexRiscv ignores some bits that the
-    /// specification requires to be 0.
+    /// Decodes an instruction word. Every word that VexRiscv `full` executes is a legal instruction here: VexRiscv ignores some bits that
+    /// the specification requires to be 0.
     pub fn decode(word: u32) -> Self {
         use Operation::*;
         let field = |low: u32, bits: u32| word >> low & ((1 << bits) - 1);

@@ -5,8 +5,8 @@ use crate::MainMemory;
 /// A block of the SoC with its register window.
 ///
 /// `now` is the number of clock cycles since the start; it never decreases. The module `offset` of a block in `litex_pac`
-/// contains the offsets of its registers, and its types describe the registers' fields. A read of an offset without a register
-/// gives 0, and a write there has no effect.
+/// contains the offsets of its registers, and its types describe the registers' fields. A read at an offset without a register returns 0,
+/// and a write there has no effect.
 pub trait Device {
     /// Reads the register at `offset` bytes from the block's first register.
     fn read(&mut self, offset: u32, now: u64) -> u32;
@@ -14,7 +14,7 @@ pub trait Device {
     /// Writes the register at `offset`. An engine reads and writes main memory `ram`.
     fn write(&mut self, offset: u32, value: u32, now: u64, ram: &mut MainMemory);
 
-    /// Processes all events up to the cycle `now`, and returns the cycle of the next event, `u64::MAX` for none.
+    /// Processes all events up to the cycle `now`. Returns the cycle of the next event, or `u64::MAX` if there is none.
     ///
     /// The bus calls this method after each access to the block, and at the cycle that the last call returned.
     fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64;

@@ -28,7 +28,7 @@ pub const REGISTERS: Memory = Memory {
     size: 0x1_0000,
 };
 
-/// Size of a block's window in bytes: the distance of the first two windows.
+/// Size of a block's window in bytes: the difference between the addresses of the first two windows.
 const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
@@ -186,7 +186,8 @@ impl Devices {
         self.next.into_iter().min().unwrap_or(u64::MAX)
     }
 
-    /// Processes events while the CPU sleeps, until an interrupt line changes or to the cycle `end`. Returns the cycle.
+    /// Processes events while the CPU sleeps, until an interrupt line changes or the cycle `end` is reached. Returns the cycle at that
+    /// time.
     pub fn sleep(&mut self, end: u64, ram: &mut MainMemory) -> u64 {
         let lines = self.lines;
         loop {
@@ -200,7 +201,7 @@ impl Devices {
             if now >= end {
                 return end;
             }
-            // No other block has an event before the cycle `others`: this block processes its events up to that cycle first.
+            // No other block has an event before the cycle `others`, so this block processes its events up to that cycle first.
             while now <= others {
                 self.update(number, now, ram);
                 if self.lines != lines {
@@ -216,7 +217,7 @@ impl Devices {
         self.lines
     }
 
-    /// Updates all interrupt lines. The host may have connected or disconnected a device.
+    /// Updates all interrupt lines, because the host may have connected or disconnected a device.
     pub fn look(&mut self) {
         for number in 0..BLOCKS.len() {
             self.look_at(number);

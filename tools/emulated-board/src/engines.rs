@@ -1,6 +1,6 @@
-//! The engines: blocks that compute their results by the functions of `glint_model`.
+//! The engines: blocks that compute their results with the functions of `glint_model`.
 //!
-//! An engine takes its parameters from its registers and its input from main memory, as the gateware does. Its results, exact
+//! An engine reads its parameters from its registers and its input from main memory, as the gateware does. Its results, exact
 //! counts, errors and interrupts equal those of the gateware; its time is an estimate.
 
 mod gesture;

@@ -18,7 +18,7 @@ pub struct InstructionCache {
     pages: Vec<Option<Box<Page>>>,
     /// Numbers of the pages that are present.
     present: Vec<usize>,
-    /// The page for all addresses without memory: it stays empty, because nothing can be decoded there.
+    /// The page for all addresses without memory. This page stays empty, because there are no instructions at these addresses.
     nowhere: Box<Page>,
 }
 

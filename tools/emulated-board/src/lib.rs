@@ -1,4 +1,4 @@
-//! The emulated board: runs the real board's firmware at about the real board's speed.
+//! The emulated board: runs the firmware of the real board at about the speed of the real board.
 //!
 //! ```
 //! use emulated_board::EmulatedBoard;

@@ -46,7 +46,7 @@ impl MainMemory {
         self.bytes.get(offset..)?.first_chunk().copied()
     }
 
-    /// Writes bytes from `address` on; writes none and returns `None` if they are not all within main memory.
+    /// Writes bytes from `address` on. If not all of these bytes are within main memory, nothing is written and the result is `None`.
     #[must_use]
     #[inline]
     pub fn set_array<const N: usize>(&mut self, address: u32, bytes: [u8; N]) -> Option<()> {
@@ -69,7 +69,7 @@ impl MainMemory {
         self.array(address).map(u32::from_le_bytes)
     }
 
-    /// Writes the 32-bit word at `address`; `None` outside main memory.
+    /// Writes the 32-bit word at `address`; returns `None` if it is outside main memory.
     #[must_use]
     #[inline]
     pub fn set_word(&mut self, address: u32, value: u32) -> Option<()> {

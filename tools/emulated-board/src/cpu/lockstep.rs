@@ -1,4 +1,4 @@
-//! Instruction by instruction execution that follows another CPU and compares the results.
+//! Execution instruction by instruction: follows another CPU, and compares the results.
 
 use super::Cpu;
 use crate::bus::{self, Bus};
@@ -10,7 +10,7 @@ use crate::decode::{Instruction, Operation};
 pub struct Executed {
     /// Clock cycle in which the instruction ended.
     pub cycle: u64,
-    /// Its address.
+    /// Address of the instruction.
     pub pc: u32,
     /// Number of the register that the instruction wrote, 0 for none.
     pub register: u32,

@@ -1,5 +1,4 @@
-//! The I2C master, which drives the bus of a virtual sensor edge by edge. Its states are the phases of
-//! gateware/rtl/i2c/i2c_engine.sv.
+//! The I2C master, which generates each edge on the bus of a virtual sensor. The master has the states of gateware/rtl/i2c/i2c_engine.sv.
 
 use std::collections::VecDeque;
 
@@ -41,7 +40,7 @@ enum State {
 
 /// The I2C master.
 pub struct I2c {
-    /// The sensor on the bus, if there is one.
+    /// The sensor on the bus, if any.
     pub sensor: Option<Wires>,
     /// Last written values of the registers `command` and `control`.
     command: u32,
@@ -50,7 +49,7 @@ pub struct I2c {
     answers: VecDeque<u8>,
     rounds: Rounds,
     state: State,
-    /// End of the phase; `u64::MAX` in a state that waits.
+    /// Cycle in which the phase ends; `u64::MAX` in a state that waits.
     until: u64,
     /// Cycle in which the master released SCL, in a phase with SCL high.
     released: u64,
@@ -137,7 +136,7 @@ impl I2c {
         self.until = now + PHASE;
     }
 
-    /// The operation of the current command; a stop after an error.
+    /// The operation of the current command, or a stop after an error.
     fn operation(&self) -> Option<Operation> {
         if self.error != Error::None {
             return Some(Operation::Stop);
@@ -149,7 +148,7 @@ impl I2c {
         command.operation() != Operation::Read || self.bytes == command.argument()
     }
 
-    /// Removes the current command; in a round, appends it to the end of the queue.
+    /// Removes the current command from the queue. While rounds are repeated, appends it to the end of the queue.
     fn take(&mut self) {
         if let Some(command) = self.commands.pop_front()
             && self.rounds.repeats()
@@ -192,7 +191,7 @@ impl I2c {
     fn step(&mut self, now: u64) {
         let (scl, sda) = self.wires(now);
         if self.scl && !scl {
-            // A device stretches the clock; the phase starts when SCL is high.
+            // A device stretches the clock. The phase starts when SCL is high.
             if now - self.released > STRETCH {
                 self.fail(Error::Clock);
             } else {
@@ -206,7 +205,7 @@ impl I2c {
             return;
         }
         let Some(operation) = self.operation() else {
-            // The queue was cleared meanwhile.
+            // The queue has been cleared during the phase.
             self.state = State::Idle;
             self.until = u64::MAX;
             return;
@@ -393,7 +392,7 @@ impl Device for I2c {
                     self.round = u64::MAX;
                     self.rounds_done = 0;
                 } else if before.repeats() {
-                    // The counter has the width of the field `period`, and continues to count. If it has already passed the new
+                    // The counter has the width of the field `period`, and continues to count. If the counter has already exceeded the new
                     // period, the period ends after the counter has wrapped.
                     let counts_from = self.round - u64::from(before.period());
                     let left = counts_from.wrapping_add(period).wrapping_sub(now + 1);
@@ -445,7 +444,7 @@ mod tests {
     /// Number of cycles of a round.
     const ROUND: u64 = 2000;
 
-    /// A master whose rounds, of a start and a stop, begin at cycle 0.
+    /// A master whose rounds consist of a start and a stop and begin at cycle 0.
     fn started(rounds: Rounds) -> (I2c, MainMemory) {
         let (mut i2c, mut ram) = (I2c::new(), MainMemory::new());
         for operation in [Operation::Start, Operation::Stop] {

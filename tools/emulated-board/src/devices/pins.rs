@@ -4,7 +4,7 @@ use litex_pac::buttons::offset;
 
 use crate::{Device, Events, MainMemory};
 
-/// Pins that the CPU reads, with an event for each pin; the switches have no events, and `in` is their last register.
+/// Pins that the CPU reads. Each button has an event. The switches have no events, so `in` is their last register.
 pub struct Inputs {
     /// Levels of the pins.
     levels: u32,
@@ -16,7 +16,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Pins that are low, `bits` in number.
+    /// `bits` pins, which are low.
     pub fn new(bits: u32, has_events: bool) -> Self {
         Self {
             levels: 0,

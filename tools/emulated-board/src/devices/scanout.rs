@@ -103,7 +103,7 @@ impl Scanout {
         self.blanking
     }
 
-    /// The displayed frame; black while the picture is switched off. Pixels outside main memory are black too.
+    /// The displayed frame, which is black while scan-out is disabled. Pixels outside main memory are black too.
     pub fn frame(&self, ram: &MainMemory) -> Frame {
         let [width, height] =
             [Block::SCREEN_WIDTH, Block::SCREEN_HEIGHT].map(|length| length / self.scale_current);

@@ -124,14 +124,14 @@ impl Device for Timer {
     fn advance(&mut self, now: u64, _ram: &mut MainMemory) -> u64 {
         if now >= self.zero {
             self.events.raise(ZERO);
-            // Several periods may have passed.
+            // More than one period may have passed.
             let period = u64::from(self.reload) + 1;
             self.zero = match self.reload {
                 0 => u64::MAX,
                 _ => now + period - (now - self.zero) % period,
             };
         }
-        // The level falls in the next cycle, or stays high without a reload.
+        // The event's level falls in the next cycle, or stays high if `reload` is 0.
         self.events.set_level(ZERO, self.count(now) == 0);
         self.zero
     }

@@ -22,7 +22,7 @@ pub struct Uart {
 }
 
 impl Uart {
-    /// The UART after a reset. Its transmit buffer has space from the start on, which is an event.
+    /// The UART after a reset. The transmit buffer is not full, so the event of the transmitter is pending.
     pub fn new() -> Self {
         let mut events = Events::default();
         events.set_level(TX, true);
@@ -76,7 +76,7 @@ impl Device for Uart {
             offset::EV_PENDING => {
                 self.events.clear(value);
                 if EvPending::from_bits(value).rx() {
-                    // Clearing the event removes the byte in `rxtx`.
+                    // A write that clears the event removes the byte in `rxtx`.
                     self.received.pop_front();
                     self.events.set_level(RX, !self.received.is_empty());
                 }

@@ -1,5 +1,5 @@
-//! The gesture engine with the image sensor at its port (docs/gesture.md): `glint_model::gesture` processes each period of the
-//! sensor's clock.
+//! The gesture engine with the image sensor at its port (docs/gesture.md): `glint_model::gesture` processes the pin levels in each period
+//! of the sensor's clock.
 
 mod port;
 
@@ -20,7 +20,7 @@ use port::Port;
 /// Divider of the system clock for the sensor's input clock.
 const CLOCK_DIVIDER: u8 = 4;
 
-/// Number of clock cycles without a tick of the sensor's clock after which it counts as stopped.
+/// Number of clock cycles without an edge of the sensor's clock after which this clock counts as stopped.
 const QUIET: u64 = 4096;
 
 /// The gesture engine.
@@ -112,8 +112,8 @@ impl GestureEngine {
         }
     }
 
-    /// Advances the sensor's clock to the cycle `now`. Returns the cycle in which the next frame ends, or in which a clock
-    /// without ticks counts as stopped.
+    /// Advances the sensor's clock to the cycle `now`. Returns the cycle in which the current frame ends, or in which a clock without edges
+    /// counts as stopped.
     fn settle(&mut self, now: u64) -> u64 {
         self.update_wires(now);
         let Some(sensor) = &mut self.sensor else {
@@ -183,7 +183,7 @@ impl GestureEngine {
             })
     }
 
-    /// The word of the small picture at the read index; increments the index.
+    /// Returns the word of the small picture at the read index, and increments the index.
     fn snapshot_word(&mut self) -> u16 {
         let words = self.engine.snapshot().map(|snapshot| snapshot.words());
         let word = words.and_then(|words| words.get(usize::from(self.place)));

@@ -43,7 +43,7 @@ impl Parameters {
         [0, 4, 8].map(|place| self.signed(offset + place, bits))
     }
 
-    /// A number in two registers, in two's complement; the register at `high` contains the `bits` bits from bit 32 on.
+    /// A number in two's complement in two registers: the register at `high` contains the `bits` bits from bit 32 on.
     pub fn wide(&self, low: u32, high: u32, bits: u32) -> i64 {
         i64::from(self.signed(high, bits)) << 32 | i64::from(self.word(low))
     }

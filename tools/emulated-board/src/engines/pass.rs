@@ -1,6 +1,6 @@
-//! A pass of an engine: its results are computed at its start, and it ends after the estimated time.
+//! A pass of an engine: the results are computed at the start of the pass, and the pass ends after its estimated time.
 
-/// The increment of each counter of a block, in the order of its registers.
+/// The increments of a block's counters, in the order of the registers.
 pub type Growth<const N: usize> = [u32; N];
 
 /// A running pass.
@@ -15,7 +15,7 @@ pub struct Pass<const N: usize> {
 }
 
 impl<const N: usize> Pass<N> {
-    /// The increments of the counters up to the cycle `now`, with the work spread evenly over the pass.
+    /// The increments of the counters up to the cycle `now`. Counters increase evenly during the pass.
     pub fn grown(&self, now: u64) -> Growth<N> {
         let (done, whole) = (now.saturating_sub(self.start), self.end - self.start);
         if done >= whole {

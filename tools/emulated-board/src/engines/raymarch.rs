@@ -18,7 +18,7 @@ use crate::{Device, Events, MainMemory};
 use setup::{Tables, field_setup, palette};
 use spheres::Spheres;
 
-/// Number of evaluations of the field in a clock cycle.
+/// Number of evaluations of the field per clock cycle.
 const LANES: u64 = 2;
 
 /// Number of counters.
@@ -34,12 +34,13 @@ const LATENCY: u64 = 300;
 pub struct Field {
     /// Number of cycles of the drawing.
     pub cycles: u64,
-    /// Counts of pixels for each eye, and of pixels that passed the depth test.
+    /// Number of pixels of all eyes.
     pub pixels: u32,
+    /// Number of these pixels that passed the depth test.
     pub drawn: u32,
 }
 
-/// The raymarcher. Set by the triangle engine, which starts the raymarcher.
+/// The raymarcher, which the triangle engine starts.
 pub struct Raymarcher {
     parameters: Parameters,
     control: Control,
@@ -124,7 +125,7 @@ impl Raymarcher {
         }
     }
 
-    /// The error of the parameters: an undefined kind of solid.
+    /// Returns an error if the parameters contain an undefined kind of solid.
     fn error(&self) -> Error {
         let solid = Solid::from_bits(self.parameters.word(offset::SOLID));
         match solid.kind() {

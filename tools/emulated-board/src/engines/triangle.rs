@@ -1,8 +1,8 @@
 //! The triangle engine: geometry and raster passes of frames (docs/triangle.md), with flat shading and lines.
 //!
-//! A pass computes its results at its start, by the functions of `glint_model`, and ends after the estimated time of the
-//! gateware. The results in memory, the counts of triangles, groups, pixels and words, and the errors equal those of the
-//! gateware; cycle counters are estimates, and counters of waiting cycles stay 0. Counters increase evenly during a pass.
+//! A pass computes its results at its start, with the functions of `glint_model`, and ends after the estimated time of the gateware. The
+//! results in memory, the counts of triangles, groups, pixels and words, and the errors equal those of the gateware; cycle counters are
+//! estimates, and counters of waiting cycles stay 0. Counters increase evenly during a pass.
 
 mod geometry;
 mod output;
@@ -30,14 +30,14 @@ use time::Work;
 /// Number of counters.
 const COUNTERS: usize = ((offset::CYCLES_FLUSH - offset::CYCLES_BUSY) / 4 + 1) as usize;
 
-/// Kind of a pass.
+/// State of one kind of pass, geometry or raster.
 struct Side {
     running: Option<Pass<COUNTERS>>,
     /// The error with which the running pass ends.
     ends_with: Error,
     /// The error in the register `status`.
     error: Error,
-    /// Bit of its event.
+    /// Bit of the event at the end of the pass.
     event: u32,
 }
 
@@ -87,7 +87,7 @@ pub struct TriangleEngine {
     events: Events,
     geometry: Side,
     raster: Side,
-    /// The slot of the raster pass.
+    /// The slot (frame buffer) of the raster pass.
     slot: bool,
     geometry_unit: GeometryUnit,
     raster_unit: RasterUnit,
@@ -190,7 +190,7 @@ impl TriangleEngine {
         self.counted = self.counted.max(now);
     }
 
-    /// Ends the passes that are due, and returns the cycle in which the next one ends.
+    /// Ends the passes that are due, and returns the cycle in which the next pass ends.
     fn settle(&mut self, now: u64) -> u64 {
         self.count_busy(now);
         let mut next = u64::MAX;
@@ -204,7 +204,7 @@ impl TriangleEngine {
             }
             side.running = None;
             add(&mut self.counters, &pass.growth);
-            // A refused request during the pass has set the error, unless the pass has its own error.
+            // A request that was refused during the pass has set `error`. An error of the pass itself replaces this error.
             if side.ends_with != Error::None {
                 side.error = side.ends_with;
             }
@@ -213,7 +213,7 @@ impl TriangleEngine {
         next
     }
 
-    /// The counter number `number` at `now`.
+    /// The counter with the index `number` at the cycle `now`.
     fn counter(&self, number: usize, now: u64) -> u32 {
         let mut counters = self.counters;
         for pass in [&self.geometry.running, &self.raster.running]

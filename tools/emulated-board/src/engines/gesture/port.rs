@@ -7,7 +7,7 @@ use virtual_image_sensor::{ImageSensor, Levels};
 /// Frequency of the system clock in Hz.
 const CLOCK: u64 = CONFIG_CLOCK_FREQUENCY as u64;
 
-/// A time or a duration: whole cycles, and the fraction of a cycle in units of 1 / (2 · clock).
+/// A time or a duration: a number of whole cycles, and a fraction of a cycle in units of 1 / (2 · clock) cycle.
 #[derive(Clone, Copy, Debug, Default)]
 struct Time {
     cycle: u64,
@@ -15,7 +15,7 @@ struct Time {
 }
 
 impl Time {
-    /// Adds `length` to this time; a cycle has `parts` parts.
+    /// Adds `length` to this time. The unit of the fraction is 1 / `parts` cycle.
     fn after(self, length: Self, parts: u64) -> Self {
         let part = self.part + length.part;
         let carry = u64::from(part >= parts);
@@ -39,7 +39,7 @@ pub struct Port {
     at: usize,
     /// Index of the period in which VSYNC changes next, or the length of `frame` if it does not change.
     change: usize,
-    /// Half period of the sensor's clock in which `frame` began, counted from the start of the board.
+    /// Number of the half period of the sensor's clock in which `frame` began, counted from the start of the board.
     begin: u64,
     /// The time at which `frame` began.
     first: Time,
@@ -49,9 +49,9 @@ pub struct Port {
     half: Time,
     /// Frequency of the sensor's clock in Hz.
     clock: u64,
-    /// Levels in the period before the next one.
+    /// Levels in the last period that has been processed.
     before: Levels,
-    /// Cycle of the last tick.
+    /// Cycle of the last edge of the sensor's clock.
     pub last_tick: u64,
 }
 
@@ -92,7 +92,8 @@ impl Port {
         self.find_change();
     }
 
-    /// The next tick of the sensor's clock up to the cycle `now`: its cycle and the pins. `falling` selects the edge.
+    /// Returns the next edge of the sensor's clock up to the cycle `now`, as its cycle and the pins' levels. `falling` selects falling
+    /// edges.
     pub fn next(&mut self, now: u64, falling: bool) -> Option<(u64, Pins)> {
         while let Some(&levels) = self.frame.get(self.at) {
             // Levels change at the beginning of a period, and PCLK rises in its middle.
@@ -128,7 +129,7 @@ impl Port {
         periods > 0 && self.at >= periods && self.cycle(2 * periods as u64) <= now
     }
 
-    /// The cycle in which VSYNC changes next, or the frame ends; `u64::MAX` without a frame.
+    /// The cycle in which VSYNC changes next or the frame ends; `u64::MAX` without a frame.
     pub fn next_event(&self) -> u64 {
         if self.frame.is_empty() {
             u64::MAX

@@ -6,7 +6,7 @@ use std::thread;
 use glint_model::FrameBuffer;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayResult, State, render_rows};
 
-/// Number of rows of a strip: the rows of the largest block of the prepass.
+/// Number of rows of a strip: the number of rows of the largest block of the prepass.
 const ROWS: usize = 16;
 
 /// Draws a field into a picture that already contains its triangles. Returns the counts of its rays, and the number of pixels
@@ -51,7 +51,7 @@ fn strip(
     colour: &mut [u16],
     depth: &mut [u32],
 ) -> (FieldStats, u32) {
-    // At pixels with triangles, the depth test of the ray is repeated, because the model's counts do not include its result.
+    // At pixels with triangles, the ray's depth test is repeated here, because the model does not count the rays that fail this test.
     let before = depth.to_vec();
     let mut hidden = 0;
     let mut show = |x, y, ray: &_, outcome: &RayResult| {

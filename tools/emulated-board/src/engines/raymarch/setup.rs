@@ -1,4 +1,4 @@
-//! Converts the registers to the constants of a field's frame.
+//! Converts the registers to the constants of a frame with a field.
 
 use glint_core::field::{FixedSpheres, Flat, FlatConstants, Solid};
 use glint_core::fixed::Q32_32;
@@ -15,7 +15,7 @@ use litex_pac::register::Value;
 use super::spheres::{Spheres, colour};
 use crate::engines::parameters::Parameters;
 
-/// Fog by depth, and occlusion by the number of evaluations.
+/// Table of fog, indexed by depth, and table of occlusion, indexed by the number of evaluations.
 pub type Tables = [[u8; 256]; 2];
 
 /// The smallest exponent of the depth scale for which the shifted scale fits 64 bits. The exponent of a valid frame is larger.
@@ -77,7 +77,8 @@ pub fn field_setup(
     }
 }
 
-/// Constants of the eye whose registers begin at `first`: for each axis the origin, the distance to the box, and the first ray.
+/// Constants of the eye whose registers begin at `first`: for each axis the position of the eye, its distance to the box, and the direction
+/// of the first ray.
 fn eye(parameters: &Parameters, first: u32) -> Eye {
     const AXIS: u32 = offset::ORIGIN_LEFT_Y - offset::ORIGIN_LEFT_X;
     const OUTSIDE: u32 = offset::OUTSIDE_LEFT_X - offset::ORIGIN_LEFT_X;
@@ -90,7 +91,7 @@ fn eye(parameters: &Parameters, first: u32) -> Eye {
     }
 }
 
-/// The solid, or the flat solid of a union, and the spheres next to it.
+/// The solid; for a union, the flat solid and the spheres that are united with it.
 fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let round = FixedSpheres {
@@ -120,7 +121,7 @@ fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) 
     (flat, beside)
 }
 
-/// The colours.
+/// The colours and tables for the pixels of the field.
 pub fn palette(parameters: &Parameters, spheres: &Spheres, tables: &Tables) -> Palette {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let colours: [[u8; 3]; 8] =

@@ -1,4 +1,4 @@
-//! The geometry pass: from a mesh or segments in memory to descriptors, band lists and exceptions in memory.
+//! The geometry pass: computes descriptors, band lists and exceptions in memory from a mesh or segments in memory.
 
 use glint_core::mesh::{Triangle, Vertex};
 use glint_core::picture::Size;
@@ -124,7 +124,7 @@ impl GeometryUnit {
             let mut cache = VertexCache::empty();
             for number in chunk.triangles {
                 let triangle = Triangle::from_bytes(&record(ram, number));
-                // Each corner is read before the next one may replace its vertex in the cache.
+                // Each corner is read before the next corner may replace its vertex in the cache.
                 let corners = triangle.indices.map(|index| {
                     let slot = &mut vertices[usize::from(index) % SLOTS];
                     if cache.misses(index) {

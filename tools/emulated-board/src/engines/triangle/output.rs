@@ -11,7 +11,7 @@ use super::region::{COUNT_BITS, Regions, list_words};
 use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 
-/// Number of words of 32 bits of a descriptor: the engine has flat shading.
+/// Number of 32-bit words of a descriptor with flat shading.
 const DESCRIPTOR: usize = words(Shading::Flat);
 
 /// The memory regions for the output.
@@ -149,7 +149,7 @@ impl Output {
         self.counts.is_full() || self.exceptions.is_full
     }
 
-    /// Writes the new output to memory. Returns the number of 16-byte words.
+    /// Writes the new output to memory. Returns the number of written 16-byte words.
     pub fn write(&mut self, ram: &mut MainMemory) -> u32 {
         let [descriptors, lists, exceptions] = self.room.places;
         let (before, listed) = mem::replace(
@@ -178,7 +178,7 @@ impl Output {
             written += (to / 4 - from / 4 + u32::from(to % 4 > 0)) as usize;
         }
         put(lists, 0, Some(self.counts.lengths()));
-        // A word contains four lengths; each exception is written in a word of its own.
+        // A word contains four lengths. Each exception is written in a separate word.
         written += self.counts.lengths().len() / 4 + self.exceptions.numbers.len() - listed;
         for (place, number) in self.exceptions.numbers.iter().enumerate().skip(listed) {
             put(exceptions, place, Some(&[*number]));

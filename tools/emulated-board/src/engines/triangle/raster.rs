@@ -1,4 +1,4 @@
-//! The raster pass: draws descriptors and band lists in memory to a frame in memory.
+//! The raster pass: draws the descriptors of the band lists in memory into a frame in memory.
 
 use glint_core::picture::Size;
 use glint_model::FrameBuffer;
@@ -17,7 +17,7 @@ use crate::engines::raymarch::Raymarcher;
 /// Size of a descriptor in 16-byte words.
 const DESCRIPTOR: u32 = 3;
 
-/// The first and last drawn word of a line; for an empty line, the first is greater than the last.
+/// The first and the last drawn word of a line. For an empty line, the first word is greater than the last word.
 type Extent = [i32; 2];
 
 const EMPTY: Extent = [i32::MAX, 0];
@@ -60,7 +60,7 @@ impl RasterUnit {
         }
     }
 
-    /// The frame in the slot is not complete.
+    /// Records that the frame in the slot is incomplete.
     pub fn cancel(&mut self, slot: bool) {
         self.known[usize::from(slot)] = false;
     }
@@ -156,7 +156,7 @@ impl RasterUnit {
     fn begin(&mut self, size: Size, clear: u16) -> Drawing<'_> {
         let [width, height] = size.pixels();
         let pixels = size.pixel_count();
-        // A picture has at most these numbers of pixels and lines.
+        // The buffers have the size of the largest picture.
         let colour = self.colour.get_mut(..pixels).unwrap_or_default();
         let depth = self.depth.get_mut(..pixels).unwrap_or_default();
         colour.fill(clear);
@@ -177,7 +177,7 @@ impl RasterUnit {
         }
     }
 
-    /// Writes the words of a frame that can differ from the words in memory. Returns their number.
+    /// Writes the words of a frame that can differ from the words in memory. Returns the number of written words.
     fn flush(
         &mut self,
         size: Size,
@@ -212,7 +212,7 @@ impl RasterUnit {
         written
     }
 
-    /// Writes the depths of a frame. Returns the number of words.
+    /// Writes the depths of a frame. Returns the number of written words.
     fn flush_depth(&self, size: Size, place: u32, ram: &mut MainMemory) -> u32 {
         let depth = self.depth.get(..size.pixel_count()).unwrap_or_default();
         if let Some(bytes) = ram.bytes_mut(place, 4 * depth.len()) {
@@ -270,7 +270,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Draws the part of a descriptor's primitive in a band.
+    /// Draws the part of a triangle or a line that lies in a band.
     fn draw(&mut self, descriptor: &Descriptor, band: &Bounds) {
         let Self {
             target, extents, ..

@@ -25,7 +25,7 @@ pub fn picture_size(code: Option<SizeCode>) -> Option<Size> {
     })
 }
 
-/// The result of checks of a pass's regions.
+/// The result of the checks of a pass's regions.
 #[derive(Default)]
 pub struct Regions {
     is_misplaced: bool,
@@ -50,7 +50,7 @@ impl Regions {
     }
 }
 
-/// Number of words of the table of lengths and all lists of a set; more than any memory has for an invalid `list_shift`.
+/// Number of words of the table of lengths and all lists of a set; for an invalid `list_shift`, a number that exceeds every memory.
 pub fn list_words(size: Size, list_shift: u32) -> u64 {
     if list_shift > LAST_SHIFT {
         u64::MAX
@@ -59,7 +59,7 @@ pub fn list_words(size: Size, list_shift: u32) -> u64 {
     }
 }
 
-/// The memory word with the index `number`, its address divided by 16. Index bits beyond main memory are ignored.
+/// The memory word with the index `number`, its address divided by 16. Bits of the index that exceed main memory are ignored.
 pub fn record(ram: &MainMemory, number: u32) -> [u8; WORD as usize] {
     const _: () = assert!(MAIN_RAM.size.is_power_of_two());
     let place = number.wrapping_mul(WORD) & (MAIN_RAM.size - 1);

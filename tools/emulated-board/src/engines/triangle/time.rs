@@ -1,8 +1,8 @@
 //! Estimates the clock cycles of passes.
 //!
-//! The rates of the engine's parts are exact (docs/triangle.md, "Clocks of the engine alone", and docs/line.md, "Clocks"); the
-//! overlap of the parts and the cost of memory accesses are estimates. A sphere similar to the one in docs/triangle.md takes
-//! 3,675 cycles of geometry and 7,151 of raster here; the gateware alone with a memory takes 4,200 and 7,517.
+//! The rates of the engine's parts are exact (docs/triangle.md, "Clocks of the engine alone", and docs/line.md, "Clocks"); the overlap of
+//! the parts and the time of memory accesses are estimates. For a sphere similar to the sphere in docs/triangle.md, the estimates are 3,675
+//! cycles for geometry and 7,151 cycles for raster; the gateware (the engine alone with a memory) takes 4,200 and 7,517 cycles.
 
 use glint_core::picture::Size;
 use glint_model::line::{Line, Segment};
@@ -10,10 +10,10 @@ use litex_pac::triangle::{Counters, Error};
 
 /// Number of cycles of a refused pass, from its request to its end.
 pub const REFUSAL: u64 = 20;
-/// Number of cycles from `cancel` until the engine is ready again: it clears the band buffer, one row per cycle.
+/// Number of cycles from `cancel` until the engine is ready again. In this time the band buffer is cleared, one row per cycle.
 pub const RECOVERY: u64 = 2_100;
 
-/// Constant number of cycles of a geometry pass: it copies parameters, and empties and closes the lists.
+/// Constant number of cycles of a geometry pass, in which parameters are copied and the lists are emptied and closed.
 const GEOMETRY: u64 = 400;
 /// Constant number of cycles of a raster pass.
 const RASTER: u64 = 250;
@@ -37,9 +37,9 @@ pub struct Work {
 pub struct GeometryTime {
     /// Number of triangles of the mesh.
     pub triangles: u32,
-    /// Triangles drawn.
+    /// Number of drawn triangles.
     pub drawn: u32,
-    /// Vertices fetched.
+    /// Number of fetched vertices.
     pub vertices: u32,
     /// Number of cycles of the line set-up.
     lines: u64,
@@ -55,8 +55,8 @@ impl GeometryTime {
         self.lines += 31 + if division { 28 } else { 0 } + pixels + pieces;
     }
 
-    /// The estimated cycles: those of the slowest part, plus an eighth of the cycles of the other parts, which overlap with it
-    /// only partly. A drawn triangle takes 11 cycles, any triangle 3, a vertex 6.
+    /// Returns the estimated number of cycles: the cycles of the slowest part, plus an eighth of the cycles of the other parts, which do
+    /// not overlap completely with the slowest part. A drawn triangle takes 11 cycles, every triangle 3 cycles, a vertex 6 cycles.
     pub fn cycles(&self) -> u64 {
         let parts = [
             11 * u64::from(self.drawn),
@@ -100,7 +100,7 @@ impl RasterTime {
         self.cycles += cycles;
     }
 
-    /// The cycles of the pass.
+    /// The estimated number of cycles of the pass.
     pub const fn cycles(&self) -> u64 {
         RASTER + self.cycles + self.flush
     }

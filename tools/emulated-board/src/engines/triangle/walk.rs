@@ -1,4 +1,4 @@
-//! Iterator over the chunks of a mesh in memory; checks the chunks, because memory may contain anything.
+//! Iterator over the chunks of a mesh in memory. The iterator checks the chunks, because memory may contain arbitrary data.
 
 use std::ops::Range;
 
@@ -43,7 +43,7 @@ impl Walk {
         }
     }
 
-    /// The next chunk; `None` after the last one. A mesh has at least one chunk.
+    /// The next chunk; `None` after the last chunk. A mesh has at least one chunk.
     pub fn chunk(&mut self, ram: &MainMemory) -> Option<Chunk> {
         if self.is_damaged || self.has_begun && self.header >= self.past {
             return None;
