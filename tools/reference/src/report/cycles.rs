@@ -10,7 +10,7 @@ use virtual_board::{Start, VirtualBoard};
 
 use super::workspace;
 
-/// Cycles per call of a kernel (a measured function of the firmware), in clocks of the soft core.
+/// Numbers of the soft core's cycles per call of a kernel (a measured function of the firmware).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
     /// Cycles of the fastest call.
@@ -24,7 +24,7 @@ pub struct Figures {
 /// Cycles of each kernel, by the kernel's name.
 pub type Cycles = BTreeMap<String, Figures>;
 
-/// Reads the lines `bench NAME min MIN median MEDIAN max MAX cycles` of a console's output.
+/// Parses the lines `bench NAME min MIN median MEDIAN max MAX cycles` in the output of a console.
 ///
 /// # Errors
 /// When a line that starts with `bench` is malformed or missing.
@@ -72,7 +72,7 @@ pub fn parse(console: &str) -> Result<Cycles> {
 
 /// The console's prompt.
 const PROMPT: &str = "glint> ";
-/// Limit in cycles for the firmware's start, and for the run of all kernels. Each takes only a fraction of the limit.
+/// Maximum number of cycles for the firmware's start, and for the run of all kernels. Start and run take only a fraction of this number.
 const LIMIT: u64 = 500_000_000;
 
 /// Command-line arguments for the source of the cycles: a run on the virtual board, or a transcript.

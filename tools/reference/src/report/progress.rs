@@ -3,7 +3,7 @@
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Makes a progress bar of `steps` steps with a message and the remaining time.
+/// Creates a progress bar with `steps` steps, which displays a message and the remaining time.
 ///
 /// # Errors
 /// When the terminal refuses the bar's template.

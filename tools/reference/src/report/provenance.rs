@@ -6,14 +6,14 @@ use serde::Serialize;
 
 use super::workspace;
 
-/// The commit with which rows were measured: the last column of their table.
+/// The commit with which rows were measured: the last column of the rows' table.
 #[derive(Serialize)]
 pub struct Commit {
-    /// As in [`Provenance`].
+    /// The commit, see [`Provenance::commit`].
     pub commit: String,
 }
 
-/// Commit and tools with which rows were measured: the last columns of their table.
+/// Commit and tools with which rows were measured: the last columns of the rows' table.
 #[derive(Clone, Serialize)]
 pub struct Provenance {
     /// The last commit that changed the measured source. `-dirty` is appended if the source has uncommitted changes.
@@ -23,8 +23,8 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// Finds the commit by git, the compiler's version by running the compiler, and the libraries' versions in `Cargo.lock`. A
-    /// value that cannot be found is `unknown`.
+    /// Determines the commit with git, the compiler's version by running the compiler, and the libraries' versions from `Cargo.lock`. A
+    /// value that cannot be determined is `unknown`.
     pub fn find() -> Self {
         let lock = std::fs::read_to_string(workspace::path("Cargo.lock")).unwrap_or_default();
         let mut tools = vec![output("rustc", &["--version"])];

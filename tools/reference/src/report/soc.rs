@@ -20,7 +20,7 @@ pub const CLOCK: f64 = 81.25e6;
 /// A virtual board with the gateware of a folder in `target/gateware`, and with `firmware` in its memory.
 ///
 /// # Errors
-/// The board is not built, or the firmware is for another gateware build.
+/// The board is not built, or the firmware is for a different gateware build.
 pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
     let library = format!("target/gateware/{folder}/libglint_soc.so");
     let board = VirtualBoard::builder()
@@ -30,7 +30,7 @@ pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
     Ok(SimulatedBoard::new(board))
 }
 
-/// Draws a frame of a scene at another size and quality on a newly started virtual board, and returns its statistics.
+/// Draws a frame of a scene with `changes` of size and quality on a newly started virtual board, and returns the frame's statistics.
 ///
 /// # Errors
 /// The board is not built, the soft core draws the frame, or the frame differs from the model's.

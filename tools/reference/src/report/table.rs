@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Writes rows to a CSV file. A row may be a tuple of structures, whose columns follow each other.
+/// Writes rows to a CSV file. If a row is a tuple of structures, its columns are the columns of all structures in their order.
 ///
 /// # Errors
 /// When the file cannot be written.

@@ -1,4 +1,4 @@
-//! Constants of the firmware, the gateware and the experiments for the text of the pages.
+//! Constants of the firmware, the gateware and the experiments that the text of the report's pages quotes.
 
 use glint_model::raymarch::{DEFAULT_TUNING, ROUND_TUNING};
 use glint_testbench::Raymarcher;
@@ -11,7 +11,7 @@ use crate::imu::measure::LEFT_BIAS;
 /// A constant: a line of `constants.csv`.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Row {
-    /// Name in the templates of the pages.
+    /// Name of the constant in the templates of the pages.
     pub name: String,
     /// Value, as displayed on the page.
     pub value: String,

@@ -1,4 +1,4 @@
-//! Experiment: the control of the camera by a hand. Errors of the hand's centre; noise, lag, tracking errors and cycles of
+//! Experiment: the control of the camera by a hand. Measures errors of the hand's centre; noise, lag, tracking errors and cycles of
 //! filters; and stiff cases.
 
 use anyhow::{Context, Result};
@@ -30,7 +30,7 @@ pub struct Centre {
     pub rms: f64,
     /// 99th percentile of the errors' magnitudes.
     pub p99: f64,
-    /// The largest magnitude.
+    /// The largest magnitude of an error.
     pub max: f64,
 }
 
@@ -43,41 +43,41 @@ pub struct Row {
     pub parameters: String,
     /// Whether the firmware uses the filter.
     pub shipped: bool,
-    /// RMS in degrees of the camera's motion while the hand rests.
+    /// RMS of the camera's motion while the hand rests, in degrees.
     pub rest: f64,
-    /// Lag in ms behind a steady motion of 112° per second.
+    /// Lag behind a steady motion of 112° per second, in ms.
     pub lag: f64,
-    /// RMS in degrees of the tracking error during reaches.
+    /// RMS of the tracking error during reaches, in degrees.
     pub tracking: f64,
-    /// Largest tracking error in degrees.
+    /// Largest tracking error during reaches, in degrees.
     pub largest: f64,
-    /// Median of the soft core's cycles per channel and frame; `None` if not measured.
+    /// Median of the soft core's cycles for one channel of a frame; `None` if not measured.
     pub cycles: Option<u64>,
 }
 
 /// A stiff case: a line of `gesture-stiff.csv`.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stiff {
-    /// Content of the frames for one second.
+    /// Content of the frames during the case, which lasts one second.
     pub case: String,
     /// Presence of the hand half a second after the start of the case.
     pub presence: String,
     /// Reason for not using the frames; empty if the frames are used.
     pub reason: String,
-    /// Largest angle in degrees between the camera's directions during and before the case.
+    /// Largest angle between a direction of the camera during the case and its direction before the case, in degrees.
     pub moved: f64,
     /// Time in ms from the end of the case until the hand steers the camera again.
     pub back: f64,
-    /// Largest rotation of the camera between two frames, in degrees.
+    /// Largest rotation of the camera between two successive frames, in degrees.
     pub step: f64,
-    /// Angle in degrees between the directions of camera and hand two seconds after the case.
+    /// Angle between the directions of the camera and of the hand two seconds after the case, in degrees.
     pub end: f64,
 }
 
 /// A requirement: a line of `gesture.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Target {
-    /// Description of the figure.
+    /// Description of the measured figure.
     pub what: String,
     /// Unit of the figure.
     pub unit: String,
@@ -89,9 +89,9 @@ pub struct Target {
 
 /// A setting of the engine for the comparison.
 struct Compared {
-    /// Description.
+    /// Description of the setting.
     counted: &'static str,
-    /// Region for a hand with these bounds.
+    /// Returns the region for a hand with the given bounds.
     region: fn(&Region) -> Region,
     /// Minimum length of a counted run, in pixels.
     least_run: u8,
@@ -137,7 +137,7 @@ const SETTINGS: [Compared; 8] = [
     Compared::new("the small region, runs of 4", small, 4),
 ];
 
-/// Measures the errors of the centre of discs and hands with 5 % of salt noise, at `places` positions each. `only_shipped`
+/// Measures the errors of the centres of discs and hands, each at `places` positions, in frames with 5 % salt noise. `only_shipped`
 /// restricts the measurement to the firmware's setting for a hand at rest.
 pub fn centres(places: u32, only_shipped: bool) -> Vec<Centre> {
     let noise = Noise {
@@ -238,7 +238,7 @@ pub fn stiff() -> Vec<Stiff> {
     rows.collect()
 }
 
-/// Collects the figures with a requirement. `centres` and `recordings` are results of the functions above, `cycles` is the result
+/// Collects the figures that have a requirement. `centres` and `recordings` are results of the functions above, `cycles` is the result
 /// of the console command `bench gesture`.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Errors and cycles of kernels without a separate page: reciprocals, roots, lengths, quotients, depth codes, colours, and the
+//! Errors and cycles of kernels that have no page of their own: reciprocals, roots, lengths, quotients, depth codes, colours, and the
 //! number formats of the pipeline's stages.
 
 mod arithmetic;
@@ -18,7 +18,7 @@ use crate::report::progress;
 pub struct Row {
     /// Family: the function computed by the kernel.
     pub family: String,
-    /// Name of the kernel; its name in the firmware's `bench kernels` if it has cycles.
+    /// Name of the kernel. A kernel with cycles has this name in the firmware's `bench kernels` too.
     pub kernel: String,
     /// Word length and method.
     pub config: String,
@@ -32,7 +32,7 @@ pub struct Row {
     pub argmax: String,
     /// Number of inputs.
     pub samples: u64,
-    /// Number of bits of a stored number, for kernels with bits as cost.
+    /// Number of bits of a stored number, for kernels whose cost is the number of bits.
     pub bits: Option<u32>,
     /// Cycles of the fastest call on the soft core; `None` if not measured.
     pub cycles_min: Option<u64>,
@@ -42,11 +42,11 @@ pub struct Row {
     pub cycles_max: Option<u64>,
 }
 
-/// Name of a family, and the function that measures its trials for a thinning of the inputs.
+/// Name of a family, and the function that measures the family's trials with a given thinning of the inputs.
 type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 
-/// Measures all configurations, or only one family. A `thinning` of n measures every n-th input of a kernel. `cycles` is the
-/// result of the console command `bench kernels`.
+/// Measures all configurations, or only the configurations of the family `only`. With a `thinning` of n, every n-th input of a kernel is
+/// measured. `cycles` is the result of the console command `bench kernels`.
 ///
 /// # Errors
 /// When the terminal refuses a progress bar, or a camera is invalid.

@@ -1,4 +1,4 @@
-//! The measurements of the report. Each measurement returns typed rows, and each row becomes a line of a CSV file.
+//! The measurements of the report. Each measurement returns rows of a type, and each row becomes a line of a CSV file.
 
 pub mod constants;
 pub mod geometry;

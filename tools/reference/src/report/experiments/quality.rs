@@ -1,5 +1,5 @@
-//! Experiment: pictures of the built-in scenes as displayed on a monitor, against the same frames in f64, by size and precision
-//! of the rays, and the cycles of these frames on the whole SoC.
+//! Experiment: compares pictures of the built-in scenes, as displayed on a monitor, with the same frames in f64, and measures the cycles of
+//! these frames on the whole SoC. Size and precision of the rays vary.
 
 use anyhow::{Context, Result};
 use glint::board::built_firmware;
@@ -27,7 +27,7 @@ pub struct Row {
     pub rays: Option<String>,
     /// Name of the quality with this size and these thresholds, if any.
     pub quality: Option<String>,
-    /// Share of wrong pixels ([`Measured::wrong`]).
+    /// Fraction of wrong pixels ([`Measured::wrong`]).
     pub wrong: f64,
     /// RMS of the errors of a channel ([`Measured::colour`]).
     pub colour: f64,
@@ -42,7 +42,7 @@ pub struct Cycles {
     pub width: u32,
     /// Name of the quality that sets the rays' thresholds; `None` without a field.
     pub rays: Option<String>,
-    /// Cycles of the frame on the whole SoC, drawn alone.
+    /// Number of cycles of the frame on the whole SoC, if no other frame is drawn at the same time.
     pub cycles: u64,
 }
 
@@ -89,7 +89,7 @@ impl Variant {
     }
 }
 
-/// The built-in scenes with a picture of their own, restricted to names that contain `only`.
+/// The built-in scenes that have their own picture (not the lists of scenes), restricted to names that contain `only`.
 pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     let scenes = NAMES.into_iter().filter_map(built_in);
     scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
@@ -132,7 +132,7 @@ pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
         bar.set_message(format!("{} on the SoC", scene.name()));
         let mut rows = Vec::new();
         let mut variants = Variant::all(scene);
-        // The frames of the qualities first, because other large frames take minutes on a virtual board.
+        // The frames of the qualities are measured first, because other large frames take minutes on a virtual board.
         variants.sort_by_key(|variant| variant.quality().is_none());
         for variant in variants {
             let stats = soc::frame(&firmware, scene, &variant.changes());

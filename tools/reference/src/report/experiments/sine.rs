@@ -10,8 +10,8 @@ use crate::sine::statistics::Statistics;
 use crate::sine::sweep::sweep;
 use crate::sine::truth::reference_error;
 
-/// Approximate number of steps (one or several inputs each, see `Kernel`) per kernel in a quick run. A quick run measures every
-/// n-th step with an odd n, which covers all values of the inputs' low bits.
+/// Approximate number of steps per kernel in a quick run. A step has one or more inputs, see `Kernel`. A quick run measures every n-th
+/// step; n is odd, so that all values of the inputs' low bits occur.
 const SAMPLE: u64 = 1 << 15;
 
 /// Errors and cycles of a kernel in one configuration: a line of `sine.csv`. Errors are absolute.
@@ -23,7 +23,7 @@ pub struct Row {
     pub family: String,
     /// Name of the kernel's variant, for example the order of the series.
     pub config: String,
-    /// Number format of the outputs.
+    /// Number format of the kernel's outputs.
     pub word_length: String,
     /// Whether Glint itself uses the kernel.
     pub shipped: bool,
@@ -39,14 +39,14 @@ pub struct Row {
     pub rms: f64,
     /// 99th percentile of the errors.
     pub p99: f64,
-    /// Mean error of the outputs' magnitudes: positive if outputs tend to be too far from zero.
+    /// Mean error of the outputs' magnitudes, which is positive if magnitudes tend to be too large.
     pub bias: f64,
     /// Function (sine or cosine) and input of the largest error, as text.
     pub argmax: String,
-    /// Largest value of |sin² + cos² − 1|, from the two outputs of an input.
+    /// Largest value of |sin² + cos² − 1|, computed from the two outputs for an input.
     pub max_norm: f64,
-    /// Number of phases (inputs as fractions of a turn) that violate a symmetry of the circle in any bit. `None` if the inputs
-    /// are not phases.
+    /// Number of phases (inputs in fractions of a turn) at which the outputs violate a symmetry of the circle in any bit. `None` if the
+    /// inputs are not phases.
     pub asymmetric: Option<u64>,
     /// Cycles of the fastest call on the soft core; `None` if not measured.
     pub cycles_min: Option<u64>,
@@ -88,14 +88,14 @@ impl Row {
     }
 }
 
-/// The error of the kernels' f64 reference: the line of `sine-reference.csv`.
+/// The error of the f64 functions with which the kernels are compared: the line of `sine-reference.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reference {
-    /// Largest absolute error, compared with a Taylor series in integers of 62 fraction bits.
+    /// Largest absolute difference from a Taylor series in integers with 62 fraction bits.
     pub max_err: f64,
 }
 
-/// Measures all kernels and the error of the reference. `quick` measures only a sample of the inputs. `cycles` is the result of
+/// Measures all kernels, and the error of the f64 reference. `quick` measures only a sample of the inputs. `cycles` is the result of
 /// the console command `bench sine`.
 ///
 /// # Errors

@@ -27,13 +27,13 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Whether the outcome is as expected.
+    /// Whether the measured outcome agrees with the expected outcome.
     pub fn holds(&self) -> bool {
         self.expected.holds(&self.outcome)
     }
 }
 
-/// Measured error of a case with a bound: a line of `stiff.csv`. All other outcomes equal the catalogue's.
+/// Measured error of a case whose error is bounded: a line of `stiff.csv`. The outcomes of all other cases equal those in the catalogue.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Row {
     /// Name of the case.
@@ -42,7 +42,7 @@ pub struct Row {
     pub error: String,
 }
 
-/// The rows of the cases with an error.
+/// Returns the rows of the cases whose outcome is an error.
 pub fn errors(measured: &[Measured]) -> Vec<Row> {
     let error = |measured: &Measured| match &measured.outcome {
         Outcome::Error(..) => Some(Row {
@@ -54,7 +54,7 @@ pub fn errors(measured: &[Measured]) -> Vec<Row> {
     measured.iter().filter_map(error).collect()
 }
 
-/// The parts of the catalogue, each run separately.
+/// A part of the catalogue. The parts are run separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The cases on this host and on the emulated board.
@@ -63,7 +63,7 @@ pub enum Part {
     VirtualBoard,
 }
 
-/// Runs all cases of a part, or the cases whose name or subject contains `only`.
+/// Runs the cases of a part: all cases, or only those whose name or subject contains `only`.
 ///
 /// # Errors
 /// The catalogue cannot be read, or a case has an unknown kind.
@@ -91,7 +91,7 @@ pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Measured>> {
 }
 
 fn run(case: &Case, kind: &Kind) -> Result<Measured> {
-    // A case that cannot be run, or panics, must not hide other cases.
+    // If a case cannot be run or panics, the other cases are run nevertheless.
     let outcome = match catch_unwind(AssertUnwindSafe(|| kind.run(case.input.clone()))) {
         Ok(outcome) => {
             outcome.unwrap_or_else(|error| Outcome::exact(format!("cannot be run: {error:#}")))

@@ -1,4 +1,5 @@
-//! Experiment: breakdown of the cycles of a frame of each built-in scene, by the counters of the whole SoC.
+//! Experiment: measures with the SoC's counters how the cycles of a frame are divided between soft core and engines, for each built-in
+//! scene.
 
 use anyhow::{Context, Result};
 use glint::board::built_firmware;
@@ -11,7 +12,7 @@ use super::quality::scenes;
 use crate::report::progress;
 use crate::report::soc;
 
-/// Lanes of the virtual board's raymarcher.
+/// Number of lanes of the virtual board's raymarcher.
 pub const LANES: u64 = 2;
 
 /// Cycles and counts of a frame: a line of `timeline.csv`.
@@ -21,19 +22,19 @@ pub struct Row {
     pub scene: String,
     /// Width of the frame in pixels.
     pub width: u32,
-    /// Cycles of the frame, drawn alone.
+    /// Number of cycles of the frame, if no other frame is drawn at the same time.
     pub cycles: u64,
-    /// Cycles outside the engines' passes.
+    /// Number of cycles outside of the engines' passes.
     pub soft_core: u64,
     /// Number of cycles of geometry passes.
     pub geometry: u64,
     /// Number of cycles of raster passes.
     pub raster: u64,
-    /// Cycles in which memory refused a command of the engines; not all of them stall an engine.
+    /// Number of cycles in which memory did not accept a command of an engine. Not every such cycle stalls the engine.
     pub refused: u64,
     /// Number of words of 16 bytes read and written by the engines.
     pub words: u64,
-    /// Evaluations of the field; `None` without a field.
+    /// Number of evaluations of the field; `None` without a field.
     pub evaluations: Option<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! Experiment: the speed of the triangle engine on the whole SoC, with LiteDRAM shared with scan-out.
+//! Experiment: the speed of the triangle engine on the whole SoC, where scan-out also uses LiteDRAM.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{self, SimulatedBoard, built_firmware};
@@ -19,7 +19,7 @@ use Target::{Clocks, Frames, Sustained};
 
 use crate::report::soc::{self, BackToBack, CLOCK};
 
-/// The requirement on the drawing speed of a scene. Most kinds of requirement also have a goal.
+/// The required drawing speed of a scene. Most kinds of requirement also have a goal.
 #[derive(Clone, Copy)]
 enum Target {
     /// Lower bound of the pixels per walking clock of the rasterizer (counter `cycles_walking`).
@@ -35,10 +35,11 @@ enum Target {
 const SMALL: (u32, u32) = SIZES[0];
 const LARGE: (u32, u32) = SIZES[2];
 
-/// Number of frames back to back: large enough to make the first geometry pass, which overlaps no raster pass, a small part.
+/// Number of frames that are drawn back to back. The first geometry pass overlaps no raster pass; with this number of frames its effect on
+/// the mean is small.
 const FRAMES: u32 = 8;
 
-/// A scene: one triangle over the whole screen, or the generated model that its name begins with.
+/// A scene: one triangle that covers the whole screen, or a generated model. The name of a scene begins with the name of its model.
 struct Case {
     name: &'static str,
     size: (u32, u32),
@@ -68,7 +69,7 @@ static CASES: [Case; 9] = [
     model("icosphere:39, 30,420 triangles", LARGE, Frames(60.0, None)),
 ];
 
-/// A model at distance 2 on a picture in which a sphere of diameter 1 fills 96 % of the height.
+/// Returns the case of a model at distance 2. In its picture a sphere of diameter 1 would fill 96 % of the height.
 const fn model(name: &'static str, size: (u32, u32), target: Target) -> Case {
     Case {
         name,
@@ -94,7 +95,8 @@ impl Case {
     }
 }
 
-/// Makes a mesh of one triangle. Seen from distance 1, it covers the whole screen within the guard band, so it is not clipped.
+/// Creates a mesh of one triangle. At distance 1 from the camera, the triangle covers the whole screen and lies within the guard band, so
+/// it is not clipped.
 fn screen() -> Result<Vec<u8>> {
     let mut polygons = Polygons::default();
     let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
@@ -123,7 +125,7 @@ fn ahead(half_width: f64) -> Result<View> {
     view::parse(json.as_bytes()).map_err(|error| anyhow::anyhow!("{error}"))
 }
 
-/// Speed of the triangle engine in a scene: a line of `triangle.csv`. Cycles are clocks of the SoC for one frame.
+/// Speed of the triangle engine in a scene: a line of `triangle.csv`. Each number of cycles is for one frame, in clocks of the SoC.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Name of the scene.
@@ -132,7 +134,7 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Half width of the picture, in world units in the plane at distance 1.
+    /// Half the width of the picture, in world units on the plane at distance 1.
     pub half_width: f64,
     /// Number of triangles in the mesh.
     pub triangles: u32,
@@ -142,7 +144,7 @@ pub struct Row {
     pub clipped: u32,
     /// Number of covered pixels, counted by the model.
     pub pixels: u64,
-    /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end.
+    /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end of the frame.
     pub cycles_alone: u64,
     /// Cycles of the geometry pass of a frame drawn alone.
     pub cycles_geometry: u64,
@@ -158,19 +160,19 @@ pub struct Row {
     pub covered: f64,
     /// Fraction of `cycles_raster` spent on groups of 8 pixels without covered pixels.
     pub empty: f64,
-    /// Fraction of `cycles_raster` in which a drawn band waits for the flush of the previous band to memory.
+    /// Fraction of `cycles_raster` in which a finished band waits until the previous band has been flushed to memory.
     pub flush: f64,
     /// Remaining fraction of `cycles_raster`.
     pub other: f64,
-    /// Fraction of `cycles_geometry` spent waiting for writes to memory.
+    /// Fraction of `cycles_geometry` in which the geometry pass waits for writes to memory.
     pub geometry_writes: f64,
     /// Measured value of the required quantity.
     pub measured: f64,
     /// Unit of `measured`.
     pub unit: String,
-    /// Required bound of `measured`: upper bound of clocks per triangle, lower bound for every other unit.
+    /// Required bound of `measured`: an upper bound if the unit is clocks per triangle, and a lower bound for every other unit.
     pub at_least: f64,
-    /// Goal for `measured`, stricter than the bound.
+    /// Goal for `measured`, which is stricter than the bound.
     pub aim: Option<f64>,
     /// Whether `measured` meets the required bound.
     pub met: bool,
@@ -181,7 +183,7 @@ pub struct Row {
 pub struct CpuRow {
     /// Name of the scene.
     pub scene: String,
-    /// Cycles of a frame.
+    /// Number of cycles of a frame.
     pub cycles: u64,
 }
 
@@ -193,10 +195,10 @@ pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
     measure_cases(only, CASES.iter(), Backend::Gateware, measure_engine)
 }
 
-/// Name of the model that the soft core does not draw, because a frame takes minutes on the virtual board.
+/// Name of the model that only the engine draws, because a frame drawn by the soft core takes minutes on the virtual board.
 const FOR_THE_ENGINE_ALONE: &str = "scan:59";
 
-/// Measures frames drawn by the soft core, of the scenes of [`measure`].
+/// Measures frames of the scenes of [`measure`], drawn by the soft core.
 ///
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
@@ -211,7 +213,7 @@ pub fn measure_cpu(only: Option<&str>) -> Result<Vec<CpuRow>> {
     })
 }
 
-/// A scene on a virtual board. Its first frame has been compared with the model's.
+/// A scene on a virtual board. The scene's first frame has been compared with the model's frame.
 struct ShownScene<'r, 'b> {
     renderer: &'r mut BoardRenderer<'b, SimulatedBoard>,
     view: View,
@@ -269,8 +271,8 @@ fn measure_cases<R: Send>(
 
 /// Measures the engine in the displayed scene.
 fn measure_engine(case: &Case, shown: &mut ShownScene) -> Result<Row> {
-    // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. So the frame is
-    // drawn once into each of the two frame buffers before the measurement.
+    // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. The frame is therefore drawn
+    // once into each of the two frame buffers before the measurement.
     shown.renderer.look(&shown.view)?;
     let alone = shown.renderer.look(&shown.view)?;
     let together = BackToBack::measure(shown.renderer, "triangle", FRAMES)?;

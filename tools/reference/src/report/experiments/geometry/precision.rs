@@ -1,4 +1,4 @@
-//! Errors and cycles of matrices, normals and projection with several word lengths.
+//! Errors and cycles of the computation of matrices, normals and projections with different word lengths.
 
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};
@@ -20,11 +20,11 @@ pub struct Row {
     pub family: String,
     /// Name of the kernel in the firmware's `bench`.
     pub kernel: String,
-    /// Word length and method.
+    /// Word length and method of the kernel.
     pub config: String,
     /// Whether Glint uses the method.
     pub shipped: bool,
-    /// Largest error: of an entry of a matrix, of a component of a normal, or of a position in 1/256 pixel.
+    /// Largest error of an entry of a matrix, of a component of a normal, or of a position (in 1/256 pixel).
     pub max_err: f64,
     /// Root mean square of the errors.
     pub rms: f64,
@@ -38,9 +38,9 @@ pub struct Row {
     pub cycles_max: Option<u64>,
 }
 
-/// Number of chains of matrices, and of transformed normals.
+/// Number of chains of matrices, and number of transformed normals.
 const ROUNDS: u32 = 20_000;
-/// Number of rotations of a chain.
+/// Number of rotations in a chain.
 const CHAIN: u32 = 8;
 /// Half the width of the largest picture, in pixels.
 const HALF_WIDTH: f64 = 640.0;
@@ -146,7 +146,7 @@ fn bits(matrix: &Matrix) -> Rows<i32> {
     matrix.linear().map(|row| row.map(Q8_24::to_bits))
 }
 
-/// A matrix entry with `bits` fraction bits.
+/// Type of a matrix entry.
 trait Entry: Copy {
     fn rounded(x: f64) -> Self;
     fn value(self) -> f64;
@@ -170,7 +170,7 @@ impl Entry for i64 {
     }
 }
 
-/// Errors of the entries of products of chains of rotations about random axes.
+/// Measures the errors of the matrix entries of chains: a chain is the product of rotations about random axes.
 fn chains<T: Entry>(bits: i32, product: fn(&Rows<T>, &Rows<T>) -> Rows<T>) -> Errors {
     let unit = 2f64.powi(bits);
     let mut random = Pcg64Mcg::seed_from_u64(1);
@@ -207,7 +207,8 @@ fn rotation(axis: usize, angle: f64) -> Rows<f64> {
     rows
 }
 
-/// Errors of the components of unit normals transformed by a model matrix with scales of 0.5 to 2 along three axes, from f64 to the result.
+/// Measures the errors of the components of transformed unit normals. The model matrix scales each of the three axes by 0.5 to 2. Errors
+/// include the conversion of the normals from f64.
 fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
     let unit = 2f64.powi(bits);
     let mut random = Pcg64Mcg::seed_from_u64(2);
@@ -241,8 +242,8 @@ fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
     errors
 }
 
-/// Errors of screen positions in 1/256 pixel, up to half a picture of 1280 pixels from its middle, for all mantissas of the
-/// depth: step 7 of the vertex stage (docs/formats/triangle.md), with rounding.
+/// Measures the errors, in 1/256 pixel, of step 7 of the vertex stage (docs/formats/triangle.md) with its rounding, for all mantissas of
+/// the depth. The screen positions are up to half the width of a picture of 1280 pixels from its middle.
 fn positions(reciprocal: fn(u32) -> u32) -> Errors {
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let mut errors = Errors::default();

@@ -1,4 +1,4 @@
-//! Experiment: clocks of smooth pictures on the verilated rasterizer, by the number of shaded pixels per clock.
+//! Experiment: clocks of pictures with smooth shading on the verilated rasterizer, for different numbers of shaded pixels per clock.
 
 use anyhow::{Context, Result};
 use glint_core::colour::Rgb565;
@@ -21,22 +21,22 @@ pub struct Row {
     pub triangles: u64,
     /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
-    /// Number of groups with a covered pixel.
+    /// Number of groups with at least one covered pixel.
     pub groups: u64,
-    /// Clocks of all bands.
+    /// Number of clocks for all bands.
     pub clocks: u64,
-    /// Whether the clocks were measured. Computed clocks are the sum over the bands of the larger of the measured clocks with
-    /// flat triangles and the sum of the groups' clocks.
+    /// Whether the clocks were measured; otherwise they were computed. A computed number of clocks is a sum over the bands. The summand of
+    /// a band is the larger of two numbers: the measured clocks with flat triangles, and the sum of the clocks of its groups.
     pub measured: bool,
 }
 
-/// The rate of Glint's rasterizer.
+/// Name of the rate of Glint's rasterizer.
 pub const SHIPPED: &str = "a pixel a clock";
-/// The rate of flat triangles.
+/// Name of the rate of flat triangles.
 pub const GROUPS: &str = "a group a clock";
-/// The rate of two pixels per clock.
+/// Name of the rate of two pixels per clock.
 pub const PAIRS: &str = "two pixels a clock";
-/// The rate of one division per clock, for two pixels of each group.
+/// Name of the rate with one division per clock, where only two pixels of each group are divided.
 pub const ENDS: &str = "a division a clock";
 
 /// Measures the pictures.
@@ -108,7 +108,7 @@ struct Band {
     masks: Vec<u8>,
 }
 
-/// Draws a picture of this width and height band by band. A triangle whose setup has light is smooth, any other is flat.
+/// Draws a picture of this width and height band by band. A triangle is drawn smooth if its setup has light, and flat otherwise.
 fn draw(rasterizer: &mut Rasterizer, setups: &[Setup], (width, height): (u32, u32)) -> Vec<Band> {
     let rows = band_rows(width);
     let bands = (0..height).step_by(rows as usize).map(|y0| {
@@ -127,7 +127,8 @@ fn draw(rasterizer: &mut Rasterizer, setups: &[Setup], (width, height): (u32, u3
     bands.collect()
 }
 
-/// Computes the clocks of bands from the bands with flat triangles; `of` returns the clocks of a group.
+/// Computes the number of clocks for all bands; `flat` are the bands with flat triangles, and `of` returns the number of clocks for a
+/// group.
 fn computed(flat: &[Band], of: fn(u8) -> u32) -> u64 {
     let bands = flat.iter().map(|band| {
         let shading: u64 = band.masks.iter().map(|&mask| u64::from(of(mask))).sum();
@@ -136,7 +137,8 @@ fn computed(flat: &[Band], of: fn(u8) -> u32) -> u64 {
     bands.sum()
 }
 
-/// Returns the number of shaded pixels of a group: from the first or the fifth pixel to the last covered pixel.
+/// Returns the number of shaded pixels of a group: the pixels from the first pixel (from the fifth pixel if the first four are not covered)
+/// to the last covered pixel.
 fn pixels(mask: u8) -> u32 {
     let first = if mask & 0xF == 0 { 4 } else { 0 };
     8 - mask.leading_zeros() - first

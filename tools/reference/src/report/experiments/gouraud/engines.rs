@@ -12,11 +12,11 @@ use crate::report::workspace;
 
 /// Name of the current engine.
 pub const TODAY: &str = "Glint";
-/// Name of the engine that shades a group of eight pixels in a clock.
+/// Name of the engine that shades a group of eight pixels per clock.
 pub const GROUP: &str = "eight divisions a clock, planes of the channels at once";
-/// Name of the engine that shades a pixel in a clock.
+/// Name of the engine that shades one pixel per clock.
 pub const PIXEL: &str = "a division a clock, planes of the channels at once";
-/// Name of the engine that also computes the channels' planes sequentially.
+/// Name of the engine that shades one pixel per clock, and computes the channels' planes sequentially.
 pub const PLANES: &str = "a division a clock, planes one after the other";
 
 /// Names of earlier engines, and the last commit of each.
@@ -78,7 +78,7 @@ struct Cells {
     instances: Vec<Instance>,
 }
 
-/// Cells of an instance in a module, without the cells of nested instances.
+/// Cells of an instance within a module, without the cells of nested instances.
 #[derive(Deserialize)]
 struct Instance {
     path: Vec<String>,
@@ -103,7 +103,7 @@ pub fn today() -> Result<Vec<Cost>> {
 /// Synthesises the earlier engines, from the gateware of their commits, and returns their resources.
 ///
 /// # Errors
-/// When git does not have a commit, or the synthesis fails.
+/// When a commit does not exist in git, or the synthesis fails.
 pub fn earlier() -> Result<Vec<Cost>> {
     let mut rows = Vec::new();
     for (engine, commit) in EARLIER {
@@ -141,7 +141,7 @@ fn gateware_of(commit: &str) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// Synthesises both modules of the engine in the folder `root` by a Python program there.
+/// Synthesises both modules of the engine in the folder `root`, with a Python program from that folder.
 fn costs(engine: &str, commit: &str, root: &Path, program: &[&str]) -> Result<Vec<Cost>> {
     MODULES
         .into_iter()

@@ -1,4 +1,4 @@
-//! Experiment: errors of different forms of smooth shading.
+//! Experiment: errors of smooth shading in different forms (methods and word lengths).
 
 use serde::{Deserialize, Serialize};
 
@@ -25,9 +25,9 @@ pub struct Row {
     pub max_err: f64,
     /// RMS of the errors before the last rounding.
     pub rms: f64,
-    /// Largest difference, in whole steps, from the rounded exact colour.
+    /// Largest difference from the rounded exact colour, in whole steps.
     pub steps: u32,
-    /// Fraction of the channels with another value than the rounded exact colour.
+    /// Fraction of the channel values that differ from the rounded exact colour.
     pub differing: f64,
 }
 
@@ -72,7 +72,7 @@ pub fn measure() -> Vec<Row> {
     rows.collect()
 }
 
-/// Errors of a form in a scene.
+/// Accumulated errors of a form in a scene.
 #[derive(Clone, Copy, Default)]
 struct Measured {
     errors: Errors,
@@ -83,7 +83,7 @@ struct Measured {
 /// Measures all forms in a scene.
 ///
 /// # Panics
-/// When the light of Glint's form differs from the model's.
+/// When the light of Glint's form differs from the light that the model computes.
 pub fn measure_scene(scene: &Scene) -> Vec<Row> {
     let mut measured = [Measured::default(); FORMS.len()];
     let mut pixels = 0;
@@ -150,7 +150,7 @@ impl Measured {
     }
 }
 
-/// Rounds light to whole steps in the range of each channel.
+/// Rounds the light of each channel to whole steps, and clamps it to the channel's range.
 fn rounded(light: &[f64; 3]) -> [u32; 3] {
     [0, 1, 2].map(|i: usize| (light[i] + 0.5).floor().clamp(0.0, RANGES[i] - 1.0) as u32)
 }

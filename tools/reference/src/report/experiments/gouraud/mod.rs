@@ -1,4 +1,4 @@
-//! Experiments on smooth shading: errors, clocks and FPGA resources of Glint's form and of other forms.
+//! Experiments on smooth shading: errors, clocks and FPGA resources of Glint's method and of other methods.
 
 pub mod clocks;
 pub mod engines;

@@ -9,9 +9,9 @@ use crate::triangle::smooth::{Measured, scenes};
 pub struct Row {
     /// Description of the scene.
     pub scene: String,
-    /// Number of drawn triangles: unclipped triangles, and triangles made by the clipper.
+    /// Number of drawn triangles: unclipped triangles, and triangles that the clipper has produced.
     pub triangles: u64,
-    /// Number of drawn triangles made by the clipper.
+    /// Number of drawn triangles that the clipper has produced.
     pub clipped: u64,
     /// Number of drawn triangles with a visible back face.
     pub back_faces: u64,

@@ -1,4 +1,4 @@
-//! Experiment: errors of the inclination with different filters for the correction by the accelerometer.
+//! Experiment: errors of the inclination with different filters, which correct the attitude by the accelerometer.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Experiment: errors of the integration methods against the true attitude, at several sample rates.
+//! Experiment: errors of the integration methods against the true attitude, at different sample rates.
 
 use serde::{Deserialize, Serialize};
 

@@ -9,10 +9,10 @@ pub const CONING: Motion = Motion::Coning {
     angle: 5.0,
     frequency: 10.0,
 };
-/// Constant rotation at a rate just inside the gyroscope's range.
+/// Constant rotation at a rate slightly below the limit of the gyroscope's range.
 pub const SPIN: Motion = Motion::Spin([0.0, 0.0, 1990.0]);
-/// Constant rotation at a rate of one count of the gyroscope.
+/// Constant rotation at the rate that corresponds to one count of the gyroscope.
 pub const COUNT: Motion = Motion::Spin([1.0 / 16.4, 0.0, 0.0]);
 
-/// A day in seconds.
+/// Duration of a day in seconds.
 pub const DAY: f64 = 86_400.0;

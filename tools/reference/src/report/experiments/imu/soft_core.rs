@@ -14,8 +14,8 @@ use crate::imu::sensor::Sensor;
 use crate::report::cycles::{Cycles, Source};
 use crate::report::progress;
 
-/// The kernels of the firmware's integration. For each: name in the console command `bench attitude`, description, and required
-/// upper bound and goal in cycles per sample.
+/// The kernels of the firmware's integration. Each entry contains the kernel's name in the console command `bench attitude`, its
+/// description, and the required upper bound and the goal in cycles per sample.
 const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic", "integration, even steps", 800, 500),
     ("cubic_jitter", "integration, uneven steps", 800, 500),
@@ -45,9 +45,9 @@ pub struct Replay {
     pub board: String,
     /// Number of replayed samples.
     pub samples: u64,
-    /// Number of samples with any difference between the attitudes of board and host.
+    /// Number of samples after which the attitudes of board and host differ in any bit.
     pub differing: usize,
-    /// Mean cycles per sample on the virtual board; the emulated board has only estimates.
+    /// Mean cycles per sample on the virtual board; `None` for the emulated board, whose cycles are estimates.
     pub cycles: Option<u64>,
 }
 
@@ -71,8 +71,8 @@ pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
     KERNELS.into_iter().map(kernel).collect()
 }
 
-/// Replays a hand motion of `samples` samples at 1 kHz on the emulated board, and its first tenth on the virtual board, which has
-/// exact cycles but takes minutes.
+/// Replays a hand motion of `samples` samples at 1 kHz on the emulated board, and the first tenth of this motion on the virtual board,
+/// whose cycles are exact but whose simulation takes minutes.
 ///
 /// # Errors
 /// When the virtual board is not built or a replay fails.

@@ -14,7 +14,7 @@ use crate::imu::sensor::Sensor;
 pub struct StiffCase {
     /// Description of the input and of the measured quantity.
     pub case: String,
-    /// Result of other methods, or empty.
+    /// Result of other methods; empty if there is none.
     pub other: String,
     /// Result of Glint's method.
     pub glint: String,
@@ -22,8 +22,8 @@ pub struct StiffCase {
     pub outcome: String,
 }
 
-/// Measures all cases. `part` is the fraction of the full duration of long cases. `count` has the errors after a day's rotation
-/// at one count of the gyroscope, for the cases of a whole day.
+/// Measures all cases. `part` is the fraction of the full duration of long cases. `count` contains the errors of a day's rotation at one
+/// count of the gyroscope; these are needed for the cases of a whole day.
 pub fn measure(part: f64, count: Option<Largest>) -> Vec<StiffCase> {
     let mut rows = gains();
     rows.extend(words(part));
@@ -109,7 +109,7 @@ fn words(part: f64) -> Vec<StiffCase> {
         .into()
 }
 
-/// Measures the motion of the attitude at rest without noise. A limit cycle by the filter's rounding would appear as motion.
+/// Measures the motion of the attitude at rest without noise. If the rounding of the filter caused a limit cycle, the attitude would move.
 fn rest_cycle() -> StiffCase {
     let mut tracker = tracker(&Sensor::ideal(1000.0), true);
     let mut first: Option<Quaternion> = None;
@@ -134,7 +134,7 @@ fn rest_cycle() -> StiffCase {
     }
 }
 
-/// Integrates uneven and incomplete samples by their time stamps, and as if evenly spaced.
+/// Integrates samples with uneven spacing and with missing samples: once with their time stamps, and once as if they were evenly spaced.
 fn uneven() -> Vec<StiffCase> {
     let even = Sensor::ideal(200.0);
     let error = |sensor: Sensor, stamped: bool| {

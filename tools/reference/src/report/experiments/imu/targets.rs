@@ -1,4 +1,4 @@
-//! Experiment: attitude errors with a requirement and a goal.
+//! Experiment: attitude errors for which there is a requirement and a goal.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,13 +25,13 @@ pub struct Target {
     pub reached: String,
 }
 
-/// Measures the errors during a rotation at one count of the gyroscope for this fraction of a day. This measurement takes longer
-/// than all others.
+/// Measures the errors during a rotation at one count of the gyroscope, which lasts the fraction `part` of a day. This measurement takes
+/// longer than all other measurements together.
 pub fn one_count(part: f64) -> Largest {
     against_f64(Sensor::ideal(1000.0), COUNT, part * DAY, false)
 }
 
-/// Measures all errors with a requirement, except `count`, the result of [`one_count`]. `part` is the fraction of the full
+/// Measures all errors that have a requirement, except `count`, which is the result of [`one_count`]. `part` is the fraction of the full
 /// duration of long motions.
 pub fn measure(part: f64, count: Largest) -> Vec<Target> {
     let mut rows = Vec::new();

@@ -1,4 +1,4 @@
-//! Experiment: growth over time of the errors of the attitude from the gyroscope alone.
+//! Experiment: how the errors of an attitude that is computed from the gyroscope alone grow over time.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,11 +24,11 @@ pub struct ErrorsAtTime {
     pub counts: f64,
     /// Error of the firmware against the true attitude, on noisy samples.
     pub sensor: f64,
-    /// Standard deviation of the error from the sensor's integrated noise alone.
+    /// Standard deviation of the error that the sensor's integrated noise alone causes.
     pub floor: f64,
 }
 
-/// Measures the errors during a hand motion of this duration, at times that grow by about 5 %.
+/// Measures the errors during a hand motion of this duration. Each time of measurement is about 5 % later than the previous time.
 pub fn measure(seconds: f64) -> Vec<ErrorsAtTime> {
     let motion = Motion::Hand;
     let ideal = Sensor::ideal(1000.0);

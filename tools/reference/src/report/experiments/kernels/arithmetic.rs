@@ -1,21 +1,22 @@
-//! Errors of reciprocals, roots, quotients, lengths and unit vectors. Inputs have the form of those of `bench kernels`, in greater number.
+//! Errors of reciprocals, roots, quotients, lengths and unit vectors. The inputs have the same form as the inputs of `bench kernels`, but
+//! are more numerous.
 
 use glint_variants::kernel::{Format, Kernel};
 use glint_variants::{division, inverse_root, length, reciprocal, root, unit};
 
 use super::trial::{Errors, Trial};
 
-/// Number of inputs of a kernel of one mantissa: all mantissas.
+/// Number of inputs of a kernel whose input is one mantissa: all mantissas.
 const MANTISSAS: u32 = 1 << 23;
-/// Number of inputs of a kernel of several numbers.
+/// Number of inputs of a kernel whose input is more than one number.
 const SEVERAL: u32 = 1 << 20;
 
-/// Multiples of the golden ratio as phases, as in the firmware: evenly distributed on the circle.
+/// Returns phases that are evenly distributed on the circle: multiples of the golden ratio, as in the firmware.
 fn spread(count: u32, thinning: u32) -> impl Iterator<Item = u32> {
     (0..count / thinning).map(|i| i.wrapping_mul(0x9e37_79b9))
 }
 
-/// Phases of all inputs of a kernel of numbers of `bits` bits.
+/// Returns the phases of all inputs of a kernel whose input is a number of `bits` bits.
 fn all(bits: u32, thinning: u32) -> impl Iterator<Item = u32> {
     // An odd step covers all values of the low bits.
     (0..1 << bits)
@@ -64,7 +65,7 @@ pub fn reciprocals(thinning: u32) -> Vec<Trial> {
     )
 }
 
-/// A number with 22 fraction bits.
+/// Converts a number with 22 fraction bits.
 fn quarter(x: u32) -> f64 {
     f64::from(x) / f64::from(1 << 22)
 }
@@ -99,7 +100,7 @@ pub fn divisions(thinning: u32) -> Vec<Trial> {
     )
 }
 
-/// Inputs of vectors, without the zero vector, which has no relative error.
+/// Returns phases of input vectors, without the zero vector, for which a relative error is not defined.
 fn vectors(thinning: u32) -> Box<dyn Iterator<Item = u32>> {
     Box::new(spread(SEVERAL, thinning).filter(|&phase| length::input(phase) != [0; 3]))
 }

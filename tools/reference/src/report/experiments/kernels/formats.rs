@@ -1,4 +1,4 @@
-//! Errors of screen positions and of shades for a shorter or longer word in one stage of the pipeline.
+//! Errors of screen positions and of shades if one stage of the pipeline has a shorter or a longer word.
 
 use anyhow::Result;
 use glint_model::triangle::MeshSetup;
@@ -22,7 +22,7 @@ fn rounded(x: f64, bits: u32) -> f64 {
     (x * unit).round() / unit
 }
 
-/// A vertex of a mesh in the box of 1×1×1, and a camera at a distance of 2 to 5 that looks at the box's middle.
+/// Returns a random vertex in the box of 1×1×1, and a camera at a distance of 2 to 5 that looks at the box's middle.
 fn case(random: &mut Pcg64Mcg) -> (Vector, Camera) {
     let vertex = [0; 3].map(|_| random.random_range(-0.5..0.5));
     let direction = normalised([0; 3].map(|_| random.random_range(-1.0..1.0f64) + 1e-3));
@@ -31,7 +31,8 @@ fn case(random: &mut Pcg64Mcg) -> (Vector, Camera) {
     (vertex, Camera::looking(eye, [0.0; 3], 0.4781, 0.1))
 }
 
-/// Errors of positions, in pixels of a picture 640 wide. `found` computes a position from a vertex and a camera.
+/// Measures the errors of positions, in pixels of a picture that is 640 pixels wide. `found` computes a position from a vertex and a
+/// camera.
 fn positions(thinning: u32, found: impl Fn(Vector, &Camera) -> Option<[f64; 2]>) -> Errors {
     let mut random = Pcg64Mcg::seed_from_u64(4);
     let mut errors = Errors::default();
@@ -156,7 +157,7 @@ pub fn formats(thinning: u32) -> Result<Vec<Trial>> {
     Ok(trials)
 }
 
-/// Errors of a face's intensity in steps of 1/255, with roundings of the normal and of the intensity.
+/// Measures the errors of a face's intensity, in steps of 1/255, that are caused by rounding the normal and the intensity.
 fn shades(
     thinning: u32,
     normal: impl Fn(Vector) -> Vector,

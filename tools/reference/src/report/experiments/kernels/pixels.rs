@@ -14,7 +14,8 @@ const RANGE: [f64; 2] = [0.1, 10.0];
 /// Number of depths.
 const DEPTHS: u32 = 1 << 18;
 
-/// Relative errors of depths converted to a code and back, at depths spread logarithmically over the range.
+/// Measures the relative errors of depths that are converted to a code and back. The depths are evenly spaced on a logarithmic scale over
+/// the range.
 pub fn depths(thinning: u32) -> Result<Vec<Trial>> {
     let [near, far] = RANGE;
     let depth = |i: u32| near * (far / near).powf(f64::from(i) / f64::from(DEPTHS));
@@ -73,7 +74,7 @@ pub fn depths(thinning: u32) -> Result<Vec<Trial>> {
     Ok(trials)
 }
 
-/// Calls `sweep` with the conversion of a depth to the vertex stage's code and back.
+/// Calls `sweep` with a function that converts a depth to the vertex stage's code and back.
 fn shipped(near: f64, sweep: impl Fn(&dyn Fn(f64) -> f64) -> Trial) -> Result<Trial> {
     let camera = Camera::looking([0.0, -1.0, 0.0], [0.0; 3], 1.0, near);
     let frame = MeshSetup::new(&camera.view()?, 320, 180, 1 << 15)?;
@@ -87,7 +88,7 @@ fn shipped(near: f64, sweep: impl Fn(&dyn Fn(f64) -> f64) -> Trial) -> Result<Tr
     }))
 }
 
-/// Errors of displayed colours in steps of 1/255 of a channel, over all colours of eight bits a channel.
+/// Measures the errors of displayed colours, in steps of 1/255 of a channel, for all colours with eight bits per channel.
 pub fn colours(thinning: u32) -> Vec<Trial> {
     let trial = |pixel: &glint_variants::colour::Pixel| {
         let mut errors = Errors::default();

@@ -1,5 +1,5 @@
-//! Experiments with the whole firmware on the emulated board over hours of the board's time. Each is a separate study, because
-//! the longest takes more than an hour of the host's time.
+//! Experiments with the whole firmware on the emulated board over hours of the board's time. Each experiment is a separate study, because
+//! the longest experiment takes more than an hour of the host's time.
 
 pub mod orbit;
 pub mod sensor;

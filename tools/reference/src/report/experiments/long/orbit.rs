@@ -1,4 +1,5 @@
-//! A camera that orbits a mesh by the command `orbit`: the basis against f64, and the pictures of each turn.
+//! A camera that orbits a mesh with the command `orbit`: compares the camera's basis with f64, and the pictures of all turns with each
+//! other.
 
 use glint::board::Uart;
 use std::f64::consts::TAU;
@@ -17,27 +18,27 @@ use crate::report::progress::bar;
 /// Number of frames of a turn.
 pub const FRAMES: u32 = 2_500;
 
-/// Azimuth and polar angle in degrees of the first camera, as set at the start of the board.
+/// Azimuth and polar angle of the camera at the start of the board, in degrees.
 const START: [u32; 2] = [40, 65];
-/// Distance of the first camera, as set at the start of the board.
+/// Distance of the camera at the start of the board.
 const DISTANCE: &str = "2.5";
 
 /// The camera and the pictures after some turns: a line of `long-orbit.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Number of turns so far.
+    /// Number of turns since the start.
     pub turns: u32,
-    /// Number of frames so far.
+    /// Number of frames since the start.
     pub frames: u64,
-    /// Largest deviation of a basis vector's length from 1, over the cameras of one more turn.
+    /// Largest deviation of a basis vector's length from 1, over all cameras of a further turn.
     pub length: f64,
     /// Largest scalar product of two basis vectors.
     pub angle: f64,
-    /// Largest difference of a basis vector's component from f64.
+    /// Largest difference between a component of a basis vector and its value in f64.
     pub reference: f64,
-    /// Number of pictures since the previous row that differ from the first turn's.
+    /// Number of pictures since the previous row that differ from the pictures of the first turn.
     pub differing: u64,
-    /// Number of turns since the previous row that did not end, bit for bit, at the first camera.
+    /// Number of turns since the previous row after which the camera differed from the first camera in any bit.
     pub displaced: u32,
 }
 
@@ -78,7 +79,7 @@ pub fn measure(turns: u32, frames: u32) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// The azimuth of a frame of a turn, as in the command `orbit`.
+/// Computes the azimuth of a frame of a turn as the command `orbit` does.
 fn azimuth(frame: u32, frames: u32) -> Turns {
     let turned = (u64::from(frame) << 32) / u64::from(frames);
     Turns::from_degrees(Q32_32::from_num(START[0])).wrapping_add(Turns(turned as u32))
@@ -91,7 +92,7 @@ fn place(board: &mut Emulated, azimuth: Turns) -> Result<()> {
     Ok(())
 }
 
-/// Hashes of the pictures of a turn from its start, drawn one by one. Returns the camera to the start.
+/// Draws the pictures of a turn one by one, and returns their hashes. Finally moves the camera back to the start.
 fn pictures(board: &mut Emulated, frames: u32) -> Result<Vec<u64>> {
     let mut hashes = Vec::new();
     for frame in 0..=frames {
@@ -110,7 +111,7 @@ fn shown(board: &mut Emulated) -> u64 {
     hasher.finish()
 }
 
-/// Hashes of the pictures on the monitor during one orbit of the camera.
+/// Returns the hashes of the pictures on the monitor during one orbit of the camera.
 fn orbit(board: &mut Emulated, frames: u32) -> Result<Vec<u64>> {
     let mut hashes = vec![shown(board)];
     begin(board, &format!("orbit {frames}"))?;
@@ -125,14 +126,14 @@ fn orbit(board: &mut Emulated, frames: u32) -> Result<Vec<u64>> {
     Ok(hashes)
 }
 
-/// Number of differing pictures of two sequences.
+/// Returns the number of pictures that differ between two sequences.
 fn differences(expected: &[u64], found: &[u64]) -> u64 {
     let equal = expected.iter().zip(found).filter(|(a, b)| a == b).count();
     (expected.len().max(found.len()) - equal) as u64
 }
 
-/// The largest errors over the cameras of a turn: of a length, of an angle (scalar product), and of a component against f64.
-/// Returns the camera to the start.
+/// Returns the largest errors over all cameras of a turn: of a basis vector's length, of an angle (scalar product), and of a component
+/// against f64. Finally moves the camera back to the start.
 pub fn deviations(board: &mut Emulated, frames: u32) -> Result<[f64; 3]> {
     let mut worst = [0.0_f64; 3];
     for frame in 1..=frames {

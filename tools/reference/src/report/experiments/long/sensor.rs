@@ -15,11 +15,11 @@ use crate::imu::motion::Motion;
 use crate::imu::quaternion::Quaternion;
 use crate::report::progress::bar;
 
-/// Start of the motion in s; before, the sensor rests and is calibrated.
+/// Start of the motion in s. Before this time the sensor rests and is calibrated.
 const BEGIN: f64 = 20.0;
 /// Rates of the turning sensor about its axes in °/s: 30 °/s about an oblique axis.
 const RATE: [f64; 3] = [10.0, 20.0, -20.0];
-/// The sensor's bias in °/s, and a real sensor's noise in °/s and g per √Hz.
+/// The sensor's bias in °/s, and the noise of a real sensor in °/s per √Hz (gyroscope) and g per √Hz (accelerometer).
 const IMPERFECTIONS: Imperfections = Imperfections {
     bias: [4.5, 0.05, 1.1],
     noise: 0.005,
@@ -28,10 +28,10 @@ const IMPERFECTIONS: Imperfections = Imperfections {
     ..Imperfections::NONE
 };
 
-/// Times of measurements in the first hour, in minutes after [`BEGIN`]; then one measurement an hour.
+/// Times of measurements in the first hour, in minutes after [`BEGIN`]; after that hour there is one measurement per hour.
 const MINUTES: [f64; 9] = [1.0 / 6.0, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0];
 
-/// Path of the sensor.
+/// Motion of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
     /// At rest.
@@ -41,10 +41,10 @@ pub enum Path {
 }
 
 impl Path {
-    /// Both paths.
+    /// All motions.
     pub const ALL: [Self; 2] = [Self::Rest, Self::Turning];
 
-    /// Name of the path in the results and on the progress bar.
+    /// Name of the motion in the results and on the progress bar.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -83,31 +83,31 @@ impl Path {
 /// Errors of the attitude at a time: a line of `long-sensor.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Path of the sensor.
+    /// Motion of the sensor.
     pub path: String,
     /// Time since the start of the motion, in s.
     pub seconds: f64,
     /// Error of the rotation about the vertical since the start of the motion, in degrees.
     pub heading: f64,
-    /// Angle between the true vertical and the firmware's, in degrees.
+    /// Angle between the true vertical and the vertical of the firmware's attitude, in degrees.
     pub inclination: f64,
-    /// Largest error of a length or an angle of the basis of the camera steered by the sensor.
+    /// Largest error of a length or an angle in the basis of the camera, which the sensor steers.
     pub basis: f64,
-    /// Number of samples read by the firmware.
+    /// Number of samples that the firmware has read.
     pub samples: u64,
-    /// Number of the sensor's samples lost by the firmware.
+    /// Number of the sensor's samples that the firmware has lost.
     pub lost: u64,
     /// Number of gaps of more than half a second in the samples.
     pub gaps: u64,
 }
 
-/// Number of stored measurement times, more than the firmware's backlog.
+/// Number of stored measurement times. This number exceeds the firmware's largest backlog of samples.
 const KNOWN: usize = 64;
 
-/// Number of status polls, enough to find the firmware without backlog at least once.
+/// Number of status polls. At least one of so many polls finds the firmware without a backlog.
 const POLLS: u32 = 24;
 
-/// The chip's number of measurements, and the times of the last [`KNOWN`].
+/// Number of the chip's measurements, and the times of the last [`KNOWN`] measurements.
 struct Measured {
     count: u64,
     times: [f64; KNOWN],
@@ -139,7 +139,7 @@ struct Status {
     attitude: Quaternion,
 }
 
-/// Measures the errors for this number of hours.
+/// Measures the errors over a number of hours.
 ///
 /// # Errors
 /// The firmware has not been built, or refuses a command.
@@ -160,7 +160,7 @@ pub fn measure(path: Path, hours: f64) -> Result<Vec<Row>> {
 }
 
 impl Bench {
-    /// A board with a calibrated sensor, just before the start of the motion.
+    /// Creates a board with a calibrated sensor, and runs it until one second before the start of the motion.
     fn new(path: Path) -> Result<Self> {
         let mut board = start()?;
         let measured = Arc::new(Mutex::new(Measured {
@@ -258,7 +258,7 @@ impl Bench {
         let truth = self
             .path
             .attitude(time.context("the last sample has no time")?)?;
-        // Rotation from the true to the firmware's attitude, in world axes.
+        // Rotation from the true attitude to the firmware's attitude, in world axes.
         let error = status.attitude.times(truth.inverse());
         let [heading, ..] = error.angles();
         let turned = (heading - self.heading).to_degrees();
@@ -274,7 +274,7 @@ impl Bench {
         })
     }
 
-    /// The largest error of a length or an angle of the camera's basis, with the camera steered by the sensor.
+    /// Returns the largest error of a length or an angle in the camera's basis while the sensor steers the camera.
     fn basis(&mut self) -> Result<f64> {
         command(&mut self.board, "imu look")?;
         let wait = cycles(&mut self.board, 50);

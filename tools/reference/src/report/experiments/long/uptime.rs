@@ -1,4 +1,5 @@
-//! Overflows of the board's counters: commands while a counter wraps, pauses that seem short in 32 bits, and counters of the engines.
+//! Tests of overflows of the board's counters: commands while a counter wraps, pauses whose duration in 32 bits seems short, and counters
+//! of the engines.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::Board;
@@ -29,7 +30,7 @@ pub struct Row {
     pub measured: String,
 }
 
-/// Commands with constant replies, and the keys of the compared lines (all lines if empty).
+/// Commands whose replies must not change, and for each command the keys of the compared lines. Without keys all lines are compared.
 const QUESTIONS: [(&str, &[&str]); 7] = [
     ("echo still", &[]),
     ("info", &["firmware_id", "scene", "size", "uart_lost"]),
@@ -56,7 +57,7 @@ struct Bench {
     bar: ProgressBar,
 }
 
-/// Makes all queries; `quick` skips the queries that need several times 2^32 cycles.
+/// Makes all queries; `quick` skips the queries that need a multiple of 2^32 cycles.
 ///
 /// # Errors
 /// The firmware has not been built, or does not answer.
@@ -142,7 +143,8 @@ impl Bench {
         });
     }
 
-    /// Makes a query now, and again across a multiple of 2^32 cycles, `lead` ms after the query's start. The replies must be equal.
+    /// Makes a query now, and again so that the cycle counter reaches a multiple of 2^32 `lead` ms after the start of the query. The
+    /// replies must be equal.
     fn across(
         &mut self,
         what: &str,
@@ -160,7 +162,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The replies to the queries.
+    /// Returns the replies to [`QUESTIONS`].
     fn answers(&mut self) -> Result<Vec<String>> {
         let ask = |(question, words): (&str, &[&str])| {
             Ok(picked(command(&mut self.board, question)?, words))
@@ -192,7 +194,7 @@ impl Bench {
         let mut sensor = image_sensor(moving_hand([320, 240]));
         let still = sensor.source.frame(0.0);
         sensor.source = Box::new(Still(still));
-        // 20 frames per second with few clock periods, to save time on the host.
+        // 20 frames per second with few clock periods per frame, which takes less time on the host.
         sensor.timing.clock = 4_000_000;
         sensor.timing.blank = [3, 20, 20];
         self.board.inner().plug_image_sensor(sensor);
@@ -210,9 +212,9 @@ impl Bench {
         Ok(())
     }
 
-    /// Begins an upload, and keeps it open until the cycle `end`.
+    /// Begins an upload, and cancels it so that it ends at the cycle `end`.
     fn hold_transfer(&mut self, end: u64) -> Result<()> {
-        // Time from Ctrl-C to the end of the upload.
+        // Number of cycles from Ctrl-C to the end of the upload.
         let effect = cycles(&mut self.board, 60);
         let mesh = cube();
         let Manifest { length, crc32 } = Manifest::of(&mesh);
@@ -225,7 +227,7 @@ impl Bench {
         let length = Sender::new(&mesh, 1, Timing::HOST, now).poll(now, &mut frame);
         let mut said = Vec::new();
         loop {
-            // Each opening frame keeps the upload from timing out.
+            // Repeated opening frames prevent a time-out of the upload.
             self.board.write(&frame[..length])?;
             let left = (end - effect).saturating_sub(self.board.inner().cycles());
             let span = cycles(&mut self.board, 800);
@@ -240,8 +242,8 @@ impl Bench {
         Ok(())
     }
 
-    /// Tests a turning sensor that is unplugged for slightly more than 2^32 µs and plugged in again; then the time stamps cross a
-    /// multiple of 2^32 µs.
+    /// Tests a turning sensor that is unplugged for slightly more than 2^32 µs and plugged in again; then tests samples whose time stamps
+    /// pass a multiple of 2^32 µs.
     fn sensor_is_off(&mut self) -> Result<()> {
         let attitude = |bench: &mut Self| value::<String>(&mut bench.board, "imu", "angles");
         let gaps = |bench: &mut Self| value::<u64>(&mut bench.board, "imu", "gaps");
@@ -266,7 +268,7 @@ impl Bench {
         let yaw = |angles: &str| -> Result<f64> {
             Ok(angles.split(' ').next().context("angles")?.parse()?)
         };
-        // The samples since the gap change yaw by a few tenths of a degree.
+        // The samples after the gap change yaw by only a few tenths of a degree.
         let moved = (yaw(&turned)? - yaw(&before)? + 180.0).rem_euclid(360.0) - 180.0;
         let is_kept = moved.abs() < 1.0;
         let kept = "within 1 of that before the pause".to_owned();
@@ -287,7 +289,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Tests frames of a field until the engines have been busy for 2^32 cycles.
+    /// Draws frames of a field until the engines have been busy for 2^32 cycles, and compares the statistics of all frames.
     fn engine_counters(&mut self) -> Result<()> {
         const WORDS: [&str; 5] = [
             "evaluations",
@@ -319,7 +321,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Compares the firmware's clocks with the emulated board's.
+    /// Compares the firmware's clocks with the clock of the emulated board.
     fn clocks(&mut self, when: &str) -> Result<()> {
         let shown: u64 = value(&mut self.board, "info uptime_ms", "uptime_ms")?;
         let exact = self.milliseconds();
@@ -349,7 +351,7 @@ impl Bench {
     }
 }
 
-/// The lines of a reply with a key of `words`, or all lines if `words` is empty.
+/// Returns the lines of a reply whose key is in `words`, or all lines if `words` is empty.
 fn picked(lines: Vec<String>, words: &[&str]) -> String {
     let counts = |line: &String| {
         let word = line.split(' ').next().unwrap_or_default();
@@ -364,7 +366,7 @@ fn picked(lines: Vec<String>, words: &[&str]) -> String {
 
 const STREAM: &str = "200 samples, each at most 1.2 ms after the one before";
 
-/// Streams samples, and reports whether their times are a sample period apart.
+/// Streams samples, and reports whether the times of successive samples differ by a sample period.
 fn stream(board: &mut Emulated) -> Result<String> {
     const COMMAND: &str = "imu stream 200";
     let lines = command(board, COMMAND)?;
@@ -391,7 +393,7 @@ fn upload_mesh(board: &mut Emulated) -> Result<String> {
         Ok(lines)
     };
     let lines = send(board, &mesh)?;
-    // Uploads another mesh between, because data already on the board are not sent again.
+    // Uploads another mesh first, because data that are already on the board would not be sent again.
     send(board, &cube())?;
     command(board, "scene cube")?;
     Ok(picked(lines, &["vertices", "triangles"]))

@@ -1,4 +1,4 @@
-//! Raymarching of the Menger sponge in integers with any number of fraction bits, for the study of word lengths.
+//! Raymarching of the Menger sponge in integers with an adjustable number of fraction bits, for the study of word lengths.
 //!
 //! The gateware and its model have 12 fraction bits. Ray directions always have 17 fraction bits, as in the model.
 
@@ -8,7 +8,7 @@ use crate::raymarch::metrics::RayOutcome;
 use crate::raymarch::raymarched::{RenderedRay, Subject};
 use crate::raymarch::{Face, Field};
 
-/// Number of fraction bits of a length in the model. Lengths are in field units (docs/formats/raymarch.md).
+/// Number of fraction bits of a length in the model, whose unit is the field unit (docs/formats/raymarch.md).
 pub const MODEL_FRACTION: u32 = 12;
 
 /// Twice the number of field units per world unit. The sponge's half side is 1 world unit or 40.5 field units.
@@ -16,7 +16,7 @@ const TWICE_SCALE: i64 = 81;
 
 /// The constants of a picture of the sponge for a number of fraction bits.
 pub struct FixedPoint {
-    /// The model's constants of the picture, the source of the ray directions.
+    /// The model's constants of the picture, from which the ray directions are computed.
     setup: FieldSetup,
     /// Number of fraction bits of a length in field units, from 8 to 16.
     fraction: u32,
@@ -48,7 +48,7 @@ impl FixedPoint {
             .camera
             .view()
             .expect("a subject's camera is a view's");
-        // Converts a length in world units with 24 fraction bits to field units with `fraction` bits; halves are rounded up.
+        // Converts a length in world units with 24 fraction bits to field units with `fraction` bits. Rounds to nearest, halves up.
         let units =
             |length: i64| (length * TWICE_SCALE + (1 << (24 - fraction))) >> (25 - fraction);
         let corner: i64 = (0..3)
@@ -126,7 +126,7 @@ impl FixedPoint {
         }
     }
 
-    /// Returns the parameter t of a ray's start: at the near plane, or at the cube around the sponge if farther.
+    /// Returns the parameter t of a ray's start: at the near plane, or at the cube around the sponge if the cube is farther.
     fn start(&self, ray: &Ray) -> u32 {
         let near = ((u64::from(self.near) * u64::from(ray.length + 1)) >> 10) as u32;
         let farthest = farthest(self.fraction);
@@ -136,8 +136,8 @@ impl FixedPoint {
                 let outside = u64::from(self.origin[i].unsigned_abs().saturating_sub(self.bound));
                 let part = magnitude(ray.direction[i]);
                 let inverse = u64::from(self.reciprocal(part >> 7));
-                // The reciprocal, and so the first product, is slightly too small. A second product with the remaining length
-                // corrects the first.
+                // The reciprocal is slightly too small, and so is the first product. A second product, with the remaining length, corrects
+                // the first product.
                 let first = ((outside * inverse) >> 9).min(farthest.into());
                 let gone = (first * (u64::from(part) + 1)) >> 17;
                 first + ((outside.saturating_sub(gone + 1) * inverse) >> 9)
@@ -160,7 +160,7 @@ impl FixedPoint {
     fn sample(&self, point: [i32; 3]) -> (i32, usize, bool) {
         let mut p = [0, 1, 2].map(|axis| (point[axis], axis, true));
         for &s in &self.levels {
-            // `mirrored` negates x as `!x`, which is −x − 1, because a coordinate x stands for the middle of its step, x + 1/2.
+            // `mirrored` negates x as `!x`, which is −x − 1, because an integer coordinate x represents x + 1/2.
             p = p.map(|x| if x.0 >= 0 { mirrored(x) } else { x });
             p = p.map(|(x, axis, positive)| (x + s, axis, positive));
             let big = largest(p.map(|x| x.0));
@@ -177,7 +177,7 @@ impl FixedPoint {
         (value - half, axis, positive)
     }
 
-    /// Returns the increase of t to the plane of a face at this distance, for a ray that approaches the face.
+    /// Returns the increase of t with which a ray that approaches a face reaches the plane of the face, at this distance.
     fn rest(&self, ray: &Ray, distance: i32, axis: usize, positive: bool) -> u32 {
         let part = ray.direction[axis];
         let slope = if (part < 0) == positive {
@@ -192,13 +192,13 @@ impl FixedPoint {
     /// Returns the depth of a ray at its parameter t, in world units along the camera's n.
     fn depth(&self, ray: &Ray, t: u32) -> f64 {
         let scaled = u64::from(t) * u64::from(self.reciprocal(ray.length));
-        // The depth has 21 fraction bits, as in the model. The reciprocal contributes 9 of them.
+        // The depth has 21 fraction bits, as in the model. The reciprocal contributes 9 of these bits.
         let scaled = scaled << MODEL_FRACTION >> self.fraction;
         let bits = 21.0 + f64::from(self.setup.exponent);
         scaled as f64 * (-bits).exp2() / (TWICE_SCALE as f64 / 2.0)
     }
 
-    /// Returns the model's reciprocal, in the format u8.9, of a number whose first ten bits are `first_bits`.
+    /// Returns the reciprocal (u8.9) that the model uses for a number whose first ten bits are `first_bits`.
     fn reciprocal(&self, first_bits: u32) -> u32 {
         let ray = Ray {
             eye: 0,

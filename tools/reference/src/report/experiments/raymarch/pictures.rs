@@ -1,4 +1,4 @@
-//! Experiment: errors of the model's pictures against exact hits, and numbers of distance evaluations.
+//! Experiment: errors of the model's pictures, compared with exact hits of the rays, and numbers of distance evaluations.
 
 use glint_model::raymarch::{FieldOptions, FieldSetup};
 use serde::{Deserialize, Serialize};
@@ -19,9 +19,9 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Side in pixels of the prepass's blocks, with one cone each; 0 without a prepass.
+    /// Side length of the prepass's blocks in pixels; 0 without a prepass. Each block has one cone.
     pub prepass: u32,
-    /// Intersection over union of the sets of hit pixels of picture and reference.
+    /// Intersection over union of two sets: the pixels that hit in the picture, and the pixels that hit in the reference.
     pub iou: f64,
     /// Number of pixels where the picture hits and the reference misses.
     pub false_hits: usize,
@@ -45,7 +45,8 @@ pub struct Row {
     pub wrong_faces: f64,
     /// 99th percentile of the angle between the normals of picture and reference on round surfaces, in degrees.
     pub normal_p99: Option<f64>,
-    /// Fraction of unstable pixels, whose result changes with a tiny change of the ray, because they are close to an edge.
+    /// Fraction of unstable pixels. A pixel is unstable if a tiny change of its ray changes the result, because the pixel is close to an
+    /// edge.
     pub unstable: f64,
     /// Mean number of evaluations per ray, including the evaluations by the cones of the prepass.
     pub evaluations: f64,
@@ -53,9 +54,9 @@ pub struct Row {
     pub evaluations_cones: f64,
     /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,
-    /// Names of the missed requirements.
+    /// Names of the requirements that the picture does not meet.
     pub missed: String,
-    /// Names of the missed goals.
+    /// Names of the goals that the picture does not reach.
     pub not_reached: String,
 }
 

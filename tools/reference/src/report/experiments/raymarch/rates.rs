@@ -1,4 +1,4 @@
-//! Experiment: frames per second of the raymarcher on the whole SoC, with LiteDRAM shared with scan-out.
+//! Experiment: frames per second of the raymarcher on the whole SoC, where scan-out also uses LiteDRAM.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::built_firmware;
@@ -17,8 +17,8 @@ use crate::raymarch::views;
 use crate::report::progress;
 use crate::report::soc::{self, BackToBack};
 
-/// Minimum duration of a measurement of frames back to back, in cycles. The first frame takes up to 7,600 cycles more than each
-/// other frame, which raises the mean by at most 0.3 %.
+/// Minimum duration of a measurement of frames drawn back to back, in cycles. The first frame takes up to 7,600 cycles more than every
+/// other frame, which increases the mean by at most 0.3 %.
 const LEAST_CYCLES: u64 = 3_000_000;
 
 /// A verilated build of the SoC, in a folder of `target/gateware`.
@@ -55,7 +55,7 @@ pub struct Case {
     cameras: fn() -> Vec<(&'static str, Camera)>,
     /// Returns the rotations of each camera, in degrees. Each rotation is a measured pose.
     path: fn() -> Vec<Vector>,
-    /// Clock of the requirement in MHz.
+    /// Clock frequency to which the requirement refers, in MHz.
     pub clock: f64,
     /// Required frames per second.
     pub at_least: f64,
@@ -64,7 +64,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Whether a row is a measurement of this case.
+    /// Whether `row` is a measurement of this case.
     pub fn contains(&self, row: &Row) -> bool {
         self.field == row.field
             && self.stereo == row.stereo.as_deref()
@@ -74,7 +74,7 @@ impl Case {
     }
 }
 
-/// The sponge for two eyes.
+/// The sponge, drawn for two eyes.
 const STEREO_SPONGE: Case = Case {
     field: "menger:4",
     stereo: Some("0.03,1.5"),
@@ -88,7 +88,7 @@ const STEREO_SPONGE: Case = Case {
     aim: Some(120.0),
 };
 
-/// The sponge on the full screen, with a prepass.
+/// The sponge, drawn on the full screen with a prepass.
 const LARGE_SPONGE: Case = Case {
     stereo: None,
     prepass: true,
@@ -100,7 +100,7 @@ const LARGE_SPONGE: Case = Case {
     ..STEREO_SPONGE
 };
 
-/// The lattice for two eyes.
+/// The lattice, drawn for two eyes.
 const LATTICE: Case = Case {
     field: "lattice:1,0.3",
     cameras: of_the_lattice,
@@ -110,7 +110,7 @@ const LATTICE: Case = Case {
     ..STEREO_SPONGE
 };
 
-/// All measured cases, in the order of the page.
+/// All measured cases, in the order of the report's page.
 pub const CASES: [Case; 8] = [
     STEREO_SPONGE,
     Case {
@@ -188,11 +188,11 @@ pub struct Row {
     pub rays: u32,
     /// Number of evaluations of the field's distance in a frame.
     pub evaluations: u64,
-    /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end.
+    /// Cycles of a frame drawn alone, from the first register write until the firmware detects the end of the frame.
     pub cycles_alone: u64,
     /// Mean cycles per frame of several frames drawn back to back. Measured only for the slowest pose of a view.
     pub cycles_frame: Option<f64>,
-    /// Clock of the requirement in MHz.
+    /// Clock frequency to which the requirement refers, in MHz.
     pub clock: f64,
     /// Required frames per second.
     pub at_least: f64,
@@ -203,7 +203,7 @@ pub struct Row {
 /// Measures all cases, on two virtual boards at a time.
 ///
 /// # Errors
-/// When a board is not built, or a frame differs from that of the model.
+/// When a board is not built, or a frame differs from the model's frame.
 pub fn measure() -> Result<Vec<Row>> {
     let firmware = built_firmware(None)?;
     let mut work = Vec::new();

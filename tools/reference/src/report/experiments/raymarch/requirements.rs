@@ -1,4 +1,4 @@
-//! Requirements on raymarched pictures, and stricter goals. A pair of numbers is the requirement and the goal.
+//! Requirements for raymarched pictures, and stricter goals. Each pair of numbers is a requirement and its goal.
 
 use crate::raymarch::metrics::Accuracy;
 
@@ -7,7 +7,7 @@ pub const SMALL: (u32, u32) = (320, 180);
 /// Size in pixels of full-screen pictures.
 pub const LARGE: (u32, u32) = (1280, 720);
 
-/// Lower bounds of the intersection over union of the hit pixels of picture and reference.
+/// Lower bounds of the intersection over union of the pixels that hit in the picture and the pixels that hit in the reference.
 pub const IOU: [f64; 2] = [0.999, 0.9999];
 /// Upper bounds of the median error of the depth, in world units.
 pub const MEDIAN: [f64; 2] = [3e-4, 2e-4];

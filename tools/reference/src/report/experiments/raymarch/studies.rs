@@ -1,4 +1,4 @@
-//! Experiments: studies of the effect of each raymarching parameter on errors, evaluations and clocks.
+//! Experiments: each study varies one parameter of the raymarching, and measures errors, evaluations and clocks.
 
 use anyhow::{Result, bail};
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
@@ -81,7 +81,7 @@ fn tuned(tuning: Tuning) -> FieldOptions {
 /// Number of field units in one world unit, for the sponge.
 const UNITS: f64 = 40.5;
 
-/// Returns Glint's marching method in f64, with this `threshold` in field units with 12 fraction bits.
+/// Returns Glint's marching method in f64. `threshold` is in field units with 12 fraction bits.
 fn in_f64(threshold: u32) -> Method {
     Method {
         distance: Norm::Maximum,
@@ -145,8 +145,8 @@ fn thresholds(views: &Views) -> Vec<Trial> {
     trials.collect()
 }
 
-/// Runs a family of trials with five thresholds. `change` converts Glint's method in f64 to the family's method; for
-/// `exact_entry` see `Views::variant`.
+/// Runs a family of trials, each with another threshold. `change` converts Glint's method in f64 to the family's method. `Views::variant`
+/// explains `exact_entry`.
 fn by_threshold(
     views: &Views,
     family: &str,
@@ -227,7 +227,7 @@ fn prepasses(views: &Views) -> Vec<Trial> {
     built.chain(others).collect()
 }
 
-/// A trial with a cone for each block of 2^`block` × 2^`block` pixels, in software only.
+/// Runs a trial, in software only, with one cone for each block of 2^`block` × 2^`block` pixels.
 fn with_blocks(views: &Views, block: u32, options: &FieldOptions) -> Trial {
     let family = format!("blocks of {}", 1 << block);
     views.trial(

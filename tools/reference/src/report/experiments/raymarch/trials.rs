@@ -1,4 +1,4 @@
-//! Trials of raymarching with varied parameters. Each trial draws the four views of the sponge at 320 × 180.
+//! Trials of raymarching with different parameters. Each trial draws the four views of the sponge at 320 × 180.
 
 use std::cell::RefCell;
 
@@ -14,7 +14,7 @@ use crate::raymarch::metrics::{Expected, RayOutcome};
 use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
 use crate::raymarch::variant::{Method, entry};
 
-/// Errors and cost of a configuration of the parameters: a line of a study's CSV file.
+/// Errors and cost of one configuration of the parameters: a line of a study's CSV file.
 #[derive(Serialize, Deserialize)]
 pub struct Trial {
     /// Name of the line of related configurations in the diagram.
@@ -23,7 +23,7 @@ pub struct Trial {
     pub config: String,
     /// Whether Glint itself uses the configuration.
     pub shipped: bool,
-    /// Intersection over union of the sets of hit pixels of picture and reference.
+    /// Intersection over union of two sets: the pixels that hit in the pictures, and the pixels that hit in the reference.
     pub iou: f64,
     /// Number of rays that reach the step limit.
     pub undecided: usize,
@@ -39,7 +39,7 @@ pub struct Trial {
     pub evaluations: f64,
     /// Mean clocks of the verilated raymarcher per picture; `None` for configurations that exist only in software.
     pub cycles: Option<f64>,
-    /// Names of the missed requirements.
+    /// Names of the requirements that the trial does not meet.
     pub failed: String,
 }
 
@@ -52,7 +52,7 @@ pub struct Views<'a> {
 }
 
 impl<'a> Views<'a> {
-    /// Collects what trials need. `subjects` are the views, and `bar` shows the running trial.
+    /// Collects the data for all trials. `subjects` are the views, and `bar` displays the running trial.
     pub fn new(subjects: &'a [Subject], bar: ProgressBar) -> Self {
         let expected = subjects.iter().flat_map(|subject| &subject.expected);
         Self {
@@ -63,8 +63,8 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws all views with `draw` and compares the pictures with the reference. Adds `added` evaluations per hit to the number
-    /// reported by `draw`.
+    /// Draws all views with `draw` and compares the pictures with the reference. Adds `added` evaluations per hit to the number of
+    /// evaluations that `draw` returns.
     pub fn trial(
         &self,
         family: &str,
@@ -94,7 +94,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws the views with the model, for the errors, and with the verilated raymarcher, for the clocks.
+    /// Draws the views with the model, which provides the errors, and with the verilated raymarcher, which provides the clocks.
     pub fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
@@ -141,7 +141,7 @@ impl<'a> Views<'a> {
     }
 }
 
-/// Returns column, row and ray of each pixel of a subject, row by row.
+/// Returns the column, row and ray of each pixel of a subject, row by row.
 pub fn pixels(subject: &Subject) -> impl Iterator<Item = (u32, u32, Ray)> {
     let (width, height) = subject.size;
     let size = Size { width, height };
