@@ -80,30 +80,34 @@ def files():
     texts = {
         ("common", "picture_pkg"): ("Sizes of pictures. Code s is the first size times 2^s.", [
             "\n".join([number("WIDTH", SIZES[0].width), number("HEIGHT", SIZES[0].height)]),
-            number("FRAME_WORDS", SIZES[0].width * SIZES[0].height // GROUP, "128-bit words of a frame of the first size, RGB565."),
+            number("FRAME_WORDS", SIZES[0].width * SIZES[0].height // GROUP,
+                   "Number of 128-bit words of an RGB565 frame of the first size."),
             "\n".join([
                 number("CONES_ACROSS", CONES[0],
-                       "Cones across and down, of an eye that looks alone at a size above the first; half of each otherwise."),
+                       "Largest numbers of cones across and down, for one eye at a size above the first size. All other frames have half of "
+                       "these numbers."),
                 number("CONES_DOWN", CONES[1]),
             ]),
         ]),
-        ("band", "band_pkg"): (f"Bands of a picture: at most {BAND_PIXELS:,} pixels each, a row of the band buffer for eight of them.", [
-            "    // Bands, less one; lines and columns of eight of a band; its rows.\n"
+        ("band", "band_pkg"): (
+            f"Bands of a picture. A band has at most {BAND_PIXELS:,} pixels; a row of the band buffer holds eight pixels.", [
+            "    // Number of the last band; numbers of a band's lines, of groups of eight pixels in a line, and of rows in the band buffer.\n"
             "    typedef struct packed {\n"
             "        logic [5:0]  last_band;\n"
             "        logic [5:0]  lines;\n"
             "        logic [7:0]  stride;\n"
             "        logic [10:0] rows;\n"
             "    } cut_t;",
-            _by_size("cut", "cut_t", f"By size: {', '.join(size.text for size in SIZES)}.", lambda size: (
+            _by_size("cut", "cut_t", f"Division of a picture into bands, for the sizes {', '.join(size.text for size in SIZES)}.", lambda size: (
                 f"{{6'd{size.bands - 1}, 6'd{size.band_lines}, 8'd{size.width // GROUP}, 11'd{size.band_groups}}}")),
-            _by_size("lines", "int unsigned", "Lines of a band.", lambda size: size.band_lines),
-            _by_size("bands", "logic [5:0]", "Bands of a picture.", lambda size: f"6'd{size.bands}"),
+            _by_size("lines", "int unsigned", "Number of lines of a band.", lambda size: size.band_lines),
+            _by_size("bands", "logic [5:0]", "Number of bands of a picture.", lambda size: f"6'd{size.bands}"),
         ]),
         ("triangle", "list_pkg"): (
-            "Places of the band lists in memory, in words of 16 bytes (docs/formats/triangle.md): behind the table of their lengths, and apart by "
-            "their length and a row of a memory bank, so that the lists of eight bands lie in eight banks, which stay open. LiteDRAM "
-            "puts BANK_WORDS neighbours into a row of a bank, and the next ones into the next bank.",
+            "Positions of the band lists in memory, in words of 16 bytes (docs/formats/triangle.md). The lists follow the table of their "
+            "lengths. The distance between the starts of two lists is the maximum length of a list plus a row of a memory bank, so that the "
+            "lists of eight bands lie in eight banks, whose rows stay open. LiteDRAM maps BANK_WORDS consecutive words to a row of a bank, and "
+            "the following words to the next bank.",
             ["\n".join([number("TABLE_WORDS", LIST_TABLE_WORDS), number("BANK_WORDS", LIST_GAP_WORDS)])]),
     }
     return {
@@ -128,10 +132,10 @@ def _constants():
     sizes = "\n".join(f"    Picture {{ width: {size.width}, height: {size.height}, band_lines: {size.band_lines} }},"
                       for size in SIZES)
     numbers = {
-        "GROUP": (GROUP, "Neighbouring pixels of a line in a 128-bit word: a row of the band buffer."),
-        "LISTS": (LISTS, "Band lists of a set."),
-        "LIST_TABLE_WORDS": (LIST_TABLE_WORDS, "128-bit words before the first band list of a set: the lengths of the lists."),
-        "LIST_GAP_WORDS": (LIST_GAP_WORDS, "128-bit words between two band lists."),
+        "GROUP": (GROUP, "Number of neighbouring pixels of a line in a 128-bit word, which is a row of the band buffer."),
+        "LISTS": (LISTS, "Number of band lists of a set."),
+        "LIST_TABLE_WORDS": (LIST_TABLE_WORDS, "Number of 128-bit words before the first band list of a set: the table of the lists' lengths."),
+        "LIST_GAP_WORDS": (LIST_GAP_WORDS, "Number of 128-bit words between two band lists."),
         "FLASH_FIRMWARE": (hex(FLASH_FIRMWARE), "Offset of the firmware in the SPI flash."),
     }
     constants = "".join(f"\n/// {text}\npub const {name}: u32 = {value};\n" for name, (value, text) in numbers.items())
@@ -145,11 +149,11 @@ pub struct Picture {{
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Lines of a band.
+    /// Number of lines of a band.
     pub band_lines: u32,
 }}
 
-/// The picture sizes by their code in registers. The last one is the screen.
+/// The picture sizes by their code in registers. The last size is the size of the screen.
 pub const PICTURES: [Picture; {len(SIZES)}] = [
 {sizes}
 ];

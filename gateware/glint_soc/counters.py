@@ -40,7 +40,7 @@ class Counters(LiteXModule):
             self.registers[name] = CSRStatus(_BITS, name=name, description=f"{text.removesuffix('.')}, modulo 2^{_BITS}.")
             setattr(block, f"_{name}", self.registers[name])
             members[name] = Signal(bits, name=f"event_{name}")
-        self.events = Struct("events_t", "Growth of each counter in this clock.", members)
+        self.events = Struct("events_t", "Increment of each counter in this clock.", members)
 
         # # #
 

@@ -72,7 +72,7 @@ def _package():
         f"flat_clocks = {flat.clocks.replace('LEVELS', 'levels')};" for number, flat in enumerate(FLAT_FIELDS))
     octants = [number for number, flat in enumerate(FLAT_FIELDS) if flat.octants]
     is_octant = " || ".join(f"kind == {_number(number)}" for number in octants) or "1'b0 && kind == '0"
-    return package("fields_pkg", "fields.py", "Properties of the flat fields, by number.", [
+    return package("fields_pkg", "fields.py", "Properties of the flat fields. A field is selected by its number.", [
         "\n".join([
             number("KIND_BITS", KIND_BITS),
             number("ALL", mask(NAMES), "Masks of all fields, and of the fields whose faces are perpendicular to the diagonals."),
@@ -82,13 +82,13 @@ def _package():
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
         has_octants = {is_octant};
     endfunction""",
-        f"""    // Returns the mask of the fields with an instance of their own in a build with the fields of a mask: the module of another
-    // field serves the rest.
+        f"""    // Returns the mask of the fields that have their own instance in a build with the fields of the mask `fields`. The module of
+    // another field also computes the distances to the remaining fields.
     function automatic int unsigned instances(input int unsigned fields);
         instances = fields;
 {inside}
     endfunction""",
-        f"""    // Clocks from a point to its distance, including the choice between several instances.
+        f"""    // Returns the number of clocks from a point to its distance, including the clock of the multiplexer, if there is one.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
 {clocks}
@@ -140,10 +140,10 @@ def _module():
     choice = "\n".join(f"        if ({_is_kind(number)}) chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
     single = "\n".join(f"        chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
     return f"""{generated("//", "fields.py")}
-// The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
+// Computes the distances to all flat fields of a build in parallel, and selects one of the distances by `solid.kind`.
 //
-// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single instance needs no choice.
-// Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput a point a clock, no handshake; `solid` holds.
+// Bit k of FIELDS is set if field k is built. A field that is not built takes no LUTs; a single instance needs no multiplexer.
+// Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput one point per clock, no handshake; `solid` must hold.
 
 `default_nettype none
 
@@ -161,7 +161,7 @@ module flat_fields #(
     localparam bit          CHOICE    = (INSTANCES & (INSTANCES - 1)) != 0;
     localparam int unsigned KNOWN     = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
-    // Distance and surface of each instance.
+    // Distance and surface of each instance (`found`) and of the selected instance (`chosen`).
     logic [{len(FLAT_FIELDS) - 1}:0][24:0] found;
     logic [24:0] chosen;
 {instances}

@@ -166,15 +166,15 @@ class GestureEngine(LiteXModule):
         # # #
 
         def span(register):
-            return Struct("span_t", "First and last column or line of a box or region.", {
+            return Struct("span_t", "First and last column, or first and last line, of a box or region.", {
                 name: getattr(register.fields, name) for name in ("first", "last")})
 
         def window(register):
-            return Struct("window_t", "A channel's window.", {
+            return Struct("window_t", "Window of a channel.", {
                 name: getattr(register.fields, name) for name in ("channel", "lower", "upper")})
 
         control = self._control.fields
-        pins = Struct("pins_t", "How the image sensor drives its pins.", {
+        pins = Struct("pins_t", "Properties of the image sensor's pins: polarities, byte order and clock edge.", {
             name: getattr(control, name) for name in ("vsync_low", "href_low", "swap", "falling")})
         settings = Struct("frame_settings_t", "Settings of a frame.", {
             "width": self._size.fields.width,
@@ -185,7 +185,8 @@ class GestureEngine(LiteXModule):
             "region_y": span(self._region_y),
             "least_run": self._least_run.storage,
         })
-        status = Struct("status_t", "State of the engine and its wires; pixels of the last line, lines of the last frame.", {
+        status = Struct("status_t", "State of the engine and levels of its wires. `pixels` counts the pixels of the last line, "
+                        "`lines` the lines of the last frame.", {
             **{name: getattr(self._status.fields, name) for name in (
                 "running", "waiting", "vsync", "href", "scl", "sda", "fault")},
             **{name: getattr(self._seen.fields, name) for name in ("pixels", "lines")},
@@ -200,14 +201,14 @@ class GestureEngine(LiteXModule):
             "sum_xy": self._sum_xy.status[:_PRODUCT_BITS],
             "sum_yy": self._sum_yy.status[:_PRODUCT_BITS],
         })
-        snapshot = Struct("snapshot_t", "Request of a small picture, and the place to read. `start`, `set` and `move` are high for one "
-                          "clock.", {
+        snapshot = Struct("snapshot_t", "Request for a small picture, and the read position in the picture. `start`, `set` and `move` are "
+                          "high for one clock.", {
             **{name: getattr(self._snapshot.fields, name) for name in ("step", "colour", "start")},
             "set": self._snapshot_place.re,
             "place": self._snapshot_place.storage,
             "move": self._snapshot_word.we,
         })
-        snapshot_state = Struct("snapshot_state_t", "State of the small picture, and the word at the place to read.", {
+        snapshot_state = Struct("snapshot_state_t", "State of the small picture, and its word at the read position.", {
             "words": self._snapshot_state.fields.words,
             "ready": self._snapshot_state.fields.ready,
             "sequence_number": self._snapshot_state.fields.sequence,

@@ -105,7 +105,7 @@ class Package:
         """Returns the text of the package's file."""
         return package(
             self.name, f"{self.block}.py",
-            "Numbers and types of the block's ports. docs/registers.md describes the registers.", [
+            "Constants and types of the block's ports. docs/registers.md describes the registers.", [
                 *(["\n".join(number(name, value) for name, value in self._numbers.items())] if self._numbers else []),
                 *(enumeration.constants() for enumeration in self._enumerations),
                 *(struct.typedef() for struct in self._structs),
@@ -122,7 +122,7 @@ def package(name, source, text, parts):
         "`default_nettype none",
         "",
         f"package {name};",
-        "    // A module uses only some of these constants.",
+        "    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.",
         "    /* verilator lint_off UNUSEDPARAM */",
         "\n\n".join(parts),
         "    /* verilator lint_on UNUSEDPARAM */",

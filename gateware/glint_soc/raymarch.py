@@ -207,16 +207,16 @@ class Raymarcher(LiteXModule):
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | (solid.is_round & int(not fields.round)) |
                                   (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
-        constants = Struct("solid_t", "The solid: width of the fillet, u5.12, 0 without a fillet, and 1 / (2 * width), u1.16; "
-            "whether the flat field is in union with spheres; whether the field has spheres, whether they repeat, and the number of "
-            "the last one; kind of the flat field, and its constants.", {
+        constants = Struct("solid_t", "The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and "
+            "`blend_inverse` is 1 / (2 * width), u1.16. `flat_too` is high if a flat field and spheres are united, `is_round` if the field "
+            "has spheres, and `spheres_repeated` if these are repeated. `kind` is the kind of the flat field, whose constants follow.", {
             "blend_width": blend_width, "blend_inverse": blend_inverse,
             **{name: getattr(solid, name) for name in ("flat_too", "is_round", "spheres_repeated", "last_sphere", "kind", "levels")},
             "cube_half": self._cube_half.storage, "half": _contents(box_half),
             **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
-        limits = Struct("tuning_t", "Limits of a ray: threshold, footprint, step limit, far limit of t.", {
+        limits = Struct("tuning_t", "Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.", {
             **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage})
-        colours = Struct("palette_t", "Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.", {
+        colours = Struct("palette_t", "Colours, {blue, green, red}, of the zenith, of undecided rays, and of the faces by surface.", {
             "zenith": palette[7].storage, "undecided": palette[6].storage,
             "faces": [*_contents(palette[:6]), *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
@@ -300,7 +300,7 @@ class Raymarcher(LiteXModule):
                       **{19 + 4*light: colour for light, colour in enumerate(colours)}}
             self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
             self.comb += write.eq(self._sphere.re & (entry[3:] == 0b001))
-        sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the inverse of its radius and a shift "
+        sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the reciprocal of its radius and a shift "
             "(docs/formats/raymarch.md, \"Light on spheres\"); its radius, and its centre.", {
             "material": value, "shift": inverse[17:], "inverse": inverse[:17], "radius": radius, "centre": centre})
         lights = Struct("lights_t", "Light on spheres: number of the last light, ambient light, colours of the lights, and "

@@ -219,7 +219,7 @@ def files():
 
 def _package():
     return package("records_pkg", "records.py", "Records in memory. docs/formats/records.md explains the fields.", [
-        f"    // The mark of a stored_piece_t.\n    localparam logic [1:0] PIECE_MARK = 2'd{PIECE_MARK};",
+        f"    // Value of the field `mark` of a stored_piece_t.\n    localparam logic [1:0] PIECE_MARK = 2'd{PIECE_MARK};",
         *(_struct(record).typedef() for record in RECORDS if record.rtl),
     ])
 

@@ -238,10 +238,10 @@ class TriangleEngine(LiteXModule):
             ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
 
-        geometry_flags = Struct("geometry_flags_t", "Choices of a geometry pass.", {
+        geometry_flags = Struct("geometry_flags_t", "Flags of a geometry pass.", {
             name: getattr(self._geometry.fields, name) for name in (
                 "size", "cull", "smooth", "append", "mirror", "recolour", "lines", "orthographic")})
-        geometry = Struct("geometry_t", "Parameters of the geometry pass. Places in memory are byte addresses.", {
+        geometry = Struct("geometry_t", "Parameters of the geometry pass. Memory regions are given by byte addresses.", {
             "mesh": self._mesh.storage,
             "mesh_bytes": self._mesh_bytes.storage,
             "descriptors": self._geometry_descriptors.storage,
@@ -263,9 +263,9 @@ class TriangleEngine(LiteXModule):
             "depth_exponent": self._depth_scale.fields.exponent,
             "row_light": [register.storage for register in light],
         })
-        raster_flags = Struct("raster_flags_t", "Choices of a raster pass.", {
+        raster_flags = Struct("raster_flags_t", "Flags of a raster pass.", {
             name: getattr(self._raster.fields, name) for name in ("size", "first", "second", "depth", "slot", "whole")})
-        raster = Struct("raster_t", "Parameters of the raster pass. Places in memory are byte addresses.", {
+        raster = Struct("raster_t", "Parameters of the raster pass. Memory regions are given by byte addresses.", {
             "frame": self._frame.storage,
             "depth": self._depth.storage,
             "clear": self._clear.storage,
@@ -361,9 +361,9 @@ class TriangleEngine(LiteXModule):
 def _read_port(port):
     """Returns the port connections of a native read port of the memory, in both directions."""
     return {
-        "request": Struct("read_request_t", "A read port of the memory: to the memory.", {
+        "request": Struct("read_request_t", "A read port of the memory: signals to the memory.", {
             "cmd_valid": port.cmd.valid, "cmd_addr": _address(port)}),
-        "answer": Struct("read_answer_t", "A read port of the memory: from the memory.", {
+        "answer": Struct("read_answer_t", "A read port of the memory: signals from the memory.", {
             "cmd_ready": port.cmd.ready, "rdata_valid": port.rdata.valid, "rdata": port.rdata.data}),
     }
 
@@ -377,9 +377,9 @@ def _address(port):
 def _write_port(port):
     """Returns the port connections of a native write port of the memory, in both directions."""
     return {
-        "request": Struct("write_request_t", "A write port of the memory: to the memory.", {
+        "request": Struct("write_request_t", "A write port of the memory: signals to the memory.", {
             "cmd_valid": port.cmd.valid, "cmd_addr": _address(port),
             "wdata_valid": port.wdata.valid, "wdata": port.wdata.data, "wdata_strobe": port.wdata.we}),
-        "answer": Struct("write_answer_t", "A write port of the memory: from the memory.", {
+        "answer": Struct("write_answer_t", "A write port of the memory: signals from the memory.", {
             "cmd_ready": port.cmd.ready, "wdata_ready": port.wdata.ready}),
     }

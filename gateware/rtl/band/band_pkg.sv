@@ -1,12 +1,12 @@
 // Generated from gateware/glint_soc/constants.py by `cargo xtask pac`. Do not edit.
-// Bands of a picture: at most 15,360 pixels each, a row of the band buffer for eight of them.
+// Bands of a picture. A band has at most 15,360 pixels; a row of the band buffer holds eight pixels.
 
 `default_nettype none
 
 package band_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // Bands, less one; lines and columns of eight of a band; its rows.
+    // Number of the last band; numbers of a band's lines, of groups of eight pixels in a line, and of rows in the band buffer.
     typedef struct packed {
         logic [5:0]  last_band;
         logic [5:0]  lines;
@@ -14,7 +14,7 @@ package band_pkg;
         logic [10:0] rows;
     } cut_t;
 
-    // By size: 320x180, 640x360, 1280x720.
+    // Division of a picture into bands, for the sizes 320x180, 640x360, 1280x720.
     function automatic cut_t cut(input logic [1:0] size);
         case (size)
             2'd0:    cut = {6'd3, 6'd45, 8'd40, 11'd1800};
@@ -23,7 +23,7 @@ package band_pkg;
         endcase
     endfunction
 
-    // Lines of a band.
+    // Number of lines of a band.
     function automatic int unsigned lines(input logic [1:0] size);
         case (size)
             2'd0:    lines = 45;
@@ -32,7 +32,7 @@ package band_pkg;
         endcase
     endfunction
 
-    // Bands of a picture.
+    // Number of bands of a picture.
     function automatic logic [5:0] bands(input logic [1:0] size);
         case (size)
             2'd0:    bands = 6'd4;

@@ -4,15 +4,16 @@
 `default_nettype none
 
 package picture_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned WIDTH = 320;
     localparam int unsigned HEIGHT = 180;
 
-    // 128-bit words of a frame of the first size, RGB565.
+    // Number of 128-bit words of an RGB565 frame of the first size.
     localparam int unsigned FRAME_WORDS = 7200;
 
-    // Cones across and down, of an eye that looks alone at a size above the first; half of each otherwise.
+    // Largest numbers of cones across and down, for one eye at a size above the first size. All other frames have half of
+    // these numbers.
     localparam int unsigned CONES_ACROSS = 160;
     localparam int unsigned CONES_DOWN = 90;
     /* verilator lint_on UNUSEDPARAM */

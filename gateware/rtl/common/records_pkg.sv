@@ -4,9 +4,9 @@
 `default_nettype none
 
 package records_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // The mark of a stored_piece_t.
+    // Value of the field `mark` of a stored_piece_t.
     localparam logic [1:0] PIECE_MARK = 2'd3;
 
     // Header of a chunk of a mesh.

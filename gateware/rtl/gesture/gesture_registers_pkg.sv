@@ -1,10 +1,10 @@
 // Generated from gateware/glint_soc/gesture.py by `cargo xtask pac`. Do not edit.
-// Numbers and types of the block's ports. docs/registers.md describes the registers.
+// Constants and types of the block's ports. docs/registers.md describes the registers.
 
 `default_nettype none
 
 package gesture_registers_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     // Channels of a pixel, 8 bits each.
     localparam logic [2:0] CHANNEL_RED = 3'd0;
@@ -23,20 +23,20 @@ package gesture_registers_pkg;
     localparam logic [2:0] FAULT_LOST = 3'd5;
     localparam logic [2:0] FAULT_STOPPED = 3'd6;
 
-    // First and last column or line of a box or region.
+    // First and last column, or first and last line, of a box or region.
     typedef struct packed {
         logic [10:0] first;
         logic [10:0] last;
     } span_t;
 
-    // A channel's window.
+    // Window of a channel.
     typedef struct packed {
         logic [2:0] channel;
         logic [7:0] lower;
         logic [7:0] upper;
     } window_t;
 
-    // How the image sensor drives its pins.
+    // Properties of the image sensor's pins: polarities, byte order and clock edge.
     typedef struct packed {
         logic vsync_low;
         logic href_low;
@@ -55,7 +55,8 @@ package gesture_registers_pkg;
         logic [3:0] least_run;
     } frame_settings_t;
 
-    // State of the engine and its wires; pixels of the last line, lines of the last frame.
+    // State of the engine and levels of its wires. `pixels` counts the pixels of the last line, `lines` the lines of the last
+    // frame.
     typedef struct packed {
         logic running;
         logic waiting;
@@ -80,7 +81,7 @@ package gesture_registers_pkg;
         logic [39:0] sum_yy;
     } results_t;
 
-    // Request of a small picture, and the place to read. `start`, `set` and `move` are high for one clock.
+    // Request for a small picture, and the read position in the picture. `start`, `set` and `move` are high for one clock.
     typedef struct packed {
         logic [2:0] step;
         logic colour;
@@ -90,7 +91,7 @@ package gesture_registers_pkg;
         logic move;
     } snapshot_t;
 
-    // State of the small picture, and the word at the place to read.
+    // State of the small picture, and its word at the read position.
     typedef struct packed {
         logic [11:0] words;
         logic ready;
@@ -98,7 +99,7 @@ package gesture_registers_pkg;
         logic [15:0] word;
     } snapshot_state_t;
 
-    // Growth of each counter in this clock.
+    // Increment of each counter in this clock.
     typedef struct packed {
         logic frames;
         logic frames_dropped;

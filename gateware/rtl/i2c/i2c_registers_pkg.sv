@@ -1,10 +1,10 @@
 // Generated from gateware/glint_soc/i2c.py by `cargo xtask pac`. Do not edit.
-// Numbers and types of the block's ports. docs/registers.md describes the registers.
+// Constants and types of the block's ports. docs/registers.md describes the registers.
 
 `default_nettype none
 
 package i2c_registers_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     // Operations of a command.
     localparam logic [1:0] OPERATION_START = 2'd0;

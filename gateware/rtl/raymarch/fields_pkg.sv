@@ -1,10 +1,10 @@
 // Generated from gateware/glint_soc/fields.py by `cargo xtask pac`. Do not edit.
-// Properties of the flat fields, by number.
+// Properties of the flat fields. A field is selected by its number.
 
 `default_nettype none
 
 package fields_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned KIND_BITS = 2;
     // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
@@ -16,14 +16,14 @@ package fields_pkg;
         has_octants = kind == 2'd2;
     endfunction
 
-    // Returns the mask of the fields with an instance of their own in a build with the fields of a mask: the module of another
-    // field serves the rest.
+    // Returns the mask of the fields that have their own instance in a build with the fields of the mask `fields`. The module of
+    // another field also computes the distances to the remaining fields.
     function automatic int unsigned instances(input int unsigned fields);
         instances = fields;
         if ((fields & 1) != 0) instances = instances & ~32'd2;
     endfunction
 
-    // Clocks from a point to its distance, including the choice between several instances.
+    // Returns the number of clocks from a point to its distance, including the clock of the multiplexer, if there is one.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
         if ((instances(fields) & 1) != 0 && 3 * levels + 3 > flat_clocks) flat_clocks = 3 * levels + 3;

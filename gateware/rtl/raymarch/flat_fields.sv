@@ -1,8 +1,8 @@
 // Generated from gateware/glint_soc/fields.py by `cargo xtask pac`. Do not edit.
-// The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
+// Computes the distances to all flat fields of a build in parallel, and selects one of the distances by `solid.kind`.
 //
-// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single instance needs no choice.
-// Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput a point a clock, no handshake; `solid` holds.
+// Bit k of FIELDS is set if field k is built. A field that is not built takes no LUTs; a single instance needs no multiplexer.
+// Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput one point per clock, no handshake; `solid` must hold.
 
 `default_nettype none
 
@@ -20,7 +20,7 @@ module flat_fields #(
     localparam bit          CHOICE    = (INSTANCES & (INSTANCES - 1)) != 0;
     localparam int unsigned KNOWN     = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
-    // Distance and surface of each instance.
+    // Distance and surface of each instance (`found`) and of the selected instance (`chosen`).
     logic [2:0][24:0] found;
     logic [24:0] chosen;
 

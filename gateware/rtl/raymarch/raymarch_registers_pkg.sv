@@ -1,14 +1,14 @@
 // Generated from gateware/glint_soc/raymarch.py by `cargo xtask pac`. Do not edit.
-// Numbers and types of the block's ports. docs/registers.md describes the registers.
+// Constants and types of the block's ports. docs/registers.md describes the registers.
 
 `default_nettype none
 
 package raymarch_registers_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // The solid: width of the fillet, u5.12, 0 without a fillet, and 1 / (2 * width), u1.16; whether the flat field is in
-    // union with spheres; whether the field has spheres, whether they repeat, and the number of the last one; kind of the flat
-    // field, and its constants.
+    // The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and `blend_inverse` is 1 / (2 * width),
+    // u1.16. `flat_too` is high if a flat field and spheres are united, `is_round` if the field has spheres, and
+    // `spheres_repeated` if these are repeated. `kind` is the kind of the flat field, whose constants follow.
     typedef struct packed {
         logic [16:0] blend_width;
         logic [16:0] blend_inverse;
@@ -25,8 +25,8 @@ package raymarch_registers_pkg;
         logic repeated;
     } solid_t;
 
-    // A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats/raymarch.md, "Light on
-    // spheres"); its radius, and its centre.
+    // A sphere: its material, {blue, green, red}; the reciprocal of its radius and a shift (docs/formats/raymarch.md, "Light
+    // on spheres"); its radius, and its centre.
     typedef struct packed {
         logic [23:0] material;
         logic [4:0] shift;
@@ -43,7 +43,7 @@ package raymarch_registers_pkg;
         logic [3:0][2:0][17:0] directions;
     } lights_t;
 
-    // Limits of a ray: threshold, footprint, step limit, far limit of t.
+    // Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.
     typedef struct packed {
         logic [15:0] threshold;
         logic [3:0] footprint;
@@ -51,14 +51,14 @@ package raymarch_registers_pkg;
         logic [22:0] far_limit;
     } tuning_t;
 
-    // Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.
+    // Colours, {blue, green, red}, of the zenith, of undecided rays, and of the faces by surface.
     typedef struct packed {
         logic [23:0] zenith;
         logic [23:0] undecided;
         logic [7:0][23:0] faces;
     } palette_t;
 
-    // Growth of each counter in this clock.
+    // Increment of each counter in this clock.
     typedef struct packed {
         logic cycles_busy;
         logic cycles_stalled;

@@ -91,7 +91,7 @@ module raymarcher #(
     output logic [7:0]                group_mask,
     output logic [17:0]               group_code,
     output logic [15:0]               group_colour,
-    // Growth of each counter in this clock, 0 when no frame is drawn.
+    // Increment of each counter in this clock, 0 when no frame is drawn.
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);

@@ -1,10 +1,10 @@
 // Generated from gateware/glint_soc/triangle.py by `cargo xtask pac`. Do not edit.
-// Numbers and types of the block's ports. docs/registers.md describes the registers.
+// Constants and types of the block's ports. docs/registers.md describes the registers.
 
 `default_nettype none
 
 package triangle_registers_pkg;
-    // A module uses only some of these constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned ADDRESS_BITS = 23;
     localparam int unsigned COUNT_BITS = 20;
@@ -21,7 +21,7 @@ package triangle_registers_pkg;
     localparam logic [3:0] ERROR_TRIANGLES = 4'd8;
     localparam logic [3:0] ERROR_LINES = 4'd9;
 
-    // Choices of a geometry pass.
+    // Flags of a geometry pass.
     typedef struct packed {
         logic [1:0] size;
         logic cull;
@@ -33,7 +33,7 @@ package triangle_registers_pkg;
         logic orthographic;
     } geometry_flags_t;
 
-    // Parameters of the geometry pass. Places in memory are byte addresses.
+    // Parameters of the geometry pass. Memory regions are given by byte addresses.
     typedef struct packed {
         logic [31:0] mesh;
         logic [31:0] mesh_bytes;
@@ -63,7 +63,7 @@ package triangle_registers_pkg;
         logic [2:0][24:0] row_light;
     } view_t;
 
-    // Choices of a raster pass.
+    // Flags of a raster pass.
     typedef struct packed {
         logic [1:0] size;
         logic first;
@@ -73,7 +73,7 @@ package triangle_registers_pkg;
         logic whole;
     } raster_flags_t;
 
-    // Parameters of the raster pass. Places in memory are byte addresses.
+    // Parameters of the raster pass. Memory regions are given by byte addresses.
     typedef struct packed {
         logic [31:0] frame;
         logic [31:0] depth;
@@ -105,7 +105,7 @@ package triangle_registers_pkg;
         logic list_error;
     } status_t;
 
-    // Growth of each counter in this clock.
+    // Increment of each counter in this clock.
     typedef struct packed {
         logic cycles_busy;
         logic cycles_stalled;
@@ -150,20 +150,20 @@ package triangle_registers_pkg;
         logic ready;
     } field_sink_t;
 
-    // A read port of the memory: to the memory.
+    // A read port of the memory: signals to the memory.
     typedef struct packed {
         logic cmd_valid;
         logic [22:0] cmd_addr;
     } read_request_t;
 
-    // A read port of the memory: from the memory.
+    // A read port of the memory: signals from the memory.
     typedef struct packed {
         logic cmd_ready;
         logic rdata_valid;
         logic [127:0] rdata;
     } read_answer_t;
 
-    // A write port of the memory: to the memory.
+    // A write port of the memory: signals to the memory.
     typedef struct packed {
         logic cmd_valid;
         logic [22:0] cmd_addr;
@@ -172,7 +172,7 @@ package triangle_registers_pkg;
         logic [15:0] wdata_strobe;
     } write_request_t;
 
-    // A write port of the memory: from the memory.
+    // A write port of the memory: signals from the memory.
     typedef struct packed {
         logic cmd_ready;
         logic wdata_ready;
