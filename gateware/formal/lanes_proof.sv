@@ -1,5 +1,5 @@
 // Proof of `lanes`, which determines the pixels (lanes) of a group of eight that a triangle covers, for any pattern of valid and ready on
-// both sides. At the output of `lanes` is a FIFO, which tells the source whether it has free entries. Groups are numbered, and either all
+// both sides. A FIFO at the output of `lanes` signals to the source whether it has free entries. Groups are numbered, and either all
 // or none of their pixels are covered. Each group with covered pixels is output once, in order, with all its fields; a group without
 // covered pixels is never output. A group becomes valid at the output even if the consumer is not ready.
 

@@ -1,8 +1,8 @@
 // Checks that a buffer outputs its items in order, unchanged, each once, and in time.
 //
 // Items are numbered: the payload of item n is n, and the n-th output must be n. A buffer does not depend on its payload, so the proof
-// holds for any payload, as long as no two items in the buffer have the same number. A buffer that has an item must make it
-// valid within WITHIN clocks, and must accept an item within WITHIN clocks while its consumer is ready.
+// holds for any payload, as long as no two items in the buffer have the same number. A buffer that contains an item must have a valid
+// output within WITHIN clocks, and must accept an item within WITHIN clocks while its consumer is ready.
 
 `default_nettype none
 

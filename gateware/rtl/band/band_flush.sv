@@ -7,14 +7,14 @@
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour for pixels that are not
 // written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left
 // luminance becomes red, the right luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the
-// right luminance green and blue. The colour word of row r goes to address `base` + r. With `with_depth`, the rows of a span are read
-// again after its colours: each row gives two words of four 32-bit depths, 0 for pixels that are not written, for the addresses
-// `depth_base` + 2r and `depth_base` + 2r + 1. Words come in the order of their addresses, so the DDR3 memory rarely has to open another
-// bank.
+// right luminance green and blue. The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read
+// again after its colours: the depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses
+// `depth_base` + 2r and `depth_base` + 2r + 1. Words are output in the order of their addresses, so the DDR3 memory rarely has to open
+// another bank.
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
-// word per clock unless spans or memory are slower; the first word comes 6 clocks after the first span is taken.
+// word per clock unless spans or memory are slower; the first word is output 6 clocks after the first span is taken.
 //
 // Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A FIFO entry is reserved before
 // a row is read, so `out_ready` may stay low for any time.
@@ -206,7 +206,7 @@ module band_flush #(
         endcase
     end
 
-    // A FIFO entry is reserved for each requested word, so `word_ready` is high whenever a word comes.
+    // A FIFO entry is reserved for each requested word, so `word_ready` is high whenever a word arrives.
     fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),

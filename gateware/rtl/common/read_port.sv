@@ -1,7 +1,7 @@
 // Shares one native read port of the memory among CLIENTS clients. Each client has an input stream of word addresses and an
 // output stream of words, in the order of its addresses.
 //
-// Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes later, in the order of the commands, and
+// Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data arrives later, in the order of the commands, and
 // without back-pressure. A client is therefore only served while its FIFO of DEPTH words has a free entry for every outstanding word.
 // Throughput one word per clock.
 //
@@ -141,7 +141,7 @@ module read_port #(
             end
         end
 
-        // An entry is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word comes.
+        // An entry is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word arrives.
         /* verilator lint_off PINCONNECTEMPTY */
         fifo #(.WIDTH(128), .DEPTH(DEPTH), .BLOCK(BLOCK[i])) words (
             .clk       (clk),

@@ -32,7 +32,7 @@ module mask_sums #(
     assign sums.box_y.first = ~most_up;
 
     always_ff @(posedge clk) begin
-        // The last products come one clock after the last pixel, and `results` latches the sums two clocks after `frame`.
+        // The last products are valid one clock after the last pixel, and `results` latches the sums two clocks after `frame`.
         clear   <= frame;
         loading <= next && !rst;
         latched <= loading;

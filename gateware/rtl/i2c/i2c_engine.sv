@@ -35,8 +35,8 @@
 //          │   └──────┘            │
 //          └──── repeats ◀─────────┘
 //
-// An error ends the transaction: the wires are released, `failed` and `error` hold their values, and commands wait until
-// `rst`. After a missing acknowledge a stop comes first.
+// An error ends the transaction: the wires are released, `failed` and `error` hold their values, and commands wait until `rst`. After a
+// missing acknowledge, the engine first generates a stop condition.
 
 `default_nettype none
 

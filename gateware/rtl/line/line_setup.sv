@@ -42,7 +42,7 @@ module line_setup (
     input  wire                    out_ready,
     output records_pkg::piece_t       out_piece
 );
-    // One-hot state: a step of the program, the walk along the line, or the end.
+    // One-hot state: one of the states `at` of the program, the walk along the line, or the end.
     logic [28:0] at;
     logic        walking, finished, waiting;
 

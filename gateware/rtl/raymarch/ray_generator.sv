@@ -7,8 +7,8 @@
 //                                            an entry is outside·inverse, with a second product for the remaining distance
 //
 // D is the direction of a ray before normalisation. D is computed exactly, by 32-bit additions. `outside`
-// is the distance of the eye from the box about the field, along each axis. Rays come band by band, each band line by line from the top,
-// each line from the left. With `stereo` each line is generated first for the left eye, then for the right eye.
+// is the distance of the eye from the box about the field, along each axis. Rays are generated band by band, each band line by line from
+// the top, each line from the left. With `stereo` each line is generated first for the left eye, then for the right eye.
 //
 // With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces the
 // largest component of D, and a table of 1/sqrt replaces the table of reciprocals.

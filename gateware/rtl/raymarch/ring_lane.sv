@@ -11,9 +11,9 @@
 // ring reserves one. `evaluates` is high in clocks in which an occupied slot passes field_unit, `waits` in clocks in which an empty slot
 // cannot receive a ray because the FIFO has no free entry.
 //
-// With ROUND a field may have spheres. A ray then makes one round for each sphere and keeps its t until the last of these rounds; its slot
-// also stores the nearest of the spheres evaluated so far. Its end includes its direction, and its limit of evaluations is four times the
-// limit in `tuning`.
+// With ROUND a field may have spheres. A ray then needs one round for each sphere, and its t does not change before the last of these
+// rounds. The slot of the ray also stores the nearest of the spheres evaluated so far. The end of the ray includes its direction, and the
+// limit of its evaluations is four times the limit in `tuning`.
 //
 // While `cones` is high, the rays in the ring are cones, and `cones` must not change while rays are in the ring. The t of a cone increases
 // by the distance minus the cone's radius, which is t times its spread. A cone ends where the distance is close to this radius.

@@ -7,7 +7,7 @@
 //                  └──────────── one source line at a time ◀── scanout_lines ◀── scanout_timing
 //
 // Once a frame, when the vertical blanking begins, the sys side latches `frame_base`, `scale` and `enable`, counts the frame
-// and pulses `vblank`. The pix side requests line 0 only after this, so all lines of a picture come from one frame in memory.
+// and pulses `vblank`. The pix side requests line 0 only after this, so all lines of a picture belong to one frame in memory.
 // The video timing never stalls: a late line is replaced by the previous line, and counted as an underflow.
 //
 // Throughput: one pixel per pix_clk, at most one memory word per sys_clk. Latency: 4 pix_clk from scanout_timing to the video

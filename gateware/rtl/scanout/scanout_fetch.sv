@@ -1,8 +1,8 @@
 // Fetches one source line (a line of the frame in memory) into a slot of the line ring, which is a buffer of two lines.
 //
 // Memory side, the LiteDRAM native read port: commands by valid/ready (payload stable while valid and not ready), at most one word per
-// clock; data comes later, in order, and without back-pressure. The whole slot is free before the first command, so each word is stored in
-// the clock in which it arrives.
+// clock; data arrives later, in order, and without back-pressure. The whole slot is free before the first command, so each word is stored
+// in the clock in which it arrives.
 //
 // Work side: `request` is a level, which holds with `line` and `slot` until `done` is high for one clock. While `enable` is low, a request
 // ends at once without reading memory. A request that is withdrawn early ends without `done`. Latency: 3 clocks to the first command, 1

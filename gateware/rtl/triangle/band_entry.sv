@@ -10,7 +10,7 @@
 // One multiply_add computes E' and the depth in eight passes, one per clock, and a second multiply_add computes `beside`, the value of E'
 // one lane outside of the group (see raster_pkg):
 //
-//   pass   product              plus           gives
+//   pass   product              plus           result
 //   0, 1   step_y * offset      start          E' in lane 0 of edges 0 and 1
 //   2, 3   step_x * 7           pass 0, 1      E' in lane 7; `beside` from step_x * 8 or -step_x
 //   4      step_y * offset      start          E' in lane 0 of edge 2
@@ -20,10 +20,10 @@
 //
 // `offset` is the number of rows from the triangle's top to `first`. Streams are valid/ready, and ready comes from registers.
 // Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous triangle completes, or is held
-// until the output is free, and the next triangle waits at the input. Triangles leave at least two clocks apart. A triangle without a row
-// in the band is taken and dropped. `in_y0`, the band's first row, and `in_odd`, the parity of the band's number, arrive with the triangle;
-// bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must hold while triangles are
-// inside. With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
+// until the output is free, and the next triangle waits at the input. At least two clocks pass between two triangles at the output. A
+// triangle without a row in the band is taken and dropped. `in_y0`, the band's first row, and `in_odd`, the parity of the band's number,
+// arrive with the triangle; bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must
+// hold while triangles are inside. With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
 
 `default_nettype none
 
@@ -117,8 +117,7 @@ module band_entry #(
         slope = (step[19:0] ^ {20{falls}}) + 20'(falls);
     end
 
-    // Operands of a pass. `c` is selected one clock after `a` and `b`; the results `sum` and `beside` come two
-    // clocks after that.
+    // Operands of a pass. `c` is selected one clock after `a` and `b`; the results `sum` and `beside` are valid two clocks after that.
     logic signed [24:0] a;
     logic signed [17:0] b, b_beside;
     logic signed [47:0] c, sum;

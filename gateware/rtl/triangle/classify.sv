@@ -1,5 +1,5 @@
-// Selects the path of a triangle after the vertex stage (`Renderer::path` of glint-model): the triangle goes to the setup, or its number
-// goes to the firmware's clipper as an exception, or it is dropped.
+// Selects the path of a triangle after the vertex stage (`Renderer::path` of glint-model): the triangle is sent to the setup, or its number
+// is sent to the firmware's clipper as an exception, or the triangle is dropped.
 //
 //   all vertices behind, or none behind and all beyond the same side of the picture   dropped, with a pulse of `unseen`
 //   otherwise, a vertex behind or beyond the guard band                            exception: its number is sent out

@@ -7,7 +7,7 @@
 //                    └─────────────▶ marks ──────── fill ───▶│       │
 //                                                            └───────┘
 //
-// The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order of the
+// The cache is direct-mapped: the low bits of a number select the line. The first stage looks up and replaces tags in the order of the
 // numbers, the second stage fills lines in this order, and the third stage reads lines in this order. A number that hits therefore finds
 // the descriptor of its tag. The FIFO `marks` controls the second stage for each item: fill a line, or pass the item on. After a miss, too,
 // the descriptor is read from its line, so no multiplexer follows the block RAM. An item without a descriptor (`in_end`) passes in order.

@@ -19,8 +19,9 @@
 // exceptions, counts and `full` of the previous mesh; size, addresses and `list_shift` must be equal to those of the previous mesh. The
 // number of an exception is the number of the triangle in its own mesh. After `restart`, `append` has no effect, and the lists are emptied.
 //
-// With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats/line.md, "Segments in memory"): mesh_walk reads
-// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which replace descriptors.
+// With LINES, the flag `lines` selects a frame of segments in memory (docs/formats/line.md, "Segments in memory"). mesh_walk reads the
+// segments like the triangles of a mesh, two words for each segment, and line_setup cuts the segments into pieces, which replace
+// descriptors.
 //
 // The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled triangle, 6 per vertex
 // that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 clocks for each band of the triangle after the

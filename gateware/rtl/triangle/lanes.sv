@@ -7,7 +7,7 @@
 // in all lanes.
 //
 // The division is non-restoring: stages 1 to 3 add 4, 2 and 1 times |step_x| to the remainder, or subtract it, so that the remainder
-// approaches 0. A remainder of at least 0 after stages 1, 2 and 3 gives a 1 in bits 2, 1 and 0 of the quotient, `count` in the table.
+// approaches 0. Bits 2, 1 and 0 of the quotient (`count` in the table) are 1 if the remainder is at least 0 after stage 1, 2 and 3.
 // Depth, line and colour of a group arrive one clock after its other fields, see raster_pkg. `lane_values` computes the depths of the
 // lanes.
 //

@@ -10,9 +10,9 @@
 // the first four are not covered) to the last covered pixel: about five clocks on average, and at most eight. Three multipliers therefore
 // suffice for the divisions; one group per clock would need 24.
 //
-// Groups come from a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives FLIGHT clocks
-// after it is sent (see pipeline_fifo). Latency 2 clocks for a flat group, 13 clocks plus one per pixel for a smooth group; groups stay in
-// order. Output: a valid/ready stream. `idle` is high while no group is inside.
+// The source of the groups is a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives
+// FLIGHT clocks after it is sent (see pipeline_fifo). Latency 2 clocks for a flat group, 13 clocks plus one per pixel for a smooth group;
+// groups stay in order. Output: a valid/ready stream. `idle` is high while no group is inside.
 
 `default_nettype none
 

@@ -16,7 +16,7 @@
 // interpolated with perspective correction, which takes a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then
 // have twice the words.
 //
-// LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments instead of a mesh.
+// LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //
 // FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws only the pixels of a raymarcher: the
 // geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
