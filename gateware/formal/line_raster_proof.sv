@@ -32,8 +32,8 @@ module line_raster_proof (
     logic [BITS-1:0]   came = '0, went = '0, first;
     logic [3:0]        unseen = '0, refused = '0;
 
-    // A piece whose first pixel has a number that is a multiple of 4 has two pixels. The colour of a piece is the number of its first
-    // pixel.
+    // If the number of a piece's first pixel is a multiple of 4, the piece has two pixels, otherwise one. The colour of a piece is the
+    // number of its first pixel.
     assign two   = came[1:0] == '0;
     assign first = went[1:0] == 2'd1 ? went - 1'b1 : went;
 

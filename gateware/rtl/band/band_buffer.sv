@@ -19,10 +19,10 @@
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits.
 // Lane i is written if mask[i] is set and code[i] is at least the stored depth code. With STEREO a group may belong to one eye:
-// `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is written
-// without a depth test, and only the depth of the left eye is stored. The flush composes the colours of both eyes, see band_flush; every
-// pixel must then be drawn for both eyes. Without DEPTHS there is no depth memory: each stored depth counts as 0, so every lane of the
-// mask is written. Throughput one group per clock; band_pipe explains the hazards.
+// `halves` is 1 for the left eye and 2 for the right one, and the corresponding half of each colour is the eye's luminance. Such a group is
+// written without a depth test, and only the depth of the left eye is stored. The flush composes the colours of both eyes, see band_flush;
+// every pixel must then be drawn for both eyes. Without DEPTHS there is no depth memory: each stored depth counts as 0, so every lane of
+// the mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
 // 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups accepted up to and including the first clock

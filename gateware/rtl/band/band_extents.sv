@@ -8,12 +8,12 @@
 //                          │ last, slot 0/1├─────────┘
 //                          └───────────────┘
 //
-// The extent of a line is its first and its last drawn column, a column being eight pixels. The memory `now`, in LUTs, holds the extents of
-// the lines of two bands, one for each colour bank. A group updates the extent of its line in two clocks, a read and a write; if a line's
-// extent is read in the clock of its write, the read returns the written value. The last update ends 2 clocks after its group. The memory
-// `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent has the largest column as its first column
-// and 0 as its last column, so the union of an empty extent and another extent is the other extent. The largest column, all ones, must
-// therefore not be drawn.
+// The extent of a line is its first and its last drawn column. A column is eight pixels wide. The memory `now`, in LUTs, holds the extents
+// of the lines of two bands, one for each colour bank. A group updates the extent of its line in two clocks, a read and a write; if a
+// line's extent is read in the clock of its write, the read returns the written value. The last update ends 2 clocks after its group. The
+// memory `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent has the largest column as its first
+// column and 0 as its last column, so the union of an empty extent and another extent is the other extent. The largest column, all ones,
+// must therefore not be drawn.
 //
 // `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on, the other bank
 // is drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line` of the picture. For

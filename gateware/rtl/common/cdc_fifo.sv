@@ -9,8 +9,8 @@
 //         head ─────┼─▶ head_seen ─┤        the pointers cross in Gray code, through cdc_level: one bit changes at a time, so the
 //      tail_seen ◀──┼───────────  tail      other side sees the pointer from before or after the change
 //
-// An entry is not read before the pointer behind it has crossed, so its content is stable. The pointers have no reset, because a reset of
-// only one side would output stale items.
+// An entry is not read before the `head` that includes this entry has crossed to `out_clk`, so the entry's content is stable. The pointers
+// have no reset, because a reset of only one side would output stale items.
 
 `default_nettype none
 

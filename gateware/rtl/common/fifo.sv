@@ -1,5 +1,5 @@
 // A FIFO for DEPTH + 1 items: DEPTH in LUTRAM and one in the output register. With BLOCK it holds DEPTH + 2 items: DEPTH in block
-// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE, the
+// RAM, one in the read register of the block RAM, whose output is valid late in the clock, and one in the output register. With PAUSE, the
 // read register and the output register hold the same item: the read register keeps the item until it leaves the output register, which
 // therefore needs no enable.
 //

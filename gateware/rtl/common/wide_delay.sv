@@ -1,5 +1,5 @@
-// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs. The module `delay` uses shift registers instead,
-// one LUT per bit. This module is smaller for wide words, because it also needs LUTs for an address counter.
+// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs. The module `delay` uses shift registers, one LUT
+// per bit. Because of its address counter, this module only takes fewer LUTs than `delay` if words are wide.
 //
 //   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
 //

@@ -1,6 +1,6 @@
 // The gesture engine: finds a hand by its colour in the frames of an image sensor. The results of each whole frame are the number, the sums
-// of coordinates and the bounding box of the pixels in the hand's colour. Software computes the hand's centre from them, and filters it
-// (docs/gesture.md; docs/formats/gesture.md, "Gestures").
+// of coordinates and the bounding box of the pixels in the hand's colour. Software computes the hand's centre from these results, and
+// filters the centre (docs/gesture.md; docs/formats/gesture.md, "Gestures").
 //
 //    pclk                              clk
 //   pins ─▶ camera_capture ─▶ cdc_fifo ─▶ item ─▶ colour_window ─▶ frame_check ─┬▶ run_filter ─▶ mask_sums ─▶ results

@@ -17,8 +17,8 @@ package gesture_pkg;
         logic [15:0] data;
     } token_t;
 
-    // The contents of a clock in the pipeline: at most one of the first five bits is set. A line is followed by 14 clocks `blank` and one
-    // `next`, which act as unmarked pixels past its end; a frame is followed by 15 clocks without any of these bits.
+    // The contents of a clock in the pipeline: at most one of the first five bits is set. A line is followed by 14 clocks with `blank` and
+    // one clock with `next`, which act as unmarked pixels after the line's end; a frame is followed by 15 clocks without any of these bits.
     typedef struct packed {
         logic pixel;
         logic line;

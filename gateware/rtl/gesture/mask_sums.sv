@@ -2,8 +2,8 @@
 // of the products of columns and lines. `results` holds the values of the last whole frame.
 //
 // `kept`, `x` and `y` are sampled in every clock. A frame ends with `frame`, at least one clock after its last pixel and at least four
-// before the next `frame`; if `whole` is high in this clock, the frame's sums are in `results` three clocks later, when `latched` is high.
-// No sum of a frame of up to 1280x720 pixels overflows.
+// clocks before the next `frame`; if `whole` is high in this clock, the frame's sums are in `results` three clocks later, when `latched` is
+// high. No sum of a frame of up to 1280x720 pixels overflows.
 
 `default_nettype none
 

@@ -1,9 +1,9 @@
 // Keeps a small picture of one whole frame in block RAM, on request: every 2^step-th pixel of every 2^step-th line, as a bit of the
 // mask or as a colour.
 //
-// A word has 16 pixels of the mask, the first in its highest bit, or one RGB565 colour. Pixels are stored in the order of the frame; pixels
-// that exceed the memory's capacity are dropped. After `start` the next whole frame is kept, and then `ready` rises. `word` is the word at
-// the read position, two clocks after the position was set (`set`) or incremented (`move`).
+// A word contains either 16 pixels of the mask, the first pixel in the highest bit, or one RGB565 colour. Pixels are stored in the order of
+// the frame; pixels that exceed the memory's capacity are dropped. After `start` the next whole frame is kept, and then `ready` rises.
+// `word` is the word at the read position, two clocks after the position was set (`set`) or incremented (`move`).
 
 `default_nettype none
 

@@ -4,7 +4,7 @@
 //
 //   START             start condition, or repeated start within a transaction
 //   WRITE  byte       send a byte and check its acknowledge
-//   READ   count - 1  receive 1 to 256 bytes and acknowledge all but the last, or with `more` all
+//   READ   count - 1  receive 1 to 256 bytes; acknowledge all except the last, or all with `more`
 //   STOP              stop condition, after which the bus stays free for two phases
 //
 //             ┌──────┐   ┌────────────┐   ┌──────┐

@@ -127,7 +127,7 @@ module line_raster (
         pixel.colour <= colour;
         lane         <= column[2:0];
         line_times_5 <= {1'b0, line, 2'd0} + 9'(line);
-        // The depth code is saturated to 1 and to its largest value.
+        // The depth code is clamped to the range from 1 to its largest value.
         pixel.code   <= depth[31:14] | {18{depth[32]}} | 18'(depth[31:15] == '0);
         if (depth[33]) pixel.code <= 18'd1;
 

@@ -3,8 +3,8 @@
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //
-// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks, throughput one depth a clock. The reciprocal is computed
-// as in the module `reciprocal`, but with a separate multiplier for each product.
+// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks, throughput one depth per clock. The reciprocal is
+// computed as in the module `reciprocal`, but with a separate multiplier for each product.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // Table of lower bounds of 1/length, indexed by the first ten bits i of a length: 2^10/(i + 1), u8.9 (docs/formats/raymarch.md, "Rays").
 // It has two read ports.
 //
-// Latency 2 clocks, throughput one result a clock at each port.
+// Latency 2 clocks, throughput one result per clock at each port.
 
 `default_nettype none
 

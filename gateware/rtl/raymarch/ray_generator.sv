@@ -97,10 +97,11 @@ module ray_generator #(
     assign valid[0]  = enters;
     assign busy      = starts || begins || running || !empty;
 
-    // `inverted_start` is ~D at the first column of the next line, for the right eye if `next_eye` is high:
-    // `inverted_row`, ~(y·down), minus `first`. The complements turn the sum D into a subtraction: Yosys puts the selection of the
-    // subtracted value into the LUTs of the subtraction, but uses separate LUTs for the selection of a summand. Both are computed in the
-    // first two clocks of a line (`fresh` is high in the first), so a line must have three columns.
+    // `inverted_row` is ~(y·down). `inverted_start` is ~D at the first column of the next line (of the right eye if `next_eye` is high),
+    // and is computed as `inverted_row` minus `first`. The complements turn the sum D into a subtraction: Yosys puts the selection of the
+    // subtracted value into the LUTs of the subtraction, but uses separate LUTs for the selection of a summand. `inverted_row` and
+    // `inverted_start` are computed in the first two clocks of a line (`fresh` is high in the first), so a line must have at least three
+    // columns.
     logic next_eye;
 
     assign next_eye = STEREO && stereo && !place.eye && !starts;

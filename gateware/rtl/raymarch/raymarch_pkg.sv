@@ -26,7 +26,7 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray before its first step, or a cone of the prepass. `length` is the index of the length of D in the table of inverses
+    // A ray before its first step, or a cone of the prepass. `length` is the index of the length of D in the table of reciprocals
     // (docs/formats/raymarch.md, "Rays"), `start` the first t. In a cone the low bits of `place` are the number of the cone, and
     // `spread` is not 0; in a ray `spread` is 0.
     typedef struct packed {

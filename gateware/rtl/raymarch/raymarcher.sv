@@ -97,8 +97,8 @@ module raymarcher #(
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // Values derived from `size`: the last band, lines of a band, columns (of eight pixels) of a line, rows (of eight
-    // pixels) of a band, and rays of a band.
+    // Values derived from `size`: the number of the last band, and the numbers of lines of a band, of columns (eight pixels wide) of a
+    // line, of rows (of eight pixels) of a band, and of rays of a band.
     logic [5:0]  last_band, lines;
     logic [7:0]  stride;
     logic [10:0] rows;

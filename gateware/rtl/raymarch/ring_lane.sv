@@ -257,7 +257,8 @@ module ring_lane #(
         assign from_early = {1'b0, t_early} + ({24{cones && is_last_early}} & ~{8'b0, footprint});
         wire _unused = &{1'b0, product[15:0]};
     end else begin : rays_alone
-        // The footprint is t, shifted right by `tuning.footprint` bits. This number is 7, or 8 plus the number in its low three bits.
+        // The footprint is t, shifted right by `tuning.footprint` bits. `tuning.footprint` is 7 to 15, so the shift is by 7 bits if bit 3
+        // of `tuning.footprint` is 0.
         assign footprint  = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
         assign wide       = 1'b0;
         assign from_early = {1'b0, t_early};

@@ -2,7 +2,7 @@
 // rounded down (docs/formats/raymarch.md, "Round fields").
 //
 // `index` is 128·x; for an index below 128 the result is the entry of 128. `root` omits the leading bit of the root, which is 1. Latency 2
-// clocks, throughput one result a clock.
+// clocks, throughput one result per clock.
 
 `default_nettype none
 

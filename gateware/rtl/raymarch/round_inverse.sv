@@ -1,7 +1,7 @@
 // Table of lower bounds of 1/sqrt(q), indexed by the first ten bits i of q: sqrt(2^10/(i + 1))·(1 - 2^-16), u8.9
 // (docs/formats/raymarch.md, "Rays").
 //
-// Latency 2 clocks, throughput one result a clock.
+// Latency 2 clocks, throughput one result per clock.
 
 `default_nettype none
 

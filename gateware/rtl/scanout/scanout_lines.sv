@@ -6,9 +6,8 @@
 //   1. if the hidden slot holds the source line that the next output line needs, the slots are exchanged;
 //   2. otherwise, if the next output line is the first one that needs this source line, an underflow occurs: the shown slot is shown again,
 //      or black if no slot has been shown in this frame. Later output lines of the same source line check the slot again;
-//   3. if the hidden slot is free, the source line after the needed source line is requested, even after an underflow. During vertical
-//      blanking
-//      line 0 is requested, as soon as the frame's parameters are latched (`frame_begun`).
+//   3. if the hidden slot is free, the source line after the needed source line is requested, even after an underflow. During the vertical
+//      blanking, line 0 is requested as soon as the parameters of the next frame are latched (`frame_begun`).
 //
 // A slot is written only while it is hidden, and a frame only shows lines requested after its vblank, so the screen never mixes frames. A
 // slow fetch delays later fetches, but never the video timing. `fetch_line` and `fetch_slot` are stable from `fetch` until `fetch_busy`
@@ -55,8 +54,8 @@ module scanout_lines #(
         next_exists = (tick_line | group_mask) != Y_BITS'(V_ACTIVE - 1);
     end
 
-    // `frame_open` is high from `frame_begun` to the next vertical blanking. `hidden_asked` is high if a fetch into the hidden
-    // slot was requested in this frame, `hidden_ready` if it has also ended with the needed line.
+    // `frame_open` is high from `frame_begun` to the next vertical blanking. `hidden_asked` is high if a fetch into the hidden slot was
+    // requested in this frame. `hidden_ready` is high if this fetch has also ended, and the fetched line is the needed line.
     logic frame_open, hidden_asked, hidden_ready;
     assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
 

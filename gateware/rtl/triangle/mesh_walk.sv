@@ -5,7 +5,7 @@
 // chunk, so the next chunk begins only when this pipeline is empty (`drained`). This wait takes some hundred clocks for each chunk of up to
 // 65,535 vertices. Throughput within a chunk: one triangle per clock, unless memory is slower.
 //
-// `start` (one clock, not while `busy`) begins at `first`, the address of the mesh's first chunk; `past` is the address
+// `start` (one clock, not while `busy`) begins the walk at `first`, the address of the mesh's first chunk; `past` is the address
 // of the first word after the mesh. A chunk that has no vertices or extends beyond `past` ends the walk with `error`, which holds
 // until the next start.
 

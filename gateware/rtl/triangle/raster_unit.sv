@@ -17,8 +17,8 @@
 // luminances of two eyes become colours, see band_flush.
 //
 // With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of
-// the lists: when a piece follows a triangle or a triangle a piece, the next item waits about 30 clocks until the last group of the
-// previous items is taken.
+// the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
+// the previous items is taken.
 //
 // Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
 // must then be low, and the unit reads no memory.

@@ -3,7 +3,7 @@
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
-//   9    m comes                 11, 14    −m·y0 and y0·e0'
+//   9    m arrives               11, 14    −m·y0 and y0·e0'
 //   25   y is valid, until 30    18, 21    −m·y1 and y1·e1'
 
 `default_nettype none

@@ -12,20 +12,20 @@
 // The walker misses no covered group. The covered columns of a row reach from a column a to a column b: edges with step_x > 0
 // (rising) have E' >= 0 from column a on, edges with step_x < 0 (falling) up to column b; a horizontal edge passes everywhere
 // in the row or nowhere.
-//  * An edge that fails at both ends of a group fails in the whole group. If the edge rises, column a is further right; if it falls,
+//  * An edge that fails at both ends of a group fails in the whole group. If such an edge rises, column a is further right; if it falls,
 //    column b is further left. The covered columns lie on that side. The row is empty if two failing edges point to different
 //    sides, if the direction returns to a group where an edge has failed or leaves the bounds, or if a horizontal edge fails.
 //    Seeking therefore never abandons a row with coverage, and never ends in a group without coverage in such a row:
-//  * in a group of the columns g0…g7 in which every edge passes in at least one lane, a <= g7 and b >= g0. In a row with coverage (a <= b)
-//  the covered columns of the
-//    group are therefore max(a, g0)…min(b, g7). In an empty row the group is sent without coverage, and the row is done.
+//  * In a group of the columns g0…g7 in which every edge passes in at least one lane, a <= g7 and b >= g0. In a row with coverage
+//    (a <= b) the covered columns of the group are therefore max(a, g0)…min(b, g7). In an empty row the group is sent without coverage,
+//    and the row is done.
 //  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if lane 8 is
-//  covered. In a group in which every edge passes in at least one lane, the rising edges determine whether lane -1 is covered, and the
-//  falling edges whether lane 8 is covered: the E' of all other edges in that lane is at least as large as in any lane of the group. No
-//  edge therefore fails in a whole group that is reached in this way. A group is sent at most once: seeking visits only groups that have
-//  not been sent, and both directions lead away from the first group. A row begins at the first group of the row above, or, if the row
-//  above was
-//  empty, at the last group that was visited in that row. Any start within the bounds is correct.
+//    covered. In a group in which every edge passes in at least one lane, the rising edges determine whether lane -1 is covered, and the
+//    falling edges whether lane 8 is covered: the E' of all other edges in that lane is at least as large as in any lane of the group.
+//    No edge therefore fails in a whole group that is reached in this way.
+// A group is sent at most once: seeking visits only groups that have not been sent, and both directions lead away from the first group. A
+// row begins at the first group of the row above, or, if the row above was empty, at the last group that was visited in that row. Any
+// start within the bounds is correct.
 //
 // The walker stays within group_left…group_right and the rows, so edge functions are evaluated at most one pixel outside of the
 // picture and fit 34 bits.

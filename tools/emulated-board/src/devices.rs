@@ -186,8 +186,8 @@ impl Devices {
         self.next.into_iter().min().unwrap_or(u64::MAX)
     }
 
-    /// Processes events while the CPU sleeps, until an interrupt line changes or the cycle `end` is reached. Returns the cycle at that
-    /// time.
+    /// Processes events while the CPU sleeps, until an interrupt line changes or the cycle `end` is reached. Returns the cycle in which
+    /// this happens.
     pub fn sleep(&mut self, end: u64, ram: &mut MainMemory) -> u64 {
         let lines = self.lines;
         loop {

@@ -467,7 +467,7 @@ mod tests {
         let end = |round: u64| (round + 1) * ROUND - 1;
         i2c.advance(end(2), &mut ram);
         i2c.write(offset::ROUNDS, rounds(ROUND, 0).bits(), end(2), &mut ram);
-        // Two of the rounds count, and the count has four bits.
+        // Two rounds have been counted. The count has four bits, so it is 0 again after 14 further rounds.
         i2c.advance(end(16), &mut ram);
         assert!(!i2c.interrupt());
         i2c.advance(end(17), &mut ram);

@@ -26,7 +26,7 @@ pub struct Target {
 }
 
 /// Measures the errors during a rotation at one count of the gyroscope, which lasts the fraction `part` of a day. This measurement takes
-/// longer than all other measurements together.
+/// longer than every other measurement.
 pub fn one_count(part: f64) -> Largest {
     against_f64(Sensor::ideal(1000.0), COUNT, part * DAY, false)
 }
