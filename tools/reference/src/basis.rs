@@ -9,7 +9,7 @@ pub fn of(view: &View) -> [Vector; 3] {
     [view.u(), view.v(), view.n()].map(|row| row.map(|x| x.to_num()))
 }
 
-/// The largest deviation of a length from 1, and the largest scalar product of two of the vectors.
+/// Returns the largest deviation of a vector's length from 1, and the largest scalar product of two vectors.
 pub fn errors([u, v, n]: [Vector; 3]) -> [f64; 2] {
     let lengths = [u, v, n].map(|row| (dot(row, row).sqrt() - 1.0).abs());
     let angles = [dot(u, v), dot(v, n), dot(n, u)].map(f64::abs);

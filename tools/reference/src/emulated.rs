@@ -34,7 +34,7 @@ pub fn start() -> Result<Emulated> {
     Ok(board::emulated(firmware()?)?)
 }
 
-/// Number of clock cycles in a time in milliseconds.
+/// Returns the number of clock cycles of a time in milliseconds.
 pub fn cycles(board: &mut Emulated, milliseconds: u64) -> u64 {
     u64::from(board.inner().clock_hz()) / 1000 * milliseconds
 }
@@ -75,6 +75,6 @@ pub fn view(board: &mut Emulated) -> Result<View> {
 /// # Errors
 /// The connection is broken.
 pub fn begin(board: &mut Emulated, command: &str) -> Result<()> {
-    // A zero byte first drops an unfinished line, as in the console.
+    // The zero byte at the start makes the firmware discard an unfinished line, as the host's console does.
     Ok(board.write(format!("\0{command}\r").as_bytes())?)
 }

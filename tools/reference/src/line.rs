@@ -6,7 +6,7 @@
 
 use crate::triangle::exact::{DEPTH_STEPS, ExactDepth, SUBPIXELS, SnappedVertex};
 
-/// Steps per subpixel: positions are computed in 2^-46 subpixel.
+/// Number of steps per subpixel: positions are computed in units of 2^-46 subpixel.
 const STEPS: i128 = 1 << 46;
 /// ε and ε² in units of 1/`STEPS`: 2^-23 and 2^-46 subpixel. Every decision is the sign of i + j·ε + k·ε² with integers i, j and k,
 /// where |j|, |k| ≤ 2^22: a factor of ε is the sum of two differences of end points, of 21 bits each.
@@ -20,7 +20,7 @@ const NORMALS: [[i128; 2]; 4] = [[1, 1], [1, -1], [-1, 1], [-1, -1]];
 pub struct Rectangle {
     /// First column and row.
     pub from: [i64; 2],
-    /// Column and row after the last.
+    /// Column and row after the last ones.
     pub to: [i64; 2],
 }
 
@@ -62,7 +62,7 @@ impl ExactSegment {
         if NORMALS.iter().all(|&normal| distance(self.end, normal) > 0) {
             return false;
         }
-        // The open interval (low, high) of the path's parameter within the diamond, in units of 2^-46.
+        // The open interval (low, high) of the segment's parameter within the diamond, in units of 2^-46.
         let mut low = Fraction(-STEPS, 1);
         let mut high = Fraction(2 * STEPS, 1);
         for normal in NORMALS {
@@ -77,7 +77,8 @@ impl ExactSegment {
         low.is_below(high) && low.is_below(Fraction(STEPS, 1)) && Fraction(0, 1).is_below(high)
     }
 
-    /// Calls `visit` for each pixel of the segment in a rectangle, in any order. Skips parts of the rectangle without an intersection.
+    /// Calls `visit` for each pixel of the segment in a rectangle, in any order. Skips parts of the rectangle that the segment does not
+    /// intersect.
     pub fn for_each_pixel(&self, rectangle: Rectangle, visit: &mut impl FnMut([i64; 2])) {
         let Rectangle { from, to } = rectangle;
         let size = [to[0] - from[0], to[1] - from[1]];
@@ -116,8 +117,8 @@ impl ExactSegment {
         !apart && sides.iter().any(|&side| side != sides[0] || side == 0)
     }
 
-    /// The depth at a pixel's centre: linear along the major axis, which is horizontal if the end points are at least as far
-    /// apart horizontally as vertically. The end points must be at different positions.
+    /// Returns the depth at a pixel's centre, which is linear along the major axis. The major axis is horizontal if the end points differ
+    /// at least as much horizontally as vertically. The end points must be at different positions.
     pub fn depth(&self, pixel: [i64; 2]) -> ExactDepth {
         let axis = usize::from(self.way[0].abs() < self.way[1].abs());
         let [from, to] = self.ends;

@@ -8,7 +8,7 @@
 //! - [`raymarched`]: pictures of Glint's raymarcher, in the form that `metrics` compares.
 //! - [`variant`]: other marching methods, for comparisons of their cost.
 //!
-//! For a ray that only touches a solid, or lies in the plane of one of its faces, both a hit and a miss are correct.
+//! If a ray only touches a solid, or lies in the plane of a face of the solid, a hit and a miss are both correct.
 
 mod distance;
 mod grid;

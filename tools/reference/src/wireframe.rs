@@ -10,11 +10,11 @@ use crate::camera::Vector;
 /// An implementation of motions of end points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Each frame moves the points of the program by the whole motion: [`Motion`].
+    /// Each frame applies the whole motion to the points of the program: [`Motion`].
     DriftFree,
     /// Each step moves the end points in Q5.11, rounded to nearest: [`accumulate`].
     Nearest,
-    /// As `Nearest`, but each product is rounded down, as by a shifter.
+    /// Like `Nearest`, but each product is rounded down, as a shifter does.
     Truncated,
 }
 
@@ -89,8 +89,8 @@ pub struct Drift {
 /// Moves the corners of a cube of side 4 about the origin by a session's steps, and returns the errors after each number of steps
 /// in the ascending list `after`.
 ///
-/// The exact position is rotated in f64 at each step, by the angle of the simulator's cosine and sine. A step impossible in Q5.11
-/// is skipped, and so becomes an error.
+/// The exact position is rotated in f64 at each step, by the angle of the simulator's cosine and sine. A step that is not possible in Q5.11
+/// is skipped, which counts as an error.
 pub fn drift(form: Form, session: Session, after: &[u32]) -> Vec<Drift> {
     let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -2.0 } else { 2.0 });
     let start: Vec<Vector> = (0..8).map(corner).collect();

@@ -110,7 +110,7 @@ enum Page {
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
     },
-    /// Breakdown of the cycles of a frame of each scene: soft core, engine passes, memory, evaluations
+    /// Cycles of a frame of each scene by cause: soft core, engine passes, memory, evaluations
     Timeline {
         /// Measure only scenes whose name contains TEXT
         #[arg(long, value_name = "TEXT")]
@@ -360,7 +360,7 @@ fn measure_quality(
     Ok(())
 }
 
-/// Makes all long runs, or only the run of the table `study`.
+/// Executes all long runs, or only the run of the table `study`.
 fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Result<()> {
     let is_selected = |name: &str| study.is_none_or(|study| study == name);
     let (turns, hours) = if quick { (4, 0.24) } else { (400, hours) };
@@ -384,7 +384,7 @@ fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Re
     Ok(())
 }
 
-/// Runs the cases and prints the outcomes that differ from the catalogue. Only cases of the host have errors.
+/// Runs the cases and prints the outcomes that differ from the catalogue. Errors are only measured in cases that run on the host.
 fn measure_stiff(only: Option<&str>, on_virtual_board: bool, to: &Folder) -> Result<()> {
     let part = match on_virtual_board {
         false => stiff::Part::Host,

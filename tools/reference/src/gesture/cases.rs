@@ -23,7 +23,7 @@ pub enum Fault {
     Everything,
     /// One pixel of the hand's colour.
     OnePixel,
-    /// The hand is cut by the frame's border.
+    /// The hand extends beyond the frame's border.
     Border,
     /// The hand leaves and returns at another position.
     Elsewhere,
@@ -44,7 +44,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All of them.
+    /// All faults.
     pub const ALL: [Self; 12] = [
         Self::Nothing,
         Self::OnePixel,
@@ -60,7 +60,7 @@ impl Fault {
         Self::Stopped,
     ];
 
-    /// Description for people.
+    /// Description of the fault for tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Nothing => "no pixel",
@@ -86,17 +86,17 @@ pub struct CaseResult {
     pub presence: Presence,
     /// Reason for not using the last frame of the fault; `None` if it was used.
     pub doubt: Option<Doubt>,
-    /// Largest angle in degrees between the camera's directions during and before the fault.
+    /// Largest angle between a direction of the camera during the fault and its direction before the fault, in degrees.
     pub moved: f64,
-    /// Time in ms from the end of the fault until the hand steers the camera again; 0 if it always did.
+    /// Time in ms from the end of the fault until the hand steers the camera again; 0 if the hand already steers the camera then.
     pub back: f64,
-    /// Largest rotation of the camera in degrees between successive frames, from the fault's beginning on.
+    /// Largest rotation of the camera between successive frames, from the fault's beginning on, in degrees.
     pub step: f64,
-    /// Angle in degrees between the directions of camera and hand at the end.
+    /// Angle between the directions of the camera and of the hand at the end of the case, in degrees.
     pub end: f64,
 }
 
-/// Runs a case: a hand at rest with sensor noise, a fault of a second, then the hand again.
+/// Runs a case: a hand at rest with sensor noise, then a fault for one second, then the hand again.
 pub fn outcome(fault: Fault) -> CaseResult {
     let mut random = Pcg64Mcg::seed_from_u64(5);
     let noise = Noise::SENSOR;
@@ -146,7 +146,7 @@ pub fn outcome(fault: Fault) -> CaseResult {
             Fault::OnePixel => Some(Frame::of([(100, 110)]).statistics(setting)),
             Fault::Everything => Some(Frame::full().statistics(setting)),
             Fault::Border => {
-                // The hand moves there within half a second.
+                // The hand moves to the border within half a second.
                 let part = ((seconds - FAULT[0]) * 2.0).min(1.0);
                 Some(draw(&[hand.moved([-100.0 * part, 0.0])], &noise))
             }

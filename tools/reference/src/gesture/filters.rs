@@ -18,7 +18,7 @@ pub enum Filter {
     LowPass(f64),
     /// α-β filter with tracking index λ (Kalata, 1984).
     AlphaBeta(f64),
-    /// 1€ filter: corner frequency at rest and of the speed's low pass in Hz, and slope in Hz per turn per second.
+    /// 1€ filter: corner frequency at rest in Hz, corner frequency of the speed's low pass in Hz, and slope in Hz per (turn per second).
     OneEuro([f64; 3]),
     /// The firmware's filter: 1€ filter and dead zone with the firmware's constants.
     Shipped,
@@ -37,7 +37,7 @@ enum Channel {
     Shipped(OneEuro, Backlash),
 }
 
-/// Gains α and β for the tracking index λ, the ratio of the path's accelerations to the noise (Kalata, 1984).
+/// Returns the gains α and β for the tracking index λ, which is the ratio of the path's accelerations to the noise (Kalata, 1984).
 pub fn kalata(index: f64) -> [f64; 2] {
     let r = (4.0 + index - (8.0 * index + index * index).sqrt()) / 4.0;
     let alpha = 1.0 - r * r;
@@ -86,7 +86,7 @@ impl Filter {
         }
     }
 
-    /// Makes the filter of one channel, settled at `input`.
+    /// Creates the filter of one channel, in its steady state for the input `input`.
     fn at(self, input: Q4_28) -> Channel {
         match self {
             Self::None => Channel::None,
@@ -114,7 +114,7 @@ impl Filter {
         }
     }
 
-    /// Filters the targets of samples at a rate in frames per second; returns azimuth and polar angle in turns.
+    /// Filters the targets of samples, which have the rate `rate` in frames per second. Returns azimuth and polar angle in turns.
     pub fn run(self, samples: &[Sample], rate: f64) -> Vec<[f64; 2]> {
         let step = TimeStep::new((1e6 / rate).round() as u32);
         let Some(first) = samples.first() else {
@@ -156,11 +156,11 @@ impl Channel {
 /// Errors of a filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// RMS in degrees of the camera's motion about its mean while the hand rests.
+    /// RMS deviation of the camera's direction from its mean while the hand rests, in degrees.
     pub rest: f64,
     /// Lag in ms behind a steady motion.
     pub lag: f64,
-    /// RMS in degrees of the deviation from the true position during reaches.
+    /// RMS deviation from the true position during reaches, in degrees.
     pub tracking: f64,
     /// Largest deviation from the true position during reaches, in degrees.
     pub largest: f64,
@@ -172,7 +172,7 @@ pub struct Recordings {
     pub rate: f64,
     /// A hand at rest.
     pub rest: Vec<Sample>,
-    /// A steady motion, without the frames of the jump back.
+    /// A steady motion, without the frames in which the hand jumps back to its start.
     pub sweep: Vec<Sample>,
     /// Reaches.
     pub reaches: Vec<Sample>,
@@ -204,7 +204,7 @@ pub fn quality(filter: Filter, recordings: &Recordings) -> Quality {
     }
 }
 
-/// RMS in degrees of the deviation of azimuths and polar angles (in turns) from their mean.
+/// Returns the RMS deviation, in degrees, of azimuths and polar angles (in turns) from their mean.
 pub fn motion(angles: &[[f64; 2]]) -> f64 {
     let mean = [0, 1]
         .map(|axis| angles.iter().map(|angle| angle[axis]).sum::<f64>() / angles.len() as f64);

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::imu::sensor::normal;
 
-/// Columns and rows of a frame.
+/// Numbers of columns and rows of a frame.
 pub const SIZE: [u16; 2] = [320, 240];
 const COLUMNS: usize = SIZE[0] as usize;
 const ROWS: usize = SIZE[1] as usize;
@@ -20,7 +20,7 @@ pub enum Shape {
     Hand,
 }
 
-/// The fingers in units of the palm's radius: for each, the fingertip from the palm's centre, and half the width.
+/// The fingers, in units of the palm's radius: for each finger, the fingertip's position relative to the palm's centre, and half the width.
 const FINGERS: [([f64; 2], f64); 5] = [
     ([-0.8, -1.9], 0.27),
     ([-0.3, -2.2], 0.27),
@@ -62,7 +62,7 @@ impl Shape {
 /// A hand in a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn {
-    /// Its outline.
+    /// Outline of the hand.
     pub shape: Shape,
     /// Coordinates of the palm's centre, in pixels.
     pub palm: [f64; 2],
@@ -109,7 +109,7 @@ impl Noise {
         pepper: 0.0,
         edge: 0.0,
     };
-    /// The noise of the measurements: 5 % false pixels, and outlines with a deviation of 0.3 pixels.
+    /// The noise of the measurements: 5 % false pixels, and a standard deviation of 0.3 pixels of the outlines.
     pub const SENSOR: Self = Self {
         salt: 0.05,
         pepper: 0.0,
@@ -117,7 +117,7 @@ impl Noise {
     };
 }
 
-/// The mask of a frame's pixels with the hand's colour.
+/// A frame as the mask of the pixels that have the hand's colour.
 #[derive(Clone, Debug)]
 pub struct Frame {
     mask: Vec<bool>,
@@ -131,7 +131,7 @@ impl Frame {
             let [x, y] = [place % COLUMNS, place / COLUMNS].map(|i| i as f64);
             let distance = hands.iter().map(|hand| {
                 let [dx, dy] = [x - hand.palm[0], y - hand.palm[1]].map(|d| d / hand.radius);
-                // All shapes lie within three radii.
+                // Every shape lies within three radii of its centre.
                 if dx.abs().max(dy.abs()) > 4.0 {
                     return f64::INFINITY;
                 }
@@ -217,9 +217,9 @@ impl Frame {
 /// Measures the centre in successive frames of a hand at rest.
 const FRAMES: u32 = 8;
 
-/// Errors in pixels of the centre from the statistics against the noise-free centre in f64, over `places` random positions of a
-/// hand of `area` pixels, with several frames each. `setting` makes the engine's settings from the previous frame's bounds, as
-/// the control does; the first frame uses the noise-free hand's bounds.
+/// Returns the errors, in pixels, of the centre that is computed from the statistics, compared with the noise-free centre in f64. The hand
+/// has `area` pixels and is placed at `places` random positions, with several frames at each position. `setting` computes the engine's
+/// settings from the bounds in the previous frame, as the control does; for the first frame, from the bounds of the noise-free hand.
 pub fn centre_errors(
     shape: Shape,
     area: f64,

@@ -15,7 +15,7 @@ pub const AREA: f64 = 2_000.0;
 pub enum Path {
     /// Rest at a position off the pixel grid.
     Rest,
-    /// A steady motion to the right over 200 pixels, at this speed in pixels per second, then back to the start.
+    /// A steady motion to the right over 200 pixels, at this speed in pixels per second, then a jump back to the start.
     Sweep(f64),
     /// Reaches: minimum-jerk motions, as of an arm, of 0.5 s each between positions, followed by rests of 0.3 s.
     Reaches,
@@ -108,7 +108,7 @@ pub fn record(path: Path, noise: &Noise, rate: f64, seconds: f64) -> Vec<Sample>
     samples
 }
 
-/// Angle in degrees between the directions of two pairs of azimuth and polar angle in turns.
+/// Returns the angle, in degrees, between two directions. Each direction is an azimuth and a polar angle in turns.
 pub fn between(a: [f64; 2], b: [f64; 2]) -> f64 {
     let direction = |[theta, phi]: [f64; 2]| {
         let [theta, phi] = [theta, phi].map(|turns| turns * std::f64::consts::TAU);

@@ -68,13 +68,14 @@ pub struct Estimator {
     filter: Filter,
     gyro_lsb: f64,
     accel_lsb: f64,
-    /// Assumed bias, subtracted from the gyroscope's rates, in rad/s.
+    /// Assumed bias of the gyroscope, which is subtracted from its rates, in rad/s.
     bias: Vector,
     integrator: Integrator,
     last: Option<u64>,
     /// Attitude at the first sample, for a filter that ignores the accelerometer.
     start: Quaternion,
-    /// Time constant in use, in seconds. It grows from a small value to the time constant of `filter`, for fast settling of the tilt.
+    /// Time constant in use, in seconds. The time constant grows from a small value to the time constant of `filter`, so that the tilt
+    /// settles fast.
     age: f64,
     /// Correction from the accelerometer's last reading, applied in the next step: half the rotation angle about each body axis,
     /// in radians.
@@ -86,7 +87,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// Makes an estimator before its first sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
+    /// Creates an estimator that has not processed a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,
@@ -151,7 +152,7 @@ impl Estimator {
     fn advance(&mut self, rate: Vector, force: Vector, step: f64) {
         let correction = std::mem::take(&mut self.correction);
         self.integrator.advance_corrected(rate, step, correction);
-        // The reading is from the end of this step, so it is compared with the attitude after the step.
+        // The accelerometer is read at the end of this step, so its reading is compared with the attitude after the step.
         let up = self.integrator.attitude().up();
         let strength = dot(force, force).sqrt();
         let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
@@ -218,7 +219,7 @@ impl Estimator {
         }
     }
 
-    /// Returns the fraction of the tilt error corrected by a step of `step` seconds, for the time constant `tau`. For about the
+    /// Returns the fraction of the tilt error that a step of `step` seconds corrects, for the time constant `tau`. For about the
     /// first `tau` seconds, the time constant in use is shorter: the filter is nearly a running mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {

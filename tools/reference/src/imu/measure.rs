@@ -37,7 +37,7 @@ fn bias(sensor: &Sensor) -> [f64; 3] {
 /// Largest errors of the firmware's attitude during a motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
-    /// Angle in degrees between the firmware's attitude and the attitude by the same method in f64 from the same samples.
+    /// Angle between the firmware's attitude and the attitude that the same method in f64 computes from the same samples, in degrees.
     pub angle: f64,
     /// Deviation of the length of the firmware's quaternion from 1.
     pub norm: f64,
@@ -82,10 +82,10 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
 
 /// Assumed residual error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and z.
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
-/// Start of the counted errors of the inclination, in seconds.
+/// Time from which errors of the inclination are counted, in seconds.
 const SETTLED: f64 = 10.0;
 
-/// Computes the errors of the firmware's inclination in degrees, when the bias assumed by the firmware is wrong by [`LEFT_BIAS`].
+/// Computes the errors of the firmware's inclination in degrees, if the bias that the firmware assumes is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.
@@ -106,7 +106,7 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     errors
 }
 
-/// Computes the errors of an f64 filter's inclination in degrees, when the bias assumed by the filter is wrong by [`LEFT_BIAS`].
+/// Computes the errors of an f64 filter's inclination in degrees, if the bias that the filter assumes is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.

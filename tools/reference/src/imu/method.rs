@@ -21,8 +21,8 @@ pub enum Method {
     Parabola,
     /// Integrates the cubic through the last four samples, with the firmware's coning term.
     Cubic,
-    /// As `Cubic`, but with the exact coefficient of the coning term for the cubic. The firmware's coefficient differs, for a
-    /// smaller error.
+    /// As `Cubic`, but with the exact coefficient of the coning term for the cubic. The firmware's coefficient differs from the exact one,
+    /// which reduces the error.
     PlainCubic,
 }
 
@@ -87,7 +87,7 @@ impl Integrator {
         }
     }
 
-    /// Restarts the interpolation of the rate at `rate`, as if no earlier sample existed. The attitude stays.
+    /// Restarts the interpolation of the rate at `rate`, as if no earlier sample existed. The attitude does not change.
     pub fn restart(&mut self, rate: Vector) {
         self.last = rate;
         self.steps = 0;
@@ -115,7 +115,7 @@ impl Integrator {
     }
 
     /// As [`Self::advance`], with an additional small rotation. `correction` is half the small rotation's angle about each body
-    /// axis, in radians. `Method::Angles` and `Method::FirstOrder` ignore it.
+    /// axis, in radians. `Method::Angles` and `Method::FirstOrder` ignore the additional rotation.
     pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
         match self.method {
             Method::Angles => {

@@ -49,9 +49,9 @@ pub enum Motion {
         /// Frequency of the square wave, in Hz.
         frequency: f64,
     },
-    /// Hand motion about the wrist at 10 cm from the sensor, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.
+    /// Hand motion about the wrist, which is 10 cm from the sensor; mostly sideways, with 0.5 to 2 Hz and up to 300 °/s.
     Hand,
-    /// Hand motion about the wrist at 10 cm from the sensor, mostly up and down.
+    /// Hand motion about the wrist, which is 10 cm from the sensor; mostly up and down.
     Nod,
     /// Motion of a walking person: accelerations of ±3 m/s² vertically and ±1.5 m/s² fore and aft, both at 2 Hz, and 10 m/s²
     /// upwards for 50 ms at every footstep.
@@ -157,8 +157,8 @@ impl Motion {
         })
     }
 
-    /// Returns the exact reading of an accelerometer along the body's axes at time `t`, in g. In a pure rotation the reading is
-    /// gravity alone; without a closed form of the attitude, gravity along the body's z axis.
+    /// Returns the exact reading of an accelerometer along the body's axes at time `t`, in g. For a pure rotation the reading is gravity
+    /// alone. If the attitude has no closed form, gravity is assumed along the body's z axis.
     pub fn force(self, t: f64) -> Vector {
         let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
         let [x, y, z] = self.acceleration(t);
@@ -172,7 +172,7 @@ impl Motion {
     fn acceleration(self, t: f64) -> Vector {
         match self {
             Self::Hand | Self::Nod => {
-                // Second derivative of the position by a difference quotient, with a negligible error of about 1e-6 m/s².
+                // A difference quotient approximates the second derivative of the position, with a negligible error of about 1e-6 m/s².
                 let step = 1e-3;
                 let [a, b, c] = [t - step, t, t + step].map(|t| {
                     let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);

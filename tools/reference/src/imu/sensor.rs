@@ -31,7 +31,8 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// Makes a sensor with ranges of ±2000 °/s and ±8 g and no error but the rounding to counts. It takes `rate` samples per second.
+    /// Creates a sensor with ranges of ±2000 °/s and ±8 g that measures `rate` samples per second. Its only error is the rounding to
+    /// counts.
     pub fn ideal(rate: f64) -> Self {
         Self {
             gyro_lsb: 16.4,
@@ -46,7 +47,7 @@ impl Sensor {
         }
     }
 
-    /// Makes a sensor with the noise and bias measured in logged samples of a real sensor.
+    /// Creates a sensor with the noise and the bias of a real sensor, which were measured in logged samples.
     pub fn real(rate: f64) -> Self {
         Self {
             bias: [4.5, 0.05, 1.1],

@@ -95,7 +95,7 @@ fn surface(setup: &FieldSetup, rays: &mut Rays, eye: usize, x: u32, y: u32) -> (
     (Seen::Surface { face, sphere }, code)
 }
 
-/// Draws the triangles of a frame, with the index of each triangle in the returned list, from 1, as its colour.
+/// Draws the triangles of a frame. The colour of a triangle is its index in the returned list, counted from 1.
 fn draw_triangles(frame: &Frame, buffer: &mut Picture) -> Result<Vec<Seen>> {
     ensure!(frame.stereo.is_none(), "expected meshes for one eye");
     let flat = |subject| MeshSubject {
@@ -103,7 +103,7 @@ fn draw_triangles(frame: &Frame, buffer: &mut Picture) -> Result<Vec<Seen>> {
         ..subject
     };
     let objects = frame.subject.objects();
-    // In full ambient light a flat triangle has its object's colour, here the object's index.
+    // In full ambient light a flat triangle has its object's colour, which is the object's index here.
     let numbered = objects.unwrap_or_default().iter().zip(0..);
     let numbered = numbered.map(|(object, number)| Object {
         subject: flat(object.subject),

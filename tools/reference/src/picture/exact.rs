@@ -141,7 +141,7 @@ struct Lit {
 }
 
 impl Lit {
-    /// Light on a surface with this outward normal: at most 1 of each channel.
+    /// Returns the light on a surface with this outward normal, at most 1 per channel.
     fn on(&self, normal: Vector) -> Vector {
         let mut sum = self.ambient;
         for (towards, colour) in &self.lights {
@@ -258,7 +258,7 @@ impl Placed<'_> {
         units.map(|part| part as f64 / 38f64.exp2())
     }
 
-    /// A colour of the mesh in the light on the front or back face.
+    /// Returns a colour of the mesh, multiplied by the light on the front or back face.
     fn shade(&self, normal: [i16; 3], colour: Rgb565, is_front: bool) -> Vector {
         let normal = self.normal(normal);
         let normal = match is_front {
@@ -268,7 +268,8 @@ impl Placed<'_> {
         product(full(self.colour.unwrap_or(colour)), self.light.on(normal))
     }
 
-    /// A normal of the mesh in world coordinates, by the inverse transpose of the matrix, scaled to its original length.
+    /// Returns a normal of the mesh in world coordinates: it is multiplied by the inverse transpose of the matrix, and scaled to its
+    /// original length.
     fn normal(&self, normal: [i16; 3]) -> Vector {
         let normal = normal.map(|part| f64::from(part) / 16384.0);
         let rows = self.matrix.linear();

@@ -21,7 +21,7 @@ use crate::errors::Errors;
 /// Errors of a picture as displayed on a monitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Share of the pixels at which an eye sees another surface than in the reference: another triangle, face, object or sphere,
+    /// Fraction of the pixels at which an eye sees a different surface than in the reference: a different triangle, face, object or sphere,
     /// or a surface instead of the background.
     pub wrong: f64,
     /// RMS of the errors of red, green and blue, in steps of 1/255.

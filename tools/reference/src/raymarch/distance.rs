@@ -47,7 +47,8 @@ impl Plane {
     }
 }
 
-/// Returns the signed distance of a point from a box about the origin, in the maximum norm. `half` has half of the box's side lengths.
+/// Returns the signed distance of a point from a box about the origin, in the maximum norm. `half` contains half of the box's side length
+/// along each axis.
 fn box_distance(half: Vector, p: Vector) -> f64 {
     let beyond = |axis: usize| p[axis].abs() - half[axis];
     beyond(0).max(beyond(1)).max(beyond(2))
@@ -70,10 +71,11 @@ fn smooth_minimum(k: f64, a: f64, b: f64) -> f64 {
 ///
 /// Each level divides a cube into 27 cubes of side s, with centres at coordinates 0 and ±s. The point is mirrored to positive coordinates.
 /// Then the centre of the corner cube at (s, s, s) becomes the origin and each axis is reversed, which moves the middle of the divided cube
-/// to (s, s, s). Of the three edge cubes, in the middle along one axis, only the cube in the middle along the axis of the largest
-/// coordinate can be nearest. So this coordinate is mirrored or shifted to move the centre of the nearer of this cube and the corner cube
-/// to the origin. The cubes in the middle along two or three axes are holes. Each step (a fold) keeps lengths on either side of a plane and
-/// is continuous across the plane. So the mapped point's distance changes by at most the movement of the original point.
+/// to (s, s, s). An edge cube is in the middle along one axis. Of the three edge cubes, only the cube in the middle along the axis of the
+/// largest coordinate can be nearest. This coordinate is therefore mirrored or shifted, which moves the centre of this edge cube or of the
+/// corner cube, whichever is nearer, to the origin. The cubes in the middle along two or three axes are holes. Each step (a fold) keeps
+/// lengths on either side of a plane and is continuous across the plane. So the mapped point's distance changes by at most the movement of
+/// the original point.
 fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     let side = 3f64.powi(depth as i32);
     let mut p = p.map(|c| c * side / 2.0);

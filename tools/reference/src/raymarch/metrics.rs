@@ -15,8 +15,8 @@ pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
     /// Whether the pixel is stable: the rays 0.05 pixels to the left, to the right, above and below have the same result as the ray through
-    /// the centre. Same result: all rays hit the same face of the same part of the field (`Hit::member`) at depths within a thousandth, or
-    /// all miss. At an unstable pixel a correct picture may differ from the reference.
+    /// the centre. The results are the same if all rays hit the same face of the same part of the field (`Hit::member`) at depths that
+    /// differ by at most a thousandth, or if all rays miss. At an unstable pixel a correct picture may differ from the reference.
     pub stable: bool,
 }
 
@@ -108,10 +108,10 @@ impl Quantiles {
 pub struct Accuracy {
     /// Number of compared pixels. Each pixel has one ray.
     pub rays: usize,
-    /// Share of unstable pixels.
+    /// Fraction of unstable pixels.
     pub unstable: f64,
     /// Intersection over union of the hits: the number of pixels with a hit in both picture and reference, divided by the number
-    /// of pixels with a hit in at least one of them. It is 1 if there are no hits. Undecided pixels count as misses.
+    /// of pixels with a hit in at least one of them. The value is 1 if there are no hits. Undecided pixels count as misses.
     pub iou: f64,
     /// Pixels where the reference hits and the picture misses.
     pub false_miss: usize,
@@ -121,7 +121,7 @@ pub struct Accuracy {
     pub undecided: usize,
     /// Absolute difference of the rays' parameters at the hit, over the pixels that hit in both picture and reference.
     pub depth: Option<Quantiles>,
-    /// Share of pixels with different faces among the pixels that hit in both picture and reference; 0 without such pixels.
+    /// Fraction of pixels with different faces among the pixels that hit in both picture and reference; 0 without such pixels.
     pub wrong_faces: f64,
     /// Angle between the normals in degrees, over the pixels where picture and reference both hit a round face.
     pub normal: Option<Quantiles>,

@@ -38,7 +38,8 @@ impl RenderedRay {
 
 /// Draws the picture of one eye with the model, row by row. Eye 0 is the left or only eye.
 ///
-/// With a prepass, which marches a cone for each block of pixels, the evaluations of a row of blocks count with the first ray of the row.
+/// A prepass marches a cone for each block of pixels. The evaluations of the cones of a row of blocks are added to the first ray of the
+/// row.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
@@ -275,7 +276,7 @@ impl Subject {
     }
 }
 
-/// Returns the Menger sponge of depth 4 in each of the [`views`] as subjects.
+/// Returns subjects with the Menger sponge of depth 4, one for each of the [`views`].
 pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
     views::views()
         .into_iter()
@@ -285,7 +286,7 @@ pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Returns the flat fields (with plane faces) other than the sponge, seen from the side, as subjects. All of these fields except
+/// Returns subjects with the flat fields (with plane faces) other than the sponge, seen from the side. All of these fields except
 /// the box extend to the horizon.
 pub fn others(size: (u32, u32)) -> Vec<Subject> {
     let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
@@ -300,7 +301,7 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     .into()
 }
 
-/// Returns round fields (with spheres) and unions, each seen from the side and from within, as subjects.
+/// Returns subjects with round fields (with spheres) and with unions, each seen from the side and from within.
 pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
     let scenes = [
         "sphere:1",

@@ -8,7 +8,7 @@ use std::fmt;
 /// Distance from the surface at which a trace ends, in world units.
 const NEAR: f64 = 1e-9;
 
-/// Step to either side of a point in the central difference for the gradient, in world units.
+/// Distance, in world units, from a point to the two points of a central difference for the gradient.
 const STEP: f64 = 1e-6;
 
 /// Step limit, which is sufficient unless the ray runs close and nearly parallel to a face.

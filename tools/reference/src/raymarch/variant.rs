@@ -1,4 +1,4 @@
-//! Other methods to march rays to the Menger sponge, in f64, for comparisons of their numbers of steps with Glint's.
+//! Other methods to march rays to the Menger sponge, in f64, whose numbers of steps are compared with the number of Glint's method.
 
 use super::distance::euclidean;
 use super::metrics::RayOutcome;
@@ -43,7 +43,7 @@ pub struct Method {
     pub cap: u32,
     /// Growth factor of the threshold after each [`GROWTH_STEPS`] steps; 1 for a constant threshold.
     pub growth: f64,
-    /// Whether to move the hit of a ray that approaches a face forward to the plane of the face. The ray's parameter grows by the
+    /// Whether the hit of a ray that approaches a face is moved forward onto the plane of the face. The ray's parameter grows by the
     /// remaining distance divided by the component of the ray's direction along the normal.
     pub correct: bool,
 }

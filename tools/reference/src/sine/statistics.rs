@@ -27,7 +27,7 @@ const OCTAVES: u64 = 64;
 
 /// Statistics of the absolute errors of sine and cosine together.
 ///
-/// Each input is weighted by the part of the circle that it represents. So means are uniform over the angle, even where inputs are
+/// The weight of an input is the part of the circle that it represents. Means are therefore uniform over the angle, even where inputs are
 /// dense, such as floats near zero.
 #[derive(Clone, Debug)]
 pub struct Statistics {
@@ -124,7 +124,7 @@ impl Statistics {
         (self.sum_of_squares / self.weight).sqrt()
     }
 
-    /// Returns the mean error of the outputs' magnitudes: positive if outputs tend to be too far from zero.
+    /// Returns the mean error of the outputs' magnitudes: positive if magnitudes tend to be too large.
     pub fn bias(&self) -> f64 {
         self.sum / self.weight
     }
@@ -142,7 +142,7 @@ impl Statistics {
     }
 }
 
-/// Number of low bits of an f64 without influence on the bucket. The remaining bits are the exponent and the six high bits of the mantissa.
+/// Number of low bits of an f64 that do not affect the bucket. The remaining bits are the exponent and the six high bits of the mantissa.
 const SHIFT: u32 = 52 - BUCKETS_PER_OCTAVE.ilog2();
 const FIRST: u64 = (1023 - OCTAVES) * BUCKETS_PER_OCTAVE;
 

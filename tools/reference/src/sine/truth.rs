@@ -42,7 +42,7 @@ impl Image {
     /// Returns the images of a phase of the first octant, at most one in each octant.
     ///
     /// Each of the 2^32 angles is an image of exactly one phase from 0 to [`OCTANT`]: an angle at the border of two octants
-    /// belongs to only one of them.
+    /// belongs to only one of these octants.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {

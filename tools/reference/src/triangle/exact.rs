@@ -1,13 +1,13 @@
 //! Exact rasterization of a snapped triangle in integers: coverage by the top-left rule, and the plane of depth.
 //!
-//! The rule is that of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or *left*
+//! This is the rule of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or *left*
 //! edge. A top edge is exactly horizontal, with the triangle below it. A left edge is not horizontal and has the triangle to its
 //! right. An edge's inner side is the side of the third vertex, so the winding does not matter.
 
 /// Steps per pixel of the grid of snapped vertices.
 pub const SUBPIXELS: i64 = 256;
 
-/// Steps of a vertex's depth per depth code. Depth codes are the integer depths of pixels.
+/// Number of steps of a vertex's depth per depth code. Depth codes are the integer depths of pixels.
 pub const DEPTH_STEPS: i64 = 64;
 
 /// A vertex with its position snapped to the grid of the screen.

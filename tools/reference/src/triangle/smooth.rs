@@ -81,7 +81,7 @@ pub struct Triangle {
     pub oriented: Oriented,
     /// The light at each vertex.
     pub lit: [Lit; 3],
-    /// Whether the clipper made the triangle.
+    /// Whether the clipper has produced the triangle.
     pub clipped: bool,
     /// Width and height of the picture, in pixels.
     pub size: (u32, u32),
@@ -139,21 +139,21 @@ impl Triangle {
 /// Counts and errors over the triangles of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
-    /// Number of triangles on the screen: unclipped triangles, and triangles made by the clipper.
+    /// Number of triangles on the screen: unclipped triangles, and triangles that the clipper has produced.
     pub triangles: u64,
-    /// Number of triangles on the screen made by the clipper.
+    /// Number of triangles on the screen that the clipper has produced.
     pub clipped: u64,
     /// Number of triangles on the screen with a visible back face.
     pub back: u64,
     /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
-    /// The smallest depth code of a covered pixel, the farthest pixel's.
+    /// The smallest depth code of a covered pixel, which is the code of the farthest pixel.
     pub farthest: u32,
     /// Errors of the model's colours.
     pub model: Errors,
     /// Errors of the exact colours after rounding to whole steps. No method with results in whole steps has smaller errors.
     pub rounded: Errors,
-    /// Errors of colours linear on the screen, after rounding to whole steps.
+    /// Errors of colours that are linear on the screen, after rounding to whole steps.
     pub affine: Errors,
 }
 

@@ -143,7 +143,7 @@ fn centre(column: u32, row: u32) -> Vector {
     [f64::from(column) + 0.5, f64::from(row) + 0.5, 1.0]
 }
 
-/// The visible surface of a pixel, as far as it is independent of the snapping of vertices.
+/// The visible surface of a pixel, if it does not depend on the snapping of vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
     /// No surface, independent of the snapping of the vertices.

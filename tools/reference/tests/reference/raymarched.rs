@@ -66,7 +66,7 @@ impl Seen {
         self
     }
 
-    /// Checks that the share of wrong faces is at most `most`.
+    /// Checks that the fraction of wrong faces is at most `most`.
     fn faced(self, most: f64) -> Self {
         let wrong = self.found.wrong_faces;
         assert!(wrong <= most, "{}: {wrong} wrong faces", self.name);

@@ -391,8 +391,8 @@ fn the_committed_cycles_of_pictures_hold() {
 }
 
 /// Bounds of the pictures of fields whose text starts with a word: false hits and misses, undecided rays, the median and the 99th
-/// percentile of the depth's error in world units, the share of wrong faces, the 99th percentile of the normal's error in degrees,
-/// and evaluations a ray. The first line that fits counts.
+/// percentile of the depth's error in world units, the fraction of wrong faces, the 99th percentile of the normal's error in degrees, and
+/// evaluations per ray. The first line that matches a field determines its bounds.
 const BOUNDS: [(&str, [f64; 7]); 8] = [
     ("menger", [40.0, 0.0, 2e-4, 5e-4, 0.01, 0.0, 14.4]),
     ("box:", [8.0, 0.0, 1e-5, 5e-3, 0.0, 0.0, 1.6]),
@@ -406,7 +406,7 @@ const BOUNDS: [(&str, [f64; 7]); 8] = [
     ("", [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY]),
 ];
 
-/// Draws the small pictures of raymarch.csv again, compares their errors with the committed ones, and checks the bounds of those
+/// Draws the small pictures of raymarch.csv again, compares their errors with the committed errors, and checks the bounds of the pictures
 /// without a prepass.
 #[test]
 fn the_committed_pictures_of_fields_hold() {
@@ -476,8 +476,8 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Draws the frames of quality.csv that are small or of the exact quality again, and compares their errors with the committed ones. The
-/// exact ones differ from the reference along edges alone, and by the rounding of colours.
+/// Draws the small frames and the frames of the exact quality of quality.csv again, and compares their errors with the committed errors.
+/// Frames of the exact quality differ from the reference only along edges, and by the rounding of colours.
 #[test]
 fn the_committed_errors_of_qualities_hold() {
     let rows: Vec<quality::Row> = committed("quality.csv");

@@ -115,7 +115,7 @@ fn every_page_has_a_job() {
     }
 }
 
-/// A run by two workers that goes on where another one was killed has the tables of a run by one worker.
+/// If a run by two workers continues a run that was killed, its tables equal those of a run by one worker.
 #[test]
 fn a_killed_run_goes_on_and_writes_the_same_tables() {
     let run = Run::new("workflow-killed");

@@ -75,7 +75,7 @@ struct Rate {
     start: u64,
 }
 
-/// The error of the attitude after a constant rate, against the closed form.
+/// Measures the error of the attitude after a rotation at a constant rate, compared with the closed form.
 fn constant_rate(input: Rate) -> Result<Outcome> {
     let mut tracker = Tracker::new(Scale::MPU_6050, None);
     for i in 0..=input.samples {
@@ -130,10 +130,10 @@ struct Still {
     samples: u32,
     /// Counts of the gyroscope in the even and the odd samples.
     gyro: [[i16; 3]; 2],
-    /// Counts added from the middle on.
+    /// Counts that are added to the samples from the middle of the sequence on.
     #[serde(default)]
     later: [i16; 3],
-    /// Counts added to the accelerometer's in the last sample.
+    /// Counts that are added to the accelerometer's counts in the last sample.
     #[serde(default)]
     push: [i16; 3],
 }
@@ -166,7 +166,7 @@ fn calibration(input: Still) -> Result<Outcome> {
 #[serde(deny_unknown_fields)]
 struct Image {
     samples: u32,
-    /// Overwritten bytes of the log: offset and byte.
+    /// Bytes that are overwritten in the log, each as offset and value.
     #[serde(default)]
     edits: Vec<(usize, u8)>,
     /// Length of the log, truncated or padded with zeros.

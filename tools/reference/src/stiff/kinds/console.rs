@@ -48,7 +48,7 @@ pub struct Session {
     pub lines: Vec<String>,
 }
 
-/// A board with this sensor after these commands and a wait in milliseconds.
+/// Starts a board with this sensor, and executes these commands and a wait in milliseconds.
 fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result<Emulated> {
     let mut board = start()?;
     if let Some(sensor) = sensor {
@@ -89,7 +89,7 @@ pub enum Sensor {
     Stalled,
     /// Holds SDA low.
     Stuck,
-    /// Another chip.
+    /// Has the identification of another chip.
     Unknown,
     /// Is unplugged after 1,000 bytes.
     Vanishing,
@@ -129,13 +129,13 @@ impl Sensor {
 struct Upload {
     /// Sensor on the pins; by default none.
     sensor: Option<Sensor>,
-    /// Commands before it.
+    /// Commands before the upload.
     #[serde(default)]
     before: Vec<String>,
     /// Run time in ms after the commands.
     #[serde(default)]
     wait: u64,
-    /// Overwritten bytes of a cube's mesh: offset and byte.
+    /// Bytes that are overwritten in a cube's mesh, each as offset and value.
     #[serde(default)]
     edits: Vec<(usize, u8)>,
     /// Length of the mesh, truncated or padded with zeros.

@@ -86,7 +86,7 @@ fn bytes_of(hex: &str) -> Result<Vec<u8>> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Bytes {
-    /// Overwritten bytes of a cube's mesh: offset and hexadecimal digits.
+    /// Bytes that are overwritten in a cube's mesh, each as offset and hexadecimal digits.
     #[serde(default)]
     edits: Vec<(usize, String)>,
     /// Length of the mesh, truncated or padded with zeros.
@@ -160,7 +160,7 @@ fn conversion(Conversion { obj, keep_scale }: Conversion) -> Result<Outcome> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Flash {
-    /// Overwritten bytes of the contents: offset in the contents and hexadecimal digits.
+    /// Bytes that are overwritten in the contents, each as offset and hexadecimal digits.
     #[serde(default)]
     edits: Vec<(usize, String)>,
     /// Length of the image, truncated or padded with zeros.

@@ -179,14 +179,14 @@ struct Zone {
 struct SmallPicture {
     columns: u16,
     rows: u16,
-    /// Cr and Cb of the samples in the middle, a cyclic sequence; `rest` of all other samples.
+    /// Cr and Cb of the samples in the middle, as a cyclic sequence; `rest` contains Cr and Cb of all other samples.
     middle: Vec<[u8; 2]>,
     rest: [u8; 2],
     /// Number of samples; by default the whole picture.
     samples: Option<usize>,
 }
 
-/// The windows of the hand's colour calibrated from a small picture.
+/// Calibrates the windows of the hand's colour from a small picture.
 fn calibration(shown: SmallPicture) -> Result<Outcome> {
     let (columns, rows) = (usize::from(shown.columns), usize::from(shown.rows));
     let within = |number: usize, length: usize| (length * 3 / 8..length * 5 / 8).contains(&number);
@@ -208,7 +208,7 @@ fn calibration(shown: SmallPicture) -> Result<Outcome> {
     ))
 }
 
-/// The presence of a hand at rest after each frame, for these times between frames in µs.
+/// States the presence of a hand at rest after each frame, for these times between frames in µs.
 fn pauses(gaps: Vec<u64>) -> Result<Outcome> {
     let hand = Statistics {
         size: [320, 240],

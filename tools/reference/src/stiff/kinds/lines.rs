@@ -36,7 +36,7 @@ pub fn kinds() -> Vec<Kind> {
 struct Ends {
     /// The end points, in 1/256 pixel.
     ends: [[i64; 2]; 2],
-    /// Bounds of a square picture in columns and rows: the first, and one past the last.
+    /// Bounds of a square picture, for columns and for rows: the first index, and the index after the last.
     square: [i32; 2],
 }
 

@@ -50,7 +50,7 @@ fn quaternion(parts: [i32; 4]) -> Result<Quaternion> {
     Quaternion::new(parts.map(Q2_30::from_bits)).context("expected an attitude")
 }
 
-/// The sample clock's time stamps in µs for a sequence of reads, each with its time in µs and whether it returns a new sample.
+/// Computes the sample clock's time stamps in µs for a sequence of reads. Each read has a time in µs, and may return a new sample.
 fn sample_times(reads: Vec<(u64, bool)>) -> Result<Outcome> {
     let mut pace = Pace::new(glint_core::mpu6050::PERIOD);
     let times = reads.into_iter().map(|(time, found)| {

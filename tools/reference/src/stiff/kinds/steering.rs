@@ -88,7 +88,7 @@ pub fn distortion(view: &View) -> f64 {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Path {
-    /// In 1/256.
+    /// Sensitivity in units of 1/256.
     sensitivity: u16,
     /// Successive attitudes of the sensor: components w, x, y, z with 30 fraction bits.
     attitudes: Vec<[i32; 4]>,
@@ -114,7 +114,7 @@ fn steering(
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Turning {
-    /// In 1/256.
+    /// Sensitivity in units of 1/256.
     sensitivity: u16,
     /// Rotation about z between two polls, in 2^-32 turns.
     step: u32,

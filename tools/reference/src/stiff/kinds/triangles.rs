@@ -40,7 +40,7 @@ struct Triangle {
 const SIZE: (u32, u32) = (320, 180);
 
 impl Triangle {
-    /// The positions of the model's pixels, with their depth codes.
+    /// States the positions and depth codes of the pixels that the model draws.
     fn drawn(&self) -> Vec<([u32; 2], u32)> {
         let vertices = self
             .vertices

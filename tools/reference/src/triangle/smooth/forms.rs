@@ -90,7 +90,7 @@ impl Light<'_> {
         }
     }
 
-    /// Returns light over depth at a pixel by docs/formats/triangle.md, "Smooth shading", with any reciprocal.
+    /// Returns light divided by depth at a pixel, as in docs/formats/triangle.md, "Smooth shading", with the given reciprocal.
     fn divided(&self, inverse: Inverse, pixel: &Pixel) -> [f64; 3] {
         let value = |plane: &Plane| {
             let right = (pixel.column - self.setup.start_column) as u32;

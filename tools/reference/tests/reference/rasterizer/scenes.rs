@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 
 use super::cameras::{around, log_range};
 
-/// The number 1 in units of Q2.14.
+/// The number 1 in the format Q2.14.
 pub const ONE: f64 = 16384.0;
 
 pub const SMALL: Size = Size {
@@ -131,7 +131,7 @@ pub fn random_case(seed: u64) -> Case {
     let kinds = KINDS.len() as u64;
     let (kind, make) = KINDS[(seed % kinds) as usize];
     let (mut scene, camera) = make(&mut random);
-    // Larger pictures get fewer triangles, to save time.
+    // Larger pictures have fewer triangles, so that the test takes less time.
     let (size, most) = match seed / kinds % 10 {
         8 => (MIDDLE, 25),
         9 => (LARGE, 10),
