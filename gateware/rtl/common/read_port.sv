@@ -17,7 +17,7 @@
 //   ask ──┼──▶ turn ──┤
 //   ask ──┘           └──▶ owners ──┐
 //                                   ▼
-//  data ◀── FIFO ◀──┬────────── whose word ◀── data
+//  data ◀── FIFO ◀──┬───── client of word ◀── data
 //  data ◀── FIFO ◀──┘
 
 `default_nettype none
