@@ -13,8 +13,11 @@ impl Rgb8 {
     /// Colour of surfaces without a colour: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
-    /// Converts three intensities from 0 to 1; values outside this range saturate.
+    /// Converts three intensities from 0 to 1; values outside this range saturate. A colour that is not a number counts as none.
     pub fn from_unit(rgb: [f64; 3]) -> Self {
+        if rgb.iter().any(|c| c.is_nan()) {
+            return Self::DEFAULT;
+        }
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
 }
@@ -62,7 +65,7 @@ pub struct Polygons {
     pub points: Vec<Vector>,
     /// One colour per point, or empty.
     pub point_colours: Vec<Rgb8>,
-    /// Normals from the file. Their vectors may have any length.
+    /// Normals from the file. Their vectors may have any length; a normal of length 0 counts as none.
     pub normals: Vec<Vector>,
     /// The corners of all faces.
     pub corners: Vec<Corner>,
@@ -116,11 +119,13 @@ impl Polygons {
         push(&mut self.points, point, "points", place)
     }
 
-    /// Adds a normal and returns its index.
+    /// Adds a normal and returns its index. A normal that is not a number or infinite counts as none.
     ///
     /// # Errors
     /// There are more than [`MAX_POINTS`] normals.
     pub fn add_normal(&mut self, normal: Vector, place: Location) -> Result<u32, FormatError> {
+        let is_valid = normal.iter().all(|c| c.is_finite());
+        let normal = if is_valid { normal } else { [0.0; 3] };
         push(&mut self.normals, normal, "normals", place)
     }
 

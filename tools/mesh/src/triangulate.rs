@@ -51,7 +51,7 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
 /// long vectors.
 pub fn unit(v: Vector) -> Option<Vector> {
     let largest = v.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-    if !(largest > 0.0 && largest.is_finite()) {
+    if largest == 0.0 || v.iter().any(|c| !c.is_finite()) {
         return None;
     }
     let v = v.map(|c| c / largest);

@@ -1,6 +1,6 @@
 //! Diffuse colours of a Wavefront material file.
 
-use super::text::{Lines, coordinate};
+use super::text::{Lines, component};
 use crate::error::{FormatError, quote};
 use crate::polygons::Rgb8;
 use std::collections::HashMap;
@@ -34,8 +34,8 @@ pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<(), Fo
                 if matches!(first, b"spectral" | b"xyz") {
                     continue;
                 }
-                let red = coordinate(first, place)?;
-                let mut next = || words.next().map_or(Ok(red), |word| coordinate(word, place));
+                let red = component(first, place)?;
+                let mut next = || words.next().map_or(Ok(red), |word| component(word, place));
                 palette.insert(name.clone(), Rgb8::from_unit([red, next()?, next()?]));
             }
             _ => {}

@@ -4,7 +4,7 @@
 //! length.
 
 use super::mtl;
-use super::text::{Line, Lines, coordinate, vector};
+use super::text::{Line, Lines, component, coordinate, vector};
 use crate::error::{FormatError, InputError, Location, MAX_LINE, MAX_REMARKS, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use std::borrow::Cow;
@@ -137,7 +137,7 @@ impl Reader {
         match keyword {
             b"v" => self.vertex(&mut words, place)?,
             b"vn" => {
-                let normal = vector(&mut words, "normal", place)?;
+                let normal = vector(&mut words, "normal", place, component)?;
                 self.polygons.add_normal(normal, place)?;
             }
             b"f" | b"fo" => self.face(&mut words, place)?,
@@ -171,7 +171,7 @@ impl Reader {
         words: &mut impl Iterator<Item = &'a [u8]>,
         place: Location,
     ) -> Result<(), FormatError> {
-        let point = vector(words, "vertex", place)?;
+        let point = vector(words, "vertex", place, coordinate)?;
         let mut extra = [0.0; 4];
         let mut count = 0;
         for word in words {
@@ -182,7 +182,7 @@ impl Reader {
                     "more",
                 ));
             }
-            extra[count] = coordinate(word, place)?;
+            extra[count] = component(word, place)?;
             count += 1;
         }
         let colour = match count {
@@ -284,6 +284,7 @@ impl Reader {
                 .flatten()
                 .flatten()
                 .copied()
+                .filter(|c| c.is_finite())
                 .fold(0.0, f32::max);
             let scale = if largest > 1.0 { 1.0 / 255.0 } else { 1.0 };
             self.polygons.point_colours = self
@@ -381,6 +382,20 @@ mod tests {
                 [Rgb8([255, 0, 0]), Rgb8([0, 128, 0]), Rgb8::DEFAULT]
             );
         }
+    }
+
+    #[test]
+    fn normals_and_colours_that_are_no_numbers() {
+        for word in ["nan", "-nan(ind)", "-1.#IND", "1.#QNAN", "inf"] {
+            let normals = format!("vn 0 {word} 1\nvn 0 0 1\nf 1//1 2//2 3//2\n");
+            let polygons = read(&format!("{SQUARE}{normals}")).unwrap();
+            assert_eq!(polygons.normals, [[0.0; 3], [0.0, 0.0, 1.0]], "{word}");
+        }
+        let colours = "v 0 0 0 nan 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 -nan(ind)\nf 1 2 3\n";
+        assert_eq!(
+            read(colours).unwrap().point_colours,
+            [Rgb8::DEFAULT, Rgb8([255, 0, 0]), Rgb8::DEFAULT]
+        );
     }
 
     #[test]

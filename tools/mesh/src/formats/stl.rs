@@ -3,7 +3,7 @@
 //! This parser replaces `stl_io`, whose errors have neither line nor offset, which skips the colours of the attribute word, and which
 //! treats a binary file as ASCII if its header starts with `solid`.
 
-use super::text::{BYTE_ORDER_MARK, Lines, any_number, checked_at, vector};
+use super::text::{BYTE_ORDER_MARK, Lines, any_number, checked_at, coordinate, vector};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 
@@ -188,7 +188,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
                 Expect::Vertex(0)
             }
             Expect::Vertex(i) if is(Some(keyword), "vertex") => {
-                let point = vector(&mut words, "vertex", place)?;
+                let point = vector(&mut words, "vertex", place, coordinate)?;
                 corners[i].point = polygons.add_point(point, place)?;
                 if i < 2 {
                     Expect::Vertex(i + 1)

@@ -81,9 +81,19 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Parses a number, including infinity and NaN.
+/// Parses a number, including infinity and NaN in the spellings of C libraries: `-nan`, `-nan(ind)`, `1.#QNAN`, `-1.#IND00`, `1.#INF`.
 pub fn any_number(word: &[u8]) -> Option<f64> {
-    std::str::from_utf8(word).ok()?.parse().ok()
+    let word = std::str::from_utf8(word).ok()?;
+    word.parse().ok().or_else(|| {
+        let word = word.trim_start_matches(['+', '-']).to_ascii_uppercase();
+        let is_no_number = match word.strip_prefix("NAN") {
+            Some(rest) => rest.starts_with('(') && rest.ends_with(')'),
+            None => ["1.#QNAN", "1.#SNAN", "1.#IND", "1.#INF"]
+                .iter()
+                .any(|start| word.starts_with(start)),
+        };
+        is_no_number.then_some(f64::NAN)
+    })
 }
 
 /// Parses a coordinate: a number within [`MAX_COORDINATE`].
@@ -119,21 +129,30 @@ pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
     })
 }
 
-/// Parses the next three words of a line as coordinates.
+/// Parses a word as a number that may be infinite or NaN, such as a component of a normal or a colour.
 ///
 /// # Errors
-/// The line has fewer than three more words, or a word is not a coordinate.
+/// The word is not a number.
+pub fn component(word: &[u8], place: Location) -> Result<f64, FormatError> {
+    any_number(word).ok_or_else(|| FormatError::new(place, "a number", quote(word)))
+}
+
+/// Parses the next three words of a line, each with `number`: [`coordinate`] or [`component`].
+///
+/// # Errors
+/// The line has fewer than three more words, or `number` refuses a word.
 pub fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &str,
     place: Location,
+    number: impl Fn(&[u8], Location) -> Result<f64, FormatError>,
 ) -> Result<[f64; 3], FormatError> {
     let mut vector = [0.0; 3];
     for (i, c) in vector.iter_mut().enumerate() {
         let word = words.next().ok_or_else(|| {
             FormatError::new(place, format!("three numbers of a {what}"), format!("{i}"))
         })?;
-        *c = coordinate(word, place)?;
+        *c = number(word, place)?;
     }
     Ok(vector)
 }
@@ -178,11 +197,27 @@ mod tests {
             "",
             "1,5",
             "0x10",
+            "-nan(ind)",
+            "1.#INF",
         ] {
             assert!(
                 coordinate(word.as_bytes(), Location::Whole).is_err(),
                 "{word}"
             );
+        }
+        for word in [
+            "nan",
+            "-nan(ind)",
+            "NaN(0x1)",
+            "-1.#IND",
+            "-1.#IND00",
+            "1.#QNAN",
+            "1.#INF",
+        ] {
+            assert!(any_number(word.as_bytes()).unwrap().is_nan(), "{word}");
+        }
+        for word in ["nano", "nan(", "1.#", "1.#X", "-", ""] {
+            assert_eq!(any_number(word.as_bytes()), None, "{word}");
         }
         for (word, value) in [("1", 1.0), ("-.5", -0.5), ("+2.", 2.0), ("1e-300", 1e-300)] {
             assert_eq!(coordinate(word.as_bytes(), Location::Whole).unwrap(), value);

@@ -262,10 +262,7 @@ fn add_primitive(
         let colour = base.map(|base| srgb(multiplied(base, colour)));
         polygons.point_colours.push(colour.unwrap_or(Rgb8::DEFAULT));
         if let Some(normals) = &normals {
-            let normal = apply(&turned, normals.vector(i));
-            // A normal of length 0 is computed from the faces instead.
-            let valid = normal.iter().all(|c| c.is_finite());
-            polygons.add_normal(if valid { normal } else { [0.0; 3] }, Location::Whole)?;
+            polygons.add_normal(apply(&turned, normals.vector(i)), Location::Whole)?;
         }
     }
 

@@ -193,8 +193,7 @@ fn read_vertices(
             let value = source.value(scalar)?;
             match *slot {
                 Slot::Position(i) => point[i] = coordinate(value, place)?,
-                // A component of a normal that is not a valid number counts as 0.
-                Slot::Normal(i) => normal[i] = checked(value).unwrap_or(0.0),
+                Slot::Normal(i) => normal[i] = value,
                 Slot::Colour(i, full) => colour[i] = value / full,
                 Slot::None => {}
             }
@@ -361,6 +360,13 @@ mod tests {
             );
             assert_eq!(polygons.normals[2], [0.0; 3]);
         }
+    }
+
+    #[test]
+    fn normals_that_are_no_numbers() {
+        let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 -nan(ind) 0 1\n1 0 0 1.#QNAN -1.#IND 0\n0 1 0 0 0 1\n3 0 1 2\n";
+        let normals = parse(text.as_bytes()).unwrap().normals;
+        assert_eq!(normals, [[0.0; 3], [0.0; 3], [0.0, 0.0, 1.0]]);
     }
 
     #[test]
