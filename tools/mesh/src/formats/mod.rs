@@ -67,13 +67,17 @@ impl Format {
         };
         let begins_with =
             |words: &[&str]| words.iter().any(|word| text.starts_with(word.as_bytes()));
+        let is_ascii_stl = || {
+            let first = text.split(u8::is_ascii_whitespace).next();
+            first.is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+        };
         if begins_with(&["glTF", "{"]) {
             Self::Gltf
         } else if begins_with(&["GLM"]) {
             Self::Glm
         } else if begins_with(&["ply\n", "ply\r", "ply "]) {
             Self::Ply
-        } else if begins_with(&["solid ", "solid\n", "solid\r"]) || is_binary_stl() {
+        } else if is_ascii_stl() || is_binary_stl() {
             Self::Stl
         } else {
             Self::Obj

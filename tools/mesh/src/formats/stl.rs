@@ -3,7 +3,7 @@
 //! This parser replaces `stl_io`, whose errors have neither line nor offset, which skips the colours of the attribute word, and which
 //! treats a binary file as ASCII if its header starts with `solid`.
 
-use super::text::{BYTE_ORDER_MARK, Lines, any_number, checked_at, coordinate, vector};
+use super::text::{BYTE_ORDER_MARK, Words, any_number, checked_at, coordinate, vector};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 
@@ -124,100 +124,113 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// The kind of line that must come next in an ASCII STL.
-#[derive(Clone, Copy, PartialEq)]
-enum Expect {
-    Solid,
-    Facet,
-    Loop,
-    Vertex(usize),
-    EndLoop,
-    EndFacet,
-}
-
-impl Expect {
-    fn text(self) -> &'static str {
-        match self {
-            Self::Solid => "solid",
-            Self::Facet => "facet normal x y z, or endsolid",
-            Self::Loop => "outer loop",
-            Self::Vertex(_) => "vertex x y z",
-            Self::EndLoop => "endloop",
-            Self::EndFacet => "endfacet",
-        }
-    }
-}
-
+/// Parses an ASCII STL as programs write it: in any number of lines, with `end facet` for `endfacet`, with a facet without a normal, or
+/// without the last `endsolid`.
 fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
-    let mut expect = Expect::Solid;
-    let mut corners = [Corner::at(0); 3];
-    let mut facet = Location::Whole;
-    let mut last = 0;
-    let mut lines = Lines::new(file);
-    while let Some(line) = lines.next_line()? {
-        let place = line.place();
-        last = line.number;
-        let mut words = line.words();
-        let Some(keyword) = words.next() else {
-            continue;
-        };
-        let is = |word: Option<&[u8]>, text: &str| {
-            word.is_some_and(|word| word.eq_ignore_ascii_case(text.as_bytes()))
-        };
-        let refuse = || FormatError::new(place, expect.text(), quote(line.text.trim_ascii()));
-        // The remaining words of the line are skipped: the name of a solid is arbitrary.
-        expect = match expect {
-            Expect::Solid if is(Some(keyword), "solid") => {
-                words.by_ref().for_each(drop);
-                Expect::Facet
-            }
-            Expect::Facet if is(Some(keyword), "endsolid") => {
-                words.by_ref().for_each(drop);
-                Expect::Solid
-            }
-            Expect::Facet if is(Some(keyword), "facet") && is(words.next(), "normal") => {
-                facet = place;
-                // Some programs write nan for the normal of a face of area 0.
-                for _ in 0..3 {
-                    words.next().and_then(any_number).ok_or_else(refuse)?;
-                }
-                Expect::Loop
-            }
-            Expect::Loop if is(Some(keyword), "outer") && is(words.next(), "loop") => {
-                Expect::Vertex(0)
-            }
-            Expect::Vertex(i) if is(Some(keyword), "vertex") => {
-                let point = vector(&mut words, "vertex", place, coordinate)?;
-                corners[i].point = polygons.add_point(point, place)?;
-                if i < 2 {
-                    Expect::Vertex(i + 1)
-                } else {
-                    Expect::EndLoop
-                }
-            }
-            Expect::EndLoop if is(Some(keyword), "endloop") => Expect::EndFacet,
-            Expect::EndFacet if is(Some(keyword), "endfacet") => {
-                polygons.add_face(&corners, None, facet)?;
-                Expect::Facet
-            }
-            _ => return Err(refuse()),
-        };
-        if words.next().is_some() {
-            return Err(FormatError::new(
-                place,
-                "nothing more on the line",
-                quote(line.text.trim_ascii()),
-            ));
+    let mut words = Words::new(file);
+    let mut is_open = false;
+    while let Some(word) = words.next() {
+        let place = words.place();
+        if is(word, "facet") {
+            add_facet(&mut polygons, &mut words, place)?;
+        } else if is(word, "solid") {
+            is_open = true;
+            skip_name(&mut words);
+        } else if ends(word, &mut words, "solid") {
+            is_open = false;
+            skip_name(&mut words);
+        } else {
+            return Err(FormatError::new(place, "facet, or endsolid", quote(word)));
         }
     }
-    match expect {
-        Expect::Solid => Ok(polygons),
-        _ => Err(FormatError::new(
-            Location::Line(last),
-            expect.text(),
-            "the end of the file",
-        )),
+    if is_open {
+        polygons.remark("endsolid is missing at the end: the file may be cut off");
+    }
+    Ok(polygons)
+}
+
+fn is(word: &[u8], keyword: &str) -> bool {
+    word.eq_ignore_ascii_case(keyword.as_bytes())
+}
+
+/// Whether a word ends `keyword`: `endfacet` or `end facet`. A name may follow without a space, as in `endsolidNAME`.
+fn ends(word: &[u8], words: &mut Words, keyword: &str) -> bool {
+    if is(word, "end") {
+        let mut ahead = words.clone();
+        let ends = ahead.next().is_some_and(|word| is(word, keyword));
+        if ends {
+            *words = ahead;
+        }
+        return ends;
+    }
+    let start = word.get(..3 + keyword.len());
+    start.is_some_and(|start| is(&start[..3], "end") && is(&start[3..], keyword))
+}
+
+/// Skips the name of a solid: the rest of the line, up to a facet on the same line.
+fn skip_name(words: &mut Words) {
+    while words.has_more_on_line() {
+        let mut ahead = words.clone();
+        let is_facet = ahead.next().is_some_and(|word| is(word, "facet"))
+            && ahead
+                .clone()
+                .next()
+                .is_some_and(|word| is(word, "normal") || is(word, "outer"));
+        if is_facet {
+            return;
+        }
+        *words = ahead;
+    }
+}
+
+/// Adds a facet, after its first word at `place`.
+fn add_facet(
+    polygons: &mut Polygons,
+    words: &mut Words,
+    place: Location,
+) -> Result<(), FormatError> {
+    skip_normal(words);
+    expect(words, "outer loop", |word, words| {
+        is(word, "outer") && words.next().is_some_and(|word| is(word, "loop"))
+    })?;
+    let mut corners = [Corner::at(0); 3];
+    for corner in &mut corners {
+        expect(words, "vertex x y z", |word, _| is(word, "vertex"))?;
+        let place = words.place();
+        let point = vector(words, "vertex", place, coordinate)?;
+        corner.point = polygons.add_point(point, place)?;
+    }
+    expect(words, "endloop", |word, words| ends(word, words, "loop"))?;
+    expect(words, "endfacet", |word, words| ends(word, words, "facet"))?;
+    polygons.add_face(&corners, None, place)
+}
+
+/// Skips the normal of a facet, if it has one.
+fn skip_normal(words: &mut Words) {
+    let mut ahead = words.clone();
+    if ahead.next().is_some_and(|word| is(word, "normal")) {
+        *words = ahead;
+        for _ in 0..3 {
+            let mut ahead = words.clone();
+            if ahead.next().and_then(any_number).is_some() {
+                *words = ahead;
+            }
+        }
+    }
+}
+
+fn expect(
+    words: &mut Words,
+    expected: &str,
+    is_expected: impl Fn(&[u8], &mut Words) -> bool,
+) -> Result<(), FormatError> {
+    let word = words.next();
+    let place = words.place();
+    match word {
+        Some(word) if is_expected(word, words) => Ok(()),
+        Some(word) => Err(FormatError::new(place, expected, quote(word))),
+        None => Err(FormatError::new(place, expected, "the end of the file")),
     }
 }
 
@@ -249,6 +262,39 @@ mod tests {
         let polygons = parse(text.as_bytes()).unwrap();
         assert_eq!((polygons.faces.len(), polygons.points.len()), (3, 9));
         assert_eq!(polygons.points[8], [0.0, 1e-3, 0.0]);
+    }
+
+    #[test]
+    fn ascii_as_programs_write_it() {
+        let text = format!("solid a\n{FACET}{FACET}endsolid a\n");
+        let variants = [
+            text.replace("endloop", "end loop"),
+            text.replace("endfacet", "end facet"),
+            text.replace("endsolid a", "end solid"),
+            text.replace("endsolid a", "end solid a\nsolid b\nendsolid"),
+            text.replace("endsolid a", "endsolida"),
+            text.replace("facet normal nan 0 1", "facet"),
+            text.replace("facet normal nan 0 1", "facet normal"),
+            text.replace("nan 0 1", "-nan(ind) -1.#IND 1.#QNAN"),
+            text.replace('\n', " "),
+            text.replace('\n', " ").replace("normal nan 0 1", ""),
+            text.replace('\n', "\r"),
+            text.to_ascii_uppercase(),
+        ];
+        for text in variants {
+            let polygons = parse(text.as_bytes()).unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert_eq!(polygons.faces.len(), 2, "{text}");
+            assert!(polygons.remarks.is_empty(), "{text}");
+        }
+        let long = format!("solid {}", FACET.replace('\n', " ").repeat(2000));
+        let polygons = parse(long.as_bytes()).unwrap();
+        assert_eq!(polygons.faces.len(), 2000);
+        assert_eq!(
+            polygons.remarks,
+            ["endsolid is missing at the end: the file may be cut off"]
+        );
+        let unclosed = format!("solid a\n{FACET}solid b\n{FACET}endsolid b\n");
+        assert_eq!(parse(unclosed.as_bytes()).unwrap().faces.len(), 2);
     }
 
     #[test]
@@ -284,7 +330,7 @@ mod tests {
             c[4] = f32::NAN;
             c
         };
-        let cases: [(Vec<u8>, &str); 9] = [
+        let cases: [(Vec<u8>, &str); 12] = [
             (
                 vec![],
                 "expected an STL (solid …, or a binary header of 84 bytes), found ''",
@@ -303,11 +349,11 @@ mod tests {
             ),
             (
                 b"solid\n".to_vec(),
-                "line 1: expected facet normal x y z, or endsolid, found the end of the file",
+                "expected at least one face, found none",
             ),
             (
                 b"solid\nfacet normal 0 0\n".to_vec(),
-                "line 2: expected facet normal x y z, or endsolid, found 'facet normal 0 0'",
+                "line 2: expected outer loop, found the end of the file",
             ),
             (
                 b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(),
@@ -315,11 +361,24 @@ mod tests {
             ),
             (
                 b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3 4\n".to_vec(),
-                "line 4: expected nothing more on the line, found 'vertex 1 2 3 4'",
+                "line 4: expected vertex x y z, found '4'",
             ),
             (
                 b"solid\nendsolid\nfacet".to_vec(),
-                "line 3: expected solid, found 'facet'",
+                "line 3: expected outer loop, found the end of the file",
+            ),
+            (
+                b"solid\nfacet normal x y z".to_vec(),
+                "line 2: expected outer loop, found 'x'",
+            ),
+            (
+                b"solid\nfacets".to_vec(),
+                "line 2: expected facet, or endsolid, found 'facets'",
+            ),
+            (
+                b"solid\nfacet outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 end facet"
+                    .to_vec(),
+                "line 2: expected endloop, found 'end'",
             ),
         ];
         for (file, message) in cases {

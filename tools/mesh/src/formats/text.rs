@@ -81,6 +81,58 @@ impl<'a> Line<'a> {
     }
 }
 
+/// Words of a text, separated by white space and line ends, without a limit on a line's length.
+#[derive(Clone)]
+pub struct Words<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    /// The words of a whole text, without its byte order mark.
+    pub fn new(text: &'a [u8]) -> Self {
+        Self {
+            rest: text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text),
+            line: 1,
+        }
+    }
+
+    /// The position of the last word.
+    pub fn place(&self) -> Location {
+        Location::Line(self.line)
+    }
+
+    /// Skips white space on the current line. Returns whether the line has a further word.
+    pub fn has_more_on_line(&mut self) -> bool {
+        while let [b' ' | b'\t' | b'\x0c', rest @ ..] = self.rest {
+            self.rest = rest;
+        }
+        !matches!(self.rest, [] | [b'\n' | b'\r', ..])
+    }
+}
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        while !self.has_more_on_line() {
+            self.rest = match self.rest {
+                [] => return None,
+                [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
+            };
+            // The end of the text is on its last line, not after it.
+            if !self.rest.is_empty() {
+                self.line += 1;
+            }
+        }
+        let is_end = |b: &u8| b.is_ascii_whitespace();
+        let length = self.rest.iter().position(is_end);
+        let (word, rest) = self.rest.split_at(length.unwrap_or(self.rest.len()));
+        self.rest = rest;
+        Some(word)
+    }
+}
+
 /// Parses a number, including infinity and NaN in the spellings of C libraries: `-nan`, `-nan(ind)`, `1.#QNAN`, `-1.#IND00`, `1.#INF`.
 pub fn any_number(word: &[u8]) -> Option<f64> {
     let word = std::str::from_utf8(word).ok()?;
@@ -172,6 +224,19 @@ mod tests {
             seen,
             [(1, &b"a"[..]), (2, b"b"), (3, b""), (4, b""), (5, b"c d ")]
         );
+    }
+
+    #[test]
+    fn words_and_their_lines() {
+        let mut words = Words::new(b"\xef\xbb\xbfa b\r\n\r\tc\n d\n");
+        let mut seen = Vec::new();
+        while let Some(word) = words.next() {
+            seen.push((word, words.place()));
+        }
+        let lines = [1, 1, 3, 4].map(Location::Line);
+        let expected = [&b"a"[..], b"b", b"c", b"d"].into_iter().zip(lines);
+        assert_eq!(seen, expected.collect::<Vec<_>>());
+        assert_eq!(words.place(), Location::Line(4));
     }
 
     #[test]
