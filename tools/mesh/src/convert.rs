@@ -78,7 +78,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     };
     let placing = Placing::of(polygons, options.keep_scale)?;
     let rounded = Rounded::of(polygons, &placing)?;
-    let (triangles, degenerate) = flat_triangles(polygons, &rounded);
+    let (triangles, degenerate, crossing) = flat_triangles(polygons, &rounded);
     if triangles.is_empty() {
         return Err(FormatError::whole(
             "a triangle with an area at a resolution of 2^-14",
@@ -112,7 +112,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         error_rms: rounded.error_rms,
         error_max_lsb: rounded.error_max * ONE,
         error_rms_lsb: rounded.error_rms * ONE,
-        remarks: polygons.remarks.clone(),
+        remarks: polygons.remarks.iter().cloned().chain(crossing).collect(),
     };
     Ok((bytes, report))
 }
@@ -125,6 +125,13 @@ pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatErro
     if options.fix_winding {
         winding::repair(polygons);
     }
+    let mut crossing = Crossing::default();
+    let mut scratch = triangulate::Scratch::default();
+    for (number, face) in polygons.faces.iter().enumerate() {
+        triangulate::face(polygons, face, &mut scratch);
+        crossing.count(number, &scratch);
+    }
+    polygons.remarks.extend(crossing.remark());
     let placing = Placing::of(polygons, options.keep_scale)?;
     for point in &mut polygons.points {
         *point = placing.apply(*point);
@@ -139,12 +146,17 @@ struct FlatTriangle {
     colour: Option<Rgb8>,
 }
 
-/// Returns all triangles with a non-zero area after rounding, and the number of triangles of area 0.
-fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>, usize) {
+/// Returns all triangles with a non-zero area after rounding, the number of triangles of area 0, and a remark on faces that cross
+/// themselves.
+fn flat_triangles(
+    polygons: &Polygons,
+    rounded: &Rounded,
+) -> (Vec<FlatTriangle>, usize, Option<String>) {
     let mut triangles = Vec::with_capacity(polygons.triangle_count());
     let mut degenerate = 0;
+    let mut crossing = Crossing::default();
     let mut scratch = triangulate::Scratch::default();
-    for face in &polygons.faces {
+    for (number, face) in polygons.faces.iter().enumerate() {
         for &corners in triangulate::face(polygons, face, &mut scratch) {
             match normal(polygons, rounded, corners) {
                 Some(normal) => triangles.push(FlatTriangle {
@@ -155,8 +167,41 @@ fn flat_triangles(polygons: &Polygons, rounded: &Rounded) -> (Vec<FlatTriangle>,
                 None => degenerate += 1,
             }
         }
+        crossing.count(number, &scratch);
     }
-    (triangles, degenerate)
+    (triangles, degenerate, crossing.remark())
+}
+
+/// Faces that cross themselves: their number, and the first of them, counted from 1.
+#[derive(Default)]
+struct Crossing {
+    count: usize,
+    first: usize,
+}
+
+impl Crossing {
+    /// Counts the face that was cut into triangles last.
+    fn count(&mut self, number: usize, scratch: &triangulate::Scratch) {
+        if scratch.crosses {
+            self.count += 1;
+            if self.count == 1 {
+                self.first = number + 1;
+            }
+        }
+    }
+
+    fn remark(&self) -> Option<String> {
+        let Self { count, first } = self;
+        match count {
+            0 => None,
+            1 => Some(format!(
+                "face {first} crosses itself: its triangles overlap"
+            )),
+            _ => Some(format!(
+                "{count} faces cross themselves, the first is face {first}: their triangles overlap"
+            )),
+        }
+    }
 }
 
 /// Returns the unit normal of a triangle, from its corners before rounding; `None` for a triangle without area after rounding.
@@ -275,7 +320,7 @@ mod tests {
             let corners: Vec<Corner> = face.iter().map(|&point| Corner::at(point)).collect();
             polygons.add_face(&corners, None, Location::Whole).unwrap();
         }
-        polygons.check_indices().unwrap();
+        polygons.finish().unwrap();
         polygons
     }
 
@@ -358,6 +403,27 @@ mod tests {
         assert!((report.error_rms_lsb - 0.2 / 5f64.sqrt()).abs() < 1e-9);
         let error = convert(&soup(&points, &[&[0, 3, 2]]), KEEP).unwrap_err();
         assert_eq!(error.found, "only degenerate ones (1)");
+    }
+
+    #[test]
+    fn faces_that_cross_themselves_are_remarked() {
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let remarks = |faces: &[&[u32]]| {
+            let mut polygons = soup(&points, faces);
+            let report = convert(&polygons, Options::default()).unwrap().1;
+            place(&mut polygons, Options::default()).unwrap();
+            assert_eq!(polygons.remarks, report.remarks);
+            report.remarks
+        };
+        assert!(remarks(&[&[0, 1, 2, 3], &[3, 2, 1, 0]]).is_empty());
+        assert_eq!(
+            remarks(&[&[0, 1, 2, 3], &[0, 1, 3, 2]]),
+            ["face 2 crosses itself: its triangles overlap"]
+        );
+        assert_eq!(
+            remarks(&[&[0, 2, 1, 3], &[0, 1, 3, 2]]),
+            ["2 faces cross themselves, the first is face 1: their triangles overlap"]
+        );
     }
 
     #[test]

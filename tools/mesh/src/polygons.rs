@@ -20,6 +20,18 @@ impl Rgb8 {
         }
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
+
+    /// Converts all colours of a file, which does not state their full intensity: it is 1, or 255 if a component exceeds 1.
+    pub fn from_floats(colours: &[Option<[f32; 3]>]) -> Vec<Self> {
+        let components = colours.iter().flatten().flatten().copied();
+        let largest = components.filter(|c| c.is_finite()).fold(0.0, f32::max);
+        let scale = if largest > 1.0 { 1.0 / 255.0 } else { 1.0 };
+        let convert = |c: [f32; 3]| Self::from_unit(c.map(|c| f64::from(c) * scale));
+        let colours = colours.iter();
+        colours
+            .map(|colour| colour.map_or(Self::DEFAULT, convert))
+            .collect()
+    }
 }
 
 /// One corner of a polygon.
@@ -58,7 +70,7 @@ pub struct Face {
 /// Points, and polygons with these points as corners.
 ///
 /// [`add_point`](Self::add_point) and [`add_face`](Self::add_face) enforce the limits of [`crate::error`], which bound the
-/// memory. Call [`check_indices`](Self::check_indices) before using the polygons.
+/// memory. Call [`finish`](Self::finish) before using the polygons.
 #[derive(Clone, Debug, Default)]
 pub struct Polygons {
     /// The points.
@@ -74,6 +86,7 @@ pub struct Polygons {
     /// Remarks for the user, such as a missing material file; at most [`MAX_REMARKS`] from a file.
     pub remarks: Vec<String>,
     triangles: usize,
+    skipped_faces: Tally,
     largest_point: Largest,
     largest_normal: Largest,
 }
@@ -82,6 +95,17 @@ pub struct Polygons {
 /// file, so this index is checked at the end of the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Location)>);
+
+/// Number of occurrences of a fault that gives one remark, and the position of the first.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally(Option<(usize, Location)>);
+
+impl Tally {
+    fn count(&mut self, place: Location) {
+        let (count, first) = self.0.unwrap_or((0, place));
+        self.0 = Some((count + 1, first));
+    }
+}
 
 impl Largest {
     fn update(&mut self, index: u32, place: Location) {
@@ -129,10 +153,11 @@ impl Polygons {
         push(&mut self.normals, normal, "normals", place)
     }
 
-    /// Adds a polygon. The indices of its corners may refer to points added later.
+    /// Adds a polygon. The indices of its corners may refer to points added later. A polygon of fewer than three corners is skipped with
+    /// a remark.
     ///
     /// # Errors
-    /// The polygon has fewer than three corners or more than [`MAX_POLYGON`], or the mesh more than [`MAX_TRIANGLES`] triangles.
+    /// The polygon has more than [`MAX_POLYGON`] corners, or the mesh more than [`MAX_TRIANGLES`] triangles.
     pub fn add_face(
         &mut self,
         corners: &[Corner],
@@ -140,7 +165,11 @@ impl Polygons {
         place: Location,
     ) -> Result<(), FormatError> {
         let count = corners.len();
-        if !(3..=MAX_POLYGON).contains(&count) {
+        if count < 3 {
+            self.skipped_faces.count(place);
+            return Ok(());
+        }
+        if count > MAX_POLYGON {
             return Err(FormatError::new(
                 place,
                 format!("a face of 3 to {MAX_POLYGON} corners"),
@@ -170,17 +199,42 @@ impl Polygons {
         Ok(())
     }
 
-    /// Checks that a face exists, and that the points and normals of all corners exist.
+    /// Checks that a face exists and that the points of all corners exist, and removes indices of normals that do not exist. Adds
+    /// remarks on them and on skipped faces.
     ///
     /// # Errors
-    /// There is no face, or an index is out of range; the error has the position of the largest index.
-    pub fn check_indices(&self) -> Result<(), FormatError> {
+    /// There is no face, or the index of a point is out of range; the error has the position of the largest index.
+    pub fn finish(&mut self) -> Result<(), FormatError> {
         self.largest_point.check(self.points.len(), "point")?;
-        self.largest_normal.check(self.normals.len(), "normal")?;
+        if let Err(error) = self.largest_normal.check(self.normals.len(), "normal") {
+            let count = self.remove_missing_normals();
+            self.remark(format!(
+                "{}{count} corners have a normal that does not exist: it is computed from the faces",
+                error.place
+            ));
+        }
+        if let Some((count, first)) = self.skipped_faces.0 {
+            self.remark(match count {
+                1 => format!("{first}a face of fewer than three corners is skipped"),
+                _ => format!("{first}{count} faces of fewer than three corners are skipped"),
+            });
+        }
         if self.faces.is_empty() {
             return Err(FormatError::whole("at least one face", "none"));
         }
         Ok(())
+    }
+
+    /// Returns the number of corners whose normals did not exist.
+    fn remove_missing_normals(&mut self) -> usize {
+        let normals = self.normals.len();
+        let corners = self.corners.iter_mut();
+        let missing = corners.filter(|corner| {
+            corner.normal != Corner::NO_NORMAL && corner.normal as usize >= normals
+        });
+        missing
+            .map(|corner| corner.normal = Corner::NO_NORMAL)
+            .count()
     }
 
     /// The corners of a face.
@@ -239,7 +293,7 @@ mod tests {
                 Location::Line(3),
             )
             .unwrap();
-        let error = polygons.check_indices().unwrap_err();
+        let error = polygons.finish().unwrap_err();
         assert_eq!(error.place, Location::Line(2));
         assert_eq!(error.found, "7 (counted from 0)");
     }

@@ -20,7 +20,14 @@ pub struct Scratch {
     ears: VecDeque<usize>,
     tree: Tree,
     triangles: Vec<[Corner; 3]>,
+    /// Whether the last face crosses itself, so that its triangles overlap.
+    pub crosses: bool,
 }
+
+/// Area above which overlapping triangles are more than rounding errors, as a fraction of the square around the polygon.
+const OVERLAP: f64 = 1e-6;
+/// Area of a polygon below which its normal is only rounding error, as a fraction of the square around the polygon.
+const NO_AREA: f64 = 1e-12;
 
 /// Vector perpendicular to a triangle, with twice its area as length. Seen from the side to which it points, the corners are
 /// counter-clockwise.
@@ -63,17 +70,20 @@ pub fn unit(v: Vector) -> Option<Vector> {
 pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &'a [[Corner; 3]] {
     let corners = polygons.corners_of(face);
     scratch.triangles.clear();
+    scratch.crosses = false;
     if let &[a, b, c] = corners {
         scratch.triangles.push([a, b, c]);
     } else {
-        project(polygons, corners, &mut scratch.plane);
-        clip_ears(corners, scratch);
+        let square = project(polygons, corners, &mut scratch.plane);
+        let reversed = clip_ears(corners, scratch);
+        scratch.crosses = reversed > OVERLAP * square;
     }
     &scratch.triangles
 }
 
-/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it is counter-clockwise in `plane`.
-fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
+/// Projects a polygon along the axis nearest to its normal (Newell's method), so that it is counter-clockwise in `plane`. Returns the
+/// area of the square around the polygon.
+fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) -> f64 {
     let origin = corners
         .first()
         .map_or([0.0; 3], |&corner| polygons.point(corner));
@@ -86,8 +96,24 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
             *sum += (a[j] - b[j]) * (a[k] + b[k]);
         }
     }
+    let (mut low, mut high) = ([0.0_f64; 3], [0.0_f64; 3]);
+    for point in corners.iter().map(local) {
+        for (i, c) in point.into_iter().enumerate() {
+            low[i] = low[i].min(c);
+            high[i] = high[i].max(c);
+        }
+    }
+    let extent = sub(high, low);
+    let square = extent.iter().fold(0.0_f64, |m, c| m.max(*c)).powi(2);
+    // The normals of a polygon that crosses itself can cancel out. The shortest extent is then nearest to its normal.
+    let cancels = normal.iter().all(|c| c.abs() <= NO_AREA * square);
+    let length = if cancels {
+        extent.map(|c| -c)
+    } else {
+        normal.map(f64::abs)
+    };
     let axis = (0..3)
-        .max_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))
+        .max_by(|&i, &j| length[i].total_cmp(&length[j]))
         .unwrap_or(0);
     let (x, y) = if normal[axis] >= 0.0 {
         ((axis + 1) % 3, (axis + 2) % 3)
@@ -99,11 +125,13 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
         let p = local(corner);
         [p[x], p[y]]
     }));
+    square
 }
 
 /// Clips one ear after the other. The ears wait in a queue, and clipping an ear only updates its two neighbours. If a
-/// self-intersecting polygon has no ears left, any corner is clipped.
-fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
+/// self-intersecting polygon has no ears left, any corner is clipped. Returns twice the area of the clockwise triangles, which only such a
+/// polygon has.
+fn clip_ears(corners: &[Corner], scratch: &mut Scratch) -> f64 {
     let n = corners.len();
     scratch.next.clear();
     scratch.next.extend((1..n).chain([0]));
@@ -118,9 +146,12 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
         scratch.ears.extend(ear.then_some(i));
     }
     let mut at = 0;
+    let mut reversed = 0.0;
     for _ in 3..=n {
         at = next_ear(scratch).unwrap_or(at);
         let (before, after) = (scratch.previous[at], scratch.next[at]);
+        let [a, b, c] = [before, at, after].map(|i| scratch.plane[i]);
+        reversed += (-area(a, b, c)).max(0.0);
         scratch
             .triangles
             .push([corners[before], corners[at], corners[after]]);
@@ -142,6 +173,7 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
         }
         at = scratch.next[after];
     }
+    reversed
 }
 
 /// Takes the next ear from the queue.
@@ -200,6 +232,25 @@ mod tests {
             let areas = areas(&points);
             assert!(areas.iter().all(|&a| a > 0.0), "{areas:?}");
             assert_eq!(areas.iter().sum::<f64>(), 3.0);
+        }
+    }
+
+    #[test]
+    fn a_polygon_that_crosses_itself_in_every_plane() {
+        for axis in 0..3 {
+            let points = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+            let mut points = points.map(|[x, y]| {
+                let mut point = [x / 3.0; 3];
+                (point[axis], point[(axis + 1) % 3]) = (x, y);
+                point
+            });
+            let mut scratch = Scratch::default();
+            for crosses in [true, false] {
+                let polygons = polygon(&points);
+                face(&polygons, &polygons.faces[0], &mut scratch);
+                assert_eq!(scratch.crosses, crosses, "{axis}");
+                points.swap(1, 2);
+            }
         }
     }
 

@@ -32,7 +32,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
             )?;
         }
     }
-    polygons.check_indices()?;
+    polygons.finish()?;
     Ok(polygons)
 }
 

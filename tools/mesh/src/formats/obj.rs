@@ -225,14 +225,17 @@ impl Reader {
             match parts.next() {
                 None | Some(b"") => {}
                 Some(part) => {
-                    // Texture indices are parsed, but their range is not checked.
-                    index(part, i32::MAX as usize).ok_or_else(|| expected("a texture index"))?;
+                    // Texture indices have no effect, so their range is not checked.
+                    integer(part).ok_or_else(|| expected("a texture index"))?;
                 }
             }
             let normal = match parts.next() {
                 None | Some(b"") => Corner::NO_NORMAL,
-                Some(part) => index(part, self.polygons.normals.len())
-                    .ok_or_else(|| expected("a normal index"))?,
+                Some(part) => {
+                    integer(part).ok_or_else(|| expected("a normal index"))?;
+                    // An index before the first normal is as wrong as one after the last.
+                    index(part, self.polygons.normals.len()).unwrap_or(Corner::NO_NORMAL - 1)
+                }
             };
             if parts.next().is_some() {
                 return Err(expected("at most three indices"));
@@ -276,26 +279,9 @@ impl Reader {
     }
 
     fn finish(mut self) -> Result<Polygons, FormatError> {
-        self.polygons.check_indices()?;
+        self.polygons.finish()?;
         if self.point_colours.iter().any(Option::is_some) {
-            let largest = self
-                .point_colours
-                .iter()
-                .flatten()
-                .flatten()
-                .copied()
-                .filter(|c| c.is_finite())
-                .fold(0.0, f32::max);
-            let scale = if largest > 1.0 { 1.0 / 255.0 } else { 1.0 };
-            self.polygons.point_colours = self
-                .point_colours
-                .iter()
-                .map(|colour| {
-                    colour.map_or(Rgb8::DEFAULT, |c| {
-                        Rgb8::from_unit(c.map(|c| f64::from(c) * scale))
-                    })
-                })
-                .collect();
+            self.polygons.point_colours = Rgb8::from_floats(&self.point_colours);
         }
         Ok(self.polygons)
     }
@@ -314,15 +300,18 @@ fn rest_of(line: Line<'_>) -> &[u8] {
 /// Converts an index of the file to an index that counts from 0. In the file `1` is the first and `-1` the last of the `count`
 /// elements so far. Returns `None` for zero, for an index before the first element, and for an index beyond 32 bits.
 fn index(word: &[u8], count: usize) -> Option<u32> {
-    let index: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
-    let index = match index {
-        1.. => index - 1,
+    let index = match integer(word)? {
+        index @ 1.. => index - 1,
         0 => return None,
-        _ => i64::try_from(count).ok()?.checked_add(index)?,
+        index => i64::try_from(count).ok()?.checked_add(index)?,
     };
     u32::try_from(index)
         .ok()
         .filter(|&index| index != Corner::NO_NORMAL)
+}
+
+fn integer(word: &[u8]) -> Option<i64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
 }
 
 #[cfg(test)]
@@ -368,6 +357,26 @@ mod tests {
     fn normals_and_textures() {
         let polygons = read(&format!("{SQUARE}vn 0 0 1\nvt 0 0\nf 1/1/1 2/1/-1 3//1\n")).unwrap();
         assert!(polygons.corners.iter().all(|c| c.normal == 0));
+    }
+
+    #[test]
+    fn faces_of_two_corners_and_normals_that_do_not_exist() {
+        let wrong = "f 1 2\nf 1//2 2//0 3//-2\nf 3/0/1 2/-9/1 1/7/1\nf\n";
+        let polygons = read(&format!("{SQUARE}vn 0 0 1\n{wrong}")).unwrap();
+        let normals: Vec<u32> = polygons.corners.iter().map(|c| c.normal).collect();
+        assert_eq!(normals, [[Corner::NO_NORMAL; 3], [0; 3]].as_flattened());
+        assert_eq!(
+            polygons.remarks,
+            [
+                "line 7: 3 corners have a normal that does not exist: it is computed from the faces",
+                "line 6: 2 faces of fewer than three corners are skipped",
+            ]
+        );
+        let polygons = read(&format!("{SQUARE}f 1 2 3\nf 1\n")).unwrap();
+        assert_eq!(
+            polygons.remarks,
+            ["line 6: a face of fewer than three corners is skipped"]
+        );
     }
 
     #[test]
@@ -423,8 +432,9 @@ mod tests {
             v 0 0 0; f 1 1 9 → line 2: expected a point index below 1, found 8 (counted from 0)
             v 0 0 0; f 1 1 -2 → line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '-2'
             v 0 0 0; f 1 1 99999999999999999999 → line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '99999999999999999999'
-            v 0 0 0; f 1 1 → line 2: expected a face of 3 to 8192 corners, found 2
-            v 0 0 0; f 1//1 1//1 1//1 → line 2: expected a normal index below 0, found 0 (counted from 0)
+            v 0 0 0; f 1 1 → expected at least one face, found none
+            v 0 0 0; f 1//x 1 1 → line 2: expected a normal index in a corner v, v/vt, v//vn or v/vt/vn, found '1//x'
+            v 0 0 0; f 1/x 1 1 → line 2: expected a texture index in a corner v, v/vt, v//vn or v/vt/vn, found '1/x'
             v 0 0 0 1 2 → line 1: expected three colour components, found 2
         ";
         for case in cases.lines().filter(|case| case.contains('→')) {

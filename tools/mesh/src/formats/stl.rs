@@ -28,7 +28,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
         .trim_ascii_start()
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    let polygons = match (count, length) {
+    let mut polygons = match (count, length) {
         (Some(count), Some(length)) if length <= file.len() as u64 => parse_binary(file, count)?,
         _ if starts_as_text => parse_ascii(file)?,
         (Some(count), Some(length)) => {
@@ -46,7 +46,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
             ));
         }
     };
-    polygons.check_indices()?;
+    polygons.finish()?;
     Ok(polygons)
 }
 

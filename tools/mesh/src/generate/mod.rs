@@ -105,8 +105,8 @@ mod tests {
     #[test]
     fn all_are_closed_and_run_counter_clockwise() {
         for name in ALL {
-            let polygons = named(name).unwrap();
-            polygons.check_indices().unwrap();
+            let mut polygons = named(name).unwrap();
+            polygons.finish().unwrap();
             assert!(volume(&polygons) > 0.0, "{name}");
             let corners = |face| polygons.corners_of(face).iter().map(|corner| corner.point);
             let edges = polygons

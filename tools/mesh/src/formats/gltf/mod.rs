@@ -55,7 +55,7 @@ pub fn parse(file: &[u8], beside: Beside) -> Result<Polygons, FormatError> {
         polygons.remark("animations are ignored");
     }
     add_scene(&mut polygons, &document, &buffers)?;
-    polygons.check_indices()?;
+    polygons.finish()?;
     Ok(polygons)
 }
 

@@ -12,8 +12,8 @@ use crate::polygons::{Corner, Polygons, Rgb8};
 use header::{Element, Encoding, Header, Kind, Property, Scalar};
 use source::{AsciiSource, BinarySource, Source};
 
-/// Parses a PLY: the elements `vertex` (x y z, optionally nx ny nz and red green blue) and `face` (vertex_indices or
-/// vertex_index, optionally red green blue); other elements are skipped.
+/// Parses a PLY: the elements `vertex` (x y z, optionally nx ny nz and red green blue), `face` (vertex_indices or vertex_index,
+/// optionally red green blue) and `tristrips` (vertex_indices; -1 ends a strip); other elements are skipped.
 ///
 /// # Errors
 /// The first violation of the format, with its line (header, ASCII) or offset (binary).
@@ -28,7 +28,7 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
             read_body(&header, BinarySource::new(file, offset, big_endian))?
         }
     };
-    polygons.check_indices()?;
+    polygons.finish()?;
     for remark in header.remarks {
         polygons.remark(remark);
     }
@@ -45,6 +45,7 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<Polygons, Forma
         match element.name.as_slice() {
             b"vertex" => read_vertices(element, &mut source, &mut polygons)?,
             b"face" => read_faces(element, &mut source, &mut polygons)?,
+            b"tristrips" => read_strips(element, &mut source, &mut polygons)?,
             _ => skip(element, &mut source)?,
         }
     }
@@ -180,6 +181,7 @@ fn read_vertices(
         }
     });
     let with_colour = has_colour(&slots);
+    let mut colours = Vec::new();
     for _ in 0..element.count {
         source.start()?;
         let start = source.place();
@@ -194,7 +196,7 @@ fn read_vertices(
             match *slot {
                 Slot::Position(i) => point[i] = coordinate(value, place)?,
                 Slot::Normal(i) => normal[i] = value,
-                Slot::Colour(i, full) => colour[i] = value / full,
+                Slot::Colour(i, full) => colour[i] = (value / full) as f32,
                 Slot::None => {}
             }
         }
@@ -204,9 +206,30 @@ fn read_vertices(
             polygons.add_normal(normal, start)?;
         }
         if with_colour {
-            polygons.point_colours.push(Rgb8::from_unit(colour));
+            colours.push(Some(colour));
         }
     }
+    polygons.point_colours = Rgb8::from_floats(&colours);
+    Ok(())
+}
+
+/// Whether a property is the list of a face's corners.
+fn is_indices(property: &Property) -> bool {
+    let names: [&[u8]; 2] = [b"vertex_indices", b"vertex_index"];
+    matches!(property.kind, Kind::List { .. }) && names.contains(&property.name.as_slice())
+}
+
+/// Checks that an element has a list of corners, and adds remarks on its other lists.
+fn check_lists(element: &Element, polygons: &mut Polygons) -> Result<(), FormatError> {
+    if !element.properties.iter().any(is_indices) {
+        let name = String::from_utf8_lossy(&element.name);
+        return Err(FormatError::new(
+            element.place,
+            format!("the list vertex_indices or vertex_index of {name}"),
+            "none",
+        ));
+    }
+    remark_lists(element, is_indices, polygons);
     Ok(())
 }
 
@@ -216,25 +239,13 @@ fn read_faces(
     polygons: &mut Polygons,
 ) -> Result<(), FormatError> {
     let slots: Vec<Slot> = element.properties.iter().map(Slot::of).collect();
-    let is_indices = |property: &Property| {
-        matches!(property.kind, Kind::List { .. })
-            && matches!(
-                property.name.as_slice(),
-                b"vertex_indices" | b"vertex_index"
-            )
-    };
-    if !element.properties.iter().any(is_indices) {
-        return Err(FormatError::new(
-            element.place,
-            "the list vertex_indices or vertex_index of face",
-            "none",
-        ));
-    }
-    remark_lists(element, is_indices, polygons);
+    check_lists(element, polygons)?;
     let with_colour = has_colour(&slots);
     // Faces use the normals of the vertices only if the vertices come first, as in every known file.
     let with_normal = !polygons.normals.is_empty();
     let mut corners = Vec::new();
+    let first = polygons.faces.len();
+    let mut colours = Vec::new();
     for _ in 0..element.count {
         source.start()?;
         let start = source.place();
@@ -249,17 +260,74 @@ fn read_faces(
                 Kind::Scalar(scalar) => {
                     let value = source.value(scalar)?;
                     if let Slot::Colour(i, full) = *slot {
-                        colour[i] = value / full;
+                        colour[i] = (value / full) as f32;
                     }
                 }
             }
         }
         source.end()?;
-        polygons.add_face(
-            &corners,
-            with_colour.then(|| Rgb8::from_unit(colour)),
-            start,
-        )?;
+        polygons.add_face(&corners, None, start)?;
+        if with_colour && first + colours.len() < polygons.faces.len() {
+            colours.push(Some(colour));
+        }
+    }
+    let faces = polygons.faces[first..].iter_mut();
+    for (face, colour) in faces.zip(Rgb8::from_floats(&colours)) {
+        face.colour = Some(colour);
+    }
+    Ok(())
+}
+
+/// Reads triangle strips: each index adds a triangle with the two before it, and -1 starts a new strip.
+fn read_strips(
+    element: &Element,
+    source: &mut impl Source,
+    polygons: &mut Polygons,
+) -> Result<(), FormatError> {
+    check_lists(element, polygons)?;
+    let with_normal = !polygons.normals.is_empty();
+    for _ in 0..element.count {
+        source.start()?;
+        for property in &element.properties {
+            match property.kind {
+                Kind::List { count, item } if is_indices(property) => {
+                    read_strip(count, item, with_normal, source, polygons)?;
+                }
+                _ => skip_property(property, source)?,
+            }
+        }
+        source.end()?;
+    }
+    Ok(())
+}
+
+fn read_strip(
+    count: Scalar,
+    item: Scalar,
+    with_normal: bool,
+    source: &mut impl Source,
+    polygons: &mut Polygons,
+) -> Result<(), FormatError> {
+    let (mut before, mut reversed) = ([None; 2], false);
+    for _ in 0..list_length(count, source)? {
+        let place = source.place();
+        let index = source.value(item)?;
+        if index == -1.0 {
+            (before, reversed) = ([None; 2], false);
+            continue;
+        }
+        let c = corner(index, with_normal, place)?;
+        let [a, b] = before;
+        before = [b, Some(c)];
+        let (Some(a), Some(b)) = (a, b) else {
+            continue;
+        };
+        // Two equal corners continue a strip elsewhere: the triangle has no area.
+        if a != b && b != c && c != a {
+            let face = if reversed { [b, a, c] } else { [a, b, c] };
+            polygons.add_face(&face, None, place)?;
+        }
+        reversed = !reversed;
     }
     Ok(())
 }
@@ -280,25 +348,29 @@ fn read_corners(
     corners.clear();
     for _ in 0..length {
         let place = source.place();
-        let index = source.value(item)?;
-        if !(0.0..f64::from(Corner::NO_NORMAL)).contains(&index) || index.fract() != 0.0 {
-            return Err(FormatError::new(
-                place,
-                "an index (0, 1, …)",
-                format!("{index}"),
-            ));
-        }
-        let point = index as u32;
-        corners.push(Corner {
-            normal: if with_normal {
-                point
-            } else {
-                Corner::NO_NORMAL
-            },
-            ..Corner::at(point)
-        });
+        corners.push(corner(source.value(item)?, with_normal, place)?);
     }
     Ok(())
+}
+
+/// The corner at a point, with the point's normal.
+fn corner(index: f64, with_normal: bool, place: Location) -> Result<Corner, FormatError> {
+    if !(0.0..f64::from(Corner::NO_NORMAL)).contains(&index) || index.fract() != 0.0 {
+        return Err(FormatError::new(
+            place,
+            "an index (0, 1, …)",
+            format!("{index}"),
+        ));
+    }
+    let point = index as u32;
+    Ok(Corner {
+        normal: if with_normal {
+            point
+        } else {
+            Corner::NO_NORMAL
+        },
+        ..Corner::at(point)
+    })
 }
 
 #[cfg(test)]
@@ -316,6 +388,46 @@ mod tests {
             polygons.faces.iter().map(|f| f.count).collect::<Vec<_>>(),
             [4, 3]
         );
+    }
+
+    const VERTICES: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+
+    #[test]
+    fn triangle_strips() {
+        let text = format!(
+            "{VERTICES}element tristrips 2\nproperty int flags\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n7 9 0 1 2 3 -1 2 1 0 0\n8 3 1 3 2\n"
+        );
+        let polygons = parse(text.as_bytes()).unwrap();
+        let corners: Vec<u32> = polygons.corners.iter().map(|corner| corner.point).collect();
+        assert_eq!(
+            corners,
+            [[0, 1, 2], [2, 1, 3], [2, 1, 0], [1, 3, 2]].as_flattened()
+        );
+        assert!(polygons.remarks.is_empty());
+        let error = parse(text.replace("8 3 1 3 2", "8 3 1 3 -2").as_bytes()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "line 16: expected an index (0, 1, …), found -2"
+        );
+    }
+
+    #[test]
+    fn colours_of_floats_to_1_and_to_255() {
+        for (one, half) in [("1", "0.5"), ("255", "127.5")] {
+            let colour = "property float red\nproperty float green\nproperty float blue\n";
+            let text = format!(
+                "{VERTICES}{colour}element face 3\nproperty list uchar int vertex_indices\n{colour}end_header\n0 0 0 {one} {half} 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n1 1 0 nan 0 0\n3 0 1 2 0 {half} {one}\n2 0 1 0 0 0\n3 0 1 2 0 0 0\n"
+            );
+            let polygons = parse(text.as_bytes()).unwrap();
+            assert_eq!(polygons.point_colours[0], Rgb8([255, 128, 0]));
+            assert_eq!(polygons.point_colours[3], Rgb8::DEFAULT);
+            let colours: Vec<_> = polygons.faces.iter().map(|face| face.colour).collect();
+            assert_eq!(colours, [Some(Rgb8([0, 128, 255])), Some(Rgb8([0; 3]))]);
+            assert_eq!(
+                polygons.remarks,
+                ["line 21: a face of fewer than three corners is skipped"]
+            );
+        }
     }
 
     fn binary(order: &str, swap: bool, index: i32) -> Vec<u8> {
