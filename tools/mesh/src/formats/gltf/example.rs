@@ -11,14 +11,19 @@ pub fn as_binary(gltf: &str) -> Option<(Vec<u8>, Vec<u8>)> {
     let (start, rest) = gltf.split_once("\"uri\": \"data:application/octet-stream;base64,")?;
     let (data, end) = rest.split_once("\", ")?;
     let buffer = BASE64_STANDARD.decode(data).ok()?;
-    let glb = gltf::Glb {
-        header: gltf::binary::Header {
-            magic: *b"glTF",
-            version: 2,
-            length: 0,
-        },
-        json: [start, end].concat().into_bytes().into(),
-        bin: Some(buffer.as_slice().into()),
-    };
-    glb.to_vec().ok().map(|glb| (glb, buffer))
+    let mut json = [start, end].concat().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let length = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
+    let chunks = [
+        &length(&json)[..],
+        b"JSON",
+        &json,
+        &length(&buffer),
+        b"BIN\0",
+        &buffer,
+    ]
+    .concat();
+    let whole = (chunks.len() as u32 + 12).to_le_bytes();
+    let header = [&b"glTF"[..], &2_u32.to_le_bytes(), &whole];
+    Some(([&header.concat()[..], &chunks].concat(), buffer))
 }

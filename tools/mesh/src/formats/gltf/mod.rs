@@ -1,27 +1,23 @@
 //! glTF 2.0, as JSON (`.gltf`) or binary (`.glb`).
 //!
-//! The crate `gltf` parses and validates the JSON. Its functions to read values panic on offsets out of range, so this module reads the
-//! values.
+//! This parser replaces the crate `gltf`, which rejects files for faults in parts that Glint ignores, such as attributes of
+//! applications, textures and required extensions of materials, and which panics on offsets out of range.
 
 mod buffers;
 pub mod example;
+mod json;
 
 use super::text::{BYTE_ORDER_MARK, checked};
-use crate::error::{FormatError, Location, MAX_COORDINATE, quote};
+use crate::error::{FormatError, Location, MAX_COORDINATE, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
-use buffers::{Beside, Buffers};
-use gltf::accessor::Dimensions;
-use gltf::json::validation::Checked;
-use gltf::json::{Index, Root};
-use gltf::mesh::Mode;
-use gltf::{Document, Error, Glb, Material, Node, Primitive, Semantic};
+use buffers::{Beside, Buffers, Values};
+use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root};
 use serde::Deserialize;
-use std::borrow::Cow;
 
 /// Maximum number of bytes of JSON outside of strings. This bounds the memory, because three such bytes can become an object of some
 /// hundred bytes. Buffers within the file are strings.
 const MAX_STRUCTURE: usize = 4 << 20;
-/// Maximum length in an error of a message of the crate.
+/// Maximum length in an error of a message of the JSON parser.
 const MAX_MESSAGE: usize = 200;
 
 /// Columns of an affine map: the images of the axes, and the translation.
@@ -29,61 +25,102 @@ type Affine = [Vector; 4];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
 
-/// Parses a glTF. The meshes of the first scene are merged, each with the transforms of its nodes. Colours come from materials and
-/// vertices, converted from linear intensities to sRGB. Textures, skins and animations are ignored with a remark. `beside` reads a file in
-/// the same folder.
+/// Parses a glTF. The meshes of the first scene are merged, each with the transforms of its nodes and instances
+/// (EXT_mesh_gpu_instancing), without hidden nodes (KHR_node_visibility). Colours come from materials, also of
+/// KHR_materials_pbrSpecularGlossiness, and vertices, converted from linear intensities to sRGB. Textures, skins, morph targets and
+/// animations are ignored with a remark. `beside` reads a file in the same folder.
 ///
 /// # Errors
-/// The first violation of the format, a required extension, sparse values, or a buffer file that cannot be read.
+/// The first violation of the format in the parts that Glint reads, a required extension that can change the shape, or a buffer file that
+/// cannot be read.
 pub fn parse(file: &[u8], beside: Beside) -> Result<Polygons, FormatError> {
     let (json, binary) = split(file)?;
-    let structure = structure(&json);
+    let structure = structure(json);
     if structure > MAX_STRUCTURE {
         return Err(FormatError::whole(
             format!("at most {MAX_STRUCTURE} bytes of JSON outside of strings"),
             structure.to_string(),
         ));
     }
-    check_version(&json)?;
-    let root = gltf::json::deserialize::from_slice(&json)
-        .map_err(|error| invalid(Error::Deserialize(error)))?;
-    check_positions(&root)?;
-    let document = Document::from_json(root).map_err(invalid)?;
-    let buffers = Buffers::read(&document, binary.as_deref().unwrap_or_default(), beside)?;
-    let mut polygons = Polygons::default();
-    if document.animations().next().is_some() {
-        polygons.remark("animations are ignored");
+    check_version(json)?;
+    let root: Root = from_json(json)?;
+    check_extensions(&root)?;
+    let buffers = Buffers::read(&root, binary, beside)?;
+    let mut reader = Reader {
+        root: &root,
+        buffers: &buffers,
+        polygons: Polygons::default(),
+        placed: 0,
+    };
+    if !root.animations.is_empty() {
+        reader.polygons.remark("animations are ignored");
     }
-    add_scene(&mut polygons, &document, &buffers)?;
+    reader.add_scene()?;
+    let mut polygons = reader.polygons;
     polygons.finish()?;
     Ok(polygons)
 }
 
-/// The JSON of a file, and the binary chunk of a `.glb`.
-type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
+fn from_json<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Result<T, FormatError> {
+    serde_json::from_slice(json).map_err(|error| {
+        let message = error.to_string();
+        let message = message.chars().take(MAX_MESSAGE);
+        let message = message.map(|c| if c.is_control() { ' ' } else { c });
+        FormatError::whole("valid glTF 2.0", message.collect::<String>())
+    })
+}
 
-fn split(file: &[u8]) -> Result<Chunks<'_>, FormatError> {
+/// The JSON of a file, and the binary chunk of a `.glb`, which may be empty.
+fn split(file: &[u8]) -> Result<(&[u8], &[u8]), FormatError> {
+    const HEADER: usize = 12;
     if !file.starts_with(b"glTF") {
         let json = file.strip_prefix(BYTE_ORDER_MARK).unwrap_or(file);
-        return Ok((json.into(), None));
+        return Ok((json, &[]));
     }
-    let Some(length) = file.get(8..12).and_then(<[u8]>::first_chunk) else {
+    let word = |file: &[u8], offset: usize| {
+        let bytes = file.get(offset..).and_then(<[u8]>::first_chunk);
+        bytes.copied().map(u32::from_le_bytes)
+    };
+    let (Some(version), Some(length)) = (word(file, 4), word(file, 8)) else {
         return Err(FormatError::whole(
-            "a header of 12 bytes",
+            format!("a header of {HEADER} bytes"),
             file.len().to_string(),
         ));
     };
-    // The crate subtracts the header's 12 bytes from this length without a check.
-    let length = u32::from_le_bytes(*length);
-    if length < 12 || length as usize > file.len() {
+    if version != 2 {
+        return Err(FormatError::new(
+            Location::Byte(4),
+            "version 2",
+            version.to_string(),
+        ));
+    }
+    let length = length as usize;
+    if !(HEADER..=file.len()).contains(&length) {
         return Err(FormatError::new(
             Location::Byte(8),
-            format!("a length of 12 to {} bytes", file.len()),
+            format!("a length of {HEADER} to {} bytes", file.len()),
             length.to_string(),
         ));
     }
-    let chunks = Glb::from_slice(file).map_err(invalid)?;
-    Ok((chunks.json, chunks.bin))
+    let file = &file[..length];
+    let [mut json, mut binary] = [None; 2];
+    let mut at = HEADER;
+    while let (Some(size), Some(kind)) = (word(file, at), file.get(at + 4..at + 8)) {
+        let start = at + 8;
+        let chunk = file.get(start..).and_then(|rest| rest.get(..size as usize));
+        let chunk = chunk.ok_or_else(|| {
+            let expected = format!("a chunk within {length} bytes");
+            FormatError::new(Location::Byte(at), expected, format!("{size} bytes"))
+        })?;
+        match kind {
+            b"JSON" => json = json.or(Some(chunk)),
+            b"BIN\0" => binary = binary.or(Some(chunk)),
+            _ => {}
+        }
+        at = start + chunk.len();
+    }
+    let json = json.ok_or_else(|| FormatError::whole("a chunk JSON", "none"))?;
+    Ok((json, binary.unwrap_or_default()))
 }
 
 /// Number of bytes of a JSON text outside of strings.
@@ -117,12 +154,9 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Checks that the file has version 2, and that a reader of version 2.0 can read it: later minor versions are compatible. The crate
-/// rejects a file without a version.
+/// Checks that the file has version 2, and that a reader of version 2.0 can read it: later minor versions are compatible.
 fn check_version(json: &[u8]) -> Result<(), FormatError> {
-    let Ok(Head { asset }) = serde_json::from_slice(json) else {
-        return Ok(());
-    };
+    let Head { asset } = from_json(json)?;
     let minor = asset.version.strip_prefix("2.").unwrap_or_default();
     if minor.is_empty() || !minor.bytes().all(|byte| byte.is_ascii_digit()) {
         let found = quote(asset.version.as_bytes());
@@ -140,114 +174,245 @@ fn check_version(json: &[u8]) -> Result<(), FormatError> {
     }
 }
 
-/// Checks values that the crate's validation uses before it checks them.
-fn check_positions(root: &Root) -> Result<(), FormatError> {
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let positions = primitives.filter_map(|primitive| {
-        primitive
-            .attributes
-            .get(&Checked::Valid(Semantic::Positions))
+/// Required extensions that Glint supports.
+const SUPPORTED: [&str; 3] = [
+    "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
+];
+
+/// Parts of the names of extensions without effect on shapes and base colours.
+const WITHOUT_EFFECT: [&str; 5] = [
+    "_materials_",
+    "_texture_",
+    "_lights_",
+    "_animation_",
+    "_xmp",
+];
+
+/// Checks that no required extension can change the shape in a way that Glint does not support, such as compression.
+fn check_extensions(root: &Root) -> Result<(), FormatError> {
+    let unknown = root.extensions_required.iter().find(|name| {
+        !SUPPORTED.contains(&name.as_str())
+            && !WITHOUT_EFFECT.iter().any(|part| name.contains(part))
     });
-    let accessors = root.accessors.len();
-    for index in positions.map(Index::value) {
-        if index >= accessors {
-            let expected = format!("an accessor of positions below {accessors}");
-            return Err(FormatError::whole(expected, index.to_string()));
+    match unknown {
+        Some(name) => {
+            let expected = if name.contains("compression") {
+                "a file without compression"
+            } else {
+                "no required extension that can change the shape"
+            };
+            Err(FormatError::whole(expected, quote(name.as_bytes())))
         }
+        None => Ok(()),
     }
-    Ok(())
 }
 
-fn invalid(error: Error) -> FormatError {
-    let message = match error {
-        Error::Validation(errors) => errors
-            .first()
-            .map_or(String::new(), |(path, error)| format!("{path}: {error}")),
-        other => other.to_string(),
-    };
-    let message = message.chars().take(MAX_MESSAGE);
-    let message = message.map(|c| if c.is_control() { ' ' } else { c });
-    FormatError::whole("valid glTF 2.0", message.collect::<String>())
+/// The item of a list of the file.
+fn item<'a, T>(list: &'a [T], index: Index, name: &str) -> Result<&'a T, FormatError> {
+    list.get(index as usize).ok_or_else(|| {
+        FormatError::whole(
+            format!("an index below {} in the list of {name}", list.len()),
+            index.to_string(),
+        )
+    })
 }
 
-fn add_scene(
-    polygons: &mut Polygons,
-    document: &Document,
-    buffers: &Buffers,
-) -> Result<(), FormatError> {
-    let scene = document
-        .default_scene()
-        .or_else(|| document.scenes().next());
-    let scene = scene.ok_or_else(|| FormatError::whole("a scene", "none"))?;
-    // Without this check a few nodes could multiply a mesh exponentially.
-    let mut visited = vec![false; document.nodes().count()];
-    let mut waiting: Vec<(Node, Affine)> = scene.nodes().map(|node| (node, IDENTITY)).collect();
-    while let Some((node, parent)) = waiting.pop() {
-        if std::mem::replace(&mut visited[node.index()], true) {
-            return Err(FormatError::whole(
-                format!("one parent of node {}", node.index()),
-                "several",
-            ));
+struct Reader<'a> {
+    root: &'a Root,
+    buffers: &'a Buffers<'a>,
+    polygons: Polygons,
+    /// Number of primitives added so far, once for each node and instance.
+    placed: usize,
+}
+
+impl Reader<'_> {
+    fn add_scene(&mut self) -> Result<(), FormatError> {
+        let root = self.root;
+        let scene = match root.scene {
+            Some(index) => item(&root.scenes, index, "scenes")?,
+            None => {
+                let first = root.scenes.first();
+                first.ok_or_else(|| FormatError::whole("a scene", "none"))?
+            }
+        };
+        // Without this check a few nodes could multiply a mesh exponentially.
+        let mut visited = vec![false; root.nodes.len()];
+        let mut waiting: Vec<(Index, Affine)> =
+            scene.nodes.iter().map(|&node| (node, IDENTITY)).collect();
+        while let Some((index, parent)) = waiting.pop() {
+            let node = item(&root.nodes, index, "nodes")?;
+            if std::mem::replace(&mut visited[index as usize], true) {
+                return Err(FormatError::whole(
+                    format!("one parent of node {index}"),
+                    "several",
+                ));
+            }
+            let hidden = node.extensions.visibility.as_ref();
+            if hidden.is_some_and(|visibility| !visibility.visible) {
+                self.polygons
+                    .remark("hidden nodes are left out (KHR_node_visibility)");
+                continue;
+            }
+            let map = product(&parent, &local(node));
+            if node.skin.is_some() {
+                self.polygons
+                    .remark("skins are ignored: meshes have their rest pose");
+            }
+            if let Some(mesh) = node.mesh {
+                match &node.extensions.instancing {
+                    None => self.add_mesh(mesh, &map)?,
+                    Some(instancing) => self.add_instances(mesh, instancing, &map)?,
+                }
+            }
+            waiting.extend(node.children.iter().map(|&child| (child, map)));
         }
-        let map = product(&parent, &local(&node));
-        if node.skin().is_some() {
-            polygons.remark("skins are ignored: meshes have their rest pose");
+        Ok(())
+    }
+
+    /// Adds a mesh once for each instance of a node.
+    fn add_instances(
+        &mut self,
+        mesh: Index,
+        instancing: &Instancing,
+        map: &Affine,
+    ) -> Result<(), FormatError> {
+        let buffers = self.buffers;
+        let values = |index: Option<Index>, dimensions| {
+            let values = index.map(|index| buffers.values(index, &[dimensions], None));
+            values.transpose()
+        };
+        let attributes = &instancing.attributes;
+        let translations = values(attributes.translation, Dimensions::Vec3)?;
+        let rotations = values(attributes.rotation, Dimensions::Vec4)?;
+        let scales = values(attributes.scale, Dimensions::Vec3)?;
+        let lists = [&translations, &rotations, &scales];
+        let counts = lists.into_iter().flatten().map(|values| values.count);
+        for i in 0..counts.min().unwrap_or(0) {
+            let place = placed(
+                translations
+                    .as_ref()
+                    .map_or([0.0; 3], |values| values.vector(i)),
+                rotations
+                    .as_ref()
+                    .map_or([0.0, 0.0, 0.0, 1.0], |values| values.vector(i)),
+                scales.as_ref().map_or([1.0; 3], |values| values.vector(i)),
+            );
+            self.add_mesh(mesh, &product(map, &place))?;
         }
-        if let Some(mesh) = node.mesh() {
-            for primitive in mesh.primitives() {
-                add_primitive(polygons, &primitive, buffers, &map)?;
+        Ok(())
+    }
+
+    fn add_mesh(&mut self, mesh: Index, map: &Affine) -> Result<(), FormatError> {
+        let mesh = item(&self.root.meshes, mesh, "meshes")?;
+        self.placed += mesh.primitives.len().max(1);
+        if self.placed > MAX_TRIANGLES {
+            let expected = format!("at most {MAX_TRIANGLES} primitives of nodes and instances");
+            return Err(FormatError::whole(expected, "more"));
+        }
+        for primitive in &mesh.primitives {
+            self.add_primitive(primitive, map)?;
+        }
+        Ok(())
+    }
+
+    fn add_primitive(&mut self, primitive: &Primitive, map: &Affine) -> Result<(), FormatError> {
+        let Self {
+            root,
+            buffers,
+            polygons,
+            ..
+        } = self;
+        if primitive.mode == Mode::PointsOrLines {
+            polygons.remark("points and lines are ignored");
+            return Ok(());
+        }
+        if !primitive.targets.is_empty() {
+            polygons.remark("morph targets are ignored");
+        }
+        let attributes = &primitive.attributes;
+        let positions = attributes
+            .position
+            .ok_or_else(|| FormatError::whole("positions of a primitive", "none"))?;
+        let positions = buffers.values(positions, &[Dimensions::Vec3], None)?;
+        let count = positions.count;
+        let values = |index: Option<Index>, dimensions: &[Dimensions]| {
+            let values = index.map(|index| buffers.values(index, dimensions, Some(count)));
+            values.transpose()
+        };
+        let normals = values(attributes.normal, &[Dimensions::Vec3])?;
+        let mut colours = values(attributes.color_0, &[Dimensions::Vec3, Dimensions::Vec4])?;
+        if let Some(colours) = &mut colours {
+            // Integer colours are always normalised.
+            colours.normalised = true;
+        }
+        let indices = primitive.indices;
+        let indices = indices.map(|index| buffers.values(index, &[Dimensions::Scalar], None));
+        let indices = indices.transpose()?;
+        let material = primitive.material;
+        let material = material.map(|index| item(&root.materials, index, "materials"));
+        let material = material.transpose()?;
+
+        let base = base_colour(polygons, material, colours.is_some());
+        let first_point = polygons.points.len() as u32;
+        let first_normal = polygons.normals.len() as u32;
+        add_points(polygons, &positions, base, colours.as_ref(), map)?;
+        let turned = turn_of_normals(map);
+        if let Some(normals) = &normals {
+            for i in 0..count {
+                let normal = apply(&turned, normals.vector(i));
+                polygons.add_normal(normal, Location::Whole)?;
             }
         }
-        waiting.extend(node.children().map(|child| (child, map)));
+
+        let corners = indices.as_ref().map_or(count, |indices| indices.count);
+        let corner = |i: usize| {
+            let index = indices.as_ref().map_or(i, |indices| indices.index(i));
+            if index >= count {
+                return Err(FormatError::whole(
+                    format!("an index below {count}"),
+                    index.to_string(),
+                ));
+            }
+            Ok(Corner {
+                normal: match normals {
+                    Some(_) => first_normal + index as u32,
+                    None => Corner::NO_NORMAL,
+                },
+                ..Corner::at(first_point + index as u32)
+            })
+        };
+        let triangles = match primitive.mode {
+            Mode::Triangles => corners / 3,
+            _ => corners.saturating_sub(2),
+        };
+        let colour = base.filter(|_| colours.is_none()).map(srgb);
+        let mirrored = determinant(map) < 0.0;
+        for i in 0..triangles {
+            let [a, b, c] = match primitive.mode {
+                Mode::Triangles => [3 * i, 3 * i + 1, 3 * i + 2],
+                Mode::TriangleFan => [0, i + 1, i + 2],
+                _ if i % 2 == 0 => [i, i + 1, i + 2],
+                _ => [i + 1, i, i + 2],
+            };
+            let [b, c] = if mirrored { [c, b] } else { [b, c] };
+            let face = [corner(a)?, corner(b)?, corner(c)?];
+            polygons.add_face(&face, colour, Location::Whole)?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
-fn add_primitive(
+/// Adds the points of a primitive with their colours.
+fn add_points(
     polygons: &mut Polygons,
-    primitive: &Primitive,
-    buffers: &Buffers,
+    positions: &Values,
+    base: Option<Vector>,
+    colours: Option<&Values>,
     map: &Affine,
 ) -> Result<(), FormatError> {
-    let mode = primitive.mode();
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
-        polygons.remark("points and lines are ignored");
-        return Ok(());
-    }
-    if primitive.morph_targets().next().is_some() {
-        polygons.remark("morph targets are ignored");
-    }
-    let positions = primitive
-        .get(&Semantic::Positions)
-        .ok_or_else(|| FormatError::whole("positions of a primitive", "none"))?;
-    let positions = buffers.values(&positions, &[Dimensions::Vec3], None)?;
-    let count = positions.count;
-    let values = |accessor, dimensions: &[Dimensions]| {
-        let accessor: Option<gltf::Accessor> = accessor;
-        let values = accessor.map(|accessor| buffers.values(&accessor, dimensions, Some(count)));
-        values.transpose()
-    };
-    let normals = values(primitive.get(&Semantic::Normals), &[Dimensions::Vec3])?;
-    let mut colours = values(
-        primitive.get(&Semantic::Colors(0)),
-        &[Dimensions::Vec3, Dimensions::Vec4],
-    )?;
-    if let Some(colours) = &mut colours {
-        // Integer colours are always normalised.
-        colours.normalised = true;
-    }
-    let indices = primitive.indices();
-    let indices = indices.map(|indices| buffers.values(&indices, &[Dimensions::Scalar], None));
-    let indices = indices.transpose()?;
-
-    let base = base_colour(polygons, &primitive.material(), colours.is_some());
-    let first_point = polygons.points.len() as u32;
-    let first_normal = polygons.normals.len() as u32;
-    let turned = turn_of_normals(map);
-    for i in 0..count {
+    for i in 0..positions.count {
         let point = apply(map, positions.vector(i));
         if let Some(found) = point.iter().find(|c| checked(**c).is_none()) {
             return Err(FormatError::whole(
@@ -256,63 +421,31 @@ fn add_primitive(
             ));
         }
         polygons.add_point(point, Location::Whole)?;
-        let colour = colours
-            .as_ref()
-            .map_or([1.0; 3], |colours| colours.vector(i));
+        let colour = colours.map_or([1.0; 3], |colours| colours.vector(i));
         let colour = base.map(|base| srgb(multiplied(base, colour)));
         polygons.point_colours.push(colour.unwrap_or(Rgb8::DEFAULT));
-        if let Some(normals) = &normals {
-            polygons.add_normal(apply(&turned, normals.vector(i)), Location::Whole)?;
-        }
-    }
-
-    let corners = indices.as_ref().map_or(count, |indices| indices.count);
-    let corner = |i: usize| {
-        let index = indices.as_ref().map_or(i, |indices| indices.index(i));
-        if index >= count {
-            return Err(FormatError::whole(
-                format!("an index below {count}"),
-                index.to_string(),
-            ));
-        }
-        Ok(Corner {
-            normal: match normals {
-                Some(_) => first_normal + index as u32,
-                None => Corner::NO_NORMAL,
-            },
-            ..Corner::at(first_point + index as u32)
-        })
-    };
-    let triangles = match mode {
-        Mode::Triangles => corners / 3,
-        _ => corners.saturating_sub(2),
-    };
-    let colour = base.filter(|_| colours.is_none()).map(srgb);
-    let mirrored = determinant(map) < 0.0;
-    for i in 0..triangles {
-        let [a, b, c] = match mode {
-            Mode::Triangles => [3 * i, 3 * i + 1, 3 * i + 2],
-            Mode::TriangleFan => [0, i + 1, i + 2],
-            _ if i % 2 == 0 => [i, i + 1, i + 2],
-            _ => [i + 1, i, i + 2],
-        };
-        let [b, c] = if mirrored { [c, b] } else { [b, c] };
-        let face = [corner(a)?, corner(b)?, corner(c)?];
-        polygons.add_face(&face, colour, Location::Whole)?;
     }
     Ok(())
 }
 
 /// The colour of a material, as linear intensities; `None` for the default material without vertex colours.
-fn base_colour(polygons: &mut Polygons, material: &Material, has_colours: bool) -> Option<Vector> {
-    if material.index().is_none() && !has_colours {
-        return None;
-    }
-    let material = material.pbr_metallic_roughness();
-    if material.base_color_texture().is_some() {
+fn base_colour(
+    polygons: &mut Polygons,
+    material: Option<&Material>,
+    has_colours: bool,
+) -> Option<Vector> {
+    let Some(material) = material else {
+        return has_colours.then_some([1.0; 3]);
+    };
+    let base = &material.pbr_metallic_roughness;
+    let (factor, texture) = match &material.extensions.specular_glossiness {
+        Some(diffuse) => (diffuse.diffuse_factor, diffuse.diffuse_texture),
+        None => (base.base_color_factor, base.base_color_texture),
+    };
+    if texture.is_some() {
         polygons.remark("textures are ignored: materials have their base colours");
     }
-    let [red, green, blue, _] = material.base_color_factor();
+    let [red, green, blue, _] = factor;
     Some([red, green, blue].map(f64::from))
 }
 
@@ -333,8 +466,39 @@ fn srgb(linear: Vector) -> Rgb8 {
 
 /// The map from a node to its parent.
 fn local(node: &Node) -> Affine {
-    let matrix = node.transform().matrix();
-    matrix.map(|[x, y, z, _]| [x, y, z].map(f64::from))
+    match &node.matrix {
+        Some(matrix) => [0, 4, 8, 12].map(|i| [i, i + 1, i + 2].map(|i| f64::from(matrix[i]))),
+        None => placed(
+            node.translation.map(f64::from),
+            node.rotation.map(f64::from),
+            node.scale.map(f64::from),
+        ),
+    }
+}
+
+/// The map that scales, then rotates by a quaternion (x, y, z, w) of any length, then translates.
+fn placed(translation: Vector, [x, y, z, w]: [f64; 4], scale: Vector) -> Affine {
+    let square = x * x + y * y + z * z + w * w;
+    let s = if square > 0.0 { 2.0 / square } else { 0.0 };
+    let rotation = [
+        [
+            1.0 - s * (y * y + z * z),
+            s * (x * y + w * z),
+            s * (x * z - w * y),
+        ],
+        [
+            s * (x * y - w * z),
+            1.0 - s * (x * x + z * z),
+            s * (y * z + w * x),
+        ],
+        [
+            s * (x * z + w * y),
+            s * (y * z - w * x),
+            1.0 - s * (x * x + y * y),
+        ],
+    ];
+    let [a, b, c] = [0, 1, 2].map(|i| rotation[i].map(|c| c * scale[i]));
+    [a, b, c, translation]
 }
 
 fn apply(map: &Affine, [x, y, z]: Vector) -> Vector {

@@ -97,7 +97,7 @@ fn errors() {
     );
     assert_eq!(
         error("\"POSITION\": 0", "\"POSITION\": 4"),
-        "expected an accessor of positions below 4, found 4"
+        "expected an index below 4 in the list of accessors, found 4"
     );
     assert_eq!(
         error("[10, 0, 0]", "[3e38, 0, 0]"),
@@ -105,7 +105,7 @@ fn errors() {
     );
     assert_eq!(
         error("\"scenes\": [{\"nodes\": [0]}]", "\"scenes\": []"),
-        "expected valid glTF 2.0, found scene: Index out of bounds"
+        "expected an index below 0 in the list of scenes, found 0"
     );
     assert_eq!(
         error("octet-stream;base64,", "octet-stream;base64,-")
@@ -131,7 +131,7 @@ fn errors() {
     let draco = "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"scene\": 0";
     assert_eq!(
         error("\"scene\": 0", draco),
-        "expected valid glTF 2.0, found extensionsRequired[0] = \"KHR_draco_mesh_compression\": Unsupported extension"
+        "expected a file without compression, found 'KHR_draco_mesh_compression'"
     );
     assert_eq!(
         parse(b"glTF\x02\0\0\0\x05\0\0\0", &mut |_| None)
@@ -185,5 +185,130 @@ fn what_is_ignored_is_remarked() {
             "skins are ignored: meshes have their rest pose",
             "textures are ignored: materials have their base colours",
         ]
+    );
+}
+
+/// Whether the file with a changed text has the faces of the file without a change.
+fn is_unchanged(from: &str, to: &str) -> bool {
+    assert!(TWO_MESHES.contains(from), "{from}");
+    let read = |text: &str| read(text).unwrap_or_else(|error| panic!("{to}: {error}"));
+    faces(&read(&TWO_MESHES.replacen(from, to, 1))) == faces(&read(TWO_MESHES))
+}
+
+#[test]
+fn faults_in_ignored_parts_are_ignored() {
+    let positions = "\"POSITION\": 0, \"NORMAL\"";
+    for more in ["_FEATURE_ID_0", "_X", "CUSTOM", "TEXCOORD_0", "JOINTS_0"] {
+        let to = format!("\"{more}\": 77, {positions}");
+        assert!(is_unchanged(positions, &to));
+    }
+    for name in [
+        "KHR_materials_unlit",
+        "KHR_texture_transform",
+        "EXT_texture_webp",
+        "KHR_texture_basisu",
+        "KHR_lights_punctual",
+        "KHR_mesh_quantization",
+    ] {
+        let to = format!("\"extensionsRequired\": [\"{name}\"], \"scene\": 0");
+        assert!(is_unchanged("\"scene\": 0", &to));
+    }
+    for more in [
+        "\"textures\": [{}, {\"source\": 9}]",
+        "\"images\": [{\"mimeType\": 1}]",
+        "\"samplers\": 7",
+        "\"cameras\": [{}]",
+        "\"skins\": [{}]",
+        "\"animations\": [{\"channels\": [{\"target\": {\"path\": \"pointer\"}}]}]",
+    ] {
+        assert!(is_unchanged(
+            "\"scene\": 0",
+            &format!("{more}, \"scene\": 0")
+        ));
+    }
+    let limits = ", \"min\": [0, 0, 0], \"max\": [2, 2, 1]";
+    assert!(is_unchanged(limits, ""));
+    let texture = "\"baseColorTexture\": {\"index\": 5}, \"baseColorFactor\"";
+    assert!(is_unchanged("\"baseColorFactor\"", texture));
+}
+
+#[test]
+fn required_extensions_of_the_shape_are_named() {
+    for name in [
+        "KHR_draco_mesh_compression",
+        "EXT_meshopt_compression",
+        "VENDOR_shapes",
+    ] {
+        let required = format!("\"extensionsRequired\": [\"{name}\"], \"scene\": 0");
+        let error = error("\"scene\": 0", &required);
+        assert!(error.ends_with(&format!("found '{name}'")), "{error}");
+    }
+}
+
+/// Nodes whose extension places two instances: one at the node, one scaled by 2 and moved by (2, 2, 1), which are the last point of the
+/// positions.
+#[test]
+fn instances_of_a_mesh() {
+    let views = "\"accessors\": [";
+    let accessor = |offset: usize, kind: &str| {
+        format!(
+            "{{\"bufferView\": 0, \"byteOffset\": {offset}, \"componentType\": 5126, \"count\": 1, \"type\": \"{kind}\"}}, "
+        )
+    };
+    let end = "\"type\": \"SCALAR\"}]";
+    let more = [accessor(36, "VEC3"), accessor(36, "VEC3")].concat();
+    let extension = "\"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": {\"TRANSLATION\": 4, \"SCALE\": 5}}}, ";
+    let text = TWO_MESHES
+        .replacen(
+            end,
+            &format!("\"type\": \"SCALAR\"}}, {}]", more.trim_end_matches(", ")),
+            1,
+        )
+        .replacen("{\"mesh\": 1, ", &format!("{{{extension}\"mesh\": 1, "), 1);
+    assert!(text.contains(views));
+    let instances = faces(&read(&text).unwrap());
+    // (0, 0, 0) is scaled by (2, 2, 1), moved by (2, 2, 1), mirrored in x and moved by 10.
+    assert_eq!(instances[0][0], [8, 2, 1]);
+    assert_eq!(instances.len(), 4);
+    let twice = text
+        .replace("\"count\": 1,", "\"count\": 2,")
+        .replace("\"byteOffset\": 36", "\"byteOffset\": 24");
+    assert_eq!(faces(&read(&twice).unwrap()).len(), 6);
+}
+
+#[test]
+fn hidden_nodes_and_colours_of_an_extension() {
+    let hidden = "{\"extensions\": {\"KHR_node_visibility\": {\"visible\": false}}, \"mesh\": 1,";
+    let polygons = read(&TWO_MESHES.replacen("{\"mesh\": 1,", hidden, 1)).unwrap();
+    assert_eq!(faces(&polygons).len(), 2);
+    assert_eq!(
+        polygons.remarks,
+        ["hidden nodes are left out (KHR_node_visibility)"]
+    );
+    let diffuse = "{\"extensions\": {\"KHR_materials_pbrSpecularGlossiness\": {\"diffuseFactor\": [1, 0, 0, 1]}}, \"pbrMetallicRoughness\"";
+    let polygons = read(&TWO_MESHES.replacen("{\"pbrMetallicRoughness\"", diffuse, 1)).unwrap();
+    assert_eq!(polygons.faces[3].colour, Some(Rgb8([255, 0, 0])));
+}
+
+/// The third index, a number of 16 bits at the start of view 3, replaces the point 0 with the first normal, (0, 0, 1).
+#[test]
+fn sparse_positions() {
+    let sparse = "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 3, \"componentType\": 5123}, \"values\": {\"bufferView\": 1}}";
+    let view = "{\"bufferView\": 0, ";
+    let polygons = read(&TWO_MESHES.replacen(view, &format!("{view}{sparse}, "), 1)).unwrap();
+    assert_eq!(faces(&polygons)[0], [[10, 0, 1], [10, 2, 0], [8, 0, 0]]);
+    let zeros = TWO_MESHES.replacen(view, &format!("{{{sparse}, "), 1);
+    let polygons = read(&zeros).unwrap();
+    assert_eq!(faces(&polygons)[0], [[10, 0, 1], [10, 0, 0], [10, 0, 0]]);
+    assert_eq!(
+        read(&zeros.replacen("\"count\": 1,", "\"count\": 12,", 1))
+            .unwrap_err()
+            .to_string(),
+        "expected accessor 0 within its buffer, found 12 values that end outside of it"
+    );
+    let wide = zeros.replacen("\"componentType\": 5123}", "\"componentType\": 5125}", 1);
+    assert_eq!(
+        read(&wide).unwrap_err().to_string(),
+        "expected accessor 0 with sparse indices below 4, found 65536"
     );
 }

@@ -1,0 +1,251 @@
+//! The parts of a glTF's JSON that Glint reads. Everything else is skipped unchecked, so that it cannot be the reason to reject a file.
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+/// Index into a list of [`Root`].
+pub type Index = u32;
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Root {
+    pub accessors: Vec<Accessor>,
+    pub animations: Vec<IgnoredAny>,
+    pub buffer_views: Vec<View>,
+    pub buffers: Vec<Buffer>,
+    pub extensions_required: Vec<String>,
+    pub materials: Vec<Material>,
+    pub meshes: Vec<Mesh>,
+    pub nodes: Vec<Node>,
+    pub scene: Option<Index>,
+    pub scenes: Vec<Scene>,
+}
+
+#[derive(Deserialize)]
+pub struct Scene {
+    #[serde(default)]
+    pub nodes: Vec<Index>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Buffer {
+    pub byte_length: usize,
+    pub uri: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct View {
+    pub buffer: Index,
+    pub byte_length: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+    #[serde(default)]
+    pub byte_stride: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Accessor {
+    pub buffer_view: Option<Index>,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub component_type: u32,
+    pub count: usize,
+    #[serde(default)]
+    pub normalized: bool,
+    pub sparse: Option<Box<Sparse>>,
+    #[serde(rename = "type")]
+    pub dimensions: Dimensions,
+}
+
+/// Number of components of a value, by the name of its type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum Dimensions {
+    Scalar,
+    Vec3,
+    Vec4,
+    #[serde(other)]
+    Other,
+}
+
+/// Values of an accessor that differ from its view, or from 0 without a view.
+#[derive(Deserialize)]
+pub struct Sparse {
+    pub count: usize,
+    pub indices: SparseIndices,
+    pub values: SparseValues,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct SparseIndices {
+    pub buffer_view: Index,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub component_type: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct SparseValues {
+    pub buffer_view: Index,
+    #[serde(default)]
+    pub byte_offset: usize,
+}
+
+#[derive(Deserialize)]
+pub struct Mesh {
+    pub primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+pub struct Primitive {
+    pub attributes: Attributes,
+    pub indices: Option<Index>,
+    pub material: Option<Index>,
+    #[serde(default)]
+    pub mode: Mode,
+    #[serde(default)]
+    pub targets: Vec<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub struct Attributes {
+    pub position: Option<Index>,
+    pub normal: Option<Index>,
+    pub color_0: Option<Index>,
+}
+
+/// Use of a primitive's corners.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "u32")]
+pub enum Mode {
+    PointsOrLines,
+    #[default]
+    Triangles,
+    TriangleStrip,
+    TriangleFan,
+}
+
+impl TryFrom<u32> for Mode {
+    type Error = String;
+
+    fn try_from(mode: u32) -> Result<Self, String> {
+        match mode {
+            0..=3 => Ok(Self::PointsOrLines),
+            4 => Ok(Self::Triangles),
+            5 => Ok(Self::TriangleStrip),
+            6 => Ok(Self::TriangleFan),
+            _ => Err(format!("mode {mode} of a primitive")),
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(default)]
+pub struct Node {
+    pub children: Vec<Index>,
+    pub extensions: NodeExtensions,
+    pub matrix: Option<Box<[f32; 16]>>,
+    pub mesh: Option<Index>,
+    pub rotation: [f32; 4],
+    pub scale: [f32; 3],
+    pub skin: Option<IgnoredAny>,
+    pub translation: [f32; 3],
+}
+
+impl Default for Node {
+    fn default() -> Self {
+        Self {
+            children: Vec::new(),
+            extensions: NodeExtensions::default(),
+            matrix: None,
+            mesh: None,
+            rotation: [0.0, 0.0, 0.0, 1.0],
+            scale: [1.0; 3],
+            skin: None,
+            translation: [0.0; 3],
+        }
+    }
+}
+
+#[derive(Default, Deserialize)]
+pub struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instancing: Option<Box<Instancing>>,
+    #[serde(rename = "KHR_node_visibility")]
+    pub visibility: Option<Visibility>,
+}
+
+#[derive(Deserialize)]
+pub struct Instancing {
+    pub attributes: InstanceAttributes,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub struct InstanceAttributes {
+    pub translation: Option<Index>,
+    pub rotation: Option<Index>,
+    pub scale: Option<Index>,
+}
+
+#[derive(Deserialize)]
+pub struct Visibility {
+    #[serde(default = "visible")]
+    pub visible: bool,
+}
+
+fn visible() -> bool {
+    true
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Material {
+    pub double_sided: bool,
+    pub extensions: MaterialExtensions,
+    pub pbr_metallic_roughness: MetallicRoughness,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct MetallicRoughness {
+    pub base_color_factor: [f32; 4],
+    pub base_color_texture: Option<IgnoredAny>,
+}
+
+impl Default for MetallicRoughness {
+    fn default() -> Self {
+        Self {
+            base_color_factor: [1.0; 4],
+            base_color_texture: None,
+        }
+    }
+}
+
+#[derive(Default, Deserialize)]
+pub struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    pub specular_glossiness: Option<SpecularGlossiness>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct SpecularGlossiness {
+    pub diffuse_factor: [f32; 4],
+    pub diffuse_texture: Option<IgnoredAny>,
+}
+
+impl Default for SpecularGlossiness {
+    fn default() -> Self {
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+        }
+    }
+}
