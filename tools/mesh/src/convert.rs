@@ -1,5 +1,6 @@
 //! Conversion of polygons to a board's mesh: scaling, triangulation, normals, rounding to Q2.14.
 
+mod back_faces;
 mod order;
 mod rounding;
 mod winding;
@@ -12,6 +13,7 @@ use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex};
 use order::Encoded;
 use rounding::{ONE, Placing, Rounded};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Options of a conversion.
@@ -68,14 +70,7 @@ pub struct Report {
 /// # Errors
 /// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
-    let mut repaired;
-    let polygons = if options.fix_winding {
-        repaired = polygons.clone();
-        winding::repair(&mut repaired);
-        &repaired
-    } else {
-        polygons
-    };
+    let polygons = &*prepared(polygons, options)?;
     let placing = Placing::of(polygons, options.keep_scale)?;
     let rounded = Rounded::of(polygons, &placing)?;
     let (triangles, degenerate, crossing) = flat_triangles(polygons, &rounded);
@@ -117,13 +112,25 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
+/// The polygons with repaired winding, if it is an option, and with both sides of double-sided faces.
+fn prepared(polygons: &Polygons, options: Options) -> Result<Cow<'_, Polygons>, FormatError> {
+    let mut polygons = Cow::Borrowed(polygons);
+    if options.fix_winding {
+        winding::repair(polygons.to_mut());
+    }
+    if back_faces::are_needed(&polygons) {
+        back_faces::add(polygons.to_mut())?;
+    }
+    Ok(polygons)
+}
+
 /// Translates and scales the points and reverses the faces like [`convert`], without rounding and in the order of the file.
 ///
 /// # Errors
 /// The mesh has no extent.
 pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatError> {
-    if options.fix_winding {
-        winding::repair(polygons);
+    if let Cow::Owned(prepared) = prepared(polygons, options)? {
+        *polygons = prepared;
     }
     let mut crossing = Crossing::default();
     let mut scratch = triangulate::Scratch::default();

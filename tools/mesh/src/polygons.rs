@@ -65,6 +65,8 @@ pub struct Face {
     pub count: u32,
     /// Colour of the face, if any.
     pub colour: Option<Rgb8>,
+    /// Whether the face is visible from both sides.
+    pub double_sided: bool,
 }
 
 /// Points, and polygons with these points as corners.
@@ -194,6 +196,7 @@ impl Polygons {
             first: self.corners.len() as u32,
             count: count as u32,
             colour,
+            double_sided: false,
         });
         self.corners.extend_from_slice(corners);
         Ok(())

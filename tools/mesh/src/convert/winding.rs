@@ -56,6 +56,12 @@ pub fn repair(polygons: &mut Polygons) {
     counts.remark(polygons);
 }
 
+/// Whether faces form closed surfaces that face outwards.
+pub fn are_solid(polygons: &Polygons, faces: &[usize]) -> bool {
+    let turned = vec![Some(false); polygons.faces.len()];
+    is_closed(&welded(polygons), faces, &turned) && volume(polygons, faces, &turned) > 0.0
+}
+
 /// Counts for the remarks.
 #[derive(Default)]
 struct Counts {

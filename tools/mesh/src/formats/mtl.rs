@@ -5,12 +5,14 @@ use crate::error::{FormatError, quote};
 use crate::polygons::Rgb8;
 use std::collections::HashMap;
 
-/// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped.
+/// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped. Returns whether a material has a texture of
+/// its diffuse colour (`map_Kd`).
 ///
 /// # Errors
 /// A line is too long, or a `Kd` comes before the first `newmtl` or has no numbers.
-pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<(), FormatError> {
+pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<bool, FormatError> {
     let mut name: Option<Vec<u8>> = None;
+    let mut has_texture = false;
     let mut lines = Lines::new(text);
     while let Some(line) = lines.next_line()? {
         let mut words = line.words();
@@ -38,10 +40,11 @@ pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<(), Fo
                 let mut next = || words.next().map_or(Ok(red), |word| component(word, place));
                 palette.insert(name.clone(), Rgb8::from_unit([red, next()?, next()?]));
             }
+            Some(b"map_Kd") => has_texture = true,
             _ => {}
         }
     }
-    Ok(())
+    Ok(has_texture)
 }
 
 #[cfg(test)]
@@ -51,11 +54,13 @@ mod tests {
     #[test]
     fn colours() {
         let mut palette = HashMap::new();
-        parse(
+        assert_eq!(parse(b"newmtl x\nmap_Kd x.png\n", &mut palette), Ok(true));
+        let has_texture = parse(
             b"# c\nnewmtl a\n Kd 1 0.5 0\nnewmtl b\nKd 1\nnewmtl c\nKd spectral x.rfl\n",
             &mut palette,
         )
         .unwrap();
+        assert!(!has_texture);
         assert_eq!(palette.get(&b"a"[..]), Some(&Rgb8([255, 128, 0])));
         assert_eq!(palette.get(&b"b"[..]), Some(&Rgb8([255, 255, 255])));
         assert_eq!(palette.len(), 2);

@@ -262,8 +262,12 @@ impl Reader {
             };
             if let Some(text) = materials(name) {
                 found = true;
-                mtl::parse(&text, &mut self.palette)
+                let has_texture = mtl::parse(&text, &mut self.palette)
                     .map_err(|error| ObjError::Mtl(error.in_file(name)))?;
+                if has_texture {
+                    let remark = "textures are ignored: materials have their diffuse colours";
+                    self.polygons.remark(remark);
+                }
                 if name.as_bytes() == names {
                     break;
                 }
@@ -416,6 +420,14 @@ mod tests {
         assert_eq!(polygons.faces[0].colour, Some(Rgb8([255, 0, 0])));
         assert_eq!(polygons.faces[1].colour, None);
         assert!(polygons.remarks.is_empty());
+        let polygons = parse(
+            format!("mtllib b\n{SQUARE}f 1 2 3\n").as_bytes(),
+            &mut |_| Some(b"newmtl b\nmap_Kd b.png\n".to_vec()),
+        );
+        assert_eq!(
+            polygons.unwrap().remarks,
+            ["textures are ignored: materials have their diffuse colours"]
+        );
         let polygons = read(&format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
         assert_eq!(polygons.remarks.len(), 1);
     }

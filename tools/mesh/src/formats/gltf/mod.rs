@@ -389,6 +389,7 @@ impl Reader<'_> {
         };
         let colour = base.filter(|_| colours.is_none()).map(srgb);
         let mirrored = determinant(map) < 0.0;
+        let first_face = polygons.faces.len();
         for i in 0..triangles {
             let [a, b, c] = match primitive.mode {
                 Mode::Triangles => [3 * i, 3 * i + 1, 3 * i + 2],
@@ -399,6 +400,9 @@ impl Reader<'_> {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
             let face = [corner(a)?, corner(b)?, corner(c)?];
             polygons.add_face(&face, colour, Location::Whole)?;
+        }
+        for face in &mut polygons.faces[first_face..] {
+            face.double_sided = material.is_some_and(|material| material.double_sided);
         }
         Ok(())
     }

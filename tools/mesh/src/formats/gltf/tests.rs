@@ -312,3 +312,15 @@ fn sparse_positions() {
         "expected accessor 0 with sparse indices below 4, found 65536"
     );
 }
+
+#[test]
+fn double_sided_materials() {
+    let double = "\"doubleSided\": true, \"pbrMetallicRoughness\"";
+    let polygons = read(&TWO_MESHES.replacen("\"pbrMetallicRoughness\"", double, 1)).unwrap();
+    let sides: Vec<bool> = polygons
+        .faces
+        .iter()
+        .map(|face| face.double_sided)
+        .collect();
+    assert_eq!(sides, [false, false, true, true]);
+}
