@@ -11,7 +11,7 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use crate::triangulate::{self, area_vector, dot, unit};
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex};
 use order::Encoded;
-use rounding::{ONE, Placing, Rounded};
+use rounding::{ONE, Placing, Rounded, Unusual};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -70,7 +70,8 @@ pub struct Report {
 /// # Errors
 /// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
-    let polygons = &*prepared(polygons, options)?;
+    let unusual = Unusual::of(polygons).filter(|_| !options.keep_scale);
+    let polygons = &*prepared(polygons, options, unusual)?;
     let placing = Placing::of(polygons, options.keep_scale)?;
     let rounded = Rounded::of(polygons, &placing)?;
     let (triangles, degenerate, crossing) = flat_triangles(polygons, &rounded);
@@ -101,8 +102,10 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         fetches_before,
         fetches,
         bytes: bytes.len(),
-        scale: placing.scale,
-        centre: placing.centre,
+        scale: unusual.map_or(placing.scale, |unusual| unusual.apply(placing.scale)),
+        centre: placing
+            .centre
+            .map(|c| unusual.map_or(c, |unusual| unusual.undo(c))),
         error_max: rounded.error_max,
         error_rms: rounded.error_rms,
         error_max_lsb: rounded.error_max * ONE,
@@ -112,9 +115,18 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// The polygons with repaired winding, if it is an option, and with both sides of double-sided faces.
-fn prepared(polygons: &Polygons, options: Options) -> Result<Cow<'_, Polygons>, FormatError> {
+/// The polygons with usual magnitudes, with repaired winding if it is an option, and with both sides of double-sided faces.
+fn prepared(
+    polygons: &Polygons,
+    options: Options,
+    unusual: Option<Unusual>,
+) -> Result<Cow<'_, Polygons>, FormatError> {
     let mut polygons = Cow::Borrowed(polygons);
+    if let Some(unusual) = unusual {
+        for c in polygons.to_mut().points.as_flattened_mut() {
+            *c = unusual.apply(*c);
+        }
+    }
     if options.fix_winding {
         winding::repair(polygons.to_mut());
     }
@@ -129,7 +141,8 @@ fn prepared(polygons: &Polygons, options: Options) -> Result<Cow<'_, Polygons>, 
 /// # Errors
 /// The mesh has no extent.
 pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatError> {
-    if let Cow::Owned(prepared) = prepared(polygons, options)? {
+    let unusual = Unusual::of(polygons).filter(|_| !options.keep_scale);
+    if let Cow::Owned(prepared) = prepared(polygons, options, unusual)? {
         *polygons = prepared;
     }
     let mut crossing = Crossing::default();
@@ -431,6 +444,41 @@ mod tests {
             remarks(&[&[0, 2, 1, 3], &[0, 1, 3, 2]]),
             ["2 faces cross themselves, the first is face 1: their triangles overlap"]
         );
+    }
+
+    /// A mesh of any magnitude becomes the same mesh.
+    #[test]
+    fn every_finite_magnitude() {
+        let converted = |exponent: i32| {
+            let size = 2f64.powi(exponent);
+            let points = [[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, 0.75 * size, 0.0]];
+            let options = Options {
+                fix_winding: true,
+                ..Options::default()
+            };
+            let mut polygons = soup(&points, &[&[0, 1, 2]]);
+            let (bytes, report) = convert(&polygons, options).unwrap();
+            place(&mut polygons, options).unwrap();
+            assert_eq!(polygons.points[1], [0.5, -0.1875, 0.0]);
+            let centre = report.centre[1] / size;
+            assert_eq!([report.scale * size, centre], [0.5, 0.375], "{exponent}");
+            bytes
+        };
+        let usual = converted(0);
+        for exponent in [-1022, -600, -201, -100, 100, 201, 600, 1022] {
+            assert!(converted(exponent) == usual, "{exponent}");
+        }
+        // The smallest number above 0, and the largest.
+        for size in [f64::from_bits(1), f64::MAX] {
+            let polygons = soup(
+                &[[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]],
+                &[&[0, 1, 2]],
+            );
+            assert_eq!(
+                convert(&polygons, Options::default()).unwrap().1.triangles,
+                1
+            );
+        }
     }
 
     #[test]

@@ -13,8 +13,6 @@ pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
 pub const MAX_TRIANGLES: usize = 1 << 21;
 /// Maximum number of corners of a polygon.
 pub const MAX_POLYGON: usize = 8192;
-/// Maximum magnitude of a coordinate.
-pub const MAX_COORDINATE: f64 = 1e30;
 /// Magnitude of a coordinate above which a remark warns that the file may be damaged.
 pub const USUAL_COORDINATE: f64 = 1e15;
 /// Maximum number of remarks on a file; further remarks are dropped.

@@ -7,6 +7,40 @@ use std::collections::HashMap;
 /// One in Q2.14.
 pub const ONE: f64 = 16384.0;
 
+/// Exponents of the largest coordinate for which products of four lengths neither underflow nor overflow.
+const USUAL_EXPONENTS: std::ops::RangeInclusive<i32> = -200..=200;
+
+/// Power of two that brings coordinates to usual magnitudes, in two factors because one may exceed the range of `f64`.
+#[derive(Clone, Copy)]
+pub struct Unusual([f64; 2]);
+
+impl Unusual {
+    /// The factor that brings the coordinates of used points to magnitudes up to 2; `None` if they have usual magnitudes.
+    pub fn of(polygons: &Polygons) -> Option<Self> {
+        let corners = polygons.corners.iter();
+        let coordinates = corners.flat_map(|&corner| polygons.point(corner));
+        let largest = coordinates.fold(0.0, |largest: f64, c| largest.max(c.abs()));
+        let exponent = largest.log2().floor();
+        if largest == 0.0 || USUAL_EXPONENTS.contains(&(exponent as i32)) {
+            return None;
+        }
+        let first = (-exponent / 2.0).floor();
+        Some(Self([first, -exponent - first].map(f64::exp2)))
+    }
+
+    /// Multiplies by the factor.
+    pub fn apply(self, c: f64) -> f64 {
+        let Self([a, b]) = self;
+        c * a * b
+    }
+
+    /// Divides by the factor.
+    pub fn undo(self, c: f64) -> f64 {
+        let Self([a, b]) = self;
+        c / a / b
+    }
+}
+
 /// The map of a point P from the file's coordinates to world units: (P − centre)·scale.
 pub struct Placing {
     /// The point, in the file's coordinates, that becomes the origin.

@@ -438,8 +438,8 @@ mod tests {
         let cases = "
             v 0 0 0 → expected at least one face, found none
             v 0 0 → line 1: expected three numbers of a vertex, found 2
-            ; v 0 nan 0 → line 2: expected a number within ±1e30, found 'nan'
-            v 1e300 0 0 → line 1: expected a number within ±1e30, found '1e300'
+            ; v 0 nan 0 → line 2: expected a finite number, found 'nan'
+            v 1e309 0 0 → line 1: expected a finite number, found '1e309'
             f 0 1 2 → line 1: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '0'
             v 0 0 0; f 1 1 9 → line 2: expected a point index below 1, found 8 (counted from 0)
             v 0 0 0; f 1 1 -2 → line 2: expected a vertex index (1, 2, … or -1, -2, …) in a corner v, v/vt, v//vn or v/vt/vn, found '-2'

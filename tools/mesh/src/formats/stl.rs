@@ -3,7 +3,7 @@
 //! This parser replaces `stl_io`, whose errors have neither line nor offset, which skips the colours of the attribute word, and which
 //! treats a binary file as ASCII if its header starts with `solid`.
 
-use super::text::{BYTE_ORDER_MARK, Words, any_number, checked_at, coordinate, vector};
+use super::text::{BYTE_ORDER_MARK, Words, any_number, coordinate, finite, vector};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 
@@ -114,7 +114,10 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
             for (j, c) in point.iter_mut().enumerate() {
                 let at = start + 4 * j;
                 let bytes = [record[at], record[at + 1], record[at + 2], record[at + 3]];
-                *c = checked_at(f64::from(f32::from_le_bytes(bytes)), offset + at)?;
+                *c = finite(
+                    f64::from(f32::from_le_bytes(bytes)),
+                    Location::Byte(offset + at),
+                )?;
             }
             corner.point = polygons.add_point(point, Location::Byte(offset + start))?;
         }
@@ -345,7 +348,7 @@ mod tests {
             ),
             (
                 binary(b"", 1, &[(nan, 0)]),
-                "byte 112: expected a number within ±1e30, found NaN",
+                "byte 112: expected a finite number, found NaN",
             ),
             (
                 b"solid\n".to_vec(),

@@ -1,6 +1,6 @@
 //! Lines, words and numbers of text files, with their positions.
 
-use crate::error::{FormatError, Location, MAX_COORDINATE, MAX_LINE, quote};
+use crate::error::{FormatError, Location, MAX_LINE, quote};
 
 /// The byte order mark of UTF-8.
 pub const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -148,37 +148,29 @@ pub fn any_number(word: &[u8]) -> Option<f64> {
     })
 }
 
-/// Parses a coordinate: a number within [`MAX_COORDINATE`].
+/// Parses a coordinate: a finite number.
 ///
 /// # Errors
-/// The word is not a number, not finite, or too large.
+/// The word is not a number, or not finite.
 pub fn coordinate(word: &[u8], place: Location) -> Result<f64, FormatError> {
-    any_number(word).and_then(checked).ok_or_else(|| {
-        FormatError::new(
-            place,
-            format!("a number within ±{MAX_COORDINATE:e}"),
-            quote(word),
-        )
-    })
+    any_number(word)
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| FormatError::new(place, FINITE, quote(word)))
 }
 
-/// Returns the value if it is a valid coordinate.
-pub fn checked(value: f64) -> Option<f64> {
-    (value.abs() <= MAX_COORDINATE).then_some(value)
-}
+/// The requirement on a coordinate.
+const FINITE: &str = "a finite number";
 
-/// Checks a coordinate of a binary file.
+/// Checks a coordinate that is not text.
 ///
 /// # Errors
-/// The value is not finite, or too large.
-pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
-    checked(value).ok_or_else(|| {
-        FormatError::new(
-            Location::Byte(offset),
-            format!("a number within ±{MAX_COORDINATE:e}"),
-            format!("{value:e}"),
-        )
-    })
+/// The value is not finite.
+pub fn finite(value: f64, place: Location) -> Result<f64, FormatError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(FormatError::new(place, FINITE, format!("{value:e}")))
+    }
 }
 
 /// Parses a word as a number that may be infinite or NaN, such as a component of a normal or a colour.
@@ -256,8 +248,8 @@ mod tests {
             "nan",
             "inf",
             "-infinity",
-            "1e300",
-            "1e31",
+            "1e309",
+            "-1e309",
             "x",
             "",
             "1,5",
@@ -284,7 +276,13 @@ mod tests {
         for word in ["nano", "nan(", "1.#", "1.#X", "-", ""] {
             assert_eq!(any_number(word.as_bytes()), None, "{word}");
         }
-        for (word, value) in [("1", 1.0), ("-.5", -0.5), ("+2.", 2.0), ("1e-300", 1e-300)] {
+        for (word, value) in [
+            ("1", 1.0),
+            ("-.5", -0.5),
+            ("+2.", 2.0),
+            ("1e-300", 1e-300),
+            ("1e308", 1e308),
+        ] {
             assert_eq!(coordinate(word.as_bytes(), Location::Whole).unwrap(), value);
         }
     }

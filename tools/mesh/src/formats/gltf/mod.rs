@@ -7,8 +7,8 @@ mod buffers;
 pub mod example;
 mod json;
 
-use super::text::{BYTE_ORDER_MARK, checked};
-use crate::error::{FormatError, Location, MAX_COORDINATE, MAX_TRIANGLES, quote};
+use super::text::{BYTE_ORDER_MARK, finite};
+use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use buffers::{Beside, Buffers, Values};
 use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root};
@@ -418,11 +418,8 @@ fn add_points(
 ) -> Result<(), FormatError> {
     for i in 0..positions.count {
         let point = apply(map, positions.vector(i));
-        if let Some(found) = point.iter().find(|c| checked(**c).is_none()) {
-            return Err(FormatError::whole(
-                format!("coordinates within ±{MAX_COORDINATE:e}"),
-                format!("{found:.3e} of a mesh in its place"),
-            ));
+        for c in point {
+            finite(c, Location::Whole)?;
         }
         polygons.add_point(point, Location::Whole)?;
         let colour = colours.map_or([1.0; 3], |colours| colours.vector(i));

@@ -100,8 +100,8 @@ fn errors() {
         "expected an index below 4 in the list of accessors, found 4"
     );
     assert_eq!(
-        error("[10, 0, 0]", "[3e38, 0, 0]"),
-        "expected coordinates within ±1e30, found 3.000e38 of a mesh in its place"
+        error("[10, 0, 0]", "[10, 0, 0], \"scale\": [1e39, 1, 1]"),
+        "expected a finite number, found NaN"
     );
     assert_eq!(
         error("\"scenes\": [{\"nodes\": [0]}]", "\"scenes\": []"),

@@ -6,8 +6,8 @@
 mod header;
 mod source;
 
-use super::text::{Lines, checked};
-use crate::error::{FormatError, Location, MAX_COORDINATE, MAX_POLYGON, quote};
+use super::text::{Lines, finite};
+use crate::error::{FormatError, Location, MAX_POLYGON, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use header::{Element, Encoding, Header, Kind, Property, Scalar};
 use source::{AsciiSource, BinarySource, Source};
@@ -133,16 +133,6 @@ fn has_colour(slots: &[Slot]) -> bool {
     })
 }
 
-fn coordinate(value: f64, place: Location) -> Result<f64, FormatError> {
-    checked(value).ok_or_else(|| {
-        FormatError::new(
-            place,
-            format!("a number within ±{MAX_COORDINATE:e}"),
-            format!("{value:e}"),
-        )
-    })
-}
-
 /// Adds a remark for each list of an element that is skipped.
 fn remark_lists(element: &Element, used: impl Fn(&Property) -> bool, polygons: &mut Polygons) {
     for property in &element.properties {
@@ -194,7 +184,7 @@ fn read_vertices(
             let place = source.place();
             let value = source.value(scalar)?;
             match *slot {
-                Slot::Position(i) => point[i] = coordinate(value, place)?,
+                Slot::Position(i) => point[i] = finite(value, place)?,
                 Slot::Normal(i) => normal[i] = value,
                 Slot::Colour(i, full) => colour[i] = (value / full) as f32,
                 Slot::None => {}
@@ -514,7 +504,7 @@ mod tests {
             ),
             (
                 ascii("1 1 0 0 0 255", "1 nan 0 0 0 255"),
-                "line 20: expected a number within ±1e30, found NaN",
+                "line 20: expected a finite number, found NaN",
             ),
             (
                 ascii("property double z", "property double w"),
