@@ -38,7 +38,7 @@ fn picture(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
 }
 
 /// Renders a frame for one eye.
-fn picture_of_one(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
+pub(super) fn picture_of_one(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
     let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
     let mut image = Image {
         width,

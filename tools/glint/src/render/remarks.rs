@@ -1,7 +1,9 @@
 //! Warnings about pictures that do not show the requested subject.
 
-use super::{Frame, Stats};
-use glint_model::RenderError;
+use super::model::picture_of_one;
+use super::{Frame, Stats, Subject};
+use glint_core::picture::Size;
+use glint_model::{MeshSubject, Object, RenderError};
 
 /// The warnings about a frame with these statistics, each with a remedy.
 ///
@@ -23,11 +25,23 @@ pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError>
              or choose another --field"
         ));
     }
+    let culls = frame.subject.meshes().any(|mesh| mesh.culls());
+    if let Some(counts) = &stats.mesh
+        && culls
+        && (1..=counts.triangles_culled).contains(&counts.triangles_drawn)
+        && shows_backs(frame)?
+    {
+        remarks.push(
+            "most surfaces in view are back faces, which are not drawn: --no-cull draws them; if the mesh is inside out, \
+             glint convert --fix-winding reverses its faces"
+                .to_owned(),
+        );
+    }
     if let Some(counts) = &stats.mesh
         && counts.triangles_in > 0
         && counts.triangles_drawn == 0
     {
-        remarks.push(if frame.subject.meshes().any(|mesh| mesh.culls()) {
+        remarks.push(if culls {
             "no triangle is drawn: all face away, or lie outside of the picture; --no-cull draws back faces, --look-at moves the camera"
                 .to_owned()
         } else {
@@ -36,4 +50,45 @@ pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError>
         });
     }
     Ok(remarks)
+}
+
+/// Whether at least half of the pixels with a surface would show a back face, which is culled. Fields are not drawn.
+fn shows_backs(frame: &Frame) -> Result<bool, RenderError> {
+    fn uncull<'a>(subject: &MeshSubject<'a>) -> MeshSubject<'a> {
+        MeshSubject {
+            cull: false,
+            ..*subject
+        }
+    }
+    let objects: Vec<Object>;
+    let subject = match &frame.subject {
+        Subject::Mesh(mesh) => Subject::Mesh(uncull(mesh)),
+        Subject::Objects(culled) => {
+            let culled = culled.iter();
+            objects = culled
+                .map(|object| Object {
+                    subject: uncull(&object.subject),
+                    ..*object
+                })
+                .collect();
+            Subject::Objects(&objects)
+        }
+        _ => return Ok(false),
+    };
+    let culled = Frame {
+        size: Size::W320,
+        stereo: None,
+        ..*frame
+    };
+    let (culled, _) = picture_of_one(&culled)?;
+    let (whole, _) = picture_of_one(&Frame {
+        subject,
+        size: Size::W320,
+        stereo: None,
+        ..*frame
+    })?;
+    let depths = culled.depth.iter().zip(&whole.depth);
+    let covered = depths.filter(|(_, whole)| **whole > 0);
+    let (backs, fronts): (Vec<_>, Vec<_>) = covered.partition(|(culled, whole)| culled != whole);
+    Ok(!backs.is_empty() && backs.len() >= fronts.len())
 }

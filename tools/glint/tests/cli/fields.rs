@@ -145,6 +145,20 @@ fn warnings_of_pictures_that_show_nothing() {
     let inside = "is inside the field, and sees one surface in all directions: move it with --camera or --look-at, or choose another --field\n";
     let culled = "warning: no triangle is drawn: all face away, or lie outside of the picture; --no-cull draws back faces, --look-at moves the camera\n";
     let outside = "warning: no triangle is drawn: all lie outside of the picture; --look-at moves the camera\n";
+    let backs = "warning: most surfaces in view are back faces, which are not drawn: --no-cull draws them; if the mesh is inside out, glint convert --fix-winding reverses its faces\n";
+    succeed(&folder, "model cube cube.obj");
+    let cube = std::fs::read_to_string(folder.join("cube.obj")).unwrap();
+    let inside_out = cube.lines().map(|line| match line.strip_prefix("f ") {
+        Some(corners) => {
+            let corners: Vec<_> = corners.split(' ').rev().collect();
+            format!("f {}\n", corners.join(" "))
+        }
+        None => format!("{line}\n"),
+    });
+    std::fs::write(folder.join("room.obj"), inside_out.collect::<String>()).unwrap();
+    // A square and a small one above it, whose back is in view.
+    let two = format!("{SQUARE}v 0 0 .1\nv .2 0 .1\nv .2 .2 .1\nf 7 6 5\n");
+    std::fs::write(folder.join("two.obj"), two).unwrap();
     for (arguments, expected) in [
         ("--field planes:1", inside),
         ("--field planes:2.5", ""),
@@ -154,6 +168,12 @@ fn warnings_of_pictures_that_show_nothing() {
         ("square.obj --camera 2,30,120", culled),
         ("square.obj --camera 2,30,120 --no-cull", ""),
         ("square.obj --no-cull --look-at 3,0,0,1,0,0", outside),
+        ("cube.obj --up y", ""),
+        ("room.obj --up y", backs),
+        ("room.obj --up y --no-cull", ""),
+        ("--object 'room.obj scale 0.5' --camera 2,30,60", backs),
+        ("two.obj --camera 2,30,60", ""),
+        ("two.obj --camera 2,30,120", backs),
     ] {
         let [_, error] = said(&folder, &format!("render --force --out a.png {arguments}"));
         assert_eq!(error.lines().count(), expected.lines().count(), "{error}");
