@@ -2,6 +2,7 @@
 
 use super::error::OpenError;
 use super::name::BoardName;
+use crate::formats::read_at_most;
 use emulated_board::EmulatedBoard;
 use glint_board_api::{AnyBoard, built};
 use std::path::Path;
@@ -73,8 +74,11 @@ pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, OpenError> {
     }
 }
 
+/// Maximum size of a firmware file in bytes; no main memory is larger.
+const MAX_FIRMWARE: u64 = 1 << 30;
+
 fn read(path: &Path) -> Result<Vec<u8>, OpenError> {
-    std::fs::read(path).map_err(|source| OpenError::Read {
+    read_at_most(path, MAX_FIRMWARE).map_err(|source| OpenError::Read {
         path: path.display().to_string(),
         source,
     })

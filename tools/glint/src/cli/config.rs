@@ -3,11 +3,14 @@
 use anyhow::Context;
 use glint::board::BoardName;
 use glint::error::FormatError;
+use glint::formats::read_at_most;
 use serde::Deserialize;
 use std::env;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+/// Maximum size of a configuration file in bytes.
+const MAX_BYTES: u64 = 64 << 10;
 /// Baud rate if no option, variable or configuration entry sets it.
 const BAUD: u32 = 115_200;
 
@@ -95,11 +98,22 @@ fn read() -> anyhow::Result<Config> {
     let Some(path) = path() else {
         return Ok(Config::default());
     };
-    match std::fs::read_to_string(&path) {
+    match contents(&path) {
         Ok(text) => Ok(parse(&text).map_err(|error| error.in_path(&path))?),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(Config::default()),
         Err(error) => Err(error).with_context(|| path.display().to_string()),
     }
+}
+
+/// The text of a configuration file. Reading a pipe or a device could block, or never end.
+fn contents(path: &Path) -> io::Result<String> {
+    if !path.metadata()?.is_file() {
+        return Err(io::Error::other(
+            "expected a file, found a folder, a pipe or a device",
+        ));
+    }
+    let text = String::from_utf8(read_at_most(path, MAX_BYTES)?);
+    text.map_err(|_| io::Error::other("expected UTF-8"))
 }
 
 fn parse(text: &str) -> Result<Config, FormatError> {

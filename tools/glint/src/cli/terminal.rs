@@ -9,7 +9,7 @@ use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use glint::board::{Board, BoardError, BoardName, Memory};
 use glint::console::Console;
-use glint::error::quote;
+use glint::error::{MAX_LINE, quote};
 use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -64,7 +64,7 @@ impl ConsoleArguments {
         let script: Box<dyn Iterator<Item = io::Result<String>>> = match &self.file {
             Some(path) if path != Path::new("-") => {
                 let file = File::open(path).with_context(|| path.display().to_string())?;
-                Box::new(BufReader::new(file).lines())
+                Box::new(commands(BufReader::new(file)))
             }
             None if !self.send.is_empty() => Box::new(self.send.iter().cloned().map(Ok)),
             None if isatty(std::io::stdin()) => {
@@ -73,7 +73,7 @@ impl ConsoleArguments {
                 let mut heard = self.heard(&mut *board, log);
                 return interact(&mut heard);
             }
-            _ => Box::new(std::io::stdin().lines()),
+            _ => Box::new(commands(std::io::stdin().lock())),
         };
         let mut board = self.line.board(&board)?;
         let mut heard = self.heard(&mut *board, log);
@@ -127,6 +127,24 @@ impl ConsoleArguments {
         }
         Ok(())
     }
+}
+
+/// The lines of a script, of bounded length.
+fn commands(mut script: impl BufRead) -> impl Iterator<Item = io::Result<String>> {
+    let limit = MAX_LINE as u64;
+    std::iter::from_fn(move || {
+        let mut line = String::new();
+        match script.by_ref().take(limit + 1).read_line(&mut line) {
+            Ok(0) => None,
+            Ok(_) if line.len() > MAX_LINE => {
+                let message =
+                    format!("expected lines of at most {limit} bytes, found a longer one");
+                Some(Err(io::Error::other(message)))
+            }
+            Ok(_) => Some(Ok(line)),
+            Err(error) => Some(Err(error)),
+        }
+    })
 }
 
 /// A board whose output is logged, and searched for a text.

@@ -52,6 +52,11 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     let damaged = error(&folder, upload, &[]);
     let start = format!("error: {}: expected board = \"NAME\"", file.display());
     assert!(damaged.starts_with(&start), "{damaged}");
+    std::fs::remove_file(&file).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &file).unwrap();
+    let device = error(&folder, upload, &[]);
+    let end = "expected a file, found a folder, a pipe or a device\n";
+    assert!(device.ends_with(end), "{device}");
     // Commands that use no board do not read the file.
     succeed(&folder, "model cube cube.obj");
 }

@@ -89,14 +89,21 @@ fn meshes_with_more_than_their_format() {
 }
 
 #[test]
-fn a_material_file_that_is_a_pipe_or_a_device_is_not_opened() {
+fn a_material_file_that_is_a_pipe_a_device_or_elsewhere_is_not_opened() {
     let folder = folder("pipes");
     let made = std::process::Command::new("mkfifo")
         .arg(folder.join("pipe.mtl"))
         .status();
     assert!(made.unwrap().success());
     std::os::unix::fs::symlink("/dev/zero", folder.join("zero.mtl")).unwrap();
-    for library in ["pipe.mtl", "zero.mtl"] {
+    fs::create_dir(folder.join("other")).unwrap();
+    fs::write(folder.join("other/a.mtl"), "newmtl a\n").unwrap();
+    std::os::unix::fs::symlink("other/a.mtl", folder.join("other.mtl")).unwrap();
+    fs::write(folder.join("a.mtl"), "newmtl a\n").unwrap();
+    std::os::unix::fs::symlink("a.mtl", folder.join("near.mtl")).unwrap();
+    fs::write(folder.join("a.obj"), format!("mtllib near.mtl\n{SQUARE}")).unwrap();
+    assert!(warnings(&folder, "a.obj").is_empty());
+    for library in ["pipe.mtl", "zero.mtl", "other.mtl"] {
         fs::write(folder.join("a.obj"), format!("mtllib {library}\n{SQUARE}")).unwrap();
         let expected = format!(
             "warning: a.obj: no material file '{library}' beside the mesh: its colours are missing"

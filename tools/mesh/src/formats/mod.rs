@@ -132,10 +132,30 @@ pub fn read_mesh(path: &Path) -> Result<(Format, Vec<u8>), InputError> {
 /// Reads an auxiliary file of a mesh file, by its name.
 pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
-/// Returns a reader of auxiliary files in the folder of `path`.
+/// Reads a file of at most `limit` bytes.
+///
+/// # Errors
+/// The file cannot be read, or is larger.
+pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > limit {
+        let message = format!("expected at most {limit} bytes, found more");
+        return Err(io::Error::other(message));
+    }
+    Ok(bytes)
+}
+
+/// Returns a reader of auxiliary files in the folder of `path`. A link to a file in another folder is not followed, because a mesh file
+/// from others could then read any file.
 pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
     move |name| {
         let file = path.with_file_name(Path::new(name).file_name()?);
+        let folder = Path::new(".").join(path.parent()?).canonicalize().ok()?;
+        let file = file.canonicalize().ok()?;
+        if file.parent() != Some(&folder) {
+            return None;
+        }
         // Reading a device or a pipe could block, or never end.
         file.metadata().ok().filter(Metadata::is_file)?;
         read_file(&file).ok()
