@@ -1,6 +1,6 @@
 //! Buffers of a glTF, and their values.
 
-use super::json::{Accessor, Dimensions, Index, Root};
+use super::json::{Accessor, Dimensions, Index, Root, item};
 use crate::error::{FormatError, MAX_FILE, MAX_POINTS, quote};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -57,7 +57,7 @@ impl<'a> Buffers<'a> {
         dimensions: &[Dimensions],
         count: Option<usize>,
     ) -> Result<Values<'_>, FormatError> {
-        let accessor = super::item(&self.root.accessors, index, "accessors")?;
+        let accessor = item(&self.root.accessors, index, "accessors")?;
         let refuse = |expected: String, found: String| {
             FormatError::whole(format!("accessor {index} {expected}"), found)
         };
@@ -113,7 +113,7 @@ impl<'a> Buffers<'a> {
         count: usize,
         size: usize,
     ) -> Result<(Cow<'_, [u8]>, usize), FormatError> {
-        let view = super::item(&self.root.buffer_views, view, "buffer views")?;
+        let view = item(&self.root.buffer_views, view, "buffer views")?;
         let stride = match view.byte_stride {
             0 => size,
             stride => stride,

@@ -1,10 +1,24 @@
 //! The parts of a glTF's JSON that Glint reads. Everything else is skipped unchecked, so that it cannot be the reason to reject a file.
 
+use crate::error::FormatError;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 /// Index into a list of [`Root`].
 pub type Index = u32;
+
+/// The item of a list with this index.
+///
+/// # Errors
+/// There is no such item; the error names the list.
+pub fn item<'a, T>(list: &'a [T], index: Index, name: &str) -> Result<&'a T, FormatError> {
+    list.get(index as usize).ok_or_else(|| {
+        FormatError::whole(
+            format!("an index below {} in the list of {name}", list.len()),
+            index.to_string(),
+        )
+    })
+}
 
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]

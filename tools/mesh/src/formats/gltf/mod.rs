@@ -11,7 +11,7 @@ use super::text::{BYTE_ORDER_MARK, finite};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use buffers::{Beside, Buffers, Values};
-use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root};
+use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root, item};
 use serde::Deserialize;
 
 /// Maximum number of bytes of JSON outside of strings. This bounds the memory, because three such bytes can become an object of some
@@ -207,16 +207,6 @@ fn check_extensions(root: &Root) -> Result<(), FormatError> {
         }
         None => Ok(()),
     }
-}
-
-/// The item of a list of the file.
-fn item<'a, T>(list: &'a [T], index: Index, name: &str) -> Result<&'a T, FormatError> {
-    list.get(index as usize).ok_or_else(|| {
-        FormatError::whole(
-            format!("an index below {} in the list of {name}", list.len()),
-            index.to_string(),
-        )
-    })
 }
 
 struct Reader<'a> {
