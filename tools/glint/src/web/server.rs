@@ -5,10 +5,11 @@ use crate::board::BoardError;
 use glint_live_page::files::{FILES, File, SCRIPT};
 use glint_live_page::hub::MAX_VIEWERS;
 use glint_live_page::{Channels, Live, session};
+use std::collections::VecDeque;
 use std::io::{self, Read, Write};
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, TcpStream};
-use std::sync::Arc;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tungstenite::handshake::machine::TryParse;
 use tungstenite::handshake::server::{Request, create_response, write_response};
@@ -18,7 +19,9 @@ use tungstenite::http::{HeaderMap, HeaderValue, Response, StatusCode, header};
 const MAX_HEAD: usize = 8 << 10;
 /// Time-out of receiving a request's head.
 const HEAD_TIME: Duration = Duration::from_secs(5);
-/// Maximum number of open connections.
+/// Time-out of the rest of a rejected request.
+const REST_TIME: Duration = Duration::from_secs(1);
+/// Maximum number of open connections whose request has been accepted, and of those without an accepted request.
 const MAX_CONNECTIONS: usize = 4 * MAX_VIEWERS;
 /// The page's file that exchanges its messages with this program over a WebSocket.
 const LINK: File = File {
@@ -45,7 +48,39 @@ struct Shared {
     channels: Channels,
     address: SocketAddr,
     token: String,
+    /// Number of connections whose request has been accepted.
     connections: AtomicUsize,
+    strangers: Mutex<Strangers>,
+}
+
+/// Connections whose request has not been accepted. Above the limit a new one closes the oldest one, so that connections without
+/// the token do not keep pages out.
+#[derive(Default)]
+struct Strangers {
+    /// Number of the next connection.
+    next: u64,
+    open: VecDeque<(u64, TcpStream)>,
+}
+
+impl Strangers {
+    /// Adds a connection, and returns its number.
+    fn add(&mut self, stream: &TcpStream) -> io::Result<u64> {
+        if self.open.len() >= MAX_CONNECTIONS
+            && let Some((_, oldest)) = self.open.pop_front()
+        {
+            // The peer may have closed it already.
+            let _ = oldest.shutdown(Shutdown::Both);
+        }
+        let number = self.next;
+        self.next += 1;
+        self.open.push_back((number, stream.try_clone()?));
+        Ok(number)
+    }
+
+    /// Removes a connection that is accepted or closed.
+    fn remove(&mut self, number: u64) {
+        self.open.retain(|(open, _)| *open != number);
+    }
 }
 
 /// A server of the live page that is already listening.
@@ -99,6 +134,7 @@ impl Server {
             address: self.listener.local_addr()?,
             token: self.token,
             connections: AtomicUsize::new(0),
+            strangers: Mutex::default(),
         });
         let listener = self.listener;
         let served = Arc::clone(&shared);
@@ -112,18 +148,22 @@ impl Server {
     }
 }
 
-/// Serves a connection in its own thread. Connections above the limit are closed.
+/// Serves a connection in its own thread.
 fn accept(stream: TcpStream, shared: &Arc<Shared>) {
-    if shared.connections.fetch_add(1, Ordering::Relaxed) >= MAX_CONNECTIONS {
-        shared.connections.fetch_sub(1, Ordering::Relaxed);
+    let Ok(number) = lock(&shared.strangers).add(&stream) else {
         return;
-    }
+    };
     let shared = Arc::clone(shared);
     std::thread::spawn(move || {
         // An error concerns only this connection, which is closed.
-        let _ = serve(stream, &shared);
-        shared.connections.fetch_sub(1, Ordering::Relaxed);
+        let _ = serve(stream, number, &shared);
+        lock(&shared.strangers).remove(number);
     });
+}
+
+/// The list in a mutex. A thread that panics leaves a valid list.
+fn lock(strangers: &Mutex<Strangers>) -> MutexGuard<'_, Strangers> {
+    strangers.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A rejected request: the status, and the reason with the expected value.
@@ -139,19 +179,38 @@ enum Answer {
     Socket,
 }
 
-fn serve(mut stream: TcpStream, shared: &Shared) -> tungstenite::Result<()> {
+fn serve(mut stream: TcpStream, number: u64, shared: &Shared) -> tungstenite::Result<()> {
     stream.set_nodelay(true)?;
     stream.set_write_timeout(Some(HEAD_TIME))?;
-    let head = read_head(&mut stream)?;
-    let answer = match &head {
-        Ok((request, _)) => answer(request, shared.address, &shared.token),
-        Err(Refused(status, text)) => Err(Refused(*status, text)),
+    let (request, rest) = match read_head(&mut stream)? {
+        Ok(head) => head,
+        Err(refused) => return refuse(&mut stream, refused),
     };
-    match (answer, head) {
-        (Ok(Answer::File(file)), _) => {
-            write_file(&mut stream, StatusCode::OK, file.media, file.content)
-        }
-        (Ok(Answer::Socket), Ok((request, rest))) => match create_response(&request) {
+    let answer = match answer(&request, shared.address, &shared.token) {
+        Ok(answer) => answer,
+        Err(refused) => return refuse(&mut stream, refused),
+    };
+    lock(&shared.strangers).remove(number);
+    let open = shared.connections.fetch_add(1, Ordering::Relaxed);
+    let result = match open < MAX_CONNECTIONS {
+        true => serve_accepted(stream, rest, &request, answer, shared),
+        false => Ok(()),
+    };
+    shared.connections.fetch_sub(1, Ordering::Relaxed);
+    result
+}
+
+/// Serves a connection whose request has been accepted; `rest` is the data received after the request.
+fn serve_accepted(
+    mut stream: TcpStream,
+    rest: Vec<u8>,
+    request: &Request,
+    answer: Answer,
+    shared: &Shared,
+) -> tungstenite::Result<()> {
+    match answer {
+        Answer::File(file) => write_file(&mut stream, StatusCode::OK, file.media, file.content),
+        Answer::Socket => match create_response(request) {
             Ok(response) => {
                 write_response(&mut stream, &response)?;
                 connection::serve(stream, rest, &shared.channels, PATIENCE)
@@ -161,10 +220,11 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> tungstenite::Result<()> {
                 write_file(&mut stream, StatusCode::BAD_REQUEST, TEXT, &text)
             }
         },
-        (Err(Refused(status, text)), _) | (_, Err(Refused(status, text))) => {
-            write_file(&mut stream, status, TEXT, &format!("{text}\n"))
-        }
     }
+}
+
+fn refuse(stream: &mut TcpStream, Refused(status, text): Refused) -> tungstenite::Result<()> {
+    write_file(stream, status, TEXT, &format!("{text}\n"))
 }
 
 /// Reads the head of a request. Returns the request, and the bytes after its head.
@@ -276,14 +336,19 @@ fn write_file(
     write_response(&mut *stream, &response)?;
     stream.write_all(content.as_bytes())?;
     // Reads the rest of the request, so that the system does not drop the reply.
-    stream.shutdown(std::net::Shutdown::Write)?;
+    stream.shutdown(Shutdown::Write)?;
+    let end = Instant::now() + REST_TIME;
     let mut rest = [0; 4096];
-    for _ in 0..MAX_CONNECTIONS {
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Ok(());
+        }
+        stream.set_read_timeout(Some(left))?;
         if stream.read(&mut rest)? == 0 {
-            break;
+            return Ok(());
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::served::{Served, wait_for};
 use std::io::{Read, Write};
+use std::time::{Duration, Instant};
 use tungstenite::http::StatusCode;
 use tungstenite::{Error, Message};
 
@@ -111,4 +112,42 @@ fn rubbish_does_no_harm() {
     wait_for(&mut second, r#""holder":"nobody""#);
     second.send(Message::text(r#"{"type":"take"}"#)).unwrap();
     wait_for(&mut second, r#""holder":"you""#);
+}
+
+/// Connections without the token that send a byte every second do not keep a page out.
+#[test]
+fn strangers_that_trickle_keep_nobody_out() {
+    const STRANGERS: usize = 100;
+    let served = Served::start("page-strangers");
+    let host = served.host();
+    let path = served.url.split(host).nth(1).unwrap();
+    let page = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
+    let rejected = format!("GET / HTTP/1.1\r\nHost: {host}\r\n\r\n");
+    for start in ["G", rejected.as_str()] {
+        let mut strangers: Vec<_> = (0..STRANGERS).map(|_| served.connect()).collect();
+        for _ in 0..3 {
+            for stranger in &mut strangers {
+                // The server has closed the oldest ones.
+                let _ = stranger.write_all(start.as_bytes());
+            }
+            let begun = Instant::now();
+            assert_eq!(answer(&served, &page), "HTTP/1.1 200 OK");
+            assert!(begun.elapsed() < Duration::from_secs(2));
+            std::thread::sleep(Duration::from_secs(1));
+        }
+    }
+}
+
+/// A peer that has been rejected cannot keep its connection by sending more.
+#[test]
+fn a_rejected_connection_is_closed_in_time() {
+    let served = Served::start("page-rejected");
+    let mut stream = served.connect();
+    let begun = Instant::now();
+    let request = format!("GET / HTTP/1.1\r\nHost: {}\r\n\r\n", served.host());
+    stream.write_all(request.as_bytes()).unwrap();
+    while stream.write_all(b"x").is_ok() {
+        assert!(begun.elapsed() < Duration::from_secs(10), "it stays open");
+        std::thread::sleep(Duration::from_millis(300));
+    }
 }
