@@ -18,6 +18,9 @@ pub enum TransferError {
     /// An error of the transfer protocol.
     #[error("{0}")]
     Failed(Failure),
+    /// The transfer failed after this program had been stopped, as by the suspension of a laptop.
+    #[error("{0}, after this program had been stopped")]
+    Stopped(Failure),
     /// A transfer through memory on a board that offers no direct access to its memory.
     #[error(
         "memory transfer: expected the emulated or the virtual board, found a board with a serial line only"
@@ -30,6 +33,12 @@ pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
 /// Longest wait for bytes from the board in one read, in milliseconds of the board's time.
 const LOOK_MS: u64 = 2;
+
+/// Longest time between two looks at the line, in milliseconds of the board's time. A longer time means that this program was
+/// stopped; the rest does not count, because the bytes of that time have not been looked at.
+const MAX_STEP_MS: u64 = 500;
+/// Number of attempts of a transfer during which this program is stopped.
+const ATTEMPTS: u32 = 5;
 
 /// Uploads a mesh under a name, by default `model`, and draws it.
 ///
@@ -81,6 +90,34 @@ fn announce<B: Board + ?Sized>(
     progress: &mut Progress,
     on_line: &mut dyn FnMut(&str),
 ) -> Result<(), TransferError> {
+    persistently(console, &mut |console| {
+        announce_once(console, command, data, session, progress, on_line)
+    })
+}
+
+/// Repeats a transfer that has failed because this program was stopped.
+fn persistently<'b, B: Board + ?Sized, T>(
+    console: &mut Console<'b, B>,
+    transfer: &mut dyn FnMut(&mut Console<'b, B>) -> Result<T, TransferError>,
+) -> Result<T, TransferError> {
+    for _ in 1..ATTEMPTS {
+        match transfer(console) {
+            Err(TransferError::Stopped(_)) => console.synchronise()?,
+            result => return result,
+        }
+    }
+    transfer(console)
+}
+
+/// Makes one attempt of [`announce`].
+fn announce_once<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    command: &str,
+    data: &[u8],
+    session: u8,
+    progress: &mut Progress,
+    on_line: &mut dyn FnMut(&str),
+) -> Result<(), TransferError> {
     console.send(command)?;
     let mut is_present = false;
     let is_ready = console.lines(command, &mut |line| match line {
@@ -90,6 +127,10 @@ fn announce<B: Board + ?Sized>(
     if is_ready {
         let (board, pending) = console.line();
         let sent = send(board, pending, data, session, progress);
+        if let Err(TransferError::Stopped(_)) = sent {
+            // The reply may be lost.
+            return sent;
+        }
         // The rest of the reply is read even after a failed transfer: otherwise it would be read as the reply to the next
         // command.
         let reply = console.lines(command, on_line);
@@ -168,10 +209,25 @@ pub fn download<B: Board + ?Sized>(
     length: usize,
     progress: &mut Progress,
 ) -> Result<Vec<u8>, TransferError> {
+    persistently(console, &mut |console| {
+        download_once(console, command, length, progress)
+    })
+}
+
+/// Makes one attempt of [`download`].
+fn download_once<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    command: &str,
+    length: usize,
+    progress: &mut Progress,
+) -> Result<Vec<u8>, TransferError> {
     let mut data = vec![0; length];
     console.command_with_transfer(command, &mut |_| {})?;
     let (board, pending) = console.line();
     let received = receive(board, pending, &mut data, progress);
+    if let Err(TransferError::Stopped(failure)) = received {
+        return Err(TransferError::Stopped(failure));
+    }
     let reply = console.reply(command);
     let received = received?;
     reply?;
@@ -223,8 +279,14 @@ fn run<B: Board + ?Sized>(
     progress: &mut Progress,
 ) -> Result<(), TransferError> {
     let mut frame = [0; MAX_FRAME];
+    let mut last = board.now_ms();
+    let mut stopped_ms = 0;
     loop {
-        let now = board.now_ms();
+        let time = board.now_ms();
+        let step = time.saturating_sub(last);
+        last = time;
+        stopped_ms += step.saturating_sub(MAX_STEP_MS);
+        let now = time.saturating_sub(stopped_ms);
         let taken = endpoint.on_bytes(now, pending);
         pending.drain(..taken);
         loop {
@@ -239,6 +301,9 @@ fn run<B: Board + ?Sized>(
         match endpoint.state() {
             State::Running => board.read(pending, LOOK_MS)?,
             State::Done => return Ok(()),
+            State::Failed(failure) if stopped_ms > 0 => {
+                return Err(TransferError::Stopped(failure));
+            }
             State::Failed(failure) => return Err(TransferError::Failed(failure)),
         }
     }

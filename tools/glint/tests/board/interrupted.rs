@@ -2,7 +2,7 @@
 
 use crate::common::{begin_upload, console, emulator, info, mesh};
 use crate::terminal::{Terminal, patience};
-use glint::board::{Board, EmulatedBoard, SimulatedBoard};
+use glint::board::{Board, BoardError, EmulatedBoard, SimulatedBoard, Uart};
 use glint::console::Console;
 use glint::transfer;
 use std::path::Path;
@@ -136,4 +136,47 @@ fn ctrl_c_in_a_session_cancels_a_transfer() {
     terminal.wait_for("triangles 20", &mut is_over);
     terminal.type_in(b"\x1d");
     assert!(terminal.child.wait().unwrap().success());
+}
+
+/// A board whose host is stopped for eight seconds after a number of writes, as by the suspension of a laptop.
+struct Stopped {
+    board: SimulatedBoard<EmulatedBoard>,
+    writes: u32,
+}
+
+impl Board for Stopped {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.write(bytes)?;
+        self.writes = self.writes.wrapping_sub(1);
+        if self.writes == 0 {
+            let clock = u64::from(self.board.clock_hz());
+            self.board.run(8 * clock);
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        self.board.read(bytes, wait_ms)
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+}
+
+#[test]
+fn transfers_go_on_after_the_host_was_stopped() {
+    let mut board = emulator();
+    console(&mut board);
+    let mut stopped = Stopped { board, writes: 0 };
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    // The command, and some frames of the transfer.
+    stopped.writes = 10;
+    let mut host = Console::new(&mut stopped);
+    transfer::upload(&mut host, &mesh("icosphere:4"), None, 1, quiet).unwrap();
+    assert_eq!(info::<u32>(&mut host, "triangles"), 320);
+    stopped.writes = 10;
+    let mut host = Console::new(&mut stopped);
+    let frame = transfer::download(&mut host, "frame", 2 * 320 * 180, quiet).unwrap();
+    assert!(frame.iter().any(|&byte| byte != 0));
 }
