@@ -1,7 +1,7 @@
 //! A client of the firmware's console: sends a command, and reads its reply line by line.
 
 use crate::line::{Board, BoardError};
-use glint_core::console::PROMPT;
+use glint_core::console::{Command, PROMPT};
 use glint_core::wire::{self, MAX_FRAME};
 use std::hash::{BuildHasher, RandomState};
 
@@ -43,6 +43,11 @@ pub enum ConsoleError {
         /// The last part of the received text.
         last: String,
     },
+    /// The board is in its BIOS, because no program has been started.
+    #[error(
+        "expected the firmware, found the prompt of the BIOS; `glint flash` loads the firmware"
+    )]
+    Bios,
     /// A reply that does not have the expected form.
     #[error("the reply to `{command}`: expected {expected}, found {found:?}")]
     Reply {
@@ -55,8 +60,22 @@ pub enum ConsoleError {
     },
 }
 
-/// Time-out of a reply in milliseconds of the board's time: longer than the slowest frame of a board without accelerators.
+/// Time-out of a line of a reply in milliseconds of the board's time: longer than the slowest frame of a board without
+/// accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
+/// Time-out of a whole reply that is collected, as a multiple of the time-out of a line: a board that keeps sending lines must
+/// come to an end too.
+const REPLY_PATIENCE: u64 = 20;
+/// Number of frames of the console command `orbit` without an argument, and of scenes with an orbit.
+const ORBIT_FRAMES: u32 = 240;
+/// Number of frames of the console command `bench` without an argument.
+const BENCH_FRAMES: u32 = 8;
+
+/// Frame of LiteX's serial boot that ends the boot. A host that is killed during `glint flash` leaves the BIOS waiting for frames
+/// without end. The bytes have no effect on the prompt of the BIOS and on the firmware.
+pub const END_BOOT: &[u8] = &[1, 0, 0, 0, 0];
+/// End of the prompt of the BIOS.
+pub const BIOS_PROMPT: &[u8] = b"litex\x1b[0m> ";
 
 /// Maximum length of a line in bytes.
 const MAX_LINE: usize = 64 << 10;
@@ -69,12 +88,39 @@ const ATTEMPTS: u32 = 7;
 /// board that is starting loses its input.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
+/// The end of a wait.
+#[derive(Clone, Copy)]
+struct Limit {
+    /// The board's time in milliseconds.
+    end_ms: u64,
+    /// Length of the wait in milliseconds.
+    length_ms: u64,
+}
+
+impl Limit {
+    const NONE: Self = Self {
+        end_ms: u64::MAX,
+        length_ms: u64::MAX,
+    };
+
+    const fn after(now_ms: u64, length_ms: u64) -> Self {
+        Self {
+            end_ms: now_ms.saturating_add(length_ms),
+            length_ms,
+        }
+    }
+}
+
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
     board: &'b mut B,
     /// Received bytes that have not been processed yet.
     pending: Vec<u8>,
     patience_ms: u64,
+    /// The wait for the current line.
+    line: Limit,
+    /// The wait for the whole reply, which no line extends.
+    reply: Limit,
     /// Number of bytes that may arrive before the reply to the current command must be complete.
     allowance: usize,
 }
@@ -86,8 +132,31 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
             board,
             pending: Vec::new(),
             patience_ms: PATIENCE_MS,
+            line: Limit::NONE,
+            reply: Limit::NONE,
             allowance: MAX_REPLY,
         }
+    }
+
+    /// Begins the wait for a line that may take `patience_ms`.
+    fn begin_line(&mut self, patience_ms: u64) {
+        self.line = Limit::after(self.board.now_ms(), patience_ms);
+    }
+
+    /// Runs `task` with a limit of its whole duration; `patience_ms` is the time-out of its first line.
+    fn within<T>(
+        &mut self,
+        patience_ms: u64,
+        task: impl FnOnce(&mut Self) -> Result<T, ConsoleError>,
+    ) -> Result<T, ConsoleError> {
+        self.begin_line(patience_ms);
+        let all_ms = self.patience_ms.saturating_mul(REPLY_PATIENCE);
+        let outer = self.reply;
+        let limit = Limit::after(self.board.now_ms(), patience_ms.saturating_add(all_ms));
+        self.reply = std::cmp::min_by_key(outer, limit, |limit| limit.end_ms);
+        let result = task(self);
+        self.reply = outer;
+        result
     }
 
     /// Sets the time-out of replies, in milliseconds of the board's time.
@@ -114,29 +183,46 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// # Errors
     /// [`ConsoleError::Silence`] if no prompt arrives.
     pub fn greet(&mut self) -> Result<String, ConsoleError> {
-        let mut said = String::new();
-        loop {
-            if let Some(at) = find(&self.pending, PROMPT.as_bytes()) {
-                let rest = self.pending.split_off(at);
-                said.push_str(&plain(&std::mem::replace(&mut self.pending, rest)));
-                self.pending.drain(..PROMPT.len());
-                return Ok(said);
+        self.within(self.patience_ms, |console| {
+            let mut said = String::new();
+            loop {
+                if let Some(at) = find(&console.pending, PROMPT.as_bytes()) {
+                    let rest = console.pending.split_off(at);
+                    said.push_str(&plain(&std::mem::replace(&mut console.pending, rest)));
+                    console.pending.drain(..PROMPT.len());
+                    return Ok(said);
+                }
+                while let Some(line) = console.take_line() {
+                    console.begin_line(console.patience_ms);
+                    said.push_str(&line);
+                    said.push('\n');
+                }
+                console.receive("a prompt", &said)?;
             }
-            while let Some(line) = self.take_line() {
-                said.push_str(&line);
-                said.push('\n');
-            }
-            self.receive("a prompt", &said)?;
-        }
+        })
     }
 
-    /// Synchronises with a board that other programs have used: cancels an unfinished transfer, and drops the remaining output of
-    /// earlier commands, so that it is not read as part of a later reply.
+    /// Synchronises with a board that other programs have used: ends an unfinished serial boot or transfer, and drops the remaining
+    /// output of earlier commands, so that it is not read as part of a later reply.
     ///
     /// # Errors
-    /// [`ConsoleError::Silence`] if the board does not answer.
+    /// [`ConsoleError::Silence`] if the board does not answer, [`ConsoleError::Bios`] if only its BIOS does.
     pub fn synchronise(&mut self) -> Result<(), ConsoleError> {
-        self.reset_transfer()?;
+        self.synchronise_within(self.patience_ms)
+    }
+
+    /// Synchronises as [`synchronise`](Self::synchronise), with `patience_ms` as the longest wait for the answer to an attempt.
+    ///
+    /// # Errors
+    /// Those of [`synchronise`](Self::synchronise).
+    pub fn synchronise_within(&mut self, patience_ms: u64) -> Result<(), ConsoleError> {
+        let usual_ms = std::mem::replace(&mut self.patience_ms, patience_ms);
+        let result = self.within(patience_ms, Self::find_firmware);
+        self.patience_ms = usual_ms;
+        result
+    }
+
+    fn find_firmware(&mut self) -> Result<(), ConsoleError> {
         // Each `RandomState` has random keys, so the number differs from the numbers that earlier programs have sent.
         let number = RandomState::new().hash_one(0);
         self.allowance = MAX_REPLY;
@@ -145,12 +231,18 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         loop {
             let word = format!("sync-{number:016x}-{attempt}");
             self.patience_ms = patience_ms.min(FIRST_PATIENCE_MS << silences);
+            // The bytes may be lost: within a frame of a serial boot, or while the board starts.
+            self.end_boot()?;
+            self.reset_transfer()?;
             let found = self.echo(&word);
             self.patience_ms = patience_ms;
             match found {
                 Ok(true) => return Ok(()),
                 // The board has ended a transfer and dropped the input after it, or has refused an earlier line.
                 Ok(false) => {}
+                Err(ConsoleError::Silence { .. }) if self.pending.ends_with(BIOS_PROMPT) => {
+                    return Err(ConsoleError::Bios);
+                }
                 Err(ConsoleError::Silence { .. }) if silences + 1 < ATTEMPTS => silences += 1,
                 Err(error) => return Err(error),
             }
@@ -163,6 +255,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
         let command = format!("echo {word}");
         self.board.write(format!("\0{command}\r").as_bytes())?;
+        self.begin_line(self.patience_ms);
         loop {
             let line = self.next_line(&command)?;
             // The prompt may precede the word, but the echo of the command is not the reply.
@@ -174,6 +267,14 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
                 return Ok(false);
             }
         }
+    }
+
+    /// Ends an unfinished serial boot, if any; the board then starts from its flash memory, or prints the prompt of its BIOS.
+    ///
+    /// # Errors
+    /// Writing to the board fails.
+    pub fn end_boot(&mut self) -> Result<(), BoardError> {
+        self.board.write(END_BOOT)
     }
 
     /// Cancels an unfinished transfer on the board, if any.
@@ -223,8 +324,22 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         command: &str,
         on_line: &mut dyn FnMut(&str),
     ) -> Result<bool, ConsoleError> {
+        self.lines_within(self.patience_of(command), command, on_line)
+    }
+
+    /// As [`lines`](Self::lines), with `patience_ms` for the first line of the reply, because only the time until then depends on
+    /// the command.
+    fn lines_within(
+        &mut self,
+        patience_ms: u64,
+        command: &str,
+        on_line: &mut dyn FnMut(&str),
+    ) -> Result<bool, ConsoleError> {
+        self.begin_line(patience_ms);
         loop {
-            match self.next_line(command)?.as_str() {
+            let line = self.next_line(command)?;
+            self.begin_line(self.patience_ms);
+            match line.as_str() {
                 "ready" => return Ok(true),
                 "ok" => return Ok(false),
                 line => {
@@ -233,6 +348,20 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
                 }
             }
         }
+    }
+
+    /// Time-out of the first line of the reply to a command: a command that draws several frames replies after the last one.
+    fn patience_of(&self, command: &str) -> u64 {
+        let frames = match Command::parse(command) {
+            Ok(Some(Command::Orbit { frames })) => frames.unwrap_or(ORBIT_FRAMES),
+            Ok(Some(Command::Scene { name: Some(_) })) => ORBIT_FRAMES,
+            Ok(Some(Command::Bench { benchmark })) => {
+                let frames = benchmark.and_then(|(_, frames)| frames);
+                frames.unwrap_or(BENCH_FRAMES)
+            }
+            _ => 1,
+        };
+        self.patience_ms.saturating_mul(frames.max(1).into())
     }
 
     /// Sends `info KEY` and returns the first word of the value in the reply.
@@ -263,7 +392,13 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// The firmware refuses the command, or does not answer.
     pub fn reply(&mut self, command: &str) -> Result<Vec<String>, ConsoleError> {
         let mut lines = Vec::new();
-        if self.lines(command, &mut |line| lines.push(line.to_owned()))? {
+        let patience_ms = self.patience_of(command);
+        let is_transfer = self.within(patience_ms, |console| {
+            console.lines_within(patience_ms, command, &mut |line| {
+                lines.push(line.to_owned())
+            })
+        })?;
+        if is_transfer {
             self.reset_transfer()?;
             return Err(unexpected(
                 command,
@@ -282,6 +417,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.allowance = MAX_REPLY;
         // The board discards an unfinished input line when it receives a zero byte.
         self.board.write(format!("\0{command}\r").as_bytes())?;
+        self.begin_line(self.patience_ms);
         loop {
             // The line with the echo may start with earlier output, such as the prompt.
             if self.next_line(command)?.ends_with(command) {
@@ -308,14 +444,21 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Some(plain(text).trim_end().to_owned())
     }
 
+    /// Reads more bytes from the board, for at most the rest of the time-out: received bytes do not extend it.
     fn receive(&mut self, expected: &str, said: &str) -> Result<(), ConsoleError> {
         let before = self.pending.len();
-        self.board.read(&mut self.pending, self.patience_ms)?;
-        let received = self.pending.len().saturating_sub(before);
-        let left = self.allowance.checked_sub(received);
+        let limit = std::cmp::min_by_key(self.line, self.reply, |limit| limit.end_ms);
+        let left_ms = limit.end_ms.saturating_sub(self.board.now_ms());
+        self.board.read(&mut self.pending, left_ms)?;
+        let new = self.pending.get(before..).unwrap_or_default();
+        let left = self.allowance.checked_sub(new.len());
         let is_endless = left.is_none() || before > MAX_LINE;
         self.allowance = left.unwrap_or(0);
-        if received > 0 && !is_endless {
+        let now_ms = self.board.now_ms();
+        // A line may have arrived while this program was stopped.
+        let is_in_time =
+            now_ms < limit.end_ms || new.contains(&b'\n') && now_ms < self.reply.end_ms;
+        if is_in_time && !is_endless {
             return Ok(());
         }
         let all = format!("{said}{}", plain(&self.pending));
@@ -332,7 +475,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         } else {
             ConsoleError::Silence {
                 expected,
-                waited_ms: self.patience_ms,
+                waited_ms: limit.length_ms,
                 last,
             }
         })
@@ -385,8 +528,9 @@ fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
         .position(|window| window == wanted)
 }
 
-/// Converts bytes to text, and removes the escape sequences of terminals.
-fn plain(bytes: &[u8]) -> String {
+/// Converts bytes to text, and removes the escape sequences of terminals and all control characters except tabs and the ends of
+/// lines: a terminal would act on them.
+pub fn plain(bytes: &[u8]) -> String {
     let mut text = Vec::with_capacity(bytes.len());
     let mut rest = bytes.iter();
     while let Some(&byte) = rest.next() {
@@ -398,11 +542,12 @@ fn plain(bytes: &[u8]) -> String {
                     rest.by_ref().find(|b| (0x40..0x7f).contains(*b));
                 }
             }
-            b'\r' | 0x07 | 0x08 => {}
             _ => text.push(byte),
         }
     }
-    String::from_utf8_lossy(&text).into_owned()
+    let mut text = String::from_utf8_lossy(&text).into_owned();
+    text.retain(|c| !c.is_control() || matches!(c, '\n' | '\t'));
+    text
 }
 
 #[cfg(test)]

@@ -146,3 +146,162 @@ fn a_board_that_never_stops_refusing_is_given_up() {
     );
     assert!(board.sent < MAX_REPLY + 1000);
 }
+
+/// A board that sends a text without end, one byte in each second.
+struct Dripping {
+    text: std::iter::Cycle<std::slice::Iter<'static, u8>>,
+    now_ms: u64,
+}
+
+impl Board for Dripping {
+    fn write(&mut self, _: &[u8]) -> Result<(), BoardError> {
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        if wait_ms >= 1000 {
+            bytes.extend(self.text.next());
+        }
+        self.now_ms += wait_ms.min(1000);
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.now_ms
+    }
+}
+
+/// Neither a byte nor a line extends the wait without end.
+#[test]
+fn a_board_that_drips_is_given_up() {
+    for text in [&b"drip "[..], b"drip\r\n", b"error: drip\r\n"] {
+        type Conversation = fn(&mut Console<'_, Dripping>) -> Result<(), ConsoleError>;
+        let conversations: [Conversation; 4] = [
+            |console| console.greet().map(drop),
+            |console| console.synchronise(),
+            |console| console.command("info").map(drop),
+            |console| console.reply("info").map(drop),
+        ];
+        for (number, converse) in conversations.into_iter().enumerate() {
+            let mut board = Dripping {
+                text: text.iter().cycle(),
+                now_ms: 0,
+            };
+            let result = converse(&mut Console::new(&mut board));
+            let is_refused = matches!(result, Err(ConsoleError::Refused { .. }));
+            let is_silent = matches!(result, Err(ConsoleError::Silence { .. }));
+            assert!(is_silent || is_refused, "{number}: {result:?}");
+            let limit = (1 + REPLY_PATIENCE) * PATIENCE_MS;
+            assert!(board.now_ms <= limit, "{number}: {} ms", board.now_ms);
+        }
+    }
+}
+
+/// A board that echoes a command, and sends the reply after a time.
+struct Slow {
+    output: Vec<u8>,
+    reply: Option<(u64, &'static [u8])>,
+    now_ms: u64,
+}
+
+impl Board for Slow {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.output.extend(bytes.iter().filter(|&&byte| byte != 0));
+        self.output.push(b'\n');
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        if !self.output.is_empty() {
+            bytes.append(&mut self.output);
+            return Ok(());
+        }
+        self.now_ms += wait_ms.min(500);
+        if let Some((_, reply)) = self.reply.take_if(|(time, _)| *time <= self.now_ms) {
+            bytes.extend(reply);
+        }
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.now_ms
+    }
+}
+
+/// A turn of 3600 frames takes a minute, at 60 frames a second.
+#[test]
+fn commands_that_draw_several_frames_have_their_time() {
+    let reply = |command: &str, ms: u64| {
+        let mut board = Slow {
+            output: Vec::new(),
+            reply: Some((ms, b"ok\r\n")),
+            now_ms: 0,
+        };
+        Console::new(&mut board).command(command).map(drop)
+    };
+    assert!(reply("orbit 3600", 60_000).is_ok());
+    assert!(reply("orbit", 60_000).is_ok());
+    assert!(reply("scene cubes", 60_000).is_ok());
+    assert!(reply("bench triangle 100", 60_000).is_ok());
+    assert!(reply("render", 60_000).is_err());
+    assert!(reply("orbit 1", 60_000).is_err());
+}
+
+#[test]
+fn control_characters_of_a_reply_are_removed() {
+    let hostile = "info\r\nname \x1b[31m\x0e\x0f\x05\x7f\u{9b}2J\u{90}\tx\x08\x07\r\nok\r\n";
+    let mut board = script("", &[hostile]);
+    let lines = Console::new(&mut board).command("info").unwrap();
+    assert_eq!(lines, ["name 2J\tx"]);
+    let refused = "info\r\nerror: \u{9b}2J\x0e\r\n";
+    let mut board = script("", &[refused]);
+    let error = Console::new(&mut board).command("info").unwrap_err();
+    assert_eq!(error.to_string(), "the board refused `info`: 2J");
+}
+
+/// A board that shows the prompt of its BIOS, alone or after the end of a serial boot.
+struct AtBios {
+    is_booting: bool,
+    output: Vec<u8>,
+    now_ms: u64,
+}
+
+impl Board for AtBios {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        if self.is_booting {
+            self.is_booting = bytes != END_BOOT;
+            self.output
+                .extend(if self.is_booting { b"E" } else { b"K" });
+        } else if bytes.ends_with(b"\r") {
+            self.output.extend(b"Command not found\r\n\x1b[92;1m");
+            self.output.extend(BIOS_PROMPT);
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        if self.output.is_empty() {
+            self.now_ms += wait_ms;
+        }
+        bytes.append(&mut self.output);
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.now_ms
+    }
+}
+
+#[test]
+fn a_board_in_its_bios_is_recognised_at_once() {
+    for is_booting in [false, true] {
+        let mut board = AtBios {
+            is_booting,
+            output: Vec::new(),
+            now_ms: 0,
+        };
+        let error = Console::new(&mut board).synchronise().unwrap_err();
+        assert!(matches!(error, ConsoleError::Bios), "{error}");
+        assert_eq!(board.now_ms, FIRST_PATIENCE_MS);
+    }
+}

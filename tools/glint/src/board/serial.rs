@@ -2,6 +2,7 @@
 
 use super::error::OpenError;
 use super::ports;
+use glint_board_api::console::PATIENCE_MS;
 use glint_board_api::{Board, BoardError};
 use serialport::SerialPort;
 use std::io::{self, Read, Write};
@@ -12,6 +13,9 @@ use std::time::{Duration, Instant};
 const GUESS: &str = "serial";
 /// Shortest time-out of a read from the port; it keeps a loop of reads from using a whole CPU core.
 const SHORTEST: Duration = Duration::from_millis(1);
+
+/// Time without any byte taken by the port after which a write fails: as long as the slowest reply.
+const MAX_BLOCKED: Duration = Duration::from_millis(PATIENCE_MS);
 
 /// A board on a serial port with 8 data bits, no parity, 1 stop bit and no flow control.
 pub struct SerialBoard {
@@ -58,12 +62,21 @@ fn open_error(name: &str, source: serialport::Error) -> OpenError {
 
 impl Board for SerialBoard {
     fn write(&mut self, mut bytes: &[u8]) -> Result<(), BoardError> {
+        let mut last = Instant::now();
         while !bytes.is_empty() {
             match self.port.write(bytes) {
-                Ok(written) => bytes = &bytes[written..],
+                Ok(written) if written > 0 => {
+                    bytes = &bytes[written..];
+                    last = Instant::now();
+                }
                 // The port's buffer is full. The buffer empties at the speed of the line, so the loop writes again.
+                Ok(_) => {}
                 Err(error) if is_transient(&error) => {}
                 Err(error) => return Err(error.into()),
+            }
+            if last.elapsed() > MAX_BLOCKED {
+                let text = format!("the port has taken no byte for {} s", MAX_BLOCKED.as_secs());
+                return Err(io::Error::new(io::ErrorKind::TimedOut, text).into());
             }
         }
         Ok(())

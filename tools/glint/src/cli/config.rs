@@ -7,12 +7,16 @@ use glint::formats::read_at_most;
 use serde::Deserialize;
 use std::env;
 use std::io::{self, ErrorKind};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Maximum size of a configuration file in bytes.
 const MAX_BYTES: u64 = 64 << 10;
 /// Baud rate if no option, variable or configuration entry sets it.
 const BAUD: u32 = 115_200;
+
+/// Baud rates of serial adapters. The system takes 0 for a line that is hung up, on which nothing ever arrives.
+const BAUDS: RangeInclusive<u32> = 50..=12_000_000;
 
 /// The configuration file, `glint/config.toml` in the user's configuration folder.
 #[derive(Debug, Default, Deserialize, PartialEq, Eq)]
@@ -64,19 +68,29 @@ pub fn board(option: Option<&BoardName>) -> anyhow::Result<BoardName> {
 /// The baud rate from the option, the environment or the configuration file, in this order; 115,200 if none sets it.
 ///
 /// # Errors
-/// The variable is not a number, or the configuration file is damaged.
+/// The value is not a baud rate, or the configuration file is damaged.
 pub fn baud(option: Option<u32>) -> anyhow::Result<u32> {
     if let Some(baud) = option {
-        return Ok(baud);
+        return checked("--baud", &baud.to_string());
     }
     if let Some(text) = variable("GLINT_BAUD") {
-        let baud = text.parse().map_err(|_| {
-            let found = glint::error::quote(text.as_bytes());
-            FormatError::whole("a number of bits per second", found).in_file("GLINT_BAUD")
-        });
-        return Ok(baud?);
+        return checked("GLINT_BAUD", &text);
     }
-    Ok(read()?.baud.unwrap_or(BAUD))
+    match read()?.baud {
+        Some(baud) => checked("the configuration file's baud", &baud.to_string()),
+        None => Ok(BAUD),
+    }
+}
+
+/// Parses a baud rate; `name` is the source of the text.
+fn checked(name: &str, text: &str) -> anyhow::Result<u32> {
+    let baud = text.parse().ok().filter(|baud| BAUDS.contains(baud));
+    let (slowest, fastest) = (BAUDS.start(), BAUDS.end());
+    Ok(baud.ok_or_else(|| {
+        let found = glint::error::quote(text.as_bytes());
+        let expected = format!("a number of bits per second from {slowest} to {fastest}");
+        FormatError::whole(expected, found).in_file(name)
+    })?)
 }
 
 /// The value of an environment variable that is set and not empty.
