@@ -13,6 +13,19 @@ const BAD_INPUT: u8 = 2;
 /// Exit code for any other failure.
 const FAILED: u8 = 1;
 
+/// The error with its causes on one line, even if a message of the operating system or of a board has several lines. A cause that
+/// the message before it quotes is left out.
+fn one_line(error: &anyhow::Error) -> String {
+    let mut messages: Vec<String> = Vec::new();
+    for cause in error.chain() {
+        let message = cause.to_string();
+        if !messages.last().is_some_and(|last| last.contains(&message)) {
+            messages.push(message);
+        }
+    }
+    messages.join(": ").trim_end().replace('\n', " ")
+}
+
 fn main() -> ExitCode {
     let Err(error) = cli::Arguments::parse().run() else {
         return ExitCode::SUCCESS;
@@ -20,7 +33,6 @@ fn main() -> ExitCode {
     let bad_input = error.chain().any(|cause| {
         cause.is::<InputError>() || cause.is::<FormatError>() || cause.is::<SceneError>()
     });
-    // The error is printed on one line, even if a message of the operating system or of a board has several lines.
-    cli::fail(format!("{error:#}").trim_end().replace('\n', " "));
+    cli::fail(one_line(&error));
     ExitCode::from(if bad_input { BAD_INPUT } else { FAILED })
 }
