@@ -11,26 +11,23 @@
 //! often. After a success, frames grow up to the size of the BIOS's buffer. Batches grow only if an answer takes at least 2 ms:
 //! with faster answers, long batches save no time, and may overrun the BIOS.
 
+mod connect;
 mod frame;
 mod link;
+mod start;
 
+pub use connect::{ACCEPT, REQUEST};
 pub use link::{FlashError, Report};
+pub use start::await_text;
 
 use crate::board::Board;
 use link::{Delivery, Link};
 
-/// Text that the BIOS sends when it is ready for a serial boot.
-pub const REQUEST: &[u8] = b"sL5DdSMmkekro\n";
-/// Answer to [`REQUEST`] that starts the transfer.
-pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
-
-/// Time in milliseconds without a request after which the host sends `reboot`, because the board may be running a program.
-const POKE_MS: u64 = 2000;
-
 /// Sends a program to `address` and starts it there. Calls `progress` with the number of bytes that have arrived and the
 /// program's length.
 ///
-/// If no request arrives, the host sends `reboot` once, a command of the BIOS and of Glint's firmware.
+/// If no request arrives, the host ends an earlier boot or transfer, and sends `reboot`, a command of the BIOS and of Glint's
+/// firmware.
 ///
 /// # Errors
 /// No request arrives within `wait_ms` of the board's time, or there are too many transmission errors.
@@ -41,8 +38,7 @@ pub fn flash(
     wait_ms: u64,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Report, FlashError> {
-    wait_for_request(board, wait_ms)?;
-    board.write(ACCEPT)?;
+    connect::connect(board, wait_ms)?;
     let mut link = Link::new(board);
     let start = link.now_ms();
     let mut sent = 0;
@@ -65,34 +61,6 @@ pub fn flash(
     Ok(link.report)
 }
 
-fn wait_for_request(board: &mut dyn Board, wait_ms: u64) -> Result<(), FlashError> {
-    let start = board.now_ms();
-    let mut heard = Vec::new();
-    let mut poked = false;
-    loop {
-        if heard.windows(REQUEST.len()).any(|window| window == REQUEST) {
-            return Ok(());
-        }
-        let waited_ms = board.now_ms().saturating_sub(start);
-        if waited_ms >= wait_ms {
-            let text = String::from_utf8_lossy(&heard);
-            let from = text.char_indices().rev().nth(99).map_or(0, |(at, _)| at);
-            return Err(FlashError::NoRequest {
-                waited_ms,
-                last: text[from..].to_owned(),
-            });
-        }
-        if !poked && waited_ms >= POKE_MS {
-            poked = true;
-            board.write(b"\rreboot\r")?;
-        }
-        board.read(&mut heard, 100)?;
-        // Keeps only the last bytes: they may contain the start of a request, and the error message quotes them.
-        let surplus = heard.len().saturating_sub(1024);
-        heard.drain(..surplus);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::frame::{JUMP, LOAD, frame};
@@ -103,18 +71,32 @@ mod tests {
 
     const ADDRESS: u32 = 0x4000_0000;
 
+    /// What the simulated BIOS expects.
+    #[derive(Clone, Copy, PartialEq)]
+    enum Mode {
+        /// The answer to its request, for 250 ms.
+        Answer,
+        /// Frames, for any time.
+        Frames,
+        /// A command.
+        Command,
+        /// Nothing: a program runs.
+        Nothing,
+    }
+
     /// A simulated BIOS that receives frames over a line that drops, flips and repeats bytes.
     struct Bios {
         now_ms: u64,
+        mode: Mode,
         output: Vec<u8>,
-        /// The received bytes of an incomplete frame, and the time of its first byte.
+        /// The received bytes of an incomplete frame or line, and the time of the first byte, or of the request.
         partial: Vec<u8>,
         since_ms: u64,
         memory: BTreeMap<u32, u8>,
         jumped: Option<u32>,
-        accepted: bool,
-        /// Number of damaged bytes per 1000 bytes, in each direction.
+        /// Number of damaged bytes per 1000 bytes, in each direction, after the first frame.
         faults: usize,
+        has_frame: bool,
         random: Random,
     }
 
@@ -122,20 +104,37 @@ mod tests {
         fn asking(faults: usize, line: u64) -> Self {
             Self {
                 now_ms: 0,
+                mode: Mode::Answer,
                 output: [b"BIOS...\n", REQUEST].concat(),
                 partial: Vec::new(),
                 since_ms: 0,
                 memory: BTreeMap::new(),
                 jumped: None,
-                accepted: false,
                 faults,
+                has_frame: false,
                 random: Random::new(1, line),
             }
         }
 
+        /// A BIOS in this mode, with output that the host has not read.
+        fn in_mode(mode: Mode, output: &[u8]) -> Self {
+            Self {
+                mode,
+                output: output.to_vec(),
+                ..Self::asking(0, 0)
+            }
+        }
+
+        fn enter(&mut self, mode: Mode, output: &[u8]) {
+            self.mode = mode;
+            self.output.extend(output);
+            self.partial.clear();
+            self.since_ms = self.now_ms;
+        }
+
         /// Returns the bytes that arrive when `byte` is sent: none, a flipped byte, two bytes, or the unchanged byte.
         fn line(&mut self, byte: u8) -> Vec<u8> {
-            if self.random.below(1000) >= self.faults {
+            if !self.has_frame || self.random.below(1000) >= self.faults {
                 return vec![byte];
             }
             match self.random.below(3) {
@@ -151,17 +150,44 @@ mod tests {
         }
 
         fn expire(&mut self) {
-            if !self.partial.is_empty() && self.now_ms - self.since_ms >= 250 {
-                self.partial.clear();
-                self.reply(b'E');
+            let is_late = self.now_ms - self.since_ms >= 250;
+            match self.mode {
+                Mode::Answer if is_late => self.enter(Mode::Command, b"Timeout\nlitex> "),
+                Mode::Frames if is_late && !self.partial.is_empty() => {
+                    self.partial.clear();
+                    self.reply(b'E');
+                }
+                _ => {}
+            }
+        }
+
+        /// Receives a byte.
+        fn hear(&mut self, byte: u8) {
+            self.expire();
+            match self.mode {
+                Mode::Answer => {
+                    self.partial.push(byte);
+                    if self.partial.ends_with(ACCEPT) {
+                        self.enter(Mode::Frames, b"");
+                    }
+                }
+                Mode::Frames => {
+                    for byte in self.line(byte) {
+                        self.take(byte);
+                    }
+                }
+                Mode::Command => {
+                    self.output.push(byte);
+                    self.partial.push(byte);
+                    if self.partial.ends_with(b"\rreboot\r") {
+                        self.enter(Mode::Answer, &[b"BIOS...\n", REQUEST].concat());
+                    }
+                }
+                Mode::Nothing => {}
             }
         }
 
         fn take(&mut self, byte: u8) {
-            self.expire();
-            if self.jumped.is_some() {
-                return;
-            }
             if self.partial.is_empty() {
                 self.since_ms = self.now_ms;
             }
@@ -175,33 +201,30 @@ mod tests {
             if frame(command, payload) != got {
                 return self.reply(b'C');
             }
-            let address = u32::from_be_bytes(payload[..4].try_into().unwrap());
+            let address = payload
+                .first_chunk()
+                .map_or(0, |bytes| u32::from_be_bytes(*bytes));
             match command {
                 LOAD => self
                     .memory
                     .extend((address..).zip(payload[4..].iter().copied())),
                 JUMP => self.jumped = Some(address),
+                0 => {}
                 _ => return self.reply(b'U'),
             }
             self.reply(b'K');
-            if self.jumped.is_some() {
-                self.output.extend(b"Liftoff!");
+            self.has_frame = true;
+            match command {
+                JUMP => self.enter(Mode::Nothing, b"Liftoff!"),
+                0 => self.enter(Mode::Command, b"No boot medium found\nlitex> "),
+                _ => {}
             }
         }
     }
 
     impl Board for Bios {
         fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
-            if !self.accepted {
-                assert_eq!(bytes, ACCEPT);
-                self.accepted = true;
-                return Ok(());
-            }
-            for &byte in bytes {
-                for byte in self.line(byte) {
-                    self.take(byte);
-                }
-            }
+            bytes.iter().for_each(|&byte| self.hear(byte));
             self.now_ms += bytes.len() as u64 / 11;
             Ok(())
         }
@@ -227,9 +250,12 @@ mod tests {
     }
 
     fn loads(faults: usize, line: u64) -> Report {
+        loads_into(Bios::asking(faults, line))
+    }
+
+    fn loads_into(mut bios: Bios) -> Report {
         let program = program(20_001);
-        let mut bios = Bios::asking(faults, line);
-        let report = flash(&mut bios, &program, ADDRESS, 1000, &mut |_, _| {}).unwrap();
+        let report = flash(&mut bios, &program, ADDRESS, 60_000, &mut |_, _| {}).unwrap();
         assert_eq!(bios.jumped, Some(ADDRESS));
         assert!(report.said.ends_with(b"Liftoff!"));
         assert!(bios.memory.into_values().eq(program));
@@ -262,9 +288,48 @@ mod tests {
     }
 
     #[test]
+    fn each_state_of_the_bios_leads_to_its_boot() {
+        let late = [REQUEST, b"Timeout\nlitex> "].concat();
+        let mut in_frame = Bios::in_mode(Mode::Frames, b"KKK");
+        in_frame.partial = frame(LOAD, &[0; 100])[..50].to_vec();
+        for bios in [
+            Bios::in_mode(Mode::Command, b"litex> "),
+            // Requests that nobody has answered, one of them with its end in another read.
+            Bios::in_mode(Mode::Command, &late),
+            Bios::in_mode(Mode::Command, REQUEST),
+            Bios::in_mode(Mode::Frames, b""),
+            in_frame,
+        ] {
+            assert_eq!(loads_into(bios).retries, 0);
+        }
+    }
+
+    #[test]
+    fn a_program_that_prints_nothing_is_not_started() {
+        let liftoff = b"Executing booted program at 0x40000000\n\n--== Liftoff! ==--\n";
+        let started = |text: &[u8]| {
+            let mut bios = Bios::in_mode(Mode::Nothing, text);
+            await_text(&mut bios, liftoff, 5000)
+        };
+        assert!(started(b"Glint\n").is_ok());
+        assert!(matches!(
+            started(b""),
+            Err(FlashError::Silent { waited_ms: 5000 })
+        ));
+        assert!(matches!(started(b"\r\n"), Err(FlashError::Silent { .. })));
+        let again = [b"BIOS\n", REQUEST].concat();
+        assert!(matches!(started(&again), Err(FlashError::Restarted)));
+    }
+
+    #[test]
+    fn the_end_of_a_boot_is_a_frame() {
+        assert_eq!(frame(0, &[0]), crate::console::END_BOOT);
+    }
+
+    #[test]
     fn a_dead_line_is_given_up() {
         let mut bios = Bios::asking(400, 0);
-        let error = flash(&mut bios, &program(1000), ADDRESS, 1000, &mut |_, _| {}).unwrap_err();
+        let error = flash(&mut bios, &program(1000), ADDRESS, 600_000, &mut |_, _| {}).unwrap_err();
         assert!(
             error.to_string().starts_with(
                 "at 0x40000000: 24 batches failed in a row, the last with 12 data bytes a frame: expected"
@@ -296,6 +361,6 @@ mod tests {
             matches!(error, FlashError::NoRequest { ref last, .. } if last.ends_with("litex> ")),
             "{error}"
         );
-        assert_eq!(board.1, b"\rreboot\r");
+        assert!(board.1.ends_with(b"\rreboot\r"));
     }
 }

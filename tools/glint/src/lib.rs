@@ -9,6 +9,7 @@
 //! | [`render`], [`scene`] | renders a frame by the model or by a board; the built-in scenes |
 //! | [`image`] | images for a board's SPI flash |
 //! | [`board`] | boards: serial port, or simulation |
+//! | [`program`] | checks files that a board is to run |
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`wireframe`] | programs of the wireframe simulator |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |
@@ -27,6 +28,7 @@ pub mod image;
 pub mod imu;
 pub mod object;
 pub mod picture;
+pub mod program;
 pub mod render;
 pub mod scene;
 pub mod view;

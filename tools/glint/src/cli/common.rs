@@ -9,6 +9,7 @@ use glint::board::{
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
+use glint::program;
 use glint::render::BoardRenderer;
 use glint::scene::Changes;
 use glint_core::picture::{Backend, Size};
@@ -99,7 +100,7 @@ impl LineArguments {
     }
 
     /// Opens a board on a serial port, and cancels an unfinished command or transfer of an earlier program.
-    fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
+    pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
         let mut board = self.open(port)?;
         let spinner = spinner("waiting for the board");
         Console::new(&mut board).synchronise()?;
@@ -129,16 +130,31 @@ impl LineArguments {
         })
     }
 
+    /// The firmware of simulated boards.
+    pub fn firmware(&self) -> anyhow::Result<Vec<u8>> {
+        let path = self.firmware.as_deref();
+        let firmware = built_firmware(path)?;
+        if let Some(path) = path {
+            program::check(&firmware, path)?;
+        }
+        Ok(firmware)
+    }
+
+    /// Starts the simulated board `name`. Its program runs as soon as its line is read, and need not have a prompt.
+    pub fn start(&self, name: &BoardName) -> anyhow::Result<AnyBoard> {
+        let board = board::simulated(name, Some(&self.firmware()?))?;
+        let board = board.context("expected a simulated board")?;
+        show_simulation(board.meter());
+        Ok(board)
+    }
+
     /// Opens the board that `name` selects, as [`board`](Self::board), with access to its kind.
     pub fn open_any(&self, name: &BoardName) -> anyhow::Result<Opened> {
         self.check(name)?;
         if let BoardName::Serial(port) = name {
             return Ok(Opened::Serial(self.serial_board(port)?));
         }
-        let firmware = built_firmware(self.firmware.as_deref())?;
-        let board = board::simulated(name, Some(&firmware))?;
-        let mut board = board.context("expected a simulated board")?;
-        show_simulation(board.meter());
+        let mut board = self.start(name)?;
         let _starting = spinner("the board starts");
         Console::new(&mut board).greet()?;
         Ok(Opened::Simulated(board))

@@ -13,6 +13,7 @@ use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
 use glint::picture::{Image, write_animation};
+use glint::program;
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, Parts, Rendered, Route, Stats, Subject, on_model,
     size_command,
@@ -93,6 +94,9 @@ impl DemoArguments {
         let models = names.into_iter().map(|name| Ok((name, load(name, false)?)));
         let models = models.collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
+        if let Some(path) = &self.firmware {
+            program::check(&firmware, path)?;
+        }
 
         // The two boards run in parallel: the simulation of a board uses one CPU core, and most hosts have at least two.
         let (first, others) = models.split_first().context("no model")?;

@@ -12,10 +12,12 @@ use glint::console::Console;
 use glint::flash;
 use glint::formats::read_file;
 use glint::image;
+use glint::program;
 use glint::render::BoardRenderer;
 use glint_core::flash::FIRMWARE;
 use glint_core::mesh::{MAX_NAME, is_name};
 use std::io::{self, Write};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -28,13 +30,17 @@ pub struct FlashArguments {
     /// Program to load: a flat binary, or `-` for standard input; with --spi, an image made by `glint image make`.
     program: PathBuf,
     /// Write an image to the SPI flash of an Urbana with openFPGALoader.
-    #[arg(long, conflicts_with_all = ["board", "address", "wait", "baud", "json"])]
+    #[arg(long, conflicts_with_all = ["board", "address", "no_output", "wait", "baud", "json"])]
     spi: bool,
     #[command(flatten)]
     board: BoardChoice,
-    /// Load address and entry point of the program.
+    /// Load address and entry point of the program, a multiple of 4 in main memory.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
+    /// Do not expect text from the program. By default a program that prints nothing within 10 seconds of the board's time is an
+    /// error.
+    #[arg(long)]
+    no_output: bool,
     /// Time-out of the wait for the BIOS's request, in seconds of the board's time. The BIOS sends the request after a reset, or
     /// after the command `reboot`, which the host sends.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
@@ -81,11 +87,22 @@ fn default_name(model: &str) -> Option<String> {
     Some(stem.chars().map(visible).take(MAX_NAME).collect())
 }
 
+/// Addresses of main memory on every board.
+const MAIN_MEMORY: RangeInclusive<u32> = 0x4000_0000..=0x7fff_fffc;
+/// Longest wait for the first text of a program, in milliseconds of the board's time.
+const START_MS: u64 = 10_000;
+
 fn parse_address(text: &str) -> Result<u32, String> {
     let digits = text
         .strip_prefix("0x")
         .ok_or("expected 0x and hexadecimal digits")?;
-    u32::from_str_radix(digits, 16).map_err(|error| error.to_string())
+    let address = u32::from_str_radix(digits, 16).map_err(|error| error.to_string())?;
+    let is_valid = MAIN_MEMORY.contains(&address) && address.is_multiple_of(4);
+    is_valid.then_some(address).ok_or(format!(
+        "expected a multiple of 4 from {:#x} to {:#x}",
+        MAIN_MEMORY.start(),
+        MAIN_MEMORY.end()
+    ))
 }
 
 impl FlashArguments {
@@ -96,6 +113,7 @@ impl FlashArguments {
         let name = self.board.name()?;
         self.baud.check(&name)?;
         let program = read_file(&self.program)?;
+        program::check(&program, &self.program)?;
         let mut board: Box<dyn Board> = match board::simulated(&name, None)? {
             Some(board) => {
                 show_simulation(board.meter());
@@ -116,6 +134,11 @@ impl FlashArguments {
             },
         )?;
         bar.finish();
+        if !self.no_output {
+            let starting = spinner("waiting for the program's text");
+            flash::await_text(&mut *board, &report.said, START_MS)?;
+            starting.finish();
+        }
         if self.json {
             return print_json(&report);
         }

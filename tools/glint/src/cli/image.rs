@@ -5,6 +5,7 @@ use super::output::{IMAGE, Output};
 use clap::{Args, Subcommand};
 use glint::formats::read_file;
 use glint::image;
+use glint::program;
 use glint_core::flash::{CONTENTS, FIRMWARE, Image};
 use glint_core::wire::crc32;
 use std::path::PathBuf;
@@ -73,6 +74,7 @@ impl MakeArguments {
         let scenes = self.scene.iter().map(PathBuf::from);
         let out = Output::open(&self.out, IMAGE, inputs.cloned().chain(scenes))?;
         let firmware = read_file(&self.firmware)?;
+        program::check(&firmware, &self.firmware)?;
         let bitstream = match &self.bitstream {
             Some(path) => {
                 let file = read_file(path)?;

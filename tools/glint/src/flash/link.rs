@@ -21,6 +21,10 @@ const ANSWER_MS: u64 = 500;
 /// Maximum number of bytes in the BIOS's answer to one frame: `C` for a wrong checksum and, after the time-out of a surplus byte,
 /// `E`, each of them twice if the line repeats bytes. Longer output is output of the program.
 const MAX_ANSWER: usize = 4;
+/// Answers of the BIOS to a frame: success, wrong checksum, unknown command, time-out.
+const ANSWERS: &[u8] = b"KCUE";
+/// Number of empty frames without any answer after which the BIOS counts as not receiving frames.
+const PROBES: u32 = 3;
 /// Number of failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
 
@@ -56,6 +60,20 @@ pub enum FlashError {
         /// The last part of the board's output.
         last: String,
     },
+    /// The program has printed nothing after its start.
+    #[error(
+        "the program was loaded and started, and printed nothing for {waited_ms} ms: expected a program for this board at its load \
+         address; --no-output expects no text"
+    )]
+    Silent {
+        /// Length of the wait in milliseconds of board time.
+        waited_ms: u64,
+    },
+    /// The program has ended in the BIOS.
+    #[error(
+        "the program was loaded and started, and the board is in its BIOS again: expected a program for this board"
+    )]
+    Restarted,
     /// Too many transmission errors.
     #[error(
         "at {address:#010x}: {MAX_FAILURES} batches failed in a row, the last with {data} data bytes a frame: expected {expected}, found {found}"
@@ -133,6 +151,26 @@ impl<'b> Link<'b> {
                 frame(LOAD, &[&at.to_be_bytes(), data].concat())
             })
             .collect()
+    }
+
+    /// Whether the BIOS receives frames: sends a frame without data until an answer to a frame arrives, or other text.
+    pub fn is_open(&mut self) -> Result<bool, BoardError> {
+        // Loads no bytes, so its address has no effect.
+        let frame = frame(LOAD, &[0; 4]);
+        for _ in 0..PROBES {
+            self.board.write(&frame)?;
+            let mut answer = Vec::new();
+            self.board.read(&mut answer, ANSWER_MS)?;
+            if answer == b"K" {
+                return Ok(true);
+            }
+            answer.extend(self.settle()?);
+            if !answer.is_empty() {
+                let is_answer = answer.iter().any(|letter| ANSWERS.contains(letter));
+                return Ok(is_answer && answer.len() <= MAX_ANSWER);
+            }
+        }
+        Ok(false)
     }
 
     /// Sends a batch of frames, and waits for one acknowledgement `K` per frame.

@@ -208,7 +208,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let stats = b"render\r\nbackend gateware\r\ncycles 29373\r\ntriangles_in 12\r\ntriangles_culled 6\r\ntriangles_clipped 0\r\ntriangles_drawn 6\r\npixels_covered 8744\r\npixels_drawn 8744\r\nrays 57600\r\nevaluations 90000\r\nhits 9\r\nmisses 8\r\nundecided 0\r\nclock 81250000\r\ncycles_busy 7\r\nok\r\n";
     let again = stats.strip_prefix(b"render\r\n").unwrap_or_default();
     let mut seeds = vec![
-        seed(0, &[b"BIOS\r\n", flash::REQUEST, b"KKKKLiftoff!\r\n"]),
+        seed(0, &[b"BIOS\r\n", flash::REQUEST, WAIT, b"KKKKKLiftoff!\r\n"]),
         seed(
             0x88,
             &[b"Glint 0.1.0\r\n\r\nglint> info\r\nversion 1\r\ntriangles 12\r\nok\r\nglint> \x1b[2Kinfo staging\r\nstaging 0x42000000 67108864\r\nok\r\n"],

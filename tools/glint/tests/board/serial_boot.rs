@@ -1,15 +1,16 @@
 //! Serial boot through the BIOS, by LiteX's own terminal and by `glint flash`. The firmware's transfer to the verilated board
 //! would take minutes.
 
+use crate::common::{begin_upload, mesh};
 use crate::power_up::read_until;
 use crate::terminal::Terminal;
-use glint::board::Uart;
-use glint::board::{self};
+use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, Uart};
 use glint::console::Console;
 use glint::flash;
 use litex_pac::uart::{self, offset};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use virtual_board::pty::Pty;
 use virtual_board::{Start, VirtualBoard};
 
@@ -34,8 +35,11 @@ fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
+/// A program that prints nothing: `jal x0, 0`.
+pub const MUTE: [u8; 4] = [0x6f, 0, 0, 0];
+
 /// A program that prints `text` on the serial port, and ends in an endless loop.
-fn printer(text: &str) -> Vec<u8> {
+pub fn printer(text: &str) -> Vec<u8> {
     const {
         assert!(
             offset::RXTX == 0 && offset::TXFULL == 4,
@@ -115,4 +119,90 @@ fn glint_flash_loads_the_firmware_and_it_answers() {
     console.greet().unwrap();
     let info = console.command("info").unwrap();
     assert!(info.iter().any(|line| line == "triangles 12"), "{info:?}");
+}
+
+/// Loads a small program, and checks that it runs.
+fn load(board: &mut SimulatedBoard<EmulatedBoard>) {
+    let mut program = printer("Program runs\n");
+    program.resize(1000, 0);
+    let report = flash::flash(board, &program, MAIN_RAM, 60_000, &mut |_, _| {}).unwrap();
+    flash::await_text(board, &report.said, 1000).unwrap();
+}
+
+/// Reads from a board until it requests a serial boot, and accepts.
+fn accept(board: &mut SimulatedBoard<EmulatedBoard>) {
+    let mut heard = Vec::new();
+    while !heard.ends_with(flash::REQUEST) {
+        board.read(&mut heard, 1).unwrap();
+    }
+    board.write(flash::ACCEPT).unwrap();
+}
+
+/// Nothing has read the output of these boards, so their requests for a serial boot are old.
+#[test]
+fn a_board_that_has_waited_is_flashed_at_once() {
+    let mut board = board::emulated_bios().unwrap();
+    board.run(3 * 81_250_000);
+    load(&mut board);
+    // The program does not answer `reboot`.
+    let program = printer("Program runs\n");
+    let error = flash::flash(&mut board, &program, MAIN_RAM, 5_000, &mut |_, _| {}).unwrap_err();
+    let expected = "expected the BIOS's request sL5DdSMmkekro, found ";
+    assert!(error.to_string().contains(expected), "{error}");
+}
+
+#[test]
+fn a_boot_that_was_interrupted_does_not_keep_the_next_out() {
+    // The start of a frame that loads data, of which nothing, a part, or all arrives.
+    let start = [100, 0x12, 0x34, 1, 0x40, 0, 0, 0];
+    for length in [0, 1, start.len()] {
+        let mut board = board::emulated_bios().unwrap();
+        accept(&mut board);
+        board.write(&start[..length]).unwrap();
+        load(&mut board);
+    }
+}
+
+#[test]
+fn the_console_frees_a_board_from_an_interrupted_boot() {
+    let mut board = board::emulated_bios().unwrap();
+    accept(&mut board);
+    board.write(&[100, 0x12, 0x34, 1]).unwrap();
+    let error = Console::new(&mut board).synchronise().unwrap_err();
+    let expected = "expected the firmware, found the prompt of the BIOS";
+    assert!(error.to_string().starts_with(expected), "{error}");
+    load(&mut board);
+}
+
+#[test]
+fn firmware_in_a_transfer_is_replaced() {
+    let firmware = std::fs::read(firmware()).unwrap();
+    let mut board = board::emulated_bios().unwrap();
+    flash::flash(&mut board, &firmware, MAIN_RAM, 60_000, &mut |_, _| {}).unwrap();
+    let mut console = Console::new(&mut board);
+    console.greet().unwrap();
+    begin_upload(&mut console, &mesh("icosphere:4"));
+    load(&mut board);
+}
+
+#[test]
+fn a_program_that_prints_nothing_is_an_error() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let flash = |program: &[u8], option: &[&str]| {
+        std::fs::write(file.path(), program).unwrap();
+        let mut glint = Command::new(env!("CARGO_BIN_EXE_glint"));
+        let glint = glint.args(["flash", "--board", "emulated"]).args(option);
+        let output = glint.arg(file.path()).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), error)
+    };
+    let (code, error) = flash(&MUTE, &[]);
+    let expected = "error: the program was loaded and started, and printed nothing for 10000 ms: ";
+    assert!(code == Some(1) && error.starts_with(expected), "{error}");
+    assert_eq!(flash(&MUTE, &["--no-output"]).0, Some(0));
+    assert_eq!(flash(&printer("Program runs\n"), &[]).0, Some(0));
+    // jalr x0, 0(x0): back to the start of the BIOS.
+    let (code, error) = flash(&[0x67, 0, 0, 0], &[]);
+    let expected = "error: the program was loaded and started, and the board is in its BIOS again";
+    assert!(code == Some(1) && error.starts_with(expected), "{error}");
 }

@@ -179,8 +179,8 @@ fn an_image_without_a_bitstream_is_written_behind_its_slot() {
 #[test]
 fn the_firmware_must_be_one_that_the_bios_boots() {
     let folder = folder("image-firmware");
-    fs::write(folder.join("short.bin"), [0; 31]).unwrap();
-    fs::write(folder.join("long.bin"), vec![0; 1 << 20]).unwrap();
+    fs::write(folder.join("short.bin"), [0x13; 31]).unwrap();
+    fs::write(folder.join("long.bin"), vec![0x13; 1 << 20]).unwrap();
     let make = |firmware: &str| {
         let command = format!("image make --firmware {firmware} --out board.bin");
         refused(&folder, &command)

@@ -46,7 +46,7 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     let slow = error(&folder, upload, &[("GLINT_BAUD", "slow")]);
     assert_eq!(
         slow,
-        "error: GLINT_BAUD: expected a number of bits per second, found 'slow'\n"
+        "error: GLINT_BAUD: expected a number of bits per second from 50 to 12000000, found 'slow'\n"
     );
     std::fs::write(&file, "bord = \"x\"\n").unwrap();
     let damaged = error(&folder, upload, &[]);
@@ -185,4 +185,70 @@ fn manual_pages() {
     let again = glint(&folder, "man pages/man1");
     let error = String::from_utf8(again.stderr).unwrap();
     assert!(error.contains("or --force to replace it"), "{error}");
+}
+
+#[test]
+fn a_cause_is_printed_once() {
+    let folder = folder("settings-cause");
+    for command in ["info --board /dev/ttyUSB9", "console ./none --send info"] {
+        let output = glint(&folder, command);
+        assert_eq!(output.status.code(), Some(1), "{command}");
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(error.matches("No such file").count(), 1, "{error}");
+    }
+}
+
+#[test]
+fn a_baud_rate_is_one_of_a_serial_line() {
+    let folder = folder("settings-baud");
+    let expected = "expected a number of bits per second from 50 to 12000000, found";
+    for value in ["0", "4294967295", "fast"] {
+        let variables = [("GLINT_BAUD", value), ("GLINT_BOARD", "/dev/ttyUSB9")];
+        let output = glint_in(&folder, "info", &variables);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{value}: {error}");
+        assert_eq!(error, format!("error: GLINT_BAUD: {expected} '{value}'\n"));
+    }
+    all_refused(
+        &folder,
+        &format!("info --board /dev/ttyUSB9 --baud 0\n--baud: {expected} '0'"),
+    );
+    std::fs::create_dir_all(folder.join("glint")).unwrap();
+    std::fs::write(folder.join("glint/config.toml"), "baud = 0\n").unwrap();
+    all_refused(
+        &folder,
+        &format!("info --board /dev/ttyUSB9\nthe configuration file's baud: {expected} '0'"),
+    );
+}
+
+/// Files that a board cannot run are rejected before it is opened.
+#[test]
+fn only_programs_are_flashed() {
+    let folder = folder("settings-programs");
+    std::fs::write(folder.join("glint.elf"), b"\x7fELF\x01\x01\x01\0").unwrap();
+    std::fs::write(folder.join("notes.txt"), "read me\n").unwrap();
+    std::fs::write(folder.join("zeros.bin"), [0; 100]).unwrap();
+    let flat = "expected a flat binary that begins with an RV32IM instruction";
+    for command in [
+        "flash FILE --board emulated",
+        "board --firmware FILE",
+        "info --board emulated --firmware FILE",
+        "image make --out a.bin --firmware FILE",
+    ] {
+        let cases = format!(
+            "{0}
+            glint.elf: expected a flat binary such as glint.bin, found an ELF file
+            {1}
+            notes.txt: {flat}, found the text 'read'
+            {2}
+            zeros.bin: {flat}, found the bytes [00, 00, 00, 00]
+            {3}
+            /dev/null: {flat}, found a file of 0 bytes",
+            command.replace("FILE", "glint.elf"),
+            command.replace("FILE", "notes.txt"),
+            command.replace("FILE", "zeros.bin"),
+            command.replace("FILE", "/dev/null"),
+        );
+        all_refused(&folder, &cases);
+    }
 }
