@@ -23,6 +23,10 @@ const LOOK_MS: u64 = 2;
 /// The key Ctrl-C, which cancels the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
+/// Time-out of the first replies of a simulated board in ms of its time. Such a board has just started, and its program need not
+/// have a prompt; a board on a serial port has already answered.
+const FIRST_PATIENCE_MS: u64 = 1_000;
+
 /// Number of progress reports of a transfer.
 const REPORTS: u64 = 100;
 
@@ -107,6 +111,8 @@ pub struct Session<'a> {
     sampled: Duration,
     /// Number of uploads, which distinguishes successive transfers.
     uploads: u8,
+    /// Whether a prompt has been received: a program that does not print one gets no commands of the session's own.
+    has_prompt: bool,
     /// The last bytes of the console's output; empty after the session's own commands, whose replies end with the prompt.
     end: Vec<u8>,
 }
@@ -136,9 +142,10 @@ impl<'a> Session<'a> {
             requests,
             waiting: VecDeque::new(),
             uploads: 0,
+            has_prompt: false,
             end: Vec::new(),
         };
-        session.ask(Self::send_lists)?;
+        session.has_prompt = session.try_ask(Self::send_lists)?;
         Ok(session)
     }
 
@@ -211,6 +218,7 @@ impl<'a> Session<'a> {
         }
         self.hub.send_console(output);
         self.end.append(output);
+        self.has_prompt |= self.end.ends_with(PROMPT.as_bytes());
         // Nothing can answer a transfer that a user typed on the console, so it is cancelled.
         let is_transfer = self.end.ends_with(b"\nready\r\n");
         let kept = self.end.len().saturating_sub(2 * PROMPT.len());
@@ -223,7 +231,7 @@ impl<'a> Session<'a> {
 
     /// Whether the console waits for a command.
     fn is_idle(&self) -> bool {
-        self.end.is_empty() || self.end.ends_with(PROMPT.as_bytes())
+        self.has_prompt && (self.end.is_empty() || self.end.ends_with(PROMPT.as_bytes()))
     }
 
     fn type_line(&mut self, line: &str) -> Result<(), BoardError> {
@@ -236,23 +244,35 @@ impl<'a> Session<'a> {
         &mut self,
         task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
     ) -> Result<(), BoardError> {
+        self.try_ask(task).map(drop)
+    }
+
+    /// Runs a task as [`ask`](Self::ask), and returns whether it has succeeded.
+    fn try_ask(
+        &mut self,
+        task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
+    ) -> Result<bool, BoardError> {
         let mut console = Console::new(&mut self.board);
         let result = task(&mut console, self.hub).and_then(|()| Ok(console.greet().map(drop)?));
         self.end.clear();
         match result {
-            Ok(()) => Ok(()),
+            Ok(()) => Ok(true),
             Err(TransferError::Board(error))
             | Err(TransferError::Console(ConsoleError::Board(error))) => Err(error),
             Err(error) => {
                 self.hub.notify(error.to_string(), true);
-                Ok(())
+                Ok(false)
             }
         }
     }
 
     /// Sends the firmware's lists of commands, scenes and fields.
     fn send_lists(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
-        console.synchronise()?;
+        if console.board().memory().is_some() {
+            console.synchronise_within(FIRST_PATIENCE_MS)?;
+        } else {
+            console.synchronise()?;
+        }
         let entry = |line: &String| {
             let (name, text) = line.split_once(' ')?;
             let (name, text) = (name.to_owned(), text.trim().to_owned());

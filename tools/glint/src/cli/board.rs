@@ -1,6 +1,6 @@
 //! `glint board`.
 
-use super::common::{LineArguments, Opened, bad_value};
+use super::common::{LineArguments, bad_value};
 use super::messages::{note, say, warn};
 use super::output::Output;
 use super::progress::{show_simulation, spinner};
@@ -8,10 +8,12 @@ use super::terminal::talk;
 use anyhow::Context;
 use clap::Args;
 use glint::board::{self, AnyBoard, BoardName, SerialBoard};
+use glint::console::BIOS_PROMPT;
 use glint::error::{FormatError, quote};
 use glint::formats::read_file;
 use glint::web::Server;
 use glint_board_api::pace::SystemClock;
+use glint_core::console::PROMPT;
 use glint_live_page::{Live, LiveSimulation};
 use rustix::termios::isatty;
 use std::net::SocketAddr;
@@ -25,7 +27,7 @@ use virtual_board::pty::Pty;
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
 /// Ends of the prompts of the firmware and of the BIOS.
-const PROMPTS: [&[u8]; 2] = [b"glint> ", b"litex\x1b[0m> "];
+const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 
 /// Run a board until Ctrl-C, for programs or in a web page: print its serial port or the page's address.
 ///
@@ -85,20 +87,22 @@ impl BoardArguments {
     /// Serves the live page.
     fn serve(&self, address: SocketAddr) -> anyhow::Result<()> {
         let ready = self.ready()?;
-        let stop = Arc::new(AtomicBool::new(false));
-        let ended = Arc::clone(&stop);
-        ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed))?;
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
-        let mut board: Box<dyn Live> = match self.line.open_any(&self.board)? {
-            Opened::Simulated(board) => {
-                let period = match self.board {
+        let mut board: Box<dyn Live> = match &self.board {
+            BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),
+            simulated => {
+                let period = match simulated {
                     BoardName::Virtual => Duration::from_secs(2),
                     _ => Duration::from_millis(250),
                 };
+                let board = self.line.start(simulated)?;
                 Box::new(LiveSimulation::new(board, period, SystemClock::start()))
             }
-            Opened::Serial(board) => Box::new(board),
         };
+        // Until here a signal ends the program.
+        let stop = Arc::new(AtomicBool::new(false));
+        let ended = Arc::clone(&stop);
+        ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed))?;
         let url = server.url()?;
         say(&url)?;
         if address.ip().is_unspecified() {
@@ -117,13 +121,10 @@ impl BoardArguments {
 
     /// The simulated board, at its start.
     fn simulated(&self) -> anyhow::Result<AnyBoard> {
-        let board = match self.has_bios() {
-            true => board::simulated(&self.board, None)?,
-            false => match self.line.open_any(&self.board)? {
-                Opened::Simulated(board) => return Ok(board),
-                Opened::Serial(_) => None,
-            },
-        };
+        if !self.has_bios() {
+            return self.line.start(&self.board);
+        }
+        let board = board::simulated(&self.board, None)?;
         let mut board = board.context("expected a simulated board")?;
         if let Some(path) = &self.flash {
             let image = read_file(path)?;
@@ -157,9 +158,13 @@ impl BoardArguments {
         }
         if self.pty.is_none() && self.ready_file.is_none() && isatty(std::io::stdin()) {
             let port = port.to_string_lossy();
-            return talk(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
+            let is_ended = || events.try_iter().any(|event| matches!(event, Event::End));
+            return talk(
+                &mut SerialBoard::open(&port, self.line.baud.rate()?)?,
+                is_ended,
+            );
         }
-        // A board without the BIOS has already started.
+        // A program need not print a prompt.
         let mut starting = self.has_bios().then(|| spinner("the board starts"));
         while let Event::Started = events.recv()? {
             starting = None;
@@ -173,7 +178,7 @@ impl BoardArguments {
 enum Event {
     /// The first prompt.
     Started,
-    /// Ctrl-C.
+    /// Ctrl-C, or another signal that ends the program.
     End,
 }
 

@@ -8,7 +8,7 @@ use anyhow::Context;
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use glint::board::{Board, BoardError, BoardName, Memory};
-use glint::console::Console;
+use glint::console::{self, Console};
 use glint::error::{MAX_LINE, quote};
 use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::fs::File;
@@ -20,6 +20,8 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 const EXIT: u8 = 0x1d;
 /// Time-out of a read from the board, in milliseconds of the board's time.
 const LOOK_MS: u64 = 10;
+/// Longest time of reading output that the board sent before the session, in milliseconds of the board's time.
+const EARLIER_MS: u64 = 500;
 
 /// Open a board's console, or send commands to it.
 ///
@@ -71,7 +73,7 @@ impl ConsoleArguments {
                 anyhow::ensure!(!self.json, "--json: expected commands, found a terminal");
                 let mut board = self.line.unsynchronised_board(&board)?;
                 let mut heard = self.heard(&mut *board, log);
-                return interact(&mut heard);
+                return interact(&mut heard, || false);
             }
             _ => Box::new(commands(std::io::stdin().lock())),
         };
@@ -186,7 +188,11 @@ impl Heard<'_> {
         }
         if self.is_printed {
             let mut output = std::io::stdout();
-            output.write_all(bytes)?;
+            // A terminal would act on control characters.
+            match isatty(&output) {
+                true => output.write_all(console::plain(bytes).as_bytes())?,
+                false => output.write_all(bytes)?,
+            }
             output.flush()?;
         }
         if let Some(until) = &self.until {
@@ -260,9 +266,9 @@ fn keys() -> Receiver<Vec<u8>> {
     receiver
 }
 
-/// Connects the terminal to a board until the user ends the session.
-pub fn talk(board: &mut dyn Board) -> anyhow::Result<()> {
-    interact(&mut Heard {
+/// Connects the terminal to a board until the user ends the session, or `is_ended` returns true.
+pub fn talk(board: &mut dyn Board, is_ended: impl FnMut() -> bool) -> anyhow::Result<()> {
+    let mut heard = Heard {
         board,
         log: None,
         until: None,
@@ -270,20 +276,43 @@ pub fn talk(board: &mut dyn Board) -> anyhow::Result<()> {
         is_found: false,
         is_printed: false,
         end_ms: None,
-    })
+    };
+    interact(&mut heard, is_ended)
 }
 
-/// Connects the terminal to a board until the user ends the session, or the board prints the text of `--until`.
-fn interact(board: &mut Heard) -> anyhow::Result<()> {
+/// Passes the output that the board sent before the session to the terminal; it does not contain the text of `--until`.
+fn print_earlier(board: &mut Heard) -> anyhow::Result<()> {
+    let until = board.until.take();
+    let end_ms = board.now_ms() + EARLIER_MS;
+    let mut earlier = Vec::new();
+    while board.now_ms() < end_ms {
+        let before = earlier.len();
+        board.read(&mut earlier, LOOK_MS)?;
+        if earlier.len() == before {
+            break;
+        }
+    }
+    board.until = until;
+    let mut output = std::io::stdout();
+    output.write_all(&earlier)?;
+    Ok(output.flush()?)
+}
+
+/// Connects the terminal to a board until the user ends the session, the board prints the text of `--until`, or `is_ended` returns
+/// true.
+fn interact(board: &mut Heard, mut is_ended: impl FnMut() -> bool) -> anyhow::Result<()> {
     eprintln!("Ctrl-] ends the console.");
     let _raw = RawTerminal::enter()?;
     let keys = keys();
     let mut output = std::io::stdout();
     let mut received = Vec::new();
-    Console::new(board).reset_transfer()?;
+    print_earlier(board)?;
+    let mut console = Console::new(board);
+    console.end_boot()?;
+    console.reset_transfer()?;
     // Makes the board print its prompt.
     board.write(b"\r")?;
-    loop {
+    while !is_ended() {
         board.read(&mut received, LOOK_MS)?;
         output.write_all(&received)?;
         output.flush()?;
@@ -303,4 +332,5 @@ fn interact(board: &mut Heard) -> anyhow::Result<()> {
             Err(TryRecvError::Disconnected) => return Ok(()),
         }
     }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! A board that keeps running, and the programs that use it in turn.
 
 use crate::common::{begin_upload, mesh, piped};
+use crate::serial_boot::{MUTE, printer};
 use crate::terminal::{Terminal, patience};
 use glint::board::Uart;
 use glint::board::{self, Board as _, SerialBoard};
@@ -8,6 +9,7 @@ use glint::console::Console;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 use virtual_board::pty::Pty;
 
 /// Seconds without output after which litex_term counts as failed.
@@ -192,4 +194,73 @@ fn the_start_with_the_bios_has_progress() {
     let port = Pty::start(board).unwrap();
     let counted = port.with(move |board| (meter.cycles(), board.inner().cycles()));
     assert_eq!(counted.0, counted.1);
+}
+
+/// Sends a signal to a program, and waits for its end.
+fn end_by(signal: &str, child: &mut Child) {
+    let pid = child.id().to_string();
+    let sent = Command::new("kill").args(["-s", signal, &pid]).status();
+    assert!(sent.unwrap().success());
+    let end = Instant::now() + Duration::from_secs(20);
+    while child.try_wait().unwrap().is_none() {
+        assert!(Instant::now() < end, "{signal} does not end the program");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// `glint flash` on a board in its own process: a request that has waited for seconds, and a boot whose host was killed.
+#[test]
+fn a_board_that_waits_for_a_program_can_always_be_flashed() {
+    let stay = Stay::start_with("board-waits", &["--bios"]);
+    let mut large = printer("Large program runs\n");
+    large.resize(4 << 20, 0);
+    std::fs::write(stay.folder.join("large.bin"), large).unwrap();
+    let mut small = printer("Program runs\n");
+    small.resize(1000, 0);
+    std::fs::write(stay.folder.join("small.bin"), small).unwrap();
+    std::thread::sleep(Duration::from_secs(3));
+    let mut killed = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["flash", "large.bin", "--board", "port"])
+        .current_dir(&stay.folder)
+        .spawn()
+        .unwrap();
+    // The request comes after two seconds.
+    std::thread::sleep(Duration::from_secs(5));
+    assert!(killed.try_wait().unwrap().is_none());
+    end_by("INT", &mut killed);
+    stay.succeed("flash small.bin --board port", "");
+}
+
+/// A program that never prints a prompt, or nothing, does not make the program deaf to signals.
+#[test]
+fn a_board_without_a_prompt_ends_by_a_signal() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-programs");
+    std::fs::create_dir_all(&folder).unwrap();
+    for (name, program) in [("mute", MUTE.to_vec()), ("printer", printer("no prompt\n"))] {
+        let file = folder.join(name);
+        std::fs::write(&file, program).unwrap();
+        let link = folder.join("port");
+        for options in [&["--pty", link.to_str().unwrap()][..], &["--web"]] {
+            for signal in ["INT", "TERM", "HUP"] {
+                let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+                    .args(["board", "--firmware", file.to_str().unwrap()])
+                    .args(options)
+                    .stdout(Stdio::piped())
+                    .spawn()
+                    .unwrap();
+                let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+                assert!(lines.next().unwrap().is_ok(), "the address");
+                end_by(signal, &mut child);
+            }
+        }
+        assert!(!link.is_symlink());
+    }
+}
+
+/// The console of `glint board` on a terminal ends by a signal too.
+#[test]
+fn the_console_of_a_board_ends_by_a_signal() {
+    let mut terminal = Terminal::start(Path::new(env!("CARGO_BIN_EXE_glint")), &["board"]);
+    terminal.wait_for("glint> ", &mut patience(PATIENCE));
+    end_by("TERM", &mut terminal.child);
 }
