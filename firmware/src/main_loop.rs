@@ -38,13 +38,15 @@ const CALIBRATE: u8 = 1 << 2;
 const RECENTRE: u8 = 1 << 3;
 
 /// The tasks in the order of their turns.
-const TASKS: [fn(&mut MainLoop) -> Turn; 11] = [
+const TASKS: [fn(&mut MainLoop) -> Turn; 12] = [
     // Comes first after an interrupt, because the gateware waits between the passes of a frame.
     MainLoop::draw,
     MainLoop::poll_job,
     MainLoop::run_demo,
     MainLoop::indicate,
     MainLoop::poll_panel,
+    // Again, because a pass of the loop is long compared with a pass of the gateware.
+    MainLoop::draw,
     |all| all.machine.terminal.listen(),
     |all| sensor::deliver(&mut all.machine.imu),
     MainLoop::follow_hand,

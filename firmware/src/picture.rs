@@ -105,6 +105,7 @@ impl Picture {
     }
 
     /// Stores the statistics of the current scene's frame, or the error of its drawing.
+    #[inline(never)]
     pub fn set_drawn(&mut self, drawn: Result<Drawn, DrawError>, scene: &Scene, models: &Models) {
         self.drawn = Some(drawn);
         self.content = Some(Content {

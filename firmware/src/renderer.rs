@@ -83,7 +83,10 @@ impl Renderer {
         Some(drawn)
     }
 
+    // The parts of `draw` that few frames need are functions of their own, so that its code takes few lines of the instruction cache.
+
     /// Draws the marker of the hand's position, if any, into the frame that was just drawn.
+    #[inline(never)]
     fn draw_marker(&mut self, scene: &Scene, picture: &Picture) {
         let (Some(marker), Some(back)) = (picture.marker, self.display.back()) else {
             return;
@@ -95,6 +98,7 @@ impl Renderer {
     }
 
     /// Writes the scene's subject and the drawing speed on the frame that was just drawn.
+    #[inline(never)]
     fn draw_overlay(&mut self, scene: &Scene, drawn: &Drawn) {
         let (true, Some(back)) = (scene.has_overlay(), self.display.back()) else {
             return;
@@ -139,6 +143,11 @@ impl Renderer {
             .is_some_and(GatewareRenderer::is_ready)
     }
 
+    /// Whether [`draw`](Self::draw) has work while the gateware draws.
+    pub fn is_due(&self) -> bool {
+        self.gateware.as_ref().is_some_and(GatewareRenderer::is_due)
+    }
+
     /// Draws a frame by the gateware. `None` means that the frame is not complete, `Err` that the CPU must draw the frame. The error has
     /// no reason if the backend is the CPU or the SoC has no triangle engine.
     fn draw_by_gateware(
@@ -170,6 +179,7 @@ impl Renderer {
         Some(advanced.map_err(Some))
     }
 
+    #[inline(never)]
     fn draw_by_cpu(
         &mut self,
         frame: &Frame,

@@ -81,11 +81,16 @@ pub struct GatewareRenderer {
     start: Start,
     /// Time at which the last pass was started: the lower half of the cycle counter.
     pass_start: u32,
+    /// Time of the last check of the watchdog: the lower half of the cycle counter.
+    checked: u32,
 }
 
 /// Largest number of clock cycles that [`GatewareRenderer::advance`] waits for a started pass: 0.25 ms at 81.25 MHz. An iteration of the
 /// main loop takes at least 3,000 cycles, mostly to load its code, so waiting is faster for a short pass of the engine.
 const PATIENCE: u32 = 20_000;
+
+/// Clock cycles between two checks of the watchdog, 13 ms at 81.25 MHz: the interrupt of the vertical blanking wakes the CPU less often.
+const CHECK_PERIOD: u32 = 1 << 20;
 
 impl GatewareRenderer {
     /// A renderer for two frame buffers, the first at address `first_frame_buffer`, and a clock of `frequency`; `None` if
@@ -120,6 +125,7 @@ impl GatewareRenderer {
             waited: 0,
             start: Start::default(),
             pass_start: 0,
+            checked: 0,
         })
     }
 
@@ -152,6 +158,11 @@ impl GatewareRenderer {
             Stage::Geometry | Stage::Lines => self.engine.geometry().is_some(),
             Stage::Raster => self.engine.raster().is_some(),
         }
+    }
+
+    /// Whether [`advance`](Self::advance) has work: the awaited pass has ended, or the watchdog must be checked.
+    pub fn is_due(&self) -> bool {
+        self.is_ready() || cpu::cycles_low().wrapping_sub(self.checked) > CHECK_PERIOD
     }
 
     /// Marks the frame buffer of `colour` as written by the CPU: the engine then writes every pixel of the next frame in
@@ -459,6 +470,7 @@ impl GatewareRenderer {
 
     /// Cancels the frame and returns an error if the triangle engine has made no progress for too long.
     fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
+        self.checked = cpu::cycles_low();
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.cancel(output, EngineError::Timeout.into()));
         }
