@@ -221,7 +221,9 @@ fn visible() -> bool {
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Material {
+    pub alpha_mode: Option<String>,
     pub double_sided: bool,
+    pub emissive_factor: [f32; 3],
     pub extensions: MaterialExtensions,
     pub pbr_metallic_roughness: MetallicRoughness,
 }

@@ -436,6 +436,12 @@ fn base_colour(
     if texture.is_some() {
         polygons.remark("textures are ignored: materials have their base colours");
     }
+    if material.alpha_mode.as_deref() == Some("BLEND") {
+        polygons.remark("transparency is ignored: surfaces are opaque");
+    }
+    if material.emissive_factor != [0.0; 3] {
+        polygons.remark("light from surfaces is ignored (emissiveFactor)");
+    }
     let [red, green, blue, _] = factor;
     Some([red, green, blue].map(f64::from))
 }

@@ -171,6 +171,11 @@ fn what_is_ignored_is_remarked() {
             "\"baseColorTexture\": {\"index\": 0}, \"baseColorFactor\"",
             1,
         )
+        .replacen(
+            "\"pbrMetallicRoughness\"",
+            "\"alphaMode\": \"BLEND\", \"emissiveFactor\": [0, 1, 0], \"pbrMetallicRoughness\"",
+            1,
+        )
         .replacen("\"mesh\": 0", "\"mesh\": 0, \"skin\": 0", 1)
         .replacen(
             "\"scene\": 0",
@@ -184,6 +189,8 @@ fn what_is_ignored_is_remarked() {
             "points and lines are ignored",
             "skins are ignored: meshes have their rest pose",
             "textures are ignored: materials have their base colours",
+            "transparency is ignored: surfaces are opaque",
+            "light from surfaces is ignored (emissiveFactor)",
         ]
     );
 }
