@@ -294,7 +294,7 @@ mod tests {
         in_frame.partial = frame(LOAD, &[0; 100])[..50].to_vec();
         for bios in [
             Bios::in_mode(Mode::Command, b"litex> "),
-            // Requests that nobody has answered, one of them with its end in another read.
+            // Old requests: with the later output, and with that output in another read.
             Bios::in_mode(Mode::Command, &late),
             Bios::in_mode(Mode::Command, REQUEST),
             Bios::in_mode(Mode::Frames, b""),

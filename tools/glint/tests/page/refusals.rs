@@ -116,7 +116,7 @@ fn rubbish_does_no_harm() {
 
 /// Connections without the token that send a byte every second do not keep a page out.
 #[test]
-fn strangers_that_trickle_keep_nobody_out() {
+fn slow_connections_do_not_keep_a_page_out() {
     const STRANGERS: usize = 100;
     let served = Served::start("page-strangers");
     let host = served.host();
