@@ -127,7 +127,7 @@ fn the_first_steps_make_their_pictures() {
         let error = String::from_utf8(output.stderr).unwrap();
         let mut lines = error.lines();
         assert!(
-            lines.all(|line| line.starts_with("note: ")),
+            lines.all(|line| line.starts_with("note: ") || line.starts_with("drawing: ")),
             "{command}: {error}"
         );
         if let Some(name) = value(&arguments, "--out") {
