@@ -151,6 +151,7 @@ fn print_status(machine: &mut Machine) {
     terminal.print_entry("saturated", &counts.saturated);
     terminal.print_entry("rejected", &counts.rejected);
     terminal.print_entry("gaps", &counts.gaps);
+    terminal.print_entry("stale", &counts.stale);
     let attitude = imu.attitude();
     let [w, x, y, z] = attitude.parts();
     terminal.print(format_args!("attitude {w:.9} {x:.9} {y:.9} {z:.9}\n"));

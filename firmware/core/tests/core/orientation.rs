@@ -321,6 +321,118 @@ fn what_becomes_of_samples() {
     );
 }
 
+/// Single wrong times and a restart of the clock cost few samples: the attitude goes on.
+#[test]
+fn wrong_times_do_not_end_the_attitude() {
+    const START: u64 = 5_000_000;
+    let turning = |t_us| Sample {
+        gyro: [0, 0, 1_640],
+        ..rest(t_us)
+    };
+    // The sensor turns at 100 °/s for a second. For each case: the times of the samples from number 500 on, the numbers of steps,
+    // stale samples and gaps, and the final yaw in degrees.
+    let cases: [(&str, &[u64], [u64; 3], f64); 6] = [
+        ("one ahead", &[u64::MAX >> 1], [998, 1, 0], 99.9),
+        ("one in an hour", &[3_600_000_000], [998, 1, 0], 99.9),
+        ("one at 0", &[0], [998, 1, 0], 99.9),
+        ("two ahead", &[90_000_000, 95_000_000], [997, 1, 1], 99.9),
+        (
+            "out of order",
+            &[START + 497_500, START + 498_000, START + 499_000],
+            [996, 3, 0],
+            99.9,
+        ),
+        ("at the largest time", &[u64::MAX], [998, 1, 0], 99.9),
+    ];
+    for (name, wrong, expected, yaw) in cases {
+        let mut tracker = tracker();
+        for i in 0..1_000_u64 {
+            let wrong = i.checked_sub(500).and_then(|i| wrong.get(i as usize));
+            let t_us = wrong.copied().unwrap_or(START + 1_000 * i);
+            tracker.on_sample(&turning(t_us));
+        }
+        let counts = tracker.counts();
+        let found = degrees(tracker.attitude().angles().yaw);
+        assert_eq!(
+            [counts.steps, counts.stale, counts.gaps],
+            expected,
+            "{name}"
+        );
+        assert!((found - yaw).abs() < 1e-3, "{name}: {found}");
+    }
+    // The clock restarts at 0 after half a second: three samples are stale, the fourth continues.
+    let mut tracker = tracker();
+    for i in (0..500).chain(0..500) {
+        tracker.on_sample(&turning(1_000 * i));
+    }
+    let counts = tracker.counts();
+    assert_eq!((counts.steps, counts.stale, counts.gaps), (995, 3, 1));
+    let yaw = degrees(tracker.attitude().angles().yaw);
+    assert!((yaw - 99.5).abs() < 1e-3, "{yaw}");
+}
+
+/// A wrong time far ahead is no gap, so the tilt stays settled.
+#[test]
+fn a_wrong_time_is_no_doubt_of_the_tilt() {
+    let mut tracker = tracker();
+    for i in 0..5_000 {
+        tracker.on_sample(&rest(1_000 * i));
+    }
+    assert!(tracker.is_settled());
+    assert_eq!(tracker.on_sample(&rest(1 << 40)), SampleEffect::Gap);
+    assert_eq!(tracker.on_sample(&rest(5_001_000)), SampleEffect::Step);
+    assert!(tracker.is_settled());
+}
+
+/// The first reading of the accelerometer that shows gravity gives the tilt of the start: neither a shock nor free fall does.
+#[test]
+fn a_shock_at_the_start_is_no_gravity() {
+    let shocks: [(&str, [i16; 3], u64); 5] = [
+        ("along x", [30_000, 0, 4_096], 100),
+        ("at an end of the range", [0, i16::MIN, 4_096], 100),
+        ("just beyond 3 g", [0, 12_289, 0], 100),
+        ("free fall", [0, 30, -20], 0),
+        ("less than half a g", [2_000, 0, 0], 0),
+    ];
+    for (name, shock, rejected) in shocks {
+        let mut tracker = tracker();
+        // The sensor is rolled by 90° and turns about its y axis, which is vertical, by 90°; the first 0.1 s are a shock.
+        for i in 0..=1_000 {
+            let accel = if i < 100 { shock } else { [0, 4_096, 0] };
+            let effect = tracker.on_sample(&Sample {
+                t_us: 1_000 * i,
+                accel,
+                gyro: [0, 1_476, 0],
+            });
+            let expected = if i == 0 {
+                SampleEffect::First
+            } else {
+                SampleEffect::Step
+            };
+            assert_eq!(effect, expected);
+        }
+        let angles = tracker.attitude().angles();
+        let [yaw, pitch, roll] = [angles.yaw, angles.pitch, angles.roll].map(degrees);
+        assert!((yaw - 90.0).abs() < 0.05, "{name}: yaw {yaw}");
+        assert!(pitch.abs() < 0.05, "{name}: pitch {pitch}");
+        assert!((roll - 90.0).abs() < 0.05, "{name}: roll {roll}");
+        let counts = tracker.counts();
+        assert_eq!((counts.steps, counts.rejected), (1_000, rejected), "{name}");
+    }
+    // Without any such reading the attitude is the rotation since the first sample.
+    let mut tracker = tracker();
+    for i in 0..=1_000 {
+        tracker.on_sample(&Sample {
+            t_us: 1_000 * i,
+            accel: [i16::MAX; 3],
+            gyro: [0, 0, 1_476],
+        });
+    }
+    let yaw = degrees(tracker.attitude().angles().yaw);
+    assert!((yaw - 90.0).abs() < 0.01, "{yaw}");
+    assert_eq!(tracker.counts().rejected, 1_001);
+}
+
 /// Saturation of the gyroscope turns the estimated attitude upside down while the body is level. Even such a tilt error is
 /// corrected within a bounded time.
 #[test]

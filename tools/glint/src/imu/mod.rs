@@ -3,3 +3,4 @@
 pub mod log;
 pub mod replay;
 pub mod sensor;
+pub mod timeline;

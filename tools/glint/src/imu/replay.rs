@@ -1,6 +1,7 @@
 //! Computes the attitudes of a log with the firmware's arithmetic, on this host or on a board.
 
 use super::log::Entry;
+use super::timeline;
 use crate::board::{Board, Route};
 use crate::console::{self, Console, ConsoleError};
 use crate::error::{FormatError, Location};
@@ -30,34 +31,40 @@ pub struct Options {
 /// A log whose samples get time stamps without long steps; a board's log contains their low words.
 struct Stamps<'a> {
     entries: &'a [Entry],
-    period: Option<u32>,
+    /// Time stamp of each sample in µs.
+    stamps: Vec<u64>,
 }
 
-impl Stamps<'_> {
-    /// Returns the samples with their time stamps. A step back in the log's time becomes 0. A step longer than `LONGEST_STEP`,
-    /// over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
+impl<'a> Stamps<'a> {
+    /// Takes the samples of a log, whose times are multiples of `period` µs or those of the [`timeline`]. A step longer than
+    /// `LONGEST_STEP`, over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
+    fn new(entries: &'a [Entry], period: Option<u32>) -> Self {
+        let stamps = match period {
+            Some(period) => (0..entries.len() as u64)
+                .map(|i| i * u64::from(period))
+                .collect(),
+            None => {
+                let (mut last, mut stamp) = (0, 0);
+                let shorten = |time| {
+                    stamp += u64::min(time - last, u64::from(LONGEST_STEP) + 1);
+                    last = time;
+                    stamp
+                };
+                timeline::times(entries).into_iter().map(shorten).collect()
+            }
+        };
+        Self { entries, stamps }
+    }
+
     fn samples(&self) -> impl Iterator<Item = Sample> {
-        let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
-        let mut stamp = 0_u64;
-        let mut first = true;
-        self.entries.iter().map(move |entry| {
-            let step = match self.period {
-                Some(period) if !first => period.into(),
-                Some(_) => 0,
-                None => entry
-                    .t_us
-                    .saturating_sub(latest)
-                    .min(u64::from(LONGEST_STEP) + 1),
-            };
-            first = false;
-            latest = latest.max(entry.t_us);
-            stamp += step;
-            Sample {
-                t_us: stamp,
+        self.entries
+            .iter()
+            .zip(&self.stamps)
+            .map(|(entry, &t_us)| Sample {
+                t_us,
                 accel: entry.accel,
                 gyro: entry.gyro,
-            }
-        })
+            })
     }
 }
 
@@ -107,10 +114,7 @@ pub enum Error {
 /// # Errors
 /// The sensor moves during the calibration, or a scale is out of range.
 pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> {
-    let stamps = Stamps {
-        entries,
-        period: options.period,
-    };
+    let stamps = Stamps::new(entries, options.period);
     let calibration = match options.still {
         Some(still) => Some(calibrate(&stamps, options.units, still)?),
         None => None,
@@ -303,6 +307,40 @@ mod tests {
         }
         let counts = replayed.counts;
         assert_eq!((counts.steps, counts.stale, counts.gaps), (3, 1, 1));
+    }
+
+    /// The 32-bit clock wraps after three samples: all steps count.
+    #[test]
+    fn a_clock_of_32_bits_wraps() {
+        let end = 1_u64 << 32;
+        let stamps = [end - 3000, end - 2000, end - 1000, 0, 1000, 2000, 3000];
+        let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
+        assert!((yaw(replayed.attitudes[6]) - 0.6).abs() < 1e-6);
+        let counts = replayed.counts;
+        assert_eq!((counts.steps, counts.stale, counts.gaps), (6, 0, 0));
+    }
+
+    /// One wrong time stamp, in a log of a thousand or during its calibration, costs no other sample.
+    #[test]
+    fn one_wrong_stamp_is_one_sample() {
+        for wrong in [0, 7, 50_000_000_000, u64::MAX] {
+            let mut stamps: Vec<u64> = (0..1000).map(|i| 9_000_000 + i * 1000).collect();
+            stamps[500] = wrong;
+            let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
+            assert!((yaw(replayed.attitudes[999]) - 99.9).abs() < 1e-3);
+            let counts = replayed.counts;
+            assert_eq!((counts.steps, counts.stale, counts.gaps), (998, 1, 0));
+        }
+    }
+
+    /// The second half of a log whose clock restarts is integrated too.
+    #[test]
+    fn a_restart_is_a_gap() {
+        let stamps: Vec<u64> = (0..500).chain(0..500).map(|i| i * 1000).collect();
+        let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
+        assert!((yaw(replayed.attitudes[999]) - 99.8).abs() < 1e-3);
+        let counts = replayed.counts;
+        assert_eq!((counts.steps, counts.stale, counts.gaps), (998, 0, 1));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Access to a board's sensor through the board's console.
 
 use super::log::Entry;
+use super::timeline;
 use crate::board::Board;
 use crate::console::{self, Console, ConsoleError};
 use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State, Wires};
@@ -160,19 +161,14 @@ pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {
         None => Source::Motion(Box::new(|_| State::default())),
         Some(entries) => {
-            let first = entries.first().map_or(0, |entry| entry.t_us);
             let counts = |entry: &Entry| Counts {
                 accel: entry.accel,
                 temperature: entry.temp.unwrap_or_default(),
                 gyro: entry.gyro,
             };
-            let after = |entry: &Entry| entry.t_us.saturating_sub(first).saturating_mul(1_000);
-            Source::Log(
-                entries
-                    .iter()
-                    .map(|entry| (after(entry), counts(entry)))
-                    .collect(),
-            )
+            let times = timeline::times(entries).into_iter();
+            let times = times.map(|time| time.saturating_mul(1_000));
+            Source::Log(times.zip(entries.iter().map(counts)).collect())
         }
     };
     Wires::new(Chip::new(source, Imperfections::TYPICAL, 1))

@@ -1,6 +1,6 @@
 //! `glint imu replay` with the model.
 
-use crate::common::{all_refused, folder, refused, report, succeed};
+use crate::common::{all_refused, folder, refused, report, said, succeed};
 
 #[test]
 fn logs_of_a_gyroscope() {
@@ -122,4 +122,47 @@ fn a_rest_of_zero_seconds_is_none() {
     // The sensor is checked for motion during the requested rest.
     let error = refused(&folder, "imu replay log.csv --out r.csv --still 0.1");
     assert!(error.contains("keep it still"), "{error}");
+}
+
+/// A clock of 32 bits that wraps loses nothing; a wrong time stamp and a gap are stated as warnings.
+#[test]
+fn time_stamps_of_real_clocks() {
+    let folder = folder("clocks");
+    let write = |name: &str, stamps: &[u64]| {
+        let mut log = String::from("t_us,ax,ay,az,gx,gy,gz\n");
+        for stamp in stamps {
+            log += &format!("{stamp},0,0,4096,0,0,1476\n");
+        }
+        std::fs::write(folder.join(name), log).unwrap();
+    };
+    // Twelve samples at 90 °/s, whose microseconds wrap after the third.
+    let wrapped: Vec<u64> = (0..12)
+        .map(|i| (4_294_964_296 + 1000 * i) % (1 << 32))
+        .collect();
+    write("wrap.csv", &wrapped);
+    let [summary, messages] = said(&folder, "imu replay wrap.csv --out wrapped.csv --json");
+    assert_eq!(messages, "");
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(
+        (&summary["steps"], &summary["stale"]),
+        (&11.into(), &0.into())
+    );
+    assert_eq!(summary["seconds"], 0.011);
+    let yaw = summary["end"]["yaw"].as_f64().unwrap();
+    assert!((yaw - 0.99).abs() < 0.001, "{yaw}");
+
+    let mut wild: Vec<u64> = (0..1000).map(|i| 1000 * i).collect();
+    wild[500] = 77_000_000_000;
+    wild.extend([5_000_000, 5_001_000]);
+    write("wild.csv", &wild);
+    let [summary, messages] = said(&folder, "imu replay wild.csv --out o.csv --json");
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["seconds"], 5.001);
+    let yaw = summary["end"]["yaw"].as_f64().unwrap();
+    assert!((yaw - 90.0).abs() < 0.001, "{yaw}");
+    assert!(
+        messages.contains("wild.csv: ignored samples: 1, "),
+        "{messages}"
+    );
+    assert!(messages.contains("wild.csv: gaps: 1, "), "{messages}");
 }

@@ -303,8 +303,8 @@ pub const START: u64 = 1 << 31;
 pub const fn sample([time, ax_ay, az_gx, gy_gz]: Record, last: u64) -> Sample {
     let step = time.wrapping_sub(last as u32).cast_signed();
     Sample {
-        // A negative time becomes 0.
-        t_us: last.saturating_add_signed(step as i64),
+        // Times wrap, as their differences do: a time before 0 does not change the times after it.
+        t_us: last.wrapping_add_signed(step as i64),
         accel: [ax_ay as i16, (ax_ay >> 16) as i16, az_gx as i16],
         gyro: [(az_gx >> 16) as i16, gy_gz as i16, (gy_gz >> 16) as i16],
     }

@@ -30,6 +30,19 @@ pub const FRESH: u32 = 20_000;
 pub const DOUBTFUL: u32 = 100_000;
 /// Largest accepted reading, in g.
 const MOST: u32 = 3;
+/// Smallest reading that shows the direction of gravity, as a part of a g: 1/2. The constant is the divisor.
+const LEAST: u64 = 2;
+
+/// What a reading says of the direction of gravity at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FirstReading {
+    /// The reading is near the direction of gravity.
+    Gravity,
+    /// The reading is too small to have a direction.
+    FreeFall,
+    /// The reading is beyond the largest accepted one.
+    Rejected,
+}
 
 /// Corrects the tilt of an attitude by the readings of an accelerometer.
 #[derive(Clone, Copy, Debug)]
@@ -68,8 +81,40 @@ impl Tilt {
     #[cold]
     #[inline(never)]
     pub fn doubt(&mut self) {
-        self.age = self.age.min(DOUBTFUL);
-        self.gain = Gain::new(self.age.min(self.time_constant));
+        self.set_age(self.age.min(DOUBTFUL));
+    }
+
+    /// The age of the attitude in µs: the total time of the readings so far, less after a doubt.
+    pub(super) const fn age(&self) -> u32 {
+        self.age
+    }
+
+    /// Sets the age of the attitude in µs.
+    pub(super) fn set_age(&mut self, age: u32) {
+        self.age = age;
+        self.gain = Gain::new(age.min(self.time_constant));
+    }
+
+    /// Whether a reading with the squared length `square` is within the largest accepted acceleration and the sensor's range.
+    #[inline(always)]
+    fn accepts(&self, a: [i32; 3], square: u32) -> bool {
+        square <= self.largest && !a.into_iter().any(is_end)
+    }
+
+    /// What a reading says of the direction of gravity at the start.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn judge(&self, reading: [i16; 3]) -> FirstReading {
+        let a = reading.map(i32::from);
+        let square = square(a);
+        let least = ((1 << 32) / u64::from(self.inverse) / LEAST) as u32;
+        if !self.accepts(a, square) {
+            FirstReading::Rejected
+        } else if square < least.pow(2) {
+            FirstReading::FreeFall
+        } else {
+            FirstReading::Gravity
+        }
     }
 
     /// Corrects the attitude by the reading at the end of a step of `step` µs (at most 2^19): adds the correction to `half`, a
@@ -85,7 +130,7 @@ impl Tilt {
     ) -> bool {
         let a = reading.map(i32::from);
         let square = square(a);
-        if square > self.largest || a.into_iter().any(is_end) {
+        if !self.accepts(a, square) {
             return false;
         }
         if self.gain.time_constant() < self.time_constant {
@@ -126,16 +171,38 @@ impl Tilt {
     #[cold]
     #[inline(never)]
     pub fn align(reading: [i16; 3]) -> Quaternion {
-        let [x, y, z] = reading.map(|x| i64::from(x) << 40);
-        let (level, roll) = to_polar(z, y);
-        let (_, pitch) = to_polar(level, -x);
-        // If the x axis points straight up or down, the roll is undefined; `to_polar` then gives 0.
-        Quaternion::from_angles(Angles {
-            yaw: Turns(0),
-            pitch,
-            roll,
-        })
+        upright(reading.map(|x| i64::from(x) << 40))
     }
+
+    /// Computes the attitude of a body that has turned by `turned` since its yaw was 0, and in which the reading now points upwards.
+    pub(super) fn align_after(turned: Quaternion, reading: [i16; 3]) -> Quaternion {
+        if turned == Quaternion::IDENTITY {
+            return Self::align(reading);
+        }
+        // The reading in the axes of the first sample is the sum of the turned axes, weighted by the reading's components; its
+        // components are below 2^46.
+        let mut first = [0; 3];
+        for (axis, x) in turned.axes().iter().zip(reading) {
+            for (sum, &part) in first.iter_mut().zip(axis) {
+                *sum += wide(part, x.into());
+            }
+        }
+        upright(first.map(|x| x << 10)).times(turned)
+    }
+}
+
+/// The attitude with yaw 0 in which a vector in the body's axes points upwards. The zero vector gives the identity.
+#[cold]
+#[inline(never)]
+fn upright([x, y, z]: [i64; 3]) -> Quaternion {
+    let (level, roll) = to_polar(z, y);
+    let (_, pitch) = to_polar(level, -x);
+    // If the x axis points straight up or down, the roll is undefined; `to_polar` then gives 0.
+    Quaternion::from_angles(Angles {
+        yaw: Turns(0),
+        pitch,
+        roll,
+    })
 }
 
 /// Lengthens `error`, which is a × up, for an attitude with a tilt error of more than a right angle. At such angles |a × up|

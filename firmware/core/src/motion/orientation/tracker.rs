@@ -5,7 +5,7 @@ use super::quaternion::Quaternion;
 use super::rest::RestBias;
 use super::sample::Sample;
 use super::scale::Scale;
-use super::tilt::{Tilt, is_end};
+use super::tilt::{FirstReading, Tilt, is_end};
 
 /// Effect of a sample on the attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,8 +16,8 @@ pub enum SampleEffect {
     Step,
     /// Ignored, because the sample is not later than the previous sample.
     Stale,
-    /// The sample follows a gap of more than [`LONGEST_STEP`]: the attitude stayed constant over the gap and continues
-    /// from this sample.
+    /// The sample follows a gap of more than [`LONGEST_STEP`], or the clock has restarted: the attitude stayed constant over the gap
+    /// and continues from this sample.
     Gap,
 }
 
@@ -26,9 +26,10 @@ pub enum SampleEffect {
 pub struct Counts {
     /// Integrated samples.
     pub steps: u64,
-    /// Number of samples that were ignored because they are not later than their predecessor.
+    /// Number of samples whose times were ignored, because they are not later than their predecessor, or far ahead of all others.
     pub stale: u64,
-    /// Number of gaps of more than `LONGEST_STEP` between samples, during which the attitude stayed constant.
+    /// Number of gaps of more than `LONGEST_STEP` between samples, and of restarts of the clock, during which the attitude stayed
+    /// constant.
     pub gaps: u64,
     /// Number of samples in which a rate of the gyroscope is at an end of its range.
     pub saturated: u64,
@@ -39,6 +40,27 @@ pub struct Counts {
 /// The largest bias, in 1/256 LSB. Counts in this unit have 24 bits, so a count minus a bias fits 32 bits.
 const LARGEST_BIAS: i32 = 1 << 30;
 
+/// Number of successive stale samples, each later than the one before, after which the clock counts as restarted. A few samples out
+/// of order are no restart.
+const RESTART: u8 = 4;
+
+/// The samples since the last step whose times do not follow it, from which a wrong time or a restart of the clock is recognised.
+#[derive(Clone, Copy, Debug, Default)]
+struct Detour {
+    /// Time of the tracker's last sample after the latest of these samples. If the tracker has another time, the detour has ended.
+    last: u64,
+    /// Time of the tracker's last sample before the gap, and the age of the tilt at that time.
+    before: Option<(u64, u32)>,
+    /// Time of the latest stale sample, and number of successive ones in order.
+    stale: u64,
+    in_order: u8,
+}
+
+/// Whether a sample at the time `t_us` can be integrated from a sample at the time `last`.
+fn follows(t_us: u64, last: u64) -> bool {
+    (1..=u64::from(LONGEST_STEP)).contains(&t_us.wrapping_sub(last))
+}
+
 /// Computes the attitude of a body from samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracker {
@@ -46,9 +68,12 @@ pub struct Tracker {
     tilt: Option<Tilt>,
     bias: [i32; 3],
     resting: Option<RestBias>,
-    /// Time of the last sample; `None` before the first.
+    /// Time of the last sample; `None` before the first, and while no reading of the accelerometer has shown the direction of gravity.
     last: Option<u64>,
     counts: Counts,
+    /// Time of the last sample, while no reading of the accelerometer has shown the direction of gravity.
+    unaligned: Option<u64>,
+    detour: Detour,
 }
 
 impl Tracker {
@@ -61,6 +86,8 @@ impl Tracker {
             resting: None,
             last: None,
             counts: Counts::default(),
+            unaligned: None,
+            detour: Detour::default(),
         }
     }
 
@@ -142,26 +169,79 @@ impl Tracker {
         [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i])
     }
 
-    /// Takes the first sample, which starts the attitude.
+    /// Takes the first sample, which starts the attitude, and all samples until a reading shows the direction of gravity. Up to that
+    /// reading the attitude is the rotation since the first sample. The reading is rotated back to the first sample, whose tilt it
+    /// gives.
     #[cold]
     #[inline(never)]
     fn begin(&mut self, sample: &Sample) -> SampleEffect {
-        self.last = Some(sample.t_us);
-        self.integrator.restart(self.rate(sample));
-        if self.tilt.is_some() {
-            self.integrator.set_attitude(Tilt::align(sample.accel));
+        let tilt = self.tilt.take();
+        let effect = match self.unaligned.take() {
+            None => {
+                self.last = Some(sample.t_us);
+                self.integrator.restart(self.rate(sample));
+                SampleEffect::First
+            }
+            last => {
+                self.last = last;
+                self.on_sample(sample)
+            }
+        };
+        self.tilt = tilt;
+        let Some(tilt) = &tilt else {
+            return effect;
+        };
+        let reading = tilt.judge(sample.accel);
+        if reading == FirstReading::Gravity {
+            let turned = self.integrator.attitude();
+            let tilted = Tilt::align_after(turned, sample.accel);
+            self.integrator.set_attitude(tilted);
+        } else {
+            self.counts.rejected += u64::from(reading == FirstReading::Rejected);
+            self.unaligned = self.last.take();
         }
-        SampleEffect::First
+        effect
     }
 
-    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap.
+    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap. A clock that returns
+    /// from a gap has had wrong times in between; the attitude then continues from the time before the gap.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, sample: &Sample, last: u64) -> SampleEffect {
-        if sample.t_us <= last {
-            self.counts.stale += 1;
-            return SampleEffect::Stale;
+        let mut detour = self.detour;
+        if detour.last != last {
+            detour = Detour::default();
         }
+        if let Some((before, age)) = detour.before
+            && follows(sample.t_us, before)
+        {
+            self.counts.gaps -= 1;
+            self.counts.stale += 1;
+            if let Some(tilt) = &mut self.tilt {
+                tilt.set_age(age);
+            }
+            self.last = Some(before);
+            return self.on_sample(sample);
+        }
+        let is_earlier = sample.t_us.wrapping_sub(last).cast_signed() <= 0;
+        if is_earlier {
+            let is_in_order = detour.in_order > 0 && follows(sample.t_us, detour.stale);
+            detour.in_order = 1 + if is_in_order { detour.in_order } else { 0 };
+            detour.stale = sample.t_us;
+            detour.last = last;
+            self.detour = detour;
+            if detour.in_order < RESTART {
+                self.counts.stale += 1;
+                return SampleEffect::Stale;
+            }
+        }
+        let age = self.tilt.map_or(0, |tilt| tilt.age());
+        self.detour = Detour {
+            last: sample.t_us,
+            // After several wrong times, the clock returns to the time before the first of them.
+            before: detour.before.or(Some((last, age)).filter(|_| !is_earlier)),
+            ..Detour::default()
+        };
         self.last = Some(sample.t_us);
         self.counts.gaps += 1;
         self.integrator.restart(self.rate(sample));

@@ -2,7 +2,7 @@
 
 use super::source::read_log;
 use crate::cli::common::{TransferArguments, bad_value};
-use crate::cli::messages::{print_json, say};
+use crate::cli::messages::{print_json, say, warn};
 use crate::cli::output::{Output, TABLE};
 use crate::cli::progress::{Step, advance, bar, count_bar, spinner};
 use clap::Args;
@@ -12,9 +12,12 @@ use glint::console::Console;
 use glint::error::quote;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Prepared, Replayed, Stage};
+use glint::imu::timeline;
 use glint_core::calibration::Report;
 use glint_core::fixed::{Q2_30, Q32_32};
-use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale, Units};
+use glint_core::orientation::{
+    Counts, LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale, Units,
+};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -24,8 +27,8 @@ use std::path::{Path, PathBuf};
 /// LOG.csv has a header with t_us,ax,ay,az,gx,gy,gz and optionally temp, in any order, then one sample a line in raw counts.
 /// ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll for each sample: the quaternion from body to world (z up), and intrinsic
 /// z-y-x angles in degrees. The first attitude is the identity; with tilt correction it has yaw 0 and the measured direction of
-/// gravity. Samples whose time stamp is not later than the previous one are ignored. Over a gap of more than half a second the
-/// attitude does not change.
+/// gravity. Samples whose time stamp is not later than the previous one, or does not fit the next ones, are ignored. Over a gap of
+/// more than half a second, or a restart of the clock, the attitude does not change; a clock of 32 bits may wrap.
 #[derive(Args)]
 pub struct ReplayArguments {
     /// Log to read; `-` is standard input.
@@ -228,6 +231,23 @@ impl ReplayArguments {
         })
     }
 
+    /// Warns of samples whose time stamps have been ignored, and of gaps.
+    fn warn(&self, counts: &Counts) {
+        let log = self.log.display();
+        if counts.stale > 0 {
+            warn(format_args!(
+                "{log}: ignored samples: {}, whose time stamps are not later than the previous one, or do not fit the next ones",
+                counts.stale
+            ));
+        }
+        if counts.gaps > 0 {
+            warn(format_args!(
+                "{log}: gaps: {}, where the time stamps restart or skip more than half a second; the attitude was held",
+                counts.gaps
+            ));
+        }
+    }
+
     fn report(&self, entries: &[Entry], replayed: &Replayed, units: Units) -> anyhow::Result<()> {
         let Replayed {
             attitudes,
@@ -237,12 +257,9 @@ impl ReplayArguments {
         } = replayed;
         let seconds = match self.dt_us {
             Some(period) => f64::from(period) * (entries.len() - 1) as f64,
-            None => {
-                let stamps = || entries.iter().map(|entry| entry.t_us);
-                let first = stamps().next().unwrap_or(0);
-                stamps().max().unwrap_or(first).saturating_sub(first) as f64
-            }
+            None => timeline::times(entries).last().copied().unwrap_or(0) as f64,
         } / 1e6;
+        self.warn(counts);
         let summary = Summary {
             log: &self.log,
             out: &self.out,
