@@ -75,7 +75,12 @@ pub enum Identity {
     Mpu9255,
     /// An ICM-20689, which is sold as MPU-6050.
     Icm20689,
+    /// Another chip, with the contents of its register WHO_AM_I, which keeps the configuration of an MPU-6050 and is used as one.
+    Other(u8),
 }
+
+/// Values of WHO_AM_I that no chip has: all bits low or high, as on a bus without an answer.
+const NO_CHIP: [u8; 2] = [0x00, RELEASED];
 
 impl Identity {
     /// The known chips: contents of the register WHO_AM_I, type and name.
@@ -87,9 +92,11 @@ impl Identity {
         (0x98, Self::Icm20689, "ICM-20689"),
     ];
 
+    /// The identity of a chip by the contents of its register WHO_AM_I; `None` for a value that no chip has.
     fn of(found: u8) -> Option<Self> {
         let known = Self::ALL.iter().find(|(code, ..)| *code == found);
-        known.map(|(_, identity, _)| *identity)
+        let other = || (!NO_CHIP.contains(&found)).then_some(Self::Other(found));
+        known.map(|(_, identity, _)| *identity).or_else(other)
     }
 
     /// Converts `raw`, the chip's temperature register, to 1/100 °C. The quotient is rounded towards 0.
@@ -97,7 +104,7 @@ impl Identity {
         let raw = raw as i32;
         match self {
             // The temperature is 36.53 °C plus 1/340 °C per LSB.
-            Self::Mpu6050 => 3_653 + raw * 5 / 17,
+            Self::Mpu6050 | Self::Other(_) => 3_653 + raw * 5 / 17,
             // The temperature is 21 °C plus 1/333.87 °C per LSB.
             Self::Mpu6500 | Self::Mpu9250 | Self::Mpu9255 => 2_100 + raw * 10_000 / 33_387,
             // The temperature is 25 °C plus 1/326.8 °C per LSB.
@@ -108,6 +115,12 @@ impl Identity {
 
 impl fmt::Display for Identity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if let Self::Other(found) = self {
+            return write!(
+                f,
+                "unknown chip, used as an MPU-6050: WHO_AM_I is {found:#04x}"
+            );
+        }
         let known = Self::ALL.iter().find(|(_, identity, _)| identity == self);
         f.write_str(known.map_or("", |(.., name)| name))
     }
@@ -147,7 +160,7 @@ impl Measurement {
 pub enum Error<E> {
     /// Error of the I2C bus.
     Bus(E),
-    /// An unknown chip, with the contents of its register WHO_AM_I.
+    /// No chip, with the contents of its register WHO_AM_I.
     Identity(u8),
     /// A register does not keep the written value.
     Register {
@@ -219,7 +232,7 @@ impl<B: I2c> Mpu6050<B> {
     /// already configured stays unchanged.
     ///
     /// # Errors
-    /// The chip is absent, unknown, or does not accept its configuration.
+    /// The chip is absent, or does not accept its configuration.
     pub async fn start(
         &mut self,
         reset: bool,

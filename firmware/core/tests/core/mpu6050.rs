@@ -249,13 +249,16 @@ fn a_chip_at_the_other_address_is_found() {
 }
 
 #[test]
-fn relatives_are_known_and_strangers_are_not() {
+fn relatives_are_known_and_strangers_are_used() {
     let relatives = [
         (0x68, Identity::Mpu6050),
         (0x70, Identity::Mpu6500),
         (0x71, Identity::Mpu9250),
         (0x73, Identity::Mpu9255),
         (0x98, Identity::Icm20689),
+        // Clones, and chips with the same registers.
+        (0x72, Identity::Other(0x72)),
+        (0x12, Identity::Other(0x12)),
     ];
     for (code, identity) in relatives {
         let mut chip = chip(ramp, Imperfections::NONE);
@@ -264,11 +267,19 @@ fn relatives_are_known_and_strangers_are_not() {
         assert_eq!(record.starts[0].1, identity);
         assert!(!record.samples.is_empty());
     }
-    let mut chip = chip(ramp, Imperfections::NONE);
-    chip.fault = Some(Fault::Identity(0x12));
-    let (record, _) = run(chip, SECOND / 4, &[]);
-    assert_eq!(record.errors[0].1, Error::Identity(0x12));
-    assert!(record.samples.is_empty());
+    for code in [0x00, 0xff] {
+        let mut chip = chip(ramp, Imperfections::NONE);
+        chip.fault = Some(Fault::Identity(code));
+        let (record, _) = run(chip, SECOND / 4, &[]);
+        assert_eq!(record.errors[0].1, Error::Identity(code));
+        assert!(record.samples.is_empty());
+    }
+    assert_eq!(Identity::Icm20689.to_string(), "ICM-20689");
+    assert_eq!(
+        Identity::Other(0x72).to_string(),
+        "unknown chip, used as an MPU-6050: WHO_AM_I is 0x72"
+    );
+    assert_eq!(Identity::Other(0x72).temperature(0), 3_653);
 }
 
 /// The motion of a sensor at rest.

@@ -74,13 +74,13 @@ fn an_unknown_sensor_and_a_picture_with_another_checksum_fail() {
     patch(&mut image, program + 14 * 16, &[0x0800_0800]);
     let (mut board, _) = emulated(&image);
     let mut unknown = sensor(|_| State::default());
-    unknown.chip.fault = Some(Fault::Identity(0x12));
+    unknown.chip.fault = Some(Fault::Identity(0x00));
     board.plug(unknown);
     // The search for a sensor is repeated every 30 ms.
     board.run(3_000_000);
     let answer = command(&mut board, "selftest");
     assert!(
-        verdict(&answer, "imu").starts_with("FAILED: WHO_AM_I is 0x12: expected 0x68"),
+        verdict(&answer, "imu").starts_with("FAILED: WHO_AM_I is 0x00: expected 0x68"),
         "{answer}"
     );
     let line = verdict(&answer, "line");

@@ -391,10 +391,10 @@ fn every_fault_is_reported_and_recovered() {
             &["all samples are equal: expected noise"],
         ),
         (
-            Some(Fault::Identity(0x12)),
+            Some(Fault::Identity(0x00)),
             110,
             250,
-            &["WHO_AM_I is 0x12: expected 0x68"],
+            &["WHO_AM_I is 0x00: expected 0x68"],
         ),
         // A short loss of the sensor's supply voltage.
         (None, 25, 250, &[gone]),
