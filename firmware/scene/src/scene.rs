@@ -10,7 +10,7 @@ use glint_core::feature::{FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, STEREO, WI
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::framing;
-use glint_core::matrix::{Axis, Matrix};
+use glint_core::matrix::{Axis, Matrix, MatrixError};
 use glint_core::mesh::{MAX_NAME, Mesh};
 use glint_core::object::{MAX_OBJECTS, Place};
 use glint_core::picture::{Backend, Edges, Size};
@@ -93,13 +93,46 @@ impl Sphere {
 }
 
 /// An entry of the list of objects: a mesh with its placement and colour.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct PlacedMesh {
     /// Name of the mesh.
     pub mesh: Name,
     /// Placement and colour.
     pub place: Place,
+    /// The model matrix before the latest rotations, whose shape rotations keep.
+    shape: Matrix,
 }
+
+impl PlacedMesh {
+    /// Places a mesh.
+    pub const fn new(mesh: Name, place: Place) -> Self {
+        let shape = place.matrix;
+        Self { mesh, place, shape }
+    }
+
+    /// Applies `next` to the placement. Rotations keep the shape of the object, even many small ones.
+    ///
+    /// # Errors
+    /// The matrix would be out of range or singular; the placement stays.
+    pub fn change(&mut self, next: &Place) -> Result<(), MatrixError> {
+        self.place = self.place.then(next)?;
+        if next.matrix.is_rotation() {
+            self.place.matrix = self.place.matrix.with_shape_of(&self.shape);
+        } else {
+            self.shape = self.place.matrix;
+        }
+        Ok(())
+    }
+}
+
+/// Meshes are equal by their names and placements.
+impl PartialEq for PlacedMesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.mesh == other.mesh && self.place == other.place
+    }
+}
+
+impl Eq for PlacedMesh {}
 
 /// The subject that a scene shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -344,14 +377,14 @@ impl Scene {
                     return Err(SettingError::ObjectMesh(mesh));
                 }
                 let mesh = name(mesh);
-                let added = self.objects.push(PlacedMesh { mesh, place });
+                let added = self.objects.push(PlacedMesh::new(mesh, place));
                 added.map_err(|_| ObjectError::Full)?;
                 self.show_objects();
             }
             ObjectAction::Change { number, next } => {
                 if let Some(object) = self.objects.get_mut(index(number)?) {
-                    let place = object.place.then(&next);
-                    object.place = place.map_err(|error| ObjectError::Matrix { number, error })?;
+                    let changed = object.change(&next);
+                    changed.map_err(|error| ObjectError::Matrix { number, error })?;
                 }
             }
             ObjectAction::Remove(number) => {

@@ -127,7 +127,7 @@ impl Scene {
             OptionName::Stereo => self.put(name, from, out, |scene| OrOff(scene.stereo)),
             OptionName::Object => {
                 let mut numbered = (1..).zip(&self.objects);
-                numbered.try_for_each(|(number, PlacedMesh { mesh, place })| match from {
+                numbered.try_for_each(|(number, PlacedMesh { mesh, place, .. })| match from {
                     Some(_) => writeln!(out, "{name} add {mesh} {place}"),
                     None => writeln!(out, "{name} {number} {mesh} {place}"),
                 })

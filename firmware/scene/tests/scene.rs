@@ -3,8 +3,10 @@
 use glint_core::block::Block;
 use glint_core::console::{Command, ObjectAction, OptionName, Setting};
 use glint_core::mesh::Mesh;
+use glint_core::object::Place;
 use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
+use glint_core::words::Words;
 use glint_scene::{AnyBoard, Board, Kind, Reason, Scene};
 use proptest::prelude::*;
 
@@ -271,6 +273,39 @@ fn objects_come_and_go() {
         (Kind::Objects, Some(1))
     );
     assert_eq!(object(ObjectAction::Remove(None)), (Kind::Solid, None));
+}
+
+/// An object that turns by many small steps keeps its size, also while it moves; a later change of its scale counts.
+#[test]
+fn a_turning_object_keeps_its_size() {
+    let mut scene = scene("object add a scale 0.5");
+    let mut change = |text: &str, times: usize| {
+        let next = Place::parse(&mut Words::new(text)).expect("operations");
+        for _ in 0..times {
+            let action = ObjectAction::Change { number: 1, next };
+            let set = scene.apply(&Setting::Object { action }, &mut AnyBoard);
+            set.expect("in range");
+        }
+        let rows = scene.objects[0].place.matrix.linear();
+        let lengths = [0, 1, 2].map(|j| {
+            let squares = rows.map(|row| row[j].to_num::<f64>().powi(2));
+            squares.iter().sum::<f64>().sqrt()
+        });
+        lengths
+    };
+    let near = |found: [f64; 3], expected: f64| {
+        assert!(
+            found.iter().all(|x| (x - expected).abs() < 1e-6),
+            "{found:?}"
+        );
+    };
+    near(change("rotate z 0.1", 36_000), 0.5);
+    near(
+        change("rotate x 0.1 rotate y 0.1 move 0,0,0.00001", 10_000),
+        0.5,
+    );
+    near(change("scale 3", 1), 1.5);
+    near(change("rotate y 0.1", 36_000), 1.5);
 }
 
 #[test]

@@ -170,6 +170,46 @@ impl Matrix {
         )
     }
 
+    /// Whether the 3×3 matrix is a rotation, apart from the rounding of its entries.
+    pub fn is_rotation(&self) -> bool {
+        let [a, b, c] = self.linear.map(|row| row.map(Q8_24::to_bits));
+        let lengths = [a, b, c].map(|row| dot(row, row) - (1 << 48));
+        let products = [dot(a, b), dot(b, c), dot(c, a)];
+        let mut errors = lengths.into_iter().chain(products);
+        !self.mirrors && errors.all(|x| x.abs() < ROTATION_SLACK)
+    }
+
+    /// Returns this matrix, which is the product of `shape` and rotations, with the lengths and angles of the columns of `shape`, if
+    /// rounding errors have changed them by more than a few units. Each product of two matrices has rounding errors, which would
+    /// change an object that turns by many small steps.
+    ///
+    /// A matrix is the product of a rotation, whose columns are orthonormal by Gram and Schmidt, and of a triangular matrix, which no
+    /// rotation from the left changes. The result has this matrix's rotation and the triangular matrix of `shape`.
+    #[must_use]
+    pub fn with_shape_of(&self, shape: &Self) -> Self {
+        let (axes, found) = triangular(&self.linear);
+        let (_, wanted) = triangular(&shape.linear);
+        let is_kept = core::iter::zip(found, wanted).all(|(found, wanted)| {
+            let largest = wanted.iter().fold(0, |largest, x| largest.max(x.abs()));
+            let slack = SHAPE_SLACK * (1 + (largest >> 24));
+            core::iter::zip(found, wanted).all(|(found, wanted)| (found - wanted).abs() <= slack)
+        });
+        if is_kept {
+            return *self;
+        }
+        let linear = [0, 1, 2].map(|row| {
+            wanted.map(|column| {
+                // The axes have length 1 and the column is below 2^29, so the sum is below 2^60.
+                let sum: i64 = core::iter::zip(axes, column)
+                    .map(|(axis, x)| i64::from(axis[row]) * x)
+                    .sum();
+                Q8_24::from_bits(((sum + (1 << 29)) >> 30) as i32)
+            })
+        });
+        // Rounding can only cause an error at an end of the range.
+        Self::new_checked(linear, self.translation).unwrap_or(*self)
+    }
+
     /// The point of the world to which the matrix maps a position (s2.14), exact, in units of 2^−38.
     pub fn apply(&self, position: [i16; 3]) -> [i64; 3] {
         // An entry is at most 2^28 and a coordinate at most 2^15, so the sums are below 2^46.
@@ -225,6 +265,30 @@ impl Matrix {
 /// Number of the highest bit of the largest cofactor after scaling. Normals have components below 2^15, so products stay below
 /// 2^62.
 const LEAD: u32 = 44;
+
+/// Largest error of a squared length and of a scalar product of rows of a rotation, in units of 2^−48: entries with errors of 4 units.
+const ROTATION_SLACK: i64 = 1 << 27;
+/// Largest accepted change of a shape by rounding errors, in units of 2^−24, for a column of a length below 1.
+const SHAPE_SLACK: i64 = 4;
+
+/// Returns the rotation (its columns, in units of 2^−30) and the triangular matrix (its columns, in units of 2^−24) whose product is
+/// a matrix with these rows. The columns of the result have the components along the axes of the rotation.
+fn triangular(rows: &[[Q8_24; 3]; 3]) -> ([[i32; 3]; 3], [[i64; 3]; 3]) {
+    let columns = [0, 1, 2].map(|j| rows.map(|row| row[j].to_bits()));
+    let [a, b, _] = columns;
+    // A component is at most √3·2^28, and a term of `across` at most 2^59.
+    let along = |axis, column| (dot(axis, column) + (1 << 29)) >> 30;
+    let first = unit::<30>(a.map(i64::from)).unwrap_or_default();
+    let shadow = along(first, b);
+    let across = [0, 1, 2].map(|i| (i64::from(b[i]) << 30) - i64::from(first[i]) * shadow);
+    let second = unit::<30>(across).unwrap_or_default();
+    let third = cross(first, second).map(|x| ((x + (1 << 29)) >> 30) as i32);
+    let axes = [first, second, third];
+    (
+        axes,
+        columns.map(|column| axes.map(|axis| along(axis, column))),
+    )
+}
 
 /// Whether a row is at least [`MIN_ROW`] long.
 fn is_long(row: [i32; 3]) -> bool {

@@ -185,6 +185,90 @@ fn a_negative_scale_mirrors() {
     assert_eq!(mirror.normals().rotation(), None);
 }
 
+/// An object that turns by many small steps keeps its shape: lengths and angles of the matrix's columns, and its handedness.
+#[test]
+fn many_small_turns_keep_the_shape() {
+    let scale = |factors: [f64; 3]| Matrix::scale(factors.map(number)).unwrap();
+    let tilted = Matrix::rotation(Axis::X, Turns(123_456_789));
+    let sheared = scale([0.5, 1.0, 2.0]).then(&tilted).unwrap();
+    let sheared = sheared.then(&scale([1.0, 3.0, 0.25])).unwrap();
+    let shapes = [
+        Matrix::IDENTITY,
+        scale([0.3; 3]),
+        scale([4.0, 0.05, 1.0]),
+        scale([-1.0, 2.0, 0.7]),
+        sheared,
+    ];
+    // The scalar products of all pairs of columns.
+    let products = |matrix: &Matrix| {
+        let a = rows(matrix);
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[k][i] * a[k][j]).sum::<f64>()))
+    };
+    for shape in shapes {
+        let mut matrix = shape;
+        for i in 0..36_000 {
+            let axis = Axis::ALL[i / 12_000];
+            let step = Matrix::rotation(axis, Turns::from_degrees("0.1".parse().unwrap()));
+            assert!(step.is_rotation());
+            matrix = matrix.then(&step).unwrap().with_shape_of(&shape);
+        }
+        let (found, expected) = (products(&matrix), products(&shape));
+        let size = expected
+            .as_flattened()
+            .iter()
+            .fold(1.0, |a: f64, b| a.max(*b));
+        let error = difference(found.as_flattened(), expected.as_flattened()) / size;
+        println!("{error:.1e}");
+        assert!(error < 2e-6, "{shape:?}: {error:e}");
+        assert_eq!(matrix.mirrors(), shape.mirrors());
+    }
+    // A whole number of turns about each axis leads back to the start.
+    let mut matrix = Matrix::IDENTITY;
+    for _ in 0..36_000 {
+        let step = Matrix::rotation(Axis::Z, Turns::from_degrees("0.1".parse().unwrap()));
+        matrix = matrix.then(&step).unwrap().with_shape_of(&Matrix::IDENTITY);
+    }
+    let [[x, ..], [y, ..], _] = rows(&matrix);
+    let turned = y.atan2(x).to_degrees();
+    println!("{turned:.4}°");
+    assert!(turned.abs() < 36_000.0 * 1.8e-6, "{turned}");
+}
+
+/// One rotation gives the same entries as the product alone.
+#[test]
+fn one_turn_is_the_product() {
+    for size in [0.002, 0.01, 0.3, 1.0, 5.0, 15.9] {
+        let shape = Matrix::scale([number(size); 3]).unwrap();
+        for i in 0..2_000_u32 {
+            let axis = Axis::ALL[i as usize % 3];
+            let turn = Matrix::rotation(axis, Turns(i.wrapping_mul(2_654_435_761)));
+            let product = shape.then(&turn).unwrap();
+            assert_eq!(product.with_shape_of(&shape), product, "{size} {i}");
+        }
+    }
+}
+
+#[test]
+fn rotations_are_told_from_other_matrices() {
+    let rotations = [
+        Matrix::IDENTITY,
+        Matrix::rotation(Axis::Y, Turns(99_999_999)),
+    ];
+    assert!(rotations.iter().all(Matrix::is_rotation));
+    let [one, half] = [1.0, 0.5].map(number);
+    let others = [
+        Matrix::scale([-one, one, one]),
+        Matrix::scale([-one; 3]),
+        Matrix::scale([half; 3]),
+        Matrix::scale([one, one, number(1.000_01)]),
+        Matrix::new_checked(
+            [[1.0, 0.0001, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|row| row.map(number)),
+            [Q8_24::ZERO; 3],
+        ),
+    ];
+    assert!(!others.iter().any(|matrix| matrix.unwrap().is_rotation()));
+}
+
 #[test]
 fn scales_have_a_range() {
     let [zero, one] = [Q8_24::ZERO, Q8_24::ONE];

@@ -79,12 +79,12 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
                         Object {
                             placement, colour, ..
                         },
-                    )| PlacedMesh {
-                        mesh: name(&object(number)),
-                        place: Place {
+                    )| {
+                        let place = Place {
                             matrix: *placement.matrix(),
                             colour: *colour,
-                        },
+                        };
+                        PlacedMesh::new(name(&object(number)), place)
                     },
                 )
                 .collect();
