@@ -4,12 +4,18 @@ use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
 use crate::scene;
 use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
-use glint_core::mesh::is_name;
-use glint_scene::{LineError, Reason, lines};
+use glint_core::mesh::{Mesh, is_name};
+use glint_core::picture::{Backend, Size};
+use glint_scene::{Board, LineError, Reason, Scene, lines};
 use glint_scene_file::SceneFile;
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 
 /// Name of the list of scenes in an image; the board shows its first scene after power-up.
 pub const START: &str = "start";
+/// Largest number of commands of a scene. A scene with all options and the most objects and lights has less than a hundred; a board
+/// executes them before the first picture.
+pub const MOST_COMMANDS: usize = 1_000;
 /// Name of the built-in cube, which is not one of the shapes.
 const CUBE: &str = "cube";
 
@@ -120,7 +126,8 @@ pub fn make(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u
     Ok(image)
 }
 
-/// Checks an image: its parts, its checksums, its meshes, the commands of its scenes, and the names in its lists.
+/// Checks an image: its parts, its checksums, the names of its items, its meshes, the commands of its scenes, and the names in its
+/// lists.
 ///
 /// # Errors
 /// The first violation.
@@ -135,7 +142,12 @@ pub fn check(bytes: &[u8]) -> Result<Image<'_>, FormatError> {
 /// # Errors
 /// The first violation.
 pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
+    let mut names = HashSet::new();
     for item in contents.items() {
+        if !names.insert((item.kind.name(), item.name)) {
+            let error = FormatError::whole("names that differ", "two items of this kind and name");
+            return Err(in_item(&item, error));
+        }
         match item.kind {
             Kind::Mesh => {
                 let bytes = item.checked().map_err(format_error)?;
@@ -160,8 +172,54 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// Checks the commands of a scene, and that its meshes exist.
+/// The meshes of an image and of its firmware.
+struct ImageBoard<'i> {
+    contents: &'i Contents<'i>,
+    /// The meshes that the scene uses.
+    meshes: HashMap<String, Cow<'i, [u8]>>,
+}
+
+impl Board for ImageBoard<'_> {
+    fn has_size(&self, _: Size) -> bool {
+        true
+    }
+
+    fn has_engine(&self) -> bool {
+        true
+    }
+
+    fn has_mesh(&mut self, name: &str) -> bool {
+        if self.meshes.contains_key(name) {
+            return true;
+        }
+        let bytes = match self.contents.find(Kind::Mesh, name) {
+            Some(item) => item.checked().ok().map(Cow::Borrowed),
+            None if is_built_in(name) => scene::mesh(name).ok().map(Cow::Owned),
+            None => None,
+        };
+        let bytes = bytes.map(|bytes| self.meshes.insert(name.to_owned(), bytes));
+        bytes.is_some()
+    }
+
+    fn mesh(&self, name: &str) -> Option<Mesh<'_>> {
+        Mesh::new_checked(self.meshes.get(name)?).ok()
+    }
+}
+
+/// Checks the commands of a scene, each as a board executes it, and that its meshes exist.
 fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
+    let count = text.lines().count();
+    if count > MOST_COMMANDS {
+        let expected = format!("at most {MOST_COMMANDS} commands");
+        return Err(FormatError::whole(expected, count.to_string()));
+    }
+    let mut board = ImageBoard {
+        contents,
+        meshes: HashMap::new(),
+    };
+    let scene = Scene::new(Backend::Gateware);
+    let mut scene = scene
+        .map_err(|error| FormatError::whole("a scene that boards can show", error.to_string()))?;
     let quoted = |line: usize| quote(text.lines().nth(line - 1).unwrap_or("").as_bytes());
     let error = |line, expected| FormatError::new(Location::Line(line), expected, quoted(line));
     for parsed in lines(text) {
@@ -173,14 +231,16 @@ fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
             error(line, expected)
         })?;
         if let Some(mesh) = parsed.mesh()
-            && !is_built_in(mesh)
-            && contents.find(Kind::Mesh, mesh).is_none()
+            && !board.has_mesh(mesh)
         {
             return Err(error(
                 line,
                 "a mesh of the image or a built-in one".to_owned(),
             ));
         }
+        let applied = parsed.apply(&mut scene, &mut board);
+        applied
+            .map_err(|reason| error(line, format!("a command that boards execute ({reason})")))?;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Makes, lists, checks and writes images for SPI flash.
 
 use crate::common::{folder, glint, refused, report, succeed};
-use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind};
+use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind, Piece, encode};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -128,6 +128,69 @@ fn damaged_images_are_refused_with_the_place() {
     assert!(refused(&folder, "image list bad.bin").contains("expected the CRC-32"));
     // A damaged image is not written, with or without openFPGALoader.
     assert!(refused(&folder, "flash --spi bad.bin").contains("expected the CRC-32"));
+}
+
+/// Images with correct checksums whose scenes no board shows.
+#[test]
+fn what_boards_cannot_show_is_refused() {
+    let folder = folder("image-scenes");
+    let scene = |name: &str, text: String| Piece {
+        kind: Kind::Scene,
+        name: name.to_owned(),
+        bytes: text.into_bytes(),
+    };
+    let objects = |count: usize| "object add cube\n".repeat(count);
+    let check = |pieces: &[Piece]| {
+        let image = encode(&[], &[0x13; 400], pieces).unwrap();
+        fs::write(folder.join("scenes.bin"), image).unwrap();
+        glint(&folder, "image check scenes.bin")
+    };
+    let fine = [
+        scene("objects", objects(16)),
+        scene("fit", "object add torus\nobject add cube\nfit\n".into()),
+        scene("alone", "scene torus\nfit\n".into()),
+        scene("long", "fov 60\n".repeat(1_000)),
+    ];
+    let checked = check(&fine);
+    let said = String::from_utf8(checked.stderr).unwrap();
+    assert!(checked.status.success(), "{said}");
+    let cases: [(Vec<Piece>, &str); 6] = [
+        (
+            vec![scene("many", objects(40))],
+            "expected scene many: line 17: a command that boards execute (object: expected at most 16 objects",
+        ),
+        (
+            vec![scene("long", "fov 60\n".repeat(50_000))],
+            "expected scene long: at most 1000 commands, found 50000",
+        ),
+        (
+            vec![scene("same", "fov 60\n".into()); 63],
+            "expected scene same: names that differ, found two items of this kind and name",
+        ),
+        (
+            vec![scene("none", "object show\n".into())],
+            "expected scene none: line 1: a command that boards execute (object: no objects",
+        ),
+        (
+            vec![scene(
+                "far",
+                "object add cube move 20,0,0\nobject move 1 20,0,0\n".into(),
+            )],
+            "expected scene far: line 2: a command that boards execute (object 1: matrix row 1: translation 40",
+        ),
+        (
+            vec![scene("edges", "field menger:4\nedges over\n".into())],
+            "expected scene edges: line 2: a command that boards execute (edges: not available",
+        ),
+    ];
+    for (pieces, expected) in cases {
+        let checked = check(&pieces);
+        let said = String::from_utf8(checked.stderr).unwrap();
+        assert!(
+            !checked.status.success() && said.contains(expected),
+            "{said}"
+        );
+    }
 }
 
 /// Runs `glint flash --spi board.bin` with `folder` as the program search path.
