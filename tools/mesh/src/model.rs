@@ -1,9 +1,9 @@
 //! The argument MODEL of the command line: a mesh file, or a generator.
 
 use crate::convert::{self, Options, Report};
-use crate::error::InputError;
-use crate::formats::{self, Beside, Format, glm};
-use crate::generate;
+use crate::error::{FormatError, InputError};
+use crate::formats::{self, Beside, Format, STDIN, glm};
+use crate::generate::{self, NAMES};
 use crate::polygons::Polygons;
 use std::path::Path;
 
@@ -20,6 +20,34 @@ fn is_generated(name: &str) -> bool {
     generate::is_name(name) && !Path::new(name).exists()
 }
 
+/// Checks that a name without an extension is the name of a file, since it may be a mistyped generator.
+///
+/// # Errors
+/// The name has no extension, and no file has this name. The error lists the generators.
+fn check_name(name: &str) -> Result<(), InputError> {
+    let path = Path::new(name);
+    if name == STDIN || path.extension().is_some() || path.exists() {
+        return Ok(());
+    }
+    let expected = format!("a mesh file or a generator ({NAMES})");
+    Err(FormatError::whole(expected, "neither").in_file(name))
+}
+
+/// Reads the polygons of a mesh file.
+///
+/// # Errors
+/// The file cannot be read or parsed. The error for the name of a generator states the command for generators.
+pub fn of_mesh_file(path: &Path) -> Result<Polygons, InputError> {
+    if let Some(name) = path.to_str() {
+        if is_generated(name) {
+            let expected = format!("a mesh file; `glint model {name}` makes this model");
+            return Err(FormatError::whole(expected, "a generator").in_file(name));
+        }
+        check_name(name)?;
+    }
+    formats::read(path)
+}
+
 /// Reads or generates the polygons of a model.
 ///
 /// # Errors
@@ -28,6 +56,7 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
     if is_generated(name) {
         generate::named(name).map_err(|error| error.in_file(name))
     } else {
+        check_name(name)?;
         formats::read(Path::new(name))
     }
 }
@@ -41,6 +70,7 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     if is_generated(name) {
         return converted(path, &polygons(name)?, options);
     }
+    check_name(name)?;
     let (format, bytes) = formats::read_mesh(path)?;
     of_bytes(
         path,

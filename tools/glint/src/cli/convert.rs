@@ -7,7 +7,7 @@ use super::progress::spinner;
 use clap::{Args, ValueEnum};
 use glint::convert::{self, Options, Report};
 use glint::error::FormatError;
-use glint::formats::{self, Format, write};
+use glint::formats::{Format, write};
 use glint::polygons::Polygons;
 use glint::{generate, model};
 use serde::Serialize;
@@ -115,7 +115,7 @@ impl ModelArguments {
 impl ConvertArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let spinner = spinner("reading");
-        let polygons = formats::read(&self.input)?;
+        let polygons = model::of_mesh_file(&self.input)?;
         spinner.finish();
         let options = Options {
             keep_scale: self.keep_scale,

@@ -8,7 +8,7 @@ use glint::image;
 use glint::program;
 use glint_core::flash::{CONTENTS, FIRMWARE, Image};
 use glint_core::wire::crc32;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Make, list or check images for a board's SPI flash: bitstream, firmware and scenes (docs/formats/flash.md, "Flash image").
 #[derive(Subcommand)]
@@ -38,6 +38,17 @@ pub struct MakeArguments {
     /// Image to write.
     #[arg(long, value_name = "IMAGE.bin")]
     out: PathBuf,
+    /// Print the size as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The size of an image.
+#[derive(serde::Serialize)]
+struct Made<'a> {
+    out: &'a Path,
+    bytes: usize,
+    items: usize,
 }
 
 /// List the parts of an image.
@@ -56,6 +67,9 @@ pub struct CheckArguments {
     /// Images to read.
     #[arg(required = true)]
     images: Vec<PathBuf>,
+    /// Print the names of the valid images as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 impl ImageCommand {
@@ -88,11 +102,18 @@ impl MakeArguments {
         let made = image::make(&bitstream, &firmware, &pieces);
         let made = made.map_err(|error| error.in_path(&self.out))?;
         out.write(|out| out.write_all(&made))?;
+        let made = Made {
+            out: &self.out,
+            bytes: made.len(),
+            items: pieces.len(),
+        };
+        if self.json {
+            return print_json(&made);
+        }
+        let Made { out, bytes, items } = made;
         say(format_args!(
-            "{}: {} bytes, {} items",
-            self.out.display(),
-            made.len(),
-            pieces.len()
+            "{}: {bytes} bytes, {items} items",
+            out.display()
         ))
     }
 }
@@ -150,10 +171,16 @@ impl ListArguments {
 
 impl CheckArguments {
     fn run(self) -> anyhow::Result<()> {
-        self.images.iter().try_for_each(|path| {
+        for path in &self.images {
             let bytes = read_file(path)?;
             image::check(&bytes).map_err(|error| error.in_path(path))?;
-            say(format_args!("{}: valid", path.display()))
-        })
+            if !self.json {
+                say(format_args!("{}: valid", path.display()))?;
+            }
+        }
+        if self.json {
+            return print_json(&self.images);
+        }
+        Ok(())
     }
 }

@@ -44,6 +44,8 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
         "{list}"
     );
     assert!(list.contains("mesh      gear  "), "{list}");
+    let checked = report(&folder, "image check board.bin");
+    assert_eq!(checked, serde_json::json!(["board.bin"]));
     let parts = report(&folder, "image list board.bin");
     assert_eq!(parts[0]["offset"], FIRMWARE);
     assert_eq!(parts[1]["kind"], "mesh");

@@ -1,6 +1,6 @@
 //! Bad input gives one line of error, exit code 2, and no output file.
 
-use crate::common::{SQUARE, VIEW, all_refused, files_refused, folder, glint, succeed};
+use crate::common::{SQUARE, VIEW, all_refused, files_refused, folder, glint, refused, succeed};
 
 #[test]
 fn bad_meshes() {
@@ -225,5 +225,20 @@ fn a_damaged_glm_is_refused() {
         checksum.glm: byte 24: expected the CRC-32 …
         old.glm: byte 0: expected "GLM2", a mesh with a checksum, found 'GLM1', written by an earlier glint: convert…
         "#,
+    );
+}
+
+#[test]
+fn a_mistyped_generator_is_named() {
+    let folder = folder("generators");
+    for command in ["render teapto --out a.png", "convert teapto a.glm"] {
+        let error = refused(&folder, command);
+        let expected = "teapto: expected a mesh file or a generator (cube, icosphere:N";
+        assert!(error.contains(expected), "{error}");
+    }
+    let error = refused(&folder, "convert teapot a.glm");
+    assert!(
+        error.contains("`glint model teapot` makes this model"),
+        "{error}"
     );
 }

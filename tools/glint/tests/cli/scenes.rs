@@ -1,7 +1,7 @@
 //! Follows the tutorial in docs/scenes.md, which writes a scene from scratch: each command of the page works on the scene file of
 //! the page.
 
-use crate::common::{folder, json, picture, said, succeed};
+use crate::common::{folder, json, picture, report, said, succeed};
 use std::path::Path;
 
 /// The first code block of the page in the given language.
@@ -52,4 +52,33 @@ fn a_scene_from_nothing() {
     };
     assert!(blue > red, "sky {:?}", pixel(2, 2));
     assert!(json(&folder.join("lamp.json")).is_object());
+}
+
+#[test]
+fn scenes_as_json() {
+    let folder = folder("scenes-json");
+    let list = report(&folder, "scene list");
+    assert!(
+        list.as_array()
+            .unwrap()
+            .iter()
+            .any(|scene| scene["name"] == "objects")
+    );
+    let shown = report(&folder, "scene show objects");
+    assert_eq!(
+        shown["gateware"].as_array().unwrap().last().unwrap(),
+        "--smooth"
+    );
+    assert!(
+        shown["settings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|line| line == "shading smooth")
+    );
+    let shown = report(&folder, "scene show demo");
+    assert_eq!(shown["scenes"][0], "holoforge");
+    assert_eq!(shown["settings"], serde_json::json!([]));
+    let checked = report(&folder, "scene check cubes menger");
+    assert_eq!(checked, serde_json::json!(["cubes", "menger"]));
 }
