@@ -166,8 +166,8 @@ impl DemoArguments {
         lines.push(line(&path, &towards, SIZE, cycles, clock));
         for name in SCENES {
             let path = self.out.join(name).with_extension("png");
-            let cycles = show_scene(&mut renderer, name, &path)?;
-            lines.push(line(&path, &format!("scene {name}"), SIZE, cycles, clock));
+            let (scene, cycles) = show_scene(&mut renderer, name, &path)?;
+            lines.push(line(&path, &scene, SIZE, cycles, clock));
         }
         Ok((rows, lines))
     }
@@ -306,12 +306,12 @@ fn write_picture(
 }
 
 /// Draws a built-in scene on the board with flat shading, which every gateware build has, checks that its picture equals the
-/// picture of the bit-exact model, and writes it to `path`. Returns the number of cycles of the frame.
+/// picture of the bit-exact model, and writes it to `path`. Returns a description of the picture and the number of cycles of the frame.
 fn show_scene<B: Board>(
     renderer: &mut BoardRenderer<B>,
     name: &str,
     path: &Path,
-) -> anyhow::Result<u64> {
+) -> anyhow::Result<(String, u64)> {
     let scene = glint_scene_file::read(name)?;
     let show = format!("scene {name}");
     let commands = [show, "shading flat".into(), size_command(SIZE)];
@@ -327,7 +327,11 @@ fn show_scene<B: Board>(
         "scene {name}: the picture differs from the model's"
     );
     write_picture(path, |out| image.picture().write_png(out))?;
-    cycles_of_gateware(&stats)
+    let description = match scene.scene().options.shading {
+        Shading::Flat => format!("scene {name}"),
+        Shading::Smooth => format!("scene {name}, with flat shading in place of smooth"),
+    };
+    Ok((description, cycles_of_gateware(&stats)?))
 }
 
 /// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, and `clock` the frequency of the
@@ -468,7 +472,9 @@ mod tests {
         tour.orbit(&mut renderer, &path("orbit.png")).unwrap();
         tour.sponge(&mut renderer, &path("sponge.png")).unwrap();
         for name in SCENES {
-            show_scene(&mut renderer, name, &path(&format!("{name}.png"))).unwrap();
+            let path = path(&format!("{name}.png"));
+            let (scene, _) = show_scene(&mut renderer, name, &path).unwrap();
+            assert_eq!(scene.contains("with flat shading"), name == "objects");
         }
     }
 }
