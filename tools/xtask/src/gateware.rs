@@ -38,6 +38,14 @@ impl Board {
         }
     }
 
+    /// Whether the board starts its firmware from its SPI flash without a host. The SoC of the ULX3S cannot read the flash.
+    const fn starts_from_flash(self) -> bool {
+        match self {
+            Self::Virtual | Self::Urbana => true,
+            Self::Ulx3s => false,
+        }
+    }
+
     /// Build folder.
     pub fn folder(self) -> PathBuf {
         paths::target().join("gateware").join(self.name())
@@ -47,8 +55,9 @@ impl Board {
 /// The build options that `cargo xtask gateware` and the program `glint_soc` share.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "no_depths", "fields", "lanes", "blocks"])]
+    /// Build exactly what these scenes need, with the SPI flash from which a board starts: names of built-in scenes, scene files, or
+    /// `all`
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "no_depths", "fields", "lanes"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
@@ -67,28 +76,38 @@ pub struct Options {
     #[arg(long, value_name = "MHZ")]
     clock: Option<String>,
     /// Optional blocks of the build: `scanout`, `triangle`, `raymarch` (without `triangle` the gateware draws fields alone), `line` (a
-    /// part of the triangle engine), `gesture` [default: all; all but `raymarch` for the ulx3s]
+    /// part of the triangle engine), `gesture`, `flash` [default: all; all but `flash` and `raymarch` for the ulx3s]. With `--scene`:
+    /// further blocks
     #[arg(long, value_parser = PossibleValuesParser::new(Block::NAMES), hide_possible_values = true, value_delimiter = ',', num_args = 1..)]
     blocks: Vec<String>,
 }
 
 impl Options {
-    /// The options as arguments of `glint_soc`.
+    /// The options as arguments of `glint_soc` for a board.
     ///
     /// # Errors
     /// A scene cannot be read, or the scenes state different clocks.
-    pub fn arguments(&self) -> Result<Vec<String>> {
+    pub fn arguments(&self, board: Board) -> Result<Vec<String>> {
         let mut arguments = Vec::new();
         let mut clock = self.clock.clone();
         if !self.scene.is_empty() {
             let scenes = scenes::read(&self.scene)?;
-            arguments = Needs::of(&scenes).options();
+            let mut needs = Needs::of(&scenes);
+            if board.starts_from_flash() {
+                needs.blocks.insert(Block::Flash);
+            }
+            let further = Block::ALL
+                .into_iter()
+                .filter(|block| self.blocks.iter().any(|name| name == block.name()));
+            needs.blocks.extend(further);
+            needs.depths |= needs.blocks.contains(&Block::Triangle);
+            arguments = needs.options();
             clock = match clock {
                 None => scenes::clock(&scenes)?.map(|clock| clock.to_string()),
                 clock => clock,
             };
         }
-        if !self.blocks.is_empty() {
+        if self.scene.is_empty() && !self.blocks.is_empty() {
             arguments.push("--blocks".to_owned());
             arguments.extend(self.blocks.iter().cloned());
         }
@@ -350,4 +369,57 @@ fn files(root: &Path) -> Result<Vec<PathBuf>> {
 /// Whether the file `stamp` has the fingerprint `inputs`, so that the last build had the same inputs.
 fn is_current(stamp: &Path, inputs: &str) -> bool {
     fs::read_to_string(stamp).is_ok_and(|last| last == inputs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Arguments {
+        #[command(flatten)]
+        options: Options,
+    }
+
+    fn arguments(board: Board, line: &str) -> Vec<String> {
+        let words = ["gateware"].into_iter().chain(line.split(' '));
+        let parsed = Arguments::try_parse_from(words).unwrap();
+        parsed.options.arguments(board).unwrap()
+    }
+
+    fn blocks(arguments: &[String]) -> Vec<&str> {
+        let blocks = arguments.iter().skip_while(|word| *word != "--blocks");
+        let blocks = blocks.skip(1).take_while(|word| !word.starts_with("--"));
+        blocks.map(String::as_str).collect()
+    }
+
+    /// A board that runs alone starts from its flash, so every build for scenes can read it.
+    #[test]
+    fn builds_for_scenes_start_from_the_flash() {
+        for name in glint_scene_file::NAMES
+            .into_iter()
+            .chain(["all", "cubes,objects"])
+        {
+            let line = format!("--scene {name}");
+            for board in [Board::Urbana, Board::Virtual] {
+                let found = arguments(board, &line);
+                assert!(blocks(&found).contains(&"flash"), "{name}: {found:?}");
+            }
+            let found = arguments(Board::Ulx3s, &line);
+            assert!(!blocks(&found).contains(&"flash"), "{name}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn blocks_are_added_to_those_of_scenes() {
+        let found = arguments(Board::Ulx3s, "--scene cubes --blocks gesture line");
+        let expected = ["gesture", "line", "raymarch", "scanout"];
+        let mut blocks = blocks(&found);
+        blocks.sort_unstable();
+        assert_eq!(blocks, expected);
+        assert_eq!(found.iter().filter(|word| *word == "--blocks").count(), 1);
+        let found = arguments(Board::Urbana, "--blocks scanout raymarch");
+        assert_eq!(found, ["--blocks", "scanout", "raymarch"]);
+    }
 }

@@ -128,7 +128,7 @@ fn main() -> Result<()> {
             options,
             waveforms,
         } => {
-            let options = options.arguments()?;
+            let options = options.arguments(board)?;
             let options: Vec<_> = options.iter().map(String::as_str).collect();
             if board == gateware::Board::Ulx3s {
                 // The set-up installs all tools of the ULX3S build.
