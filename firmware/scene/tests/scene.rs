@@ -287,11 +287,10 @@ fn a_turning_object_keeps_its_size() {
             set.expect("in range");
         }
         let rows = scene.objects[0].place.matrix.linear();
-        let lengths = [0, 1, 2].map(|j| {
+        [0, 1, 2].map(|j| {
             let squares = rows.map(|row| row[j].to_num::<f64>().powi(2));
             squares.iter().sum::<f64>().sqrt()
-        });
-        lengths
+        })
     };
     let near = |found: [f64; 3], expected: f64| {
         assert!(
