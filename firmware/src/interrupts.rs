@@ -49,7 +49,7 @@ pub fn start(present: Present) {
     }
 }
 
-/// Number of interrupts so far, modulo 2^32. Only the handler writes it, so load and store need not be atomic.
+/// Number of interrupts so far, modulo 2^32. Only the handler writes it, so its increment may be a separate load and store.
 static COUNT: AtomicU32 = AtomicU32::new(0);
 
 /// Number of interrupts so far, modulo 2^32.

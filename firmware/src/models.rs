@@ -222,7 +222,8 @@ impl Models {
         Ok(())
     }
 
-    /// Records a change of the uploads, and drops all references to their meshes outside of the list of uploads.
+    /// Records a change of the uploads. Drops every reference to an uploaded mesh except those in the list of uploads: empties the list of
+    /// objects, and shows the cube.
     fn revise(&mut self) {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);

@@ -2,8 +2,8 @@
 //!
 //! [`LineEditor`] converts the bytes of a terminal to lines, [`Command::parse`] parses a line to a command, and
 //! [`Command::execute`] calls the machine's method for this command. One table defines the commands; the parser, the help, the
-//! completion and the traits that the machine implements are generated from this table. The table also states the options of a scene, with
-//! the keys of scene files and the options of the command line of `glint`.
+//! completion and the traits that the machine implements are generated from this table. For each setting of a scene, the table also states
+//! its key in scene files and its option on the command line of `glint`.
 
 mod argument;
 mod command;

@@ -15,8 +15,8 @@
 // column and 0 as its last column, so the union of an empty extent and another extent is the other extent. The largest column, all ones,
 // must therefore not be drawn.
 //
-// `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on, the other bank
-// is drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line` of the picture. For
+// `start` (one clock, not while `busy` or `sweep` is high) plans the flush of the band that has just been drawn. From the next clock on,
+// `drawn` must select the other bank. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line` of the picture. For
 // every non-empty line, in order, the output has a span: the first and the last row to write in the band buffer. With `whole` every line
 // has a span of all its rows. `busy` falls when the last span has been taken. At this time the extents of the lines have been moved from
 // `now` to `last`. Latency 6 clocks from `start` to the first span; throughput one line per clock, empty or not.

@@ -1,4 +1,4 @@
-//! Cameras from files, and those of the command line that the console does not have.
+//! Cameras from files, and the forms of a camera that only the command line of `glint` accepts.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;

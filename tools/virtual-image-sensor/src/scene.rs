@@ -85,7 +85,7 @@ pub struct Scene {
     pub light: Over<f64>,
     /// Standard deviation of the noise of each channel, in units of 1/255 of its range.
     pub noise: f64,
-    /// Fraction of the pixels that have a random colour, of the hand or of no object.
+    /// Fraction of the pixels that are noise: each has at random the hand's colour or black.
     pub salt: f64,
     random: Pcg64Mcg,
 }

@@ -19,7 +19,7 @@ pub fn unit<const BITS: u32>(vector: [i64; 3]) -> Option<[i32; 3]> {
     let up = (a | b | c).leading_zeros();
     let scaled = magnitudes.map(|x| ((x << up) >> 33) as u32);
     let square: u64 = scaled.map(|x| u64::from(x).pow(2)).iter().sum();
-    // The product of the reciprocal and the vector has 62 fraction bits.
+    // The product of `scaled` and `inverse` has 62 fraction bits.
     let inverse = if square >> 62 == 0 {
         inverse_root::<1>((square >> 30) as u32).saturating_mul(2)
     } else {

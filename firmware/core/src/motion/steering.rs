@@ -79,7 +79,8 @@ impl Default for Mounting {
 }
 
 impl Mounting {
-    /// Makes a mounting from the sensor's directions into the scene and up on the screen; `None` unless they are perpendicular.
+    /// Makes a mounting from two directions of the sensor: `forward` points into the scene, `up` points up on the screen. Returns `None`
+    /// unless they are perpendicular.
     pub fn new(forward: Direction, up: Direction) -> Option<Self> {
         (forward.axis() != up.axis()).then_some(Self { forward, up })
     }

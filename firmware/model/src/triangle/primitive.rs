@@ -261,8 +261,8 @@ pub fn clip_fan(
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
         return;
     };
-    // The fan starts at the vertex with the smallest position, so that the order of the triangle's
-    // indices does not matter.
+    // The fan starts at the vertex whose position is the first in lexicographic order, so that a cyclic shift of the triangle's indices has
+    // no effect.
     let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
     let mut vertices = if p <= q && p <= r {
         [a, b, c]
