@@ -266,6 +266,8 @@ impl MainLoop {
                 // No interrupt signals the end of this short time.
                 return Turn::Again;
             }
+        } else if !renderer.is_due() {
+            return Turn::Wait;
         }
         // Turns of other tasks while the CPU draws.
         let mut progress = || {
