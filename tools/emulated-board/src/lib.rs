@@ -1,7 +1,7 @@
 //! The emulated board: runs the firmware of the real board at about the speed of the real board.
 //!
 //! ```
-//! use emulated_board::EmulatedBoard;
+//! use emulated_board::{EmulatedBoard, Uart};
 //!
 //! // An endless loop as firmware.
 //! let mut board = EmulatedBoard::fast(&0x0000_006f_u32.to_le_bytes())?;

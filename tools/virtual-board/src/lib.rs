@@ -7,7 +7,7 @@
 //! and write DDR3 at run time, coherently with the CPU's caches.
 //!
 //! ```no_run
-//! use virtual_board::{Start, VirtualBoard};
+//! use virtual_board::{Start, Uart, VirtualBoard};
 //!
 //! # fn main() -> Result<(), virtual_board::Error> {
 //! let mut board = VirtualBoard::builder().start(Start::Full).build()?;
