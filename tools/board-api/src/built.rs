@@ -1,4 +1,4 @@
-//! Finds the files that `cargo xtask` builds, when a program runs.
+//! Finds the files that `cargo xtask` builds.
 
 use std::env;
 use std::path::{Path, PathBuf};

@@ -19,7 +19,7 @@ pub enum ConsoleError {
         /// The text after `error: ` in the reply.
         reason: String,
     },
-    /// The board sent nothing for the whole time-out, before its reply was complete.
+    /// The next line, or the end of the reply, did not arrive within the time-out.
     #[error(
         "waited {waited_ms} ms of the board's time for {expected}; the last lines were {last:?}"
     )]
@@ -63,16 +63,16 @@ pub enum ConsoleError {
 /// Time-out of a line of a reply in milliseconds of the board's time: longer than the slowest frame of a board without
 /// accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
-/// Time-out of a whole reply that is collected, as a multiple of the time-out of a line: a board that keeps sending lines must
-/// come to an end too.
+/// Time-out of a whole reply after its first line, as a multiple of the time-out of a line. It ends the wait for a board that keeps
+/// sending lines.
 const REPLY_PATIENCE: u64 = 20;
 /// Number of frames of the console command `orbit` without an argument, and of scenes with an orbit.
 const ORBIT_FRAMES: u32 = 240;
 /// Number of frames of the console command `bench` without an argument.
 const BENCH_FRAMES: u32 = 8;
 
-/// Frame of LiteX's serial boot that ends the boot. A host that is killed during `glint flash` leaves the BIOS waiting for frames
-/// without end. The bytes have no effect on the prompt of the BIOS and on the firmware.
+/// Frame of LiteX's serial boot that ends the boot. After a host was killed during `glint flash`, the BIOS waits for frames without
+/// a time limit. The prompt of the BIOS and the firmware ignore the bytes.
 pub const END_BOOT: &[u8] = &[1, 0, 0, 0, 0];
 /// End of the prompt of the BIOS.
 pub const BIOS_PROMPT: &[u8] = b"litex\x1b[0m> ";
@@ -119,9 +119,9 @@ pub struct Console<'b, B: ?Sized = dyn Board> {
     patience_ms: u64,
     /// The wait for the current line.
     line: Limit,
-    /// The wait for the whole reply, which no line extends.
+    /// The wait for the whole reply; received lines do not extend it.
     reply: Limit,
-    /// Number of bytes that may arrive before the reply to the current command must be complete.
+    /// Number of bytes that may still arrive before the reply to the current command must be complete.
     allowance: usize,
 }
 
@@ -143,7 +143,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.line = Limit::after(self.board.now_ms(), patience_ms);
     }
 
-    /// Runs `task` with a limit of its whole duration; `patience_ms` is the time-out of its first line.
+    /// Runs `task` with a limit on its whole duration; `patience_ms` is the time-out of its first line.
     fn within<T>(
         &mut self,
         patience_ms: u64,
@@ -168,12 +168,12 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Allows the reply to the last command `bytes` more than the default maximum of 1 MiB.
+    /// Raises the maximum length of the reply to the last command, by default 1 MiB, by `bytes` bytes.
     pub fn allow(&mut self, bytes: usize) {
         self.allowance = self.allowance.saturating_add(bytes);
     }
 
-    /// Adds bytes that other code has read from the board to the received bytes.
+    /// Appends `said` to the received bytes: bytes that other code has read from the board.
     pub fn hear(&mut self, said: &[u8]) {
         self.pending.extend_from_slice(said);
     }
@@ -250,8 +250,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Sends a command that prints a word. Returns true if the board has printed the word, and false if it has first ended a
-    /// transfer, or a command with an error.
+    /// Sends a command that prints a word. Returns true if the board has printed the word, and false if it has printed an error
+    /// first, of a cancelled transfer or of an earlier line.
     fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
         let command = format!("echo {word}");
         self.board.write(format!("\0{command}\r").as_bytes())?;
@@ -280,7 +280,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// Cancels an unfinished transfer on the board, if any.
     ///
     /// # Errors
-    /// Reading from or writing to the board fails.
+    /// Writing to the board fails.
     pub fn reset_transfer(&mut self) -> Result<(), BoardError> {
         let mut frame = [0; MAX_FRAME];
         let length = wire::reset(&mut frame);
@@ -327,8 +327,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.lines_within(self.patience_of(command), command, on_line)
     }
 
-    /// As [`lines`](Self::lines), with `patience_ms` for the first line of the reply, because only the time until then depends on
-    /// the command.
+    /// Does the work of [`lines`](Self::lines). `patience_ms` is the time-out of the first line of the reply, the only line whose
+    /// delay depends on the command.
     fn lines_within(
         &mut self,
         patience_ms: u64,
@@ -482,7 +482,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     }
 }
 
-/// The error for a reply that does not end with `expected`.
+/// Returns the error for a reply that contains `found` in place of `expected`.
 pub fn unexpected(command: &str, expected: &str, found: &str) -> ConsoleError {
     ConsoleError::Reply {
         command: command.to_owned(),
@@ -504,7 +504,7 @@ fn refused(command: &str, line: &str) -> Result<(), ConsoleError> {
 /// Returns the parsed value of the line `key value` in a reply.
 ///
 /// # Errors
-/// [`ConsoleError::Reply`] if there is no such line, or its value has another type.
+/// [`ConsoleError::Reply`] if the reply has no such line, or its value cannot be parsed.
 pub fn value<T: std::str::FromStr>(
     command: &str,
     lines: &[String],
@@ -528,8 +528,8 @@ fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
         .position(|window| window == wanted)
 }
 
-/// Converts bytes to text, and removes the escape sequences of terminals and all control characters except tabs and the ends of
-/// lines: a terminal would act on them.
+/// Converts bytes to text without the escape sequences and control characters on which a terminal would act. Tabs and line feeds
+/// remain.
 pub fn plain(bytes: &[u8]) -> String {
     let mut text = Vec::with_capacity(bytes.len());
     let mut rest = bytes.iter();

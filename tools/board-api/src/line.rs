@@ -44,7 +44,8 @@ pub trait Board {
     }
 }
 
-/// Reads the output of `board` as [`Board::read`] does. Each call of `step` reads for at most the given number of milliseconds.
+/// Implements [`Board::read`] with calls of `step`. Each call reads for at most the given number of milliseconds, and may return
+/// without bytes.
 ///
 /// # Errors
 /// Those of `step`.

@@ -7,7 +7,7 @@ use virtual_flash::Flash;
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
-/// Clock cycles to simulate between two looks at the board.
+/// Number of clock cycles to simulate between two polls of the board.
 const SLICE: u64 = 1000;
 
 /// A simulated board with a UART.
@@ -92,7 +92,7 @@ pub trait Uart {
 #[derive(Debug, thiserror::Error)]
 #[error("expected {expected} within {cycles} cycles, found {got:?}")]
 pub struct Timeout {
-    /// Expected input.
+    /// The expected output or picture.
     pub expected: String,
     /// Time-out in cycles.
     pub cycles: u64,

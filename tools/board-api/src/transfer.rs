@@ -34,10 +34,10 @@ pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 /// Longest wait for bytes from the board in one read, in milliseconds of the board's time.
 const LOOK_MS: u64 = 2;
 
-/// Longest time between two looks at the line, in milliseconds of the board's time. A longer time means that this program was
-/// stopped; the rest does not count, because the bytes of that time have not been looked at.
+/// Longest time between two polls of the line that counts for the time-outs of a transfer, in milliseconds of the board's time.
+/// A longer time means that this program was stopped, and could not read the board's bytes.
 const MAX_STEP_MS: u64 = 500;
-/// Number of attempts of a transfer during which this program is stopped.
+/// Maximum number of attempts at a transfer. A transfer is repeated only if it failed after this program had been stopped.
 const ATTEMPTS: u32 = 5;
 
 /// Uploads a mesh under a name, by default `model`, and draws it.
@@ -59,7 +59,7 @@ pub fn upload<B: Board + ?Sized>(
 }
 
 /// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board requests them. Calls
-/// `on_line` with each line of the reply except `ready` and `ok`.
+/// `on_line` with each line of the reply except `present`, `ready` and `ok`.
 ///
 /// # Errors
 /// The transfer fails, or the firmware refuses the command.
@@ -147,7 +147,7 @@ fn announce_once<B: Board + ?Sized>(
 /// data the board finds their CRC-32 in the staging memory, and skips the transfer.
 ///
 /// # Errors
-/// [`TransferError::NoMemory`], or the data exceed the board's memory.
+/// [`TransferError::NoMemory`], or the board's reply names a range outside its main memory.
 pub fn stage<B: Board + ?Sized>(
     console: &mut Console<B>,
     data: &[u8],
@@ -169,7 +169,7 @@ pub fn stage<B: Board + ?Sized>(
 /// for `key`.
 ///
 /// # Errors
-/// [`TransferError::NoMemory`], or the key is unknown.
+/// [`TransferError::NoMemory`], the key is unknown, or the range is not in main memory.
 pub fn read_memory<B: Board + ?Sized>(
     console: &mut Console<B>,
     key: &str,

@@ -57,7 +57,7 @@ impl Clock for PageClock {
     fn wait(&self, _time: Duration) {}
 }
 
-/// The board and its page, which exist until the worker ends.
+/// The board, and its connection to the page.
 struct Page {
     session: Session<'static>,
     channels: &'static Channels,

@@ -1,6 +1,6 @@
 // The link to the board: a worker of this page, in which the board runs.
 
-// The message to the worker that the page has taken its last messages.
+// The message to the worker after the page has taken the worker's last messages.
 export const IS_TAKEN = null;
 
 // Calls `opened`, `received` with each message, and `closed` with a text for the user. Returns a function that sends a message: a text,

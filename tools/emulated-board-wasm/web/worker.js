@@ -1,7 +1,7 @@
 // The board in a worker: loads it, passes messages between it and the page, and runs it while it is behind the clock.
 import { IS_TAKEN } from "./link.js";
 
-// What the board delivers, as in src/lib.rs.
+// Kinds of messages that the board delivers, as in src/lib.rs.
 const TEXT = 0;
 const PICTURE = 1;
 const END = 2;
@@ -51,7 +51,7 @@ addEventListener("message", ({ data }) => {
   }
 });
 
-// A message to itself comes after those of the page that wait, without the least delay that timers have.
+// A message of the worker to itself is queued after the waiting messages of the page, and has no minimum delay, which timers have.
 const next = new MessageChannel();
 next.port1.onmessage = turn;
 

@@ -82,7 +82,7 @@ impl Bus {
         bytes.copied().map(u32::from_le_bytes)
     }
 
-    /// Loads the word that contains `address`, an address in main memory or outside it.
+    /// Loads the word that contains `address`.
     pub fn load(&mut self, address: u32, now: u64) -> Access {
         let address = address & !3;
         if let Some(word) = self.memory_word(address) {
@@ -100,8 +100,8 @@ impl Bus {
         }
     }
 
-    /// Fetches the word at `address`, a multiple of 4 outside the memories, as an instruction. The instruction cache covers all
-    /// addresses.
+    /// Fetches the word at `address`, a multiple of 4 outside the memories, as an instruction. A fetch reads a whole cache line at any
+    /// address.
     pub fn fetch(&mut self, address: u32, now: u64) -> Access {
         match place(address) {
             Target::Unused => self.time_out(LINE),

@@ -26,7 +26,7 @@ pub struct Cpu {
     asleep: bool,
 }
 
-/// Reason why [`Cpu::run`] returned before its limit.
+/// Reason why [`Cpu::run`] returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pause {
     /// The limit is reached, or a device was accessed.
@@ -350,7 +350,7 @@ struct End {
 }
 
 enum Reason {
-    /// The limit is reached, or the next instruction is in another page.
+    /// The limit is reached, the next instruction is in another page, or the decoded instructions were discarded.
     Page,
     /// A device was accessed.
     Device,

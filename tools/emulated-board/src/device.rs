@@ -16,7 +16,7 @@ pub trait Device {
 
     /// Processes all events up to the cycle `now`. Returns the cycle of the next event, or `u64::MAX` if there is none.
     ///
-    /// The bus calls this method after each access to the block, and at the cycle that the last call returned.
+    /// The bus calls this method before and after each access to the block, and at the cycle that the last call returned.
     fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64;
 
     /// Whether an enabled event is pending: the level of the block's interrupt line.

@@ -48,9 +48,9 @@ const BLOCKS: [(usize, Option<Interrupt>); 13] = [
     (digits::Digits::BASE, None),
 ];
 
-/// Index of the triangle engine in `WINDOWS`.
+/// Index of the triangle engine in `BLOCKS`.
 const TRIANGLE: usize = 9;
-/// Index of the raymarcher in `WINDOWS`.
+/// Index of the raymarcher in `BLOCKS`.
 const RAYMARCH: usize = 10;
 
 /// The blocks of the SoC.
@@ -108,7 +108,7 @@ impl Devices {
         }
     }
 
-    /// Resets the blocks at the CPU's request; the pins, the digits and the video timing keep their state.
+    /// Resets the blocks at the CPU's request; the input pins, the digits and the video timing keep their state.
     pub fn reset(&mut self) {
         self.controller = Controller::new();
         self.uart.reset();
@@ -217,7 +217,7 @@ impl Devices {
         self.lines
     }
 
-    /// Updates all interrupt lines, because the host may have connected or disconnected a device.
+    /// Updates all interrupt lines, because the host may have sent bytes to the UART or changed the levels of pins.
     pub fn look(&mut self) {
         for number in 0..BLOCKS.len() {
             self.look_at(number);

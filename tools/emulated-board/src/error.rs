@@ -16,12 +16,12 @@ pub enum Error {
         /// Number of bytes.
         length: usize,
     },
-    /// The frame on the monitor has another size.
+    /// The frame on the monitor has another width.
     #[error("frame on the monitor: expected {expected} pixels in a line, found {found}")]
     FrameWidth {
         /// Expected number of pixels in a line.
         expected: usize,
-        /// Number of pixels in a line.
+        /// Number of pixels in a line of the frame.
         found: usize,
     },
 }

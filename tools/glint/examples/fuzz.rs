@@ -32,7 +32,7 @@ struct Arguments {
     only: Option<u64>,
 }
 
-/// Number of consecutive inputs that a thread takes at a time. `Tally` holds the first input that no thread has taken.
+/// Number of consecutive inputs that a thread takes at a time. `Tally::next` is the first input that no thread has taken.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {

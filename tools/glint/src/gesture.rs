@@ -166,7 +166,7 @@ pub fn mask<B: Board + ?Sized>(
     let Dimensions([width, height]) = console::value(COMMAND, &lines, "mask")?;
     if !(width % 8 == 0 && width <= MAX_SIDE && height <= MAX_SIDE) {
         let expected =
-            format!("a mask of at most {MAX_SIDE} lines, each a multiple of 8 and as many pixels");
+            format!("a width and a height of at most {MAX_SIDE} pixels, the width a multiple of 8");
         let found = format!("{width} {height}");
         console.reset_transfer()?;
         return Err(console::unexpected(COMMAND, &expected, &found).into());

@@ -157,7 +157,7 @@ impl I2c {
         }
     }
 
-    /// Leaves a waiting state if a command is queued.
+    /// Leaves a waiting state if the next operation can begin.
     fn begin(&mut self, now: u64, due: bool) {
         let room = self.answers.len() < Block::ANSWER_PLACES as usize;
         let Some(operation) = self.operation() else {
@@ -324,7 +324,7 @@ impl I2c {
         if self.state == State::Failed || !self.rounds.repeats() || last {
             self.events.raise(ENDED);
         }
-        // The count wraps at the width of the field `batch`, which may have become smaller than the count.
+        // The field `batch` may have become smaller than the count; the count then wraps at the width of the field.
         let next = Rounds::default().with_batch(self.rounds_done + 1).batch();
         self.rounds_done = if last { 0 } else { next };
         if !self.rounds.repeats() {

@@ -1,4 +1,4 @@
-//! The SoC's controller, its identity block, and the controller of main memory.
+//! The SoC's controller and its identity block.
 
 use litex_pac::register::Value;
 use litex_pac::{BUILD_ID, constants, ctrl, identity, memories};
@@ -49,7 +49,7 @@ impl Device for Controller {
             ctrl::offset::RESET => {
                 let reset = ctrl::Reset::from_bits(value);
                 self.reset |= reset.soc_rst();
-                // Only a pulse resets the SoC; this bit holds the CPU in reset, which then cannot clear it.
+                // `soc_rst` is a pulse. `cpu_rst` is a level: it holds the CPU in reset, so the CPU cannot clear it.
                 self.holds_cpu = reset.cpu_rst();
             }
             ctrl::offset::SCRATCH => self.scratch = value,

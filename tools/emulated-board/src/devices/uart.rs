@@ -33,7 +33,7 @@ impl Uart {
         }
     }
 
-    /// Resets the UART. Bytes from the CPU are stored until the host reads them.
+    /// Resets the UART. Bytes from the CPU that the host has not read remain.
     pub fn reset(&mut self) {
         self.events = Self::new().events;
         self.received.clear();

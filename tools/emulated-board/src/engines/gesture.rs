@@ -112,8 +112,8 @@ impl GestureEngine {
         }
     }
 
-    /// Advances the sensor's clock to the cycle `now`. Returns the cycle in which the current frame ends, or in which a clock without edges
-    /// counts as stopped.
+    /// Advances the sensor's clock to the cycle `now`. Returns the cycle of the next event: VSYNC changes, the frame ends, or a clock
+    /// without edges counts as stopped.
     fn settle(&mut self, now: u64) -> u64 {
         self.update_wires(now);
         let Some(sensor) = &mut self.sensor else {

@@ -15,7 +15,7 @@ impl Parameters {
         Self { words: [0; WORDS] }
     }
 
-    /// Writes the register at `offset` in bytes. A write beyond the window has no effect.
+    /// Writes the register at `offset` bytes from the start of the window. A write beyond the window has no effect.
     pub fn set(&mut self, offset: u32, value: u32) {
         if let Some(word) = self.words.get_mut(offset as usize / 4) {
             *word = value;

@@ -14,7 +14,7 @@ const GUESS: &str = "serial";
 /// Shortest time-out of a read from the port; it keeps a loop of reads from using a whole CPU core.
 const SHORTEST: Duration = Duration::from_millis(1);
 
-/// Time without any byte taken by the port after which a write fails: as long as the slowest reply.
+/// Time after which a write fails if the port accepts no byte: as long as the slowest reply.
 const MAX_BLOCKED: Duration = Duration::from_millis(PATIENCE_MS);
 
 /// A board on a serial port with 8 data bits, no parity, 1 stop bit and no flow control.

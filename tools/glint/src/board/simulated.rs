@@ -51,7 +51,7 @@ pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
 /// on a serial port.
 ///
 /// # Errors
-/// As those of the functions for each board.
+/// Those of the function that builds the board.
 pub fn simulated(name: &BoardName, firmware: Option<&[u8]>) -> Result<Option<AnyBoard>, OpenError> {
     Ok(Some(match (name, firmware) {
         (BoardName::Emulated, Some(firmware)) => emulated(firmware)?.into(),

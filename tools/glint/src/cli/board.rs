@@ -36,7 +36,7 @@ const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 /// at once; Ctrl-] ends it and the board.
 #[derive(Args)]
 pub struct BoardArguments {
-    /// Symbolic link to the port to create, removed at the end; an earlier board's link is replaced.
+    /// Create this symbolic link to the port, and remove it at the end; an earlier link is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
     /// File that receives the port's path or the page's address as soon as the board is ready; an earlier file is removed at the
@@ -164,7 +164,7 @@ impl BoardArguments {
                 is_ended,
             );
         }
-        // A program need not print a prompt.
+        // Only a start with the BIOS shows a spinner, because firmware need not print the prompt that ends the spinner.
         let mut starting = self.has_bios().then(|| spinner("the board starts"));
         while let Event::Started = events.recv()? {
             starting = None;
@@ -185,7 +185,7 @@ enum Event {
 /// Reports the first prompt in the bytes from a board.
 fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8], &[u8]) + Send {
     let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);
-    // The end of the output, in which a prompt may have begun, and the receiver of the event until it is sent.
+    // The end of the output, in which a prompt may have begun, and the sender of the event until it has sent the event.
     let (mut heard, mut report) = (Vec::new(), Some(report));
     move |_, said| {
         if said.is_empty() || report.is_none() {

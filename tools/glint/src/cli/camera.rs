@@ -1,4 +1,4 @@
-//! The camera of the command line: the options of the table, and those that only the host has.
+//! The camera options of the command line: those of the console's table, and those that only the host has.
 
 use super::common::{bad_value, named};
 use super::messages::note;
@@ -20,7 +20,7 @@ const DEFAULT: &str = "4,30,60";
 /// Options of the camera beside those of the console's table.
 #[derive(Args)]
 pub struct CameraArguments {
-    /// A camera at the eye E along +y, turned to the right by YAW, down by PITCH, and about its direction by ROLL, in degrees.
+    /// A camera at the point E that looks along +y, turned right by YAW, down by PITCH, and about its direction by ROLL, in degrees.
     #[arg(
         long,
         value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
@@ -37,7 +37,7 @@ pub struct CameraArguments {
     up: Option<Axis>,
 }
 
-/// A frame of the subject, whose camera is that of its scene, or not set.
+/// The frame for which a camera is computed. The frame has the camera of its scene, or no camera yet.
 #[derive(Clone, Copy)]
 pub struct CameraSubject<'a> {
     pub frame: &'a Frame<'a>,

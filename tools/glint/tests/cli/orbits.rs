@@ -18,7 +18,7 @@ fn frames_of_png(path: &Path) -> Vec<Vec<u8>> {
     (0..count).map(|_| frame()).collect()
 }
 
-/// The frames of a GIF, and the duration of the first frame in 1/100 s.
+/// The frames of a GIF, and the duration of the last frame in 1/100 s.
 fn frames_of_gif(path: &Path) -> (Vec<Vec<u8>>, u16) {
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);

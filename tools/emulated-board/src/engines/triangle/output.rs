@@ -121,7 +121,7 @@ impl Output {
         self.exceptions.limit = room.exception_limit as usize;
     }
 
-    /// The band lists of a picture of this size, to which a pass appends.
+    /// The band lists of a picture of this size and the list of exceptions, to which a pass appends.
     pub fn parts(&mut self, size: Size) -> (ListWriter<'_>, &mut Exceptions) {
         let lists = ListWriter::new(
             &mut self.descriptors,

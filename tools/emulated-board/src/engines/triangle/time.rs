@@ -88,7 +88,7 @@ impl RasterTime {
         self.band += u64::from(groups).max(ENTRY);
     }
 
-    /// Ends a band; its flush writes `words` words, and takes one more cycle for each empty line.
+    /// Ends a band; its flush writes `words` words in one cycle each, and takes at least one cycle per line.
     pub fn end_band(&mut self, size: Size, words: u32) {
         self.cycles += self.band.max(self.flush) + BAND;
         self.band = 0;

@@ -17,7 +17,8 @@ pub struct Walk {
     /// Index of the first word after the mesh.
     past: u64,
     has_begun: bool,
-    /// Whether the iterator has stopped at a chunk that has no vertices or extends beyond the mesh's end.
+    /// Whether the iterator has stopped at a chunk that has no vertices, has more than [`MOST`] vertices or triangles, or extends
+    /// beyond the mesh's end.
     pub is_damaged: bool,
     /// Number of words read.
     pub words: u32,
@@ -43,7 +44,7 @@ impl Walk {
         }
     }
 
-    /// The next chunk; `None` after the last chunk. A mesh has at least one chunk.
+    /// The next chunk; `None` after the last chunk and at a damaged chunk. A mesh has at least one chunk.
     pub fn chunk(&mut self, ram: &MainMemory) -> Option<Chunk> {
         if self.is_damaged || self.has_begun && self.header >= self.past {
             return None;
