@@ -27,7 +27,7 @@ impl fmt::Display for Feature {
         let name = self.name;
         write!(
             f,
-            "this firmware lacks the feature {name}, expected that of `cargo xtask firmware`, or of one for scenes with `--features {name}`"
+            "this firmware lacks the feature {name}, expected a build by `cargo xtask firmware`, or for scenes with `--features {name}`"
         )
     }
 }
@@ -51,7 +51,7 @@ macro_rules! features {
 features! {
     /// Meshes, and the options for triangles.
     MESH = "mesh";
-    /// Several meshes in a picture, each with its own position.
+    /// Several meshes in a picture, each with its own model matrix.
     OBJECT = "object";
     /// Edges of a mesh.
     EDGES = "edges";

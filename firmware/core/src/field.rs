@@ -1,9 +1,9 @@
 //! Distance fields: scenes defined by the distance of every point from a solid, instead of a mesh.
 //!
 //! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`] checks the
-//! numbers. Each kind of field has one module here. The module defines the kind's name and its parameters with their ranges
-//! ([`FieldKind`]). It also evaluates distances from the solid in fixed-point arithmetic, bit for bit as the gateware
-//! ([`FlatSolid`], [`FixedSpheres`]). The lists in the module `primitive` name all kinds (docs/adding-a-field.md).
+//! numbers. The modules of `primitive` define each kind's name and its parameters with their ranges ([`FieldKind`]). They also evaluate
+//! distances from the solid in fixed-point arithmetic, bit for bit as the gateware does ([`FlatSolid`], [`FixedSpheres`]). The lists in
+//! `primitive` name all kinds except unions (docs/adding-a-field.md).
 
 use core::fmt;
 
@@ -40,7 +40,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Whether the field has spheres; if so, its distances are in the Euclidean norm, otherwise in the maximum norm.
+    /// Whether the field has spheres; if so, the directions of rays have length 1 in the Euclidean norm, otherwise in the maximum norm.
     pub const fn is_round(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.is_round(),

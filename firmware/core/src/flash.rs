@@ -90,7 +90,8 @@ impl<'a> Item<'a> {
 
     /// The bytes.
     ///
-    /// # Errors The checksum of the bytes is wrong.
+    /// # Errors
+    /// The checksum of the bytes is wrong.
     pub fn checked(&self) -> Result<&'a [u8], FlashError> {
         let found = crc32(self.bytes);
         expect(
@@ -104,7 +105,8 @@ impl<'a> Item<'a> {
 
     /// The text of a scene or a list, whose lines fit a line of the console.
     ///
-    /// # Errors The checksum is wrong, or the bytes are not ASCII text with lines of this length.
+    /// # Errors
+    /// The checksum is wrong, or the bytes are not ASCII text with lines of this length.
     pub fn text(&self) -> Result<&'a str, FlashError> {
         let bytes = self.checked()?;
         let start = CONTENTS + self.offset;

@@ -224,7 +224,8 @@ impl<B: I2c> ImageSensor<B> {
     /// Finds a known chip by its address and product number. An unknown chip at one address does not end the search for a known
     /// chip.
     ///
-    /// # Errors There is no chip, or only unknown chips.
+    /// # Errors
+    /// No chip answers, only unknown chips answer, or the bus fails.
     pub async fn find(&mut self) -> Result<Model, Error<B::Error>> {
         let mut reason = Error::Absent;
         for model in Model::ALL {

@@ -1,7 +1,6 @@
-//! Code shared by firmware and host: cameras, including those that show whole meshes, trigonometry, the motion sensor and its
-//! attitude, hand gestures and the image sensor, distance fields and lights, the formats of meshes and flash images, wireframe
-//! programs, transfers over a serial line, the console's grammar, scenes, the demo of a board without a host, and cooperative
-//! tasks.
+//! Code shared by firmware and host: cameras, lights, placements of objects, trigonometry, the motion sensor and its attitude, hand
+//! gestures and the image sensor, distance fields, built-in meshes, the formats of meshes and flash images, wireframe programs, transfers
+//! over a serial line, the console's grammar, the demo of a board without a host, and cooperative tasks.
 //!
 //! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]

@@ -1,6 +1,6 @@
 //! Meshes in memory, files and uploads (docs/formats/mesh.md, "Mesh in memory").
 //!
-//! [`Mesh::new_checked`] checks every byte once and returns a view whose accessors do not fail.
+//! [`Mesh::new_checked`] checks the bytes of a mesh once, and returns a view whose accessors do not fail.
 
 mod checksum;
 #[cfg(feature = "alloc")]

@@ -30,7 +30,8 @@ pub struct MeshPass<'a> {
 }
 
 impl MeshPass<'_> {
-    /// Writes the registers of the pass, as [`TriangleEngine::prepare_geometry`].
+    /// Writes the registers of the pass with [`TriangleEngine::prepare_geometry`]. The previous pass must have ended, or have been
+    /// started at least 128 clock cycles ago.
     pub fn prepare(&self, engine: &mut TriangleEngine) -> Prepared {
         let frame = self.frame;
         let light = self.light;

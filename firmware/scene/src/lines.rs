@@ -95,7 +95,8 @@ impl<'l> Line<'l> {
 
     /// Applies the line to `scene`, unless it is a motion.
     ///
-    /// # Errors The errors of [`Scene::apply`].
+    /// # Errors
+    /// The errors of [`Scene::apply`].
     pub fn apply(&self, scene: &mut Scene, board: &mut dyn Board) -> Result<(), SettingError<'l>> {
         match self {
             Self::Option(setting) => scene.apply(setting, board)?,

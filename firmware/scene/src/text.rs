@@ -58,7 +58,8 @@ impl<T: Display> Display for OrDefault<T> {
 impl Scene {
     /// Writes an option in the console's form.
     ///
-    /// # Errors The errors of `out`.
+    /// # Errors
+    /// The errors of `out`.
     pub fn show(&self, option: OptionName, out: &mut dyn Write) -> fmt::Result {
         self.write_option(option, None, out)
     }
@@ -91,7 +92,8 @@ impl Scene {
     /// Writes the console commands that change the scene `from`, which has no objects, to this scene. Steps of the wireframe are
     /// left out.
     ///
-    /// # Errors The errors of `out`.
+    /// # Errors
+    /// The errors of `out`.
     pub fn write_lines(&self, from: &Self, out: &mut dyn Write) -> fmt::Result {
         for &option in OptionName::ALL {
             if !matches!(option, OptionName::Field | OptionName::Edges) {

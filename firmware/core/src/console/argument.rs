@@ -86,7 +86,8 @@ impl<'a> Reader<'a> {
         &mut self.words
     }
 
-    /// Rejects the last word that was taken: stores the error that `error_of` returns for this word.
+    /// Rejects the last word that was taken: stores the error that `error_of` returns for this word, or else that the word is not
+    /// accepted for `parameter`.
     #[cold]
     #[inline(never)]
     fn reject_word(&mut self, parameter: &'static Parameter, error_of: ErrorOf) {

@@ -273,7 +273,8 @@ impl LineEditor {
 
     /// Clears the terminal's line, and writes prompt and line again.
     ///
-    /// # Errors The errors of `echo`.
+    /// # Errors
+    /// The errors of `echo`.
     pub fn redraw(&self, echo: &mut dyn Write) -> fmt::Result {
         write!(echo, "\r\x1B[K{PROMPT}{}", self.before())?;
         self.write_tail(echo)

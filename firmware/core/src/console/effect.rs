@@ -77,7 +77,7 @@ impl<'a> Command<'a> {
 }
 
 impl<'a> Setting<'a> {
-    /// All options affect the picture of a scene, except the text over the picture, which belongs to no scene.
+    /// Every setting changes an option of the scene, except `overlay`, which belongs to no scene, and `object list`.
     const fn effect(&self) -> Effect<'_, 'a> {
         if let Self::Overlay { .. }
         | Self::Object {

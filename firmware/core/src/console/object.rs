@@ -21,7 +21,7 @@ pub enum ObjectAction<'a> {
         /// Its placement and colour.
         place: Place,
     },
-    /// Move, turn, scale or colour an object.
+    /// Move, rotate, scale or colour an object, or multiply it by a matrix.
     Change {
         /// Number of the object, from 1.
         number: u32,

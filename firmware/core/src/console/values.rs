@@ -300,7 +300,7 @@ group! {
 }
 
 group! {
-    /// A camera given by its eye and its direction of view, with z up on the screen.
+    /// A camera given by its eye and its direction of view, and by the direction up on the screen, by default z.
     LookAt: camera::View = (ex: Q32_32, ey: Q32_32, ez: Q32_32, gx: Q32_32, gy: Q32_32, gz: Q32_32, up: Option<Up>)
         => camera::View::towards([ex, ey, ez], [gx, gy, gz], up.unwrap_or(camera::UP)).map_err(ValueError::View)
 }

@@ -7,7 +7,7 @@ use crate::fixed::U4_28;
 use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb};
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
-/// normal, and the background is white. Lights and background also apply to meshes.
+/// normal, and the background is white. Lights, ambient light and background also apply to meshes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
     /// Material.

@@ -63,9 +63,10 @@ impl Default for Place {
 }
 
 impl Place {
-    /// Parses operations, each of which applies to the result of those before it, up to the end of `words`.
+    /// Parses operations up to the end of `words`. Each operation applies to the result of the operations before it.
     ///
-    /// # Errors The text has another form, or a matrix is out of range or singular (the error names its row).
+    /// # Errors
+    /// The text has another form, or a matrix is out of range or singular (the error names its row).
     pub fn parse<'a>(words: &mut Words<'a>) -> Result<Self, PlaceError<'a>> {
         let mut place = Self::default();
         while let Some(word) = words.next() {
@@ -81,7 +82,9 @@ impl Place {
 
     /// Parses the arguments of one operation, and applies the operation to the default placement.
     ///
-    /// # Errors The errors of [`parse`](Self::parse). Not inlined, so that the firmware contains one copy.
+    /// # Errors
+    /// The errors of [`parse`](Self::parse).
+    // Not inlined, so that the firmware contains one copy.
     #[inline(never)]
     pub fn of<'a>(operation: Operation, words: &mut Words<'a>) -> Result<Self, PlaceError<'a>> {
         let mut place = Self::default();

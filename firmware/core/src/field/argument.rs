@@ -15,7 +15,8 @@ pub trait Arguments<'a> {
 
     /// Returns the next number, after checking that it is an integer within `range` (both ends included).
     ///
-    /// # Errors The errors of [`number`](Self::number).
+    /// # Errors
+    /// The errors of [`number`](Self::number).
     fn integer(&mut self, name: &'static str, range: [u8; 2]) -> Result<u8, FieldError<'a>>;
 
     /// Returns the next number as an angle, which is stated in degrees; 0 if the number is missing.

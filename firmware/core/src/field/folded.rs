@@ -1,6 +1,6 @@
-//! Coordinates of a point that are mirrored and exchanged (folded) while the distance of a solid is evaluated. Folding does not
-//! change the point's maximum norm. Each coordinate carries its direction in the world, which gives the normal of the nearest
-//! face at the end.
+//! Coordinates of a point that are mirrored and exchanged (folded) while the distance of a solid is evaluated. Folding preserves
+//! distances in the maximum norm. Each coordinate carries its direction in the world, which gives the normal of the nearest face at the
+//! end.
 
 use super::surface::Surface;
 

@@ -26,7 +26,7 @@ pub trait FieldKind: Sized {
     /// Whether the faces are perpendicular to the diagonals instead of the axes.
     const OCTANTS: bool = false;
 
-    /// Reads the parameters of a field of this kind from `arguments`, which parses a text or generates random numbers.
+    /// Reads the parameters of a field of this kind from `numbers`, which parses a text or generates random numbers.
     ///
     /// # Errors
     /// A number is missing, malformed or out of range.
@@ -47,7 +47,7 @@ pub trait FieldKind: Sized {
 pub struct Placed<S> {
     /// The solid.
     pub solid: S,
-    /// Field units per world unit: 2 to 256.
+    /// Field units per world unit: 4 to 256.
     pub scale: Q32_32,
     /// Half the sides of the solid's bounding box, whose centre is the origin, in world units; `None` for an unbounded solid.
     pub extent: Option<[Q32_32; 3]>,
@@ -65,7 +65,7 @@ pub fn scale_of(period: Q32_32) -> Q32_32 {
 }
 
 impl<S> Placed<S> {
-    /// Scales a solid without a period whose bounding box has the half sides `extent`.
+    /// Adds the scale of a field without a period, and half the sides of the bounding box in world units, to a solid.
     pub const fn bounded(solid: S, extent: [Q32_32; 3]) -> Self {
         Self {
             solid,
@@ -74,7 +74,7 @@ impl<S> Placed<S> {
         }
     }
 
-    /// Scales an unbounded solid without a period.
+    /// Adds the scale of a field without a period to an unbounded solid.
     pub const fn endless(solid: S) -> Self {
         Self {
             solid,

@@ -72,10 +72,10 @@ impl Surface {
 /// The distance of a point from a solid, and the surface nearest to the point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldSample {
-    /// Distance, s10.12. For a flat field the distance is in the maximum norm: a cube about the point contains no surface if half
-    /// its side is this distance. For a round field the distance is in the Euclidean norm.
+    /// Distance, s10.12. The distance from a flat solid is in the maximum norm: a cube about the point contains no surface if half its
+    /// side is this distance. The distance from spheres is in the Euclidean norm.
     pub distance: i32,
-    /// The surface of a solid that is nearest to a point.
+    /// The surface nearest to the point.
     pub surface: Surface,
 }
 

@@ -49,7 +49,8 @@ impl fmt::Display for FlashError {
 impl FlashError {
     /// Writes the found content.
     ///
-    /// # Errors The errors of `f`.
+    /// # Errors
+    /// The errors of `f`.
     pub fn write_found(&self, f: &mut impl fmt::Write) -> fmt::Result {
         let found = self.found;
         match self.expected {

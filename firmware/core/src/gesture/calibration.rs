@@ -84,7 +84,8 @@ const MARGIN: u8 = 4;
 /// both sides by half of its span, but at least by 4. The values in the lowest and highest tenth are edges of the hand,
 /// highlights and noise.
 ///
-/// # Errors The box shows several colours, or much of the background has the hand's colour too.
+/// # Errors
+/// The box shows several colours, or much of the background has the hand's colour too.
 pub fn calibrate(
     columns: u16,
     rows: u16,

@@ -244,7 +244,8 @@ impl Control {
 
     /// Result of the last frame: the hand, or the reason why the frame shows no hand.
     ///
-    /// # Errors The last frame did not show the hand.
+    /// # Errors
+    /// The last frame did not show the hand.
     pub const fn seen(&self) -> Result<Blob, Doubt> {
         self.seen
     }

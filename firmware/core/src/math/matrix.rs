@@ -61,7 +61,9 @@ impl Matrix {
     /// Entries are within ±[`MAX_ENTRY`], the translation is within ±[`MAX_TRANSLATION`], every row is at least [`MIN_ROW`] long, and
     /// the sine of the angle between a row and the plane or line through the rows before it is at least 2^−10.
     ///
-    /// # Errors The first row that violates a condition. Not inlined, so that the firmware contains one copy.
+    /// # Errors
+    /// The first row that violates a condition.
+    // Not inlined, so that the firmware contains one copy.
     #[inline(never)]
     pub fn new_checked(
         linear: [[Q8_24; 3]; 3],
@@ -340,10 +342,9 @@ impl Normals {
         unit::<14>(turned).map_or([0; 3], |x| x.map(|x| x as i16))
     }
 
-    /// A divided by its scale, Q2.30, if A is a rotation or reflection times a uniform scale within 2^−12; otherwise `None`. Its
-    /// transpose transforms the direction of a light to the coordinates of the mesh, so the normals of the mesh need no
-    /// transformation. Rounding errors of the entries may also cause `None` for a product of matrices with a uniform scale below
-    /// 1/128.
+    /// A divided by its scale, Q2.30, if A is a rotation or reflection times a uniform scale, within a tolerance; otherwise `None`. Its
+    /// transpose transforms the direction of a light to the coordinates of the mesh, so the normals of the mesh need no transformation.
+    /// Rounding errors of the entries may also cause `None` for a product of matrices with a uniform scale below 1/128.
     pub const fn rotation(&self) -> Option<&[[i32; 3]; 3]> {
         self.rotation.as_ref()
     }

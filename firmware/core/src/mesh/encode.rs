@@ -34,7 +34,8 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
 /// Encodes an indexed mesh with optional attributes, in the order of their numbers. Each attribute has one element per vertex.
 /// Missing elements are 0.
 ///
-/// # Errors The errors of [`encode`].
+/// # Errors
+/// The errors of [`encode`].
 pub fn encode_with(
     vertices: &[Vertex],
     triangles: &[IndexedTriangle],

@@ -160,7 +160,7 @@ impl Measurement {
 pub enum Error<E> {
     /// Error of the I2C bus.
     Bus(E),
-    /// No chip, with the contents of its register WHO_AM_I.
+    /// The register WHO_AM_I has a value that no chip has, with this value.
     Identity(u8),
     /// A register does not keep the written value.
     Register {
@@ -320,7 +320,8 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// Starts to read the chip every `period` µs. A read is one burst, which takes 0.45 ms at 400 kHz; during a burst the chip
     /// keeps its data constant.
     ///
-    /// # Errors The bus fails.
+    /// # Errors
+    /// The bus fails.
     pub fn begin_polling(&mut self, period: u32) -> Result<(), Error<B::Error>> {
         Ok(self.bus.begin(PeriodicRead {
             address: self.address,
@@ -334,7 +335,8 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. The sample is `None` if an
     /// earlier read already returned it.
     ///
-    /// # Errors The bus fails, or the chip vanishes within the sample.
+    /// # Errors
+    /// The bus fails, or the chip vanishes within the sample.
     pub async fn poll(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
         let mut bytes = Burst::default();
         let time = self.bus.next(&mut bytes).await?;

@@ -49,8 +49,7 @@ pub struct FixedSpheres {
 const MOST: i32 = (1 << 21) - 1;
 
 impl FixedSpheres {
-    /// Returns the distance to the nearest sphere, and the number of this sphere. If several spheres are equally near, the first
-    /// one is returned.
+    /// Returns the distance of a point from the nearest sphere, and the number of this sphere; of equally near spheres the first.
     pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         let mut nearest = FieldSample {
             distance: MOST,
@@ -80,8 +79,8 @@ impl FixedSpheres {
 }
 
 /// Table of √x for x from 1 to 4 in steps of 1/128: the root, and the difference between the next root and this one. The index is
-/// 128·x; the roots have 18 fraction bits and are rounded down. Linear interpolation between entries never exceeds the exact
-/// root; the relative error is at most 2^−19.
+/// 128·x; the roots have 18 fraction bits and are rounded down. Linear interpolation between entries never exceeds the exact root; its
+/// relative error is at most 2.3·2^−18.
 const ROOTS: [(u32, u32); 512] = roots();
 
 const fn roots() -> [(u32, u32); 512] {

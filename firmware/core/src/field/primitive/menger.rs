@@ -74,9 +74,9 @@ impl FlatSolid for FixedSponge {
     /// level's side S onto one cube about the origin, and the level's holes onto the outside of this cube.
     ///
     /// S − |x| replaces every coordinate x; it is above S/2 if x is in the middle third. A point is in a hole if at
-    /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2: all points outside
-    /// the holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations preserve the maximum
-    /// norm.
+    /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2 if it is above S/2: all
+    /// points outsidethe holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations preserve the
+    /// maximum norm.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> FieldSample {
         let mut p = Folded::of(point);

@@ -323,7 +323,8 @@ pub fn attitude(record: Record) -> Option<Quaternion> {
 /// Replays a log in place: replaces each sample by the attitude after this sample. Returns the numbers of samples by their effect
 /// on the attitude.
 ///
-/// # Errors The bytes are not a log; they are not modified.
+/// # Errors
+/// The bytes are not a log; they are not modified.
 pub fn replay(bytes: &mut [u8]) -> Result<Counts, LogError> {
     let (setup, records) = open(bytes)?;
     let mut tracker = setup.tracker();

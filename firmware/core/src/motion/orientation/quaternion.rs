@@ -4,7 +4,7 @@ use crate::cordic::to_polar;
 use crate::fixed::{Q2_30, Turns, wide};
 use crate::trig::sin_cos_q30;
 
-/// An attitude: a Hamilton quaternion that maps body to world, of length 1 within 2^−29.
+/// An attitude: a Hamilton quaternion that maps body to world, of length 1 within 2^−28.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Quaternion {
     /// The components w, x, y, z in units of 2^−30.

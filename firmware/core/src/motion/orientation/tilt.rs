@@ -33,7 +33,7 @@ const MOST: u32 = 3;
 /// Smallest reading that shows the direction of gravity, as a part of a g: 1/2. The constant is the divisor.
 const LEAST: u64 = 2;
 
-/// What a reading says of the direction of gravity at the start.
+/// Use of a reading as the direction of gravity at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FirstReading {
     /// The reading is near the direction of gravity.
@@ -101,7 +101,7 @@ impl Tilt {
         square <= self.largest && !a.into_iter().any(is_end)
     }
 
-    /// What a reading says of the direction of gravity at the start.
+    /// Judges the use of a reading as the direction of gravity at the start.
     #[cold]
     #[inline(never)]
     pub(super) fn judge(&self, reading: [i16; 3]) -> FirstReading {
