@@ -1,7 +1,7 @@
 // Proof of band_entry, which places each triangle at its first row in a band, with any pattern of valid and ready on its input
 // and output. Triangles are numbered, and every field of a triangle contains its number. Each triangle with a row in its band is output
 // once, in order, with all its fields and computed results; a triangle without such a row is never output. Every wait of a triangle is
-// bounded. A bit of `holds` is high exactly while a triangle of its band is inside the module.
+// bounded. A bit of `holds` is high while a triangle with a row in its band is inside the module.
 
 `default_nettype none
 

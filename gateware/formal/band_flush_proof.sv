@@ -2,9 +2,10 @@
 // has any of four rows in any spans (ranges of rows), and four words may be requested at a time. Back-pressure and restarts occur at any
 // time.
 //
-// Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. The expected words are therefore:
-// first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. After the flush these rows must
-// be clear, and the other rows must not be clear. The model of the bank has the latencies of band_bank; a cleared row loses its pixels.
+// Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. The expected words are therefore the
+// colours of the rows in the spans, in order, each once, and both halves of each row's depths, after its colours. After the flush these
+// rows must be clear, and the other rows must not be clear. The model of the bank has the latencies of band_bank; a cleared row loses its
+// pixels.
 
 `default_nettype none
 

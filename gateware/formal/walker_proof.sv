@@ -1,5 +1,5 @@
 // Proof that the walker visits the correct groups (eight neighbouring pixels of a line) of each triangle, with any edge functions
-// and any pattern of valid and ready on both sides. Triangles are numbered in their colour; their bounds are up to three groups
+// and any pattern of valid and ready on both sides. The colour of a triangle is its number; its bounds are up to three groups
 // wide and two lines high.
 //
 // Groups are output in the order of the accepted triangles, each at most once, within the lines and bounds of their triangle. If no edge

@@ -1,6 +1,6 @@
 // The band buffer: block RAM for colour and depth of a band (a horizontal strip of the picture, at most 15,360 pixels), shared
-// by all renderers. While one band is drawn, the previous band is flushed to memory. The flush only writes words of a line that were drawn
-// in this frame or in the last frame of the same frame buffer.
+// by all renderers. While one band is drawn, the previous band is flushed to memory. Of each line, the flush only writes the words from the
+// first to the last word that was drawn in this frame or in the last frame of the same frame buffer.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
 //   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │
@@ -90,8 +90,8 @@ module band_buffer #(
 );
     localparam int unsigned ROW_BITS = 11;
 
-    // `drawn` is the number of the colour bank that is drawn; the other bank is flushed. `closing` is high while the band waits for its
-    // last groups and for the end of the flush. `swap` is high in the clock in which the banks are exchanged.
+    // `drawn` is the number of the colour bank that is drawn; the other bank is flushed. `closing` is high while the end of the band waits
+    // for the band's last groups and for the flush of the previous band. `swap` is high in the clock in which the banks are exchanged.
     logic drawn, closing, swap;
 
     // State of band_pipe, which draws, and its signals to and from the memories.
@@ -218,7 +218,7 @@ module band_buffer #(
         for (int i = 0; i < 8; i++) ones = ones + 4'(lanes[i]);
     endfunction
 
-    // Masks of the covered and drawn pixels, and the other events, one clock before they leave the module.
+    // Masks of the covered and drawn pixels, and the other events: registered, so the events leave the module one clock late.
     logic [7:0] covered_mask, drawn_mask;
     logic       group_taken, was_held, waited, waited_for_flush;
 

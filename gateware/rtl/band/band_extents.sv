@@ -16,14 +16,15 @@
 // must therefore not be drawn.
 //
 // `start` (one clock, not while `busy` or `sweep` is high) plans the flush of the band that has just been drawn. From the next clock on,
-// `drawn` must select the other bank. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line` of the picture. For
-// every non-empty line, in order, the output has a span: the first and the last row to write in the band buffer. With `whole` every line
-// has a span of all its rows. `busy` falls when the last span has been taken. At this time the extents of the lines have been moved from
-// `now` to `last`. Latency 6 clocks from `start` to the first span; throughput one line per clock, empty or not.
+// `drawn` must select the other bank. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line`
+// of the picture. For every line whose union is not empty, in order, the output has a span: the first and the last row of the band buffer
+// to write. With `whole` every line has a span of all its rows. `busy` falls when the last span has been taken. At this time the extents of
+// the lines have been moved from `now` to `last`. Latency 6 clocks from `start` to the first span; throughput one line per clock, empty or
+// not.
 //
-// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a running plan. After a sweep
-// the extents in `last` of the lines of this plan are undefined, after a reset the extents of all lines. The next band with any of these
-// lines must be `whole`.
+// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a running plan. After a sweep,
+// `last` is undefined for the lines of the cancelled plan; after a reset, for all lines. The next band with any of these lines must be
+// `whole`.
 
 `default_nettype none
 

@@ -9,12 +9,12 @@
 // luminance becomes red, the right luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the
 // right luminance green and blue. The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read
 // again after its colours: the depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses
-// `depth_base` + 2r and `depth_base` + 2r + 1. Words are output in the order of their addresses, so the DDR3 memory rarely has to open
-// another bank.
+// `depth_base` + 2r and `depth_base` + 2r + 1. Colour words are output in the order of their addresses, and so are depth words, so the DDR3
+// memory rarely has to open another row.
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
-// word per clock unless spans or memory are slower; the first word is output 6 clocks after the first span is taken.
+// word per clock unless spans or memory are slower; the first word is output 7 clocks after the first span is taken.
 //
 // Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A FIFO entry is reserved before
 // a row is read, so `out_ready` may stay low for any time.

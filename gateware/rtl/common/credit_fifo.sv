@@ -34,7 +34,7 @@ module credit_fifo #(
     localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2);
 
     // Free credits. There are DEPTH + 1 credits, because of the FIFO's output register. The count is one clock late, so `credit` already
-    // falls at the last credit. This credit is for an item that is sent before the previous item has been counted.
+    // falls when one credit is free: it is for an item that is sent before the previous item has been counted.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 

@@ -6,12 +6,12 @@
 // Throughput one word per clock.
 //
 // The DDR3 memory takes four clocks to switch to another bank, and a dozen to switch between writes and reads. A client is therefore
-// served in bursts: a burst ends when the client has no request or its FIFO is full, and a new burst begins when half of the FIFO is
-// empty. Other clients are served between the bursts.
+// served in bursts: it keeps its turn until it has no request or all entries of its FIFO are reserved. In the second case it is served
+// again when half of the entries are free.
 //
 // Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client, or 4 with BLOCK. `ask_ready` comes directly from
 // registers, because the ready of the memory's command is the end of a long path in LiteDRAM. `drop`, held until `idle`, cancels all
-// requests: no further commands are sent, and requested words that memory has not yet returned are discarded.
+// requests: from the next clock on no address is accepted, and the words of accepted addresses are discarded.
 //
 //   ask ──┐           ┌──▶ skid_buffer ──▶ command
 //   ask ──┼──▶ turn ──┤
@@ -128,7 +128,7 @@ module read_port #(
         assign ask_ready[i] = moves && has_turn;
         assign asks         = ask_valid[i] && ask_ready[i];
 
-        // An entry counts as free one clock after its word has left, so that the path of `data_ready` ends at the FIFO.
+        // `room` includes an entry one clock after its word has left the FIFO: the register `taken` ends the timing path of `data_ready`.
         always_ff @(posedge clk) begin
             taken <= data_valid[i] && data_ready[i];
             room     <= room + (asks == taken ? '0 : asks ? '1 : ROOM_BITS'(1));

@@ -71,8 +71,8 @@ module write_port #(
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // `gathered` is the number of words whose command has not been taken, `waiting` the number of words whose data memory has not
-    // taken. Both are updated one clock late, so neither is ever too low, and a burst does not end before a command has been taken.
+    // `gathered` is the number of words whose command memory has not taken, `waiting` the number of words whose data memory has not
+    // taken. Both are reduced one clock late, so neither is ever too low, and a burst does not end before its last command is taken.
     logic [COUNT_BITS-1:0] gathered, waiting, waiting_next;
 
     assign cmd_valid    = address_valid && bursting;

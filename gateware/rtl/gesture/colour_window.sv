@@ -3,8 +3,8 @@
 //
 //   pixel ─▶ green's share ─▶ + red's ─▶ + blue's ─▶ two channels ─▶ mark
 //
-// A share is the product of a constant and a colour of 5 or 6 bits. The table of these products takes one LUT per bit, which also contains
-// that bit's adder. Latency 5 clocks, throughput one pixel per clock.
+// A share is the product of a constant and a colour of 5 or 6 bits. The table of these products takes one LUT per bit, which for red and
+// blue also contains that bit's adder. Latency 5 clocks, throughput one pixel per clock.
 
 `default_nettype none
 

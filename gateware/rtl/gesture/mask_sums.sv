@@ -2,7 +2,7 @@
 // of the products of columns and lines. `results` holds the values of the last whole frame.
 //
 // `kept`, `x` and `y` are sampled in every clock. A frame ends with `frame`, at least one clock after its last pixel and at least four
-// clocks before the next `frame`; if `whole` is high in this clock, the frame's sums are in `results` three clocks later, when `latched` is
+// clocks before the next `frame`; if `whole` is high in this clock, the frame's sums are in `results` two clocks later, when `latched` is
 // high. No sum of a frame of up to 1280x720 pixels overflows.
 
 `default_nettype none

@@ -2,7 +2,7 @@
 // opening (docs/formats/gesture.md, "Gestures").
 //
 //   marked    . M . M M M M . .        reach 2
-//   run       0 1 0 1 2 3 3 0 0        marked pixels before this clock, at most 15
+//   run       0 0 1 0 1 2 3 4 0        marked pixels immediately before this pixel, at most 15
 //   full      . . . . . F F . .        the last of three marked pixels in a row
 //   kept      . . . . . K K K K        for the column two to the left: the pixels of the run
 //
@@ -23,7 +23,7 @@ module run_filter (
     output logic [10:0]               out_x,
     output logic [10:0]               out_y
 );
-    // Number of further clocks in which pixels are kept.
+    // `more` is the number of further clocks in which pixels are kept.
     logic [3:0] run, more;
     logic       moves, full;
 

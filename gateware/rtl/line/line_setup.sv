@@ -52,7 +52,7 @@ module line_setup (
     logic signed [20:0] difference;
     // Whether the segment runs backward, and the axis along which it is longer.
     logic               left, up, x_major, back_major, back_minor;
-    // Distances of the end points: |dx| and |dy|, then along the major and the minor axis.
+    // Distances between the end points: |dx| and |dy|, then along the major and the minor axis.
     logic [19:0]        major, minor;
     logic signed [20:0] fall;
 

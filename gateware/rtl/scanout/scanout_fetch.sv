@@ -5,8 +5,8 @@
 // in the clock in which it arrives.
 //
 // Work side: `request` is a level, which holds with `line` and `slot` until `done` is high for one clock. While `enable` is low, a request
-// ends at once without reading memory. A request that is withdrawn early ends without `done`. Latency: 3 clocks to the first command, 1
-// clock from the last word to `done`.
+// ends at once without reading memory. A request that is withdrawn early ends without `done`. Latency: 2 clocks from `request` to the first
+// command, 1 clock from the last word to `done`.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 //   2. otherwise, if the next output line is the first one that needs this source line, an underflow occurs: the shown slot is shown again,
 //      or black if no slot has been shown in this frame. Later output lines of the same source line check the slot again;
 //   3. if the hidden slot is free, the source line after the needed source line is requested, even after an underflow. During the vertical
-//      blanking, line 0 is requested as soon as the parameters of the next frame are latched (`frame_begun`).
+//      blanking, line 0 is requested at the first tick after the parameters of the next frame are latched (`frame_begun`).
 //
 // A slot is written only while it is hidden, and a frame only shows lines requested after its vblank, so the screen never mixes frames. A
 // slow fetch delays later fetches, but never the video timing. `fetch_line` and `fetch_slot` are stable from `fetch` until `fetch_busy`

@@ -146,8 +146,8 @@ module binner #(
         endcase
     end
 
-    // Computes the band of a row in two clocks. The row is the first row of the descriptor at the input while `top_comes[2]` is high, and
-    // the descriptor's last row from the first LOOK clock on. In the smallest picture, which has few bands, comparisons determine the band.
+    // Computes the band of a row in two clocks. `row_band` is the band of the descriptor's first row while `top_comes[2]` is high, and of
+    // its last row from the first LOOK clock on. In the smallest picture, which has few bands, comparisons determine the band.
     // In all other pictures a band has 3·2^n rows (glint_soc/constants.py), so one division by 3 suffices. For v of 8 bits, floor(v/3)
     // equals floor(v·171/512). As 171 = 2·5·17 + 1, the product takes three additions.
     localparam int unsigned SMALL_ROWS   = band_pkg::lines(2'd0);

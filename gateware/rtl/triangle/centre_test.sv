@@ -72,7 +72,7 @@ module centre_test (
         .clk, .enable(1'b1), .a(25'(later_step_y)), .b(18'(later_py)), .c(at_first), .p(at_p)
     );
 
-    // The steps of the edge whose edge function is valid next, in flip-flops (`keep`), because shift registers would take LUTs.
+    // Delays the steps of an edge until its edge function is valid, in flip-flops (`keep`), because shift registers would take LUTs.
     (* keep *) logic signed [10:0] step_x_1, step_x_2, step_x_3, step_x_4, step_y_1, step_y_2, step_y_3, step_y_4;
     logic signed [11:0] both;
 

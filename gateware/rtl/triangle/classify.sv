@@ -20,7 +20,7 @@ module classify #(
     input  wire  [10:0]              width,
     input  wire  [9:0]               height,
     output logic                     idle,
-    // High for one clock for each triangle that is dropped because it is off screen.
+    // High for one clock for each triangle that is dropped.
     output logic                     unseen,
     output logic [31:0]              count,
     input  wire                      in_valid,

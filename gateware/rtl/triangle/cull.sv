@@ -4,8 +4,8 @@
 // picture are empty. A tiny triangle, with at most 2×2 centres in its bounds, is also dropped if it covers none of these centres. `mirror`
 // exchanges front and back faces.
 //
-// Throughput: one triangle per 3 clocks, or per 6 if it is 512 pixels high or more; latency 18 or 21. The module holds two triangles, in
-// different stages; `phase` counts the 3 clocks of a stage:
+// Throughput: one triangle per 3 clocks, or per 6 if vertex 1 or 2 is 512 pixels or more above or below vertex 0; latency 18 or 21. The
+// module holds two triangles, in different stages; `phase` counts the 3 clocks of a stage:
 //
 //   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─┬▶ FIFO ───────────────▶ drop or out
 //        │ area, minima, maxima; or twice 3 │  │ bounds, start; then verdict │ └▶ centre_test ─▶ FIFO ───▲
@@ -192,8 +192,8 @@ module cull #(
     assign rows       = pixel_y - first_y;
 
     always_comb begin
-        // `topmost` is the number of the highest vertex on the screen, after the swap of vertices 1 and 2.
-        // If several vertices are equally high, it is the smallest of their numbers.
+        // `topmost` is the number, before the swap of vertices 1 and 2, of the highest vertex on the screen. If several vertices are
+        // equally high, it is the one that has the smallest number after the swap.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;

@@ -156,8 +156,8 @@ module descriptor_cache #(
 
     // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM holds two words of each
     // line, because one word of each line would fill only half of the RAM. The first word is read one clock before the second. The block
-    // RAM holds the second word at its output until the item has moved, so the register after it needs no enable. The last word of an odd
-    // number is split into two words of 64 bits. The second of these is written one clock late, but before it is read.
+    // RAM holds the second word at its output until the item has moved, so the register after it needs no enable. If WORDS is odd, the last
+    // word is split into two words of 64 bits. The second of these is written one clock late, but before it is read.
     logic                 read_valid, arrives;
     logic [128*WORDS-1:0] descriptor;
 

@@ -25,8 +25,8 @@
 //
 // The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled triangle, 6 per vertex
 // that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 clocks for each band of the triangle after the
-// first. Memory: two clients of a read_port, two native write ports. `results` contains the numbers of triangles and descriptors of the
-// frame.
+// first. Memory: two clients of a read_port, two native write ports. `results` contains the numbers of the frame's triangles, descriptors
+// and exceptions.
 
 `default_nettype none
 

@@ -8,8 +8,8 @@
 //
 // Each of the three parts reads ahead until its FIFO is full, even past the ends of lists and bands: the lengths of up to 16 bands, up to 8
 // jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). Reading ahead hides the latency of memory.
-// Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput one descriptor per 4 clocks, or
-// per 7 with SMOOTH; a list takes at least 4 clocks.
+// Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput as in descriptor_cache; a list
+// takes at least 4 clocks.
 //
 // `list_error` is high if, since `start`, the length of a list exceeded the largest length (such a list is read as empty), or an entry was
 // not below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.

@@ -12,7 +12,7 @@
 // next start must wait until the unit is `ready` and read_port is idle.
 //
 // With FIELDS, a raymarcher outside of this unit draws a distance field into each frame with `field_source.enable`.
-// `field_sink.start` begins the field. When the triangles of a band are drawn, `open` admits the field's pixels of this band
+// `field_sink.start` begins the field. After the triangles of a band have been drawn, `open` admits the field's pixels of this band
 // until the raymarcher raises `done`, and `next` makes the raymarcher continue with the next band. `compose` selects how the
 // luminances of two eyes become colours, see band_flush.
 //
@@ -29,8 +29,9 @@
 // if the slot holds no complete frame: after reset, and after a cancelled frame.
 //
 // Memory: three clients of a read_port, and two native write ports, one for the words in even banks of the DDR3 memory and one
-// for the words in odd banks. Consecutive lines of a band lie in different banks, and a port only switches to another bank when the
-// previous bank is idle, a dozen clocks later. With two ports, one port writes while the other port waits for its bank.
+// for the words in odd banks. 128 successive words of a frame lie in one bank, and the following words in the next bank. A port only
+// switches to another bank when the previous bank is idle, a dozen clocks later. With two ports, one port writes while the other port waits
+// for its bank.
 
 `default_nettype none
 

@@ -106,7 +106,7 @@ module vertex_cache #(
         end
     end
 
-    // Lookup of the tags: three clocks from an index to its record.
+    // Lookup of the tags: four clocks from an index to its record.
     (* ram_style = "block" *) logic [ENTRY_BITS-1:0] tags [0:SLOTS-1];
     logic                       replace;
     logic [SLOT_BITS-1:0]       slot;

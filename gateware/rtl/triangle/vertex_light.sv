@@ -6,7 +6,7 @@
 // One multiplier computes six products: three for N·l, and one for the share of each channel. A second multiplier computes the three
 // products of colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters
 // vertex_stage. The light waits in a FIFO until the position of its vertex leaves vertex_stage; `give` then removes the light from the
-// FIFO. Latency 22 clocks.
+// FIFO. Latency 21 clocks.
 //
 //   clocks after `take`   1…3: factors of N·l   6: N·l   7, 8: |N·l| rounded   9: intensity   10…12: factors of the shares
 //                         14…16: shares, factors of L   17…19: L

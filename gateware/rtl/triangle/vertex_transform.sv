@@ -6,7 +6,7 @@
 //
 //   1…3    n·P, one product per clock   1…6   U·P, then V·P
 //   6      Z is valid                   6, 9   X, Y are valid (`planar`)
-//   7      `zeros`, halves of Z < near
+//   7      `zeros`, comparisons of both halves of Z
 //   8      `behind`
 //   9      `mantissa`
 

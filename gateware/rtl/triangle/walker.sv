@@ -111,8 +111,8 @@ module walker #(
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
 
-    // While the walker seeks, the snapshot is the current group. It is kept while the walker extends from the first group
-    // of the row. After `resume` and after a move to the left by `extend`, only moves from the snapshot to the right remain.
+    // While the walker seeks, the snapshot is the current group. It is kept while the walker extends from the first group of the row to
+    // both sides.
     logic keep;
 
     assign keep = extend || resume;

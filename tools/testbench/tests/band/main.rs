@@ -96,7 +96,8 @@ fn random_groups_in_many_bands_with_stalls() {
     }
 }
 
-/// Draws a random sequence of two kinds of bands: with groups for one eye each in any order, and with groups for both eyes.
+/// Draws bands in random sequence. A band that composes two eyes has groups for one eye each, in any order; any other band has groups for
+/// both eyes.
 #[test]
 fn luminances_of_two_eyes_are_composed() {
     for (seed, stalls) in [(1, 0.0), (2, 0.4)] {

@@ -134,7 +134,8 @@ impl Bench {
     }
 }
 
-/// Makes triangles of one random kind: along a strip, with vertices in a few slots of the cache, with few vertices, or with any vertices.
+/// Makes triangles of one random kind. Their vertices are from a window of 20 that advances by one every two triangles, from three that
+/// share a slot of the cache, from the first six, or any.
 fn triangles(random: &mut Pcg64Mcg, count: usize) -> Vec<Triangle> {
     let kind = random.random_range(0..4);
     let base: u16 = random.random();
