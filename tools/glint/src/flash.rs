@@ -71,7 +71,7 @@ mod tests {
 
     const ADDRESS: u32 = 0x4000_0000;
 
-    /// What the simulated BIOS expects.
+    /// Input that the simulated BIOS expects.
     #[derive(Clone, Copy, PartialEq)]
     enum Mode {
         /// The answer to its request, for 250 ms.
@@ -294,7 +294,7 @@ mod tests {
         in_frame.partial = frame(LOAD, &[0; 100])[..50].to_vec();
         for bios in [
             Bios::in_mode(Mode::Command, b"litex> "),
-            // Old requests: with the later output, and with that output in another read.
+            // Expired requests: with the output after the time-out, and alone.
             Bios::in_mode(Mode::Command, &late),
             Bios::in_mode(Mode::Command, REQUEST),
             Bios::in_mode(Mode::Frames, b""),

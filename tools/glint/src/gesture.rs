@@ -1,4 +1,4 @@
-//! Access to a board's gesture engine through the board's console, and faults of the virtual board's image sensor.
+//! Access to a board's gesture engine through the board's console, and faults of the virtual image sensor.
 
 use crate::board::Board;
 use crate::console::{self, Console};
@@ -102,7 +102,7 @@ pub fn moving_hand(size: [usize; 2]) -> Scene {
     scene
 }
 
-/// Returns an OV7670 to connect to a virtual board.
+/// Returns a virtual OV7670 for a simulated board.
 #[must_use]
 pub fn image_sensor(source: impl Source + 'static) -> ImageSensor {
     ImageSensor::new(Model::Ov7670, source, Timing::SHORT)
@@ -111,7 +111,7 @@ pub fn image_sensor(source: impl Source + 'static) -> ImageSensor {
 /// The mask of the hand's colour in a frame of the image sensor, at a smaller size.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
-    /// Number of pixels of a line, a multiple of 16.
+    /// Number of pixels of a line, a multiple of 8.
     pub width: u32,
     /// Number of lines.
     pub height: u32,

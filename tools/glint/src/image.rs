@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 
 /// Name of the list of scenes in an image; the board shows its first scene after power-up.
 pub const START: &str = "start";
-/// Largest number of commands of a scene. A scene with all options and the most objects and lights has less than a hundred; a board
+/// Largest number of commands of a scene. A scene with all options and the most objects and lights has fewer than a hundred; a board
 /// executes them before the first picture.
 pub const MOST_COMMANDS: usize = 1_000;
 /// Name of the built-in cube, which is not one of the shapes.
@@ -58,7 +58,7 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
 /// The items for scenes: each mesh that is not built into the firmware, each scene, and the list of all scenes.
 ///
 /// # Errors
-/// A mesh cannot be read.
+/// A mesh cannot be read, or a name is invalid.
 pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
     let of = |scene: &SceneFile| match scene.scenes() {
         [] => vec![scene.clone()],

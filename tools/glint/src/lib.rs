@@ -13,7 +13,7 @@
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`wireframe`] | programs of the wireframe simulator |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |
-//! | [`gesture`] | the hand in front of a board's camera, and the camera of the virtual board |
+//! | [`gesture`] | the hand in front of a board's camera, and the camera of simulated boards |
 //! | [`web`] | the live page: a board in a web browser |
 //! | [`fuzz`] | fuzz targets for everything that parses external bytes |
 #![forbid(unsafe_code)]

@@ -8,7 +8,7 @@ use std::path::Path;
 const INSTRUCTION: usize = 4;
 /// Size in bytes of the largest main memory of the supported boards.
 const MEMORY: usize = 128 << 20;
-/// Number of bytes at the start that are searched for text.
+/// Number of bytes at the start that decide whether a file is a text.
 const START: usize = 256;
 
 /// Values of the lowest seven bits of an RV32IM instruction.
@@ -19,7 +19,8 @@ const OPCODES: [u8; 11] = [
 /// Checks the bytes of the file at `path`.
 ///
 /// # Errors
-/// The board cannot run the file: it is empty, an ELF file, a text, an image of the flash, or does not begin with an instruction.
+/// The board cannot run the file: it is empty, too long, an ELF file, a text, an image of the flash, or does not begin with an
+/// instruction.
 pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     let flat = "a flat binary that begins with an RV32IM instruction";
     let error =

@@ -31,7 +31,7 @@ pub struct Changes {
     pub size: Option<Size>,
 }
 
-/// Whether boards have a built-in mesh with this name.
+/// Whether a shape that is built into the firmware has this name.
 pub fn is_shape(name: &str) -> bool {
     Shape::NAMES.contains(&name)
 }
@@ -64,7 +64,7 @@ pub fn program() -> Result<Program<'static>, InputError> {
 /// Calls `draw` with the frame of a scene after `changes`.
 ///
 /// # Errors
-/// A mesh cannot be read.
+/// A mesh cannot be read, or no board can draw the scene.
 pub fn draw<T>(
     file: &SceneFile,
     changes: &Changes,

@@ -260,7 +260,7 @@ pub enum Action {
 /// `rotate` and `pan`, which set the switch for the following arrow keys.
 ///
 /// # Errors
-/// An action has another form, or there are more than 100,000 key presses.
+/// An action has another form, or there are more than 100,000 actions.
 pub fn script(text: &str) -> Result<Vec<Action>, FormatError> {
     const MOST: usize = 100_000;
     let mut actions = Vec::new();
@@ -311,7 +311,7 @@ impl MotionForm {
     }
 }
 
-/// A program after some steps.
+/// A program after a script of keys.
 pub struct Played {
     /// The binary form of the program; in accumulated motion, its segments are transformed.
     pub bytes: Vec<u8>,

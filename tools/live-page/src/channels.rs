@@ -9,7 +9,7 @@ use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
-/// Maximum number of commands that are queued for the board.
+/// Maximum number of requests that are queued for the board.
 pub const MAX_REQUESTS: usize = 64;
 
 /// A request of a page to the session.

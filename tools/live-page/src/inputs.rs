@@ -12,7 +12,7 @@ pub struct Inputs(Mutex<Levels>);
 /// Levels of the buttons and switches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels {
-    /// The pressed buttons of the buttons 0 to 3, one bit each.
+    /// Whether each of the buttons 0 to 3 is pressed, one bit each.
     pub buttons: u8,
     /// Buttons that were pressed since the last call of [`Inputs::take`].
     pressed: u8,

@@ -132,7 +132,7 @@ pub struct Pins {
     pub leds: u16,
     /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
     pub digits: [u8; 8],
-    /// The pressed buttons of the buttons 0 to 3, one bit each.
+    /// Whether each of the buttons 0 to 3 is pressed, one bit each.
     pub buttons: u8,
     /// The 16 switches, one bit each.
     pub switches: u16,
@@ -182,7 +182,7 @@ pub enum FromPage {
     },
     /// Sets the buttons.
     Buttons {
-        /// The pressed buttons of the buttons 0 to 3, one bit each.
+        /// Whether each of the buttons 0 to 3 is pressed, one bit each.
         pressed: u8,
     },
     /// Sets the switches.

@@ -52,7 +52,7 @@ impl Motion {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Turns the sensor to an attitude, a quaternion of any length but 0. Returns whether the quaternion is valid.
+    /// Turns the sensor to an attitude, a quaternion with a length from 0.001 to 1000. Returns whether the quaternion is valid.
     pub fn turn(&self, attitude: Quaternion) -> bool {
         let length = attitude.iter().map(|c| c * c).sum::<f64>().sqrt();
         let is_attitude = (1e-3..1e3).contains(&length);

@@ -61,7 +61,7 @@ impl Baud {
     /// The baud rate.
     ///
     /// # Errors
-    /// The value in the environment or the configuration file is not a baud rate.
+    /// The value is not a baud rate, or the configuration file is damaged.
     pub fn rate(&self) -> anyhow::Result<u32> {
         config::baud(self.baud)
     }
@@ -114,7 +114,7 @@ impl LineArguments {
         Ok(SerialBoard::open(port, self.baud.rate()?)?)
     }
 
-    /// Opens the board `name`, whose firmware may not be running yet.
+    /// Opens the board `name`. The firmware of a board on a serial port may not be running yet.
     pub fn unsynchronised_board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         match name {
             BoardName::Serial(port) => Ok(Box::new(self.open(port)?)),
@@ -140,7 +140,7 @@ impl LineArguments {
         Ok(firmware)
     }
 
-    /// Starts the simulated board `name`. Its program runs as soon as its line is read, and need not have a prompt.
+    /// Starts the simulated board `name`. Its program runs when the board's serial line is read, and need not print a prompt.
     pub fn start(&self, name: &BoardName) -> anyhow::Result<AnyBoard> {
         let board = board::simulated(name, Some(&self.firmware()?))?;
         let board = board.context("expected a simulated board")?;
@@ -148,7 +148,7 @@ impl LineArguments {
         Ok(board)
     }
 
-    /// Opens the board that `name` selects, as [`board`](Self::board), with access to its kind.
+    /// Opens the board `name` as [`board`](Self::board) does, and keeps the board's type.
     pub fn open_any(&self, name: &BoardName) -> anyhow::Result<Opened> {
         self.check(name)?;
         if let BoardName::Serial(port) = name {

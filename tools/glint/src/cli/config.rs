@@ -15,7 +15,7 @@ const MAX_BYTES: u64 = 64 << 10;
 /// Baud rate if no option, variable or configuration entry sets it.
 const BAUD: u32 = 115_200;
 
-/// Baud rates of serial adapters. The system takes 0 for a line that is hung up, on which nothing ever arrives.
+/// Baud rates of serial adapters. A rate of 0 would hang up the line.
 const BAUDS: RangeInclusive<u32> = 50..=12_000_000;
 
 /// The configuration file, `glint/config.toml` in the user's configuration folder.

@@ -134,7 +134,7 @@ impl DemoArguments {
 
     /// Runs the second board, which starts with the firmware in its memory. It shows `models`, uploaded through its memory, then
     /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge, and shows the built-in
-    /// scenes. The other board, in its thread, shows the progress.
+    /// scenes. The thread of the first board shows the progress.
     fn second_board(
         &self,
         first: &Named,
@@ -275,7 +275,7 @@ impl Film {
     }
 }
 
-/// The cycles of a frame that the gateware must have drawn.
+/// Returns the number of cycles of a frame; a frame drawn by the soft core is an error.
 fn cycles_of_gateware(stats: &Stats) -> anyhow::Result<u64> {
     anyhow::ensure!(
         stats.backend.as_deref() == Some("gateware"),
@@ -334,8 +334,8 @@ fn show_scene<B: Board>(
     Ok((description, cycles_of_gateware(&stats)?))
 }
 
-/// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, and `clock` the frequency of the
-/// board's clock in Hz.
+/// Formats the summary line of an animation or a scene; `cycles` is the mean number of cycles of a frame, and `clock` the
+/// frequency of the board's clock in Hz.
 fn line(path: &Path, what: &str, size: Size, cycles: u64, clock: u32) -> String {
     let clock = f64::from(clock);
     format!(

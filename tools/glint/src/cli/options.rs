@@ -52,7 +52,7 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
     } = row.forms;
     let is_of_subject = order == Order::Option;
     let argument = Arg::new(row.key()).long(option.name).help(option.help);
-    // The camera of a scene can be replaced.
+    // With a scene only its camera can be replaced.
     let argument = match is_of_subject {
         true => argument.conflicts_with("scene"),
         false => argument,
@@ -76,7 +76,7 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
                 .allow_hyphen_values(true)
         }
     };
-    // Only meshes without a field have the option.
+    // The option applies only to meshes without a field.
     let argument = match is_of_subject && with.contains(&"model") && !with.contains(&"field") {
         true => argument.requires("model"),
         false => argument,
@@ -125,7 +125,7 @@ impl Given {
         bad_value(&name, self.option.expected, found)
     }
 
-    /// The lines of the console that set the values. Commas separate the numbers of a camera.
+    /// The console lines that set the values. On the command line, commas separate the numbers of a camera.
     fn lines(&self) -> impl Iterator<Item = String> {
         self.values.iter().map(|value| match self.row.forms.order {
             Order::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
@@ -159,7 +159,7 @@ impl Given {
         Ok(())
     }
 
-    /// Checks that the option has a meaning, and not too many values, with a field or without.
+    /// Checks that the option applies with a field, or without one, and that it does not have too many values.
     fn check(&self, has_field: bool) -> Result<(), InputError> {
         let Self {
             row,
@@ -187,12 +187,12 @@ impl OptionArguments {
         self.given.iter().find(|given| given.option.name == name)
     }
 
-    /// Whether an option is given.
+    /// Whether the option `name` is given.
     pub fn has(&self, name: &str) -> bool {
         self.get(name).is_some()
     }
 
-    /// Sets the given options in `scene`, which may or may not have a field, except camera and lens.
+    /// Sets the given options in `scene`, except those of camera and lens.
     ///
     /// # Errors
     /// A value is invalid, or the option requires a field.

@@ -19,7 +19,7 @@ pub const PICTURE: &[&str] = &["png"];
 pub const ANIMATION: &[&str] = &["png", "gif"];
 /// Extensions of a file of distances: little-endian numbers.
 pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
-/// Extensions of statistics.
+/// Extensions of a statistics file.
 pub const STATISTICS: &[&str] = &["json"];
 /// Extensions of a mesh file.
 pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];

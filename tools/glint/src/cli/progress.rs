@@ -168,7 +168,8 @@ fn every(
     sender
 }
 
-/// Appends the progress, the rate and the remaining time of a step to `line`. Returns whether the step has begun.
+/// Appends the progress, the rate and the remaining time of a step to `line`. Returns false for a step of a counted length that
+/// has no length yet, because it has not begun.
 fn line_of(line: &mut String, unit: Unit, done: u64, all: Option<u64>, elapsed: Duration) -> bool {
     let seconds = elapsed.as_secs_f64();
     let rate = done as f64 / seconds;

@@ -32,7 +32,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
     /// Draw the picture with 2 or 4 times the width and height, and average 2×2 or 4×4 pixels for each output pixel; the larger
-    /// picture has at most 1280x720 pixels. Requires the model. The counts are those of the larger picture.
+    /// picture has at most 1280x720 pixels. Requires --board model. The counts are those of the larger picture.
     #[arg(long, value_name = "2|4", conflicts_with = "depth", value_parser = PossibleValuesParser::new(["2", "4"]))]
     supersample: Option<String>,
     /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 for each pixel, +inf for a

@@ -52,7 +52,7 @@ struct Listed<'a> {
     title: &'a str,
 }
 
-/// What a scene has, and what it requires.
+/// Contents and requirements of a scene.
 #[derive(Serialize)]
 struct Shown<'a> {
     name: &'a str,
@@ -71,7 +71,7 @@ struct Shown<'a> {
     budget: Vec<Limit>,
 }
 
-/// A limit of the build for a scene.
+/// A limit of a scene's budget.
 #[derive(Serialize)]
 struct Limit {
     name: &'static str,

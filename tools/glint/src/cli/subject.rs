@@ -14,7 +14,7 @@ use glint_scene::{Assets, Kind};
 use glint_scene_file::SceneFile;
 use std::path::PathBuf;
 
-/// What a picture shows, with its camera and size.
+/// The subject of a picture, with its camera and size.
 #[derive(Args)]
 pub struct SubjectArguments {
     /// A mesh file, `-` for standard input, or a generator's name. With --field, the mesh is drawn in the field.
@@ -32,7 +32,8 @@ pub struct SubjectArguments {
 }
 
 impl SubjectArguments {
-    /// Calls `draw` with the frame. `others` are objects beside the model; `instead` names the options in place of a model.
+    /// Calls `draw` with the frame. `others` are objects beside the model; `instead` names the options that can replace the model,
+    /// for an error message.
     ///
     /// # Errors
     /// There is nothing to draw, a file cannot be read, or an option does not apply.

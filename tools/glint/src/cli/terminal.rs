@@ -20,7 +20,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 const EXIT: u8 = 0x1d;
 /// Time-out of a read from the board, in milliseconds of the board's time.
 const LOOK_MS: u64 = 10;
-/// Longest time of reading output that the board sent before the session, in milliseconds of the board's time.
+/// Longest time for reading the output that the board sent before the session, in milliseconds of the board's time.
 const EARLIER_MS: u64 = 500;
 
 /// Open a board's console, or send commands to it.
@@ -131,7 +131,7 @@ impl ConsoleArguments {
     }
 }
 
-/// The lines of a script, of bounded length.
+/// The lines of a script. A line of more than [`MAX_LINE`] bytes is an error.
 fn commands(mut script: impl BufRead) -> impl Iterator<Item = io::Result<String>> {
     let limit = MAX_LINE as u64;
     std::iter::from_fn(move || {
@@ -280,7 +280,7 @@ pub fn talk(board: &mut dyn Board, is_ended: impl FnMut() -> bool) -> anyhow::Re
     interact(&mut heard, is_ended)
 }
 
-/// Passes the output that the board sent before the session to the terminal; it does not contain the text of `--until`.
+/// Passes the output that the board sent before the session to the terminal, without searching it for the text of `--until`.
 fn print_earlier(board: &mut Heard) -> anyhow::Result<()> {
     let until = board.until.take();
     let end_ms = board.now_ms() + EARLIER_MS;

@@ -18,10 +18,10 @@ pub const REQUEST: &[u8] = b"sL5DdSMmkekro\n";
 /// Answer to [`REQUEST`] that starts the transfer.
 pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
 
-/// Time in milliseconds without a request after which the host ends the board's state; it doubles each time, because a board that
-/// starts must not be reset again and again.
+/// Time in milliseconds without a request after which the host resets the board; it doubles each time, because a board that is
+/// starting must not be reset again and again.
 const FIRST_WAIT_MS: u64 = 2000;
-/// Silence in milliseconds after a request that shows that the BIOS waits for the answer, for which it has 250 ms.
+/// Silence in milliseconds after a request that shows that the BIOS waits for the answer. The BIOS waits for 250 ms.
 const WAITING_MS: u64 = 20;
 /// Number of the last bytes from the board that are kept for the error message.
 const KEPT: usize = 1024;
@@ -77,7 +77,7 @@ fn is_request_open(board: &mut dyn Board, heard: &mut Vec<u8>) -> Result<bool, B
     Ok(is_open)
 }
 
-/// Ends what the board does, and resets it.
+/// Ends the boot or the transfer in which the board waits, and resets the board.
 fn end_state(board: &mut dyn Board) -> Result<(), BoardError> {
     let mut frame = [0; MAX_FRAME];
     let length = wire::reset(&mut frame);

@@ -153,7 +153,7 @@ impl<'b> Link<'b> {
             .collect()
     }
 
-    /// Whether the BIOS receives frames: sends a frame without data until an answer to a frame arrives, or other text.
+    /// Whether the BIOS receives frames: sends a frame without data until an answer to it, or other text, arrives.
     pub fn is_open(&mut self) -> Result<bool, BoardError> {
         // Loads no bytes, so its address has no effect.
         let frame = frame(LOAD, &[0; 4]);

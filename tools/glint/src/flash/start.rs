@@ -40,7 +40,7 @@ pub fn await_text(board: &mut dyn Board, said: &[u8], wait_ms: u64) -> Result<()
     }
 }
 
-/// The output after the line of the BIOS, which a bad line may have damaged.
+/// The output after the line of the BIOS with [`LIFTOFF`]; all output if transmission errors have damaged that word.
 fn after_liftoff(said: &[u8]) -> &[u8] {
     let found = said
         .windows(LIFTOFF.len())

@@ -107,7 +107,7 @@ impl Target {
                 input.truncate(image::HEADER_BYTES + image::RECORD_BYTES * samples);
             }
             Self::WireframeWords => {
-                // Cuts the input at a word, and appends the end of a program.
+                // Cuts the input at a word, and replaces its last word by the end of a program.
                 input.truncate(input.len() / WORD_BYTES * WORD_BYTES);
                 if let Some(last) = input.last_chunk_mut() {
                     *last = Instruction::End.encode();

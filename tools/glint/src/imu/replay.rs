@@ -92,7 +92,7 @@ pub struct Replayed {
 /// An error of a replay.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The sensor is not at rest during the calibration.
+    /// The sensor is not at rest during the calibration, or the calibration has too few samples.
     #[error(transparent)]
     Still(#[from] FormatError),
     /// The model rejects the log.
@@ -112,7 +112,7 @@ pub enum Error {
 /// Converts a log to a board's format, with a calibration if requested.
 ///
 /// # Errors
-/// The sensor moves during the calibration, or a scale is out of range.
+/// The sensor moves during the calibration, the calibration has too few samples, or a scale is out of range.
 pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> {
     let stamps = Stamps::new(entries, options.period);
     let calibration = match options.still {

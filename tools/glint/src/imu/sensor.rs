@@ -154,7 +154,7 @@ impl std::str::FromStr for Triple {
     }
 }
 
-/// Returns a sensor to connect to a virtual board. Without a log the sensor is at rest, with typical errors. With a log it
+/// Returns a virtual sensor for a simulated board. Without a log the sensor is at rest, with typical errors. With a log it
 /// outputs the counts of the log, which starts with the board; after the end of the log it repeats the last sample.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {

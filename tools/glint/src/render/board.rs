@@ -60,7 +60,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { route, ..self }
     }
 
-    /// Calls `progress` with the number of bytes that a transfer has passed, and its total.
+    /// Calls `progress` with the number of transferred bytes and the total number of bytes of each transfer.
     #[must_use]
     pub fn with_progress(self, progress: impl FnMut(u64, u64) + 'b) -> Self {
         let progress = Box::new(progress);
@@ -94,7 +94,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Shows a frame on the board, as [`show`](Self::show), and downloads parts of it.
     ///
     /// # Errors
-    /// The firmware refuses, or a transfer fails.
+    /// The firmware refuses a command, or a transfer fails.
     pub fn render(&mut self, frame: &Frame, parts: Parts) -> Result<Rendered, Error> {
         let backend = self.backend.map(|backend| format!("backend {backend}"));
         if let Some(backend) = &backend {
@@ -104,7 +104,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             Some(scene) => self.load_scene(&scene, frame)?,
             None => self.load_subject(frame)?,
         };
-        // The scene may have another one.
+        // The scene may set another backend.
         lines.extend(backend);
         self.render_after(&lines, frame.size, parts)
     }
@@ -133,7 +133,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     }
 
     /// Uploads the meshes of a scene that are not built into the firmware, and returns the commands that show the scene with camera,
-    /// quality and size of `frame`, without what moves the camera.
+    /// quality and size of `frame`, without the motion of the camera.
     fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
             if !scene::is_shape(name) {
@@ -219,7 +219,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Downloads the colours of the last frame as an image without depths.
     ///
     /// # Errors
-    /// As [`colour`](Self::colour).
+    /// Those of [`colour`](Self::colour).
     pub fn image(&mut self, size: Size) -> Result<Image, Error> {
         Ok(Image {
             colour: self.colour(size)?,

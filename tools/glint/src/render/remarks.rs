@@ -52,7 +52,8 @@ pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError>
     Ok(remarks)
 }
 
-/// Whether at least half of the pixels with a surface would show a back face, which is culled. Fields are not drawn.
+/// Whether at least half of the pixels with a surface would show a back face, which is culled. False for a subject with a field,
+/// edges or a wireframe.
 fn shows_backs(frame: &Frame) -> Result<bool, RenderError> {
     fn uncull<'a>(subject: &MeshSubject<'a>) -> MeshSubject<'a> {
         MeshSubject {

@@ -231,7 +231,7 @@ impl ReplayArguments {
         })
     }
 
-    /// Warns of samples whose time stamps have been ignored, and of gaps.
+    /// Warns of gaps, and of samples that were ignored because of their time stamps.
     fn warn(&self, counts: &Counts) {
         let log = self.log.display();
         if counts.stale > 0 {

@@ -26,7 +26,7 @@ pub struct SensorArguments {
 }
 
 impl SensorArguments {
-    /// The motion of the virtual sensor from the log, if given.
+    /// The log with the motion of the virtual sensor, if given.
     pub fn file(&self) -> Option<&Path> {
         self.sensor.as_deref()
     }
