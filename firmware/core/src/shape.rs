@@ -84,8 +84,8 @@ struct Ring {
 }
 
 impl Shape {
-    /// Writes the mesh into `memory` in the format of an upload. Returns its length in bytes; `None` if the memory is too short,
-    /// which does not happen from [`MAX_BYTES`] on. Not inlined, so that the firmware contains a single copy.
+    /// Writes the mesh into `memory` in the format of an upload. Returns its length in bytes; `None` if the memory is too short;
+    /// [`MAX_BYTES`] are enough for every shape. Not inlined, so that the firmware contains a single copy.
     #[inline(never)]
     pub fn write(self, memory: &mut [u8]) -> Option<usize> {
         let mut writer = Writer {

@@ -69,7 +69,7 @@ pub fn set_windows(engine: &mut GestureEngine, windows: [Window; 2]) {
     engine.set_windows(windows.map(|window| [window.lower, window.upper]));
 }
 
-/// Sets the pixels that the engine counts.
+/// Sets the region in which the engine counts pixels, and its minimum run.
 pub fn set_gate(engine: &mut GestureEngine, setting: &EngineSetting) {
     let Region { first, last } = setting.region;
     engine.set_gate([first, last], setting.least_run);

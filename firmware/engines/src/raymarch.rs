@@ -93,7 +93,7 @@ pub const fn tables(palette: &Palette) -> Tables<'_> {
     [&palette.fog, &palette.occlusion]
 }
 
-/// Enables the field in every following raster pass, as [`Raymarcher::set_field`]. With `has_tables`, the raymarcher already holds the
+/// Enables the field in every following raster pass with [`Raymarcher::set_field`]. With `has_tables`, the raymarcher already holds the
 /// tables of the palette, so they are neither compared nor written.
 ///
 /// # Errors

@@ -12,7 +12,7 @@
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`scanout`] | `scanout` and its two frames | |
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
-//! | [`gesture`] | `gesture`, which finds a hand in the frames of a camera, and the camera's pins | |
+//! | [`gesture`] | `gesture`, which counts the pixels of a hand in the frames of an image sensor, and the sensor's pins | |
 //! | [`raymarch`] | `raymarch`, which draws distance fields into the frames of `triangle` | |
 //!
 //! Drivers depend only on registers (`litex-pac`) and numbers; `glint-engines` connects them to scenes, frames and the hand. On a

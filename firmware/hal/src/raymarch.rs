@@ -56,7 +56,7 @@ pub struct Field<'a> {
     pub solid: Solid,
     /// Half the side of a sponge's smallest cubes.
     pub cube_half: u32,
-    /// Half the sides of a box, as a solid.
+    /// Half the sides of a box; for an octahedron its size and two zeros.
     pub half: [u32; 3],
     /// Precision of the ray march.
     pub tuning: Tuning,

@@ -136,7 +136,7 @@ pub fn block_on<T>(future: impl Future<Output = T>) -> T {
 }
 
 /// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a single
-/// interrupt: of several simultaneous delays only the latest one gets the interrupt. Earlier delays end at a poll with another
+/// interrupt: of several simultaneous delays only the last one started gets the interrupt. The other delays end at a poll with another
 /// cause.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {

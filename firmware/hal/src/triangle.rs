@@ -62,7 +62,7 @@ impl fmt::Display for EngineError {
 
 impl core::error::Error for EngineError {}
 
-/// Output of the geometry passes of a frame in memory; every address is a multiple of 16.
+/// Memory for the output of a frame's geometry passes; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
     /// Address of the descriptors, which are longer if the engine [shades smoothly](TriangleEngine::shades_smoothly).
@@ -266,8 +266,8 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes the registers of a geometry pass of lines, as [`prepare_geometry`](Self::prepare_geometry) does of a mesh. `segments`
-    /// begins with the header of their list (docs/formats).
+    /// Writes the registers of a geometry pass of lines in advance, under the same condition as
+    /// [`prepare_geometry`](Self::prepare_geometry). `segments` begins with the header of their list (docs/formats).
     pub fn prepare_lines(&mut self, segments: &[Segment], size: Size, lists: &Lists) -> Prepared {
         let registers = &self.registers;
         registers.mesh().write(segments.as_ptr().addr() as u32);

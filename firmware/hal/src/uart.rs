@@ -133,8 +133,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Sends the bytes in the transmit queue without interrupts, before the program ends. Stops if the line makes no progress.
-    /// Does nothing if the program ends inside another function of this UART, which still borrows its state.
+    /// Sends the bytes in the transmit queue without interrupts, before the program ends. Stops after `PATIENCE` polls, even if bytes
+    /// remain. Does nothing if the program ends inside another function of this UART, which still borrows its state.
     pub fn drain(&self) {
         critical_section::with(|token| {
             let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {

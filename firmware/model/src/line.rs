@@ -1,8 +1,8 @@
 //! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats/line.md, "Lines").
 //!
-//! A line has one pixel in each column if its end points are further apart horizontally than vertically, otherwise one in each row. The
-//! axis along which it is longer is its *major* axis, the other axis its *minor* axis. The diamond-exit rule selects its pixels: a pixel
-//! is drawn if the path from the first to the second end point leaves the pixel's diamond,
+//! A line has one pixel in each column if its end points are at least as far apart horizontally as vertically, otherwise one in each row.
+//! The axis along which it is longer is its *major* axis, the other axis its *minor* axis. The diamond-exit rule selects its pixels: a
+//! pixel is drawn if the path from the first to the second end point leaves the pixel's diamond,
 //! |x| + |y| < 1/2 about its centre. [`Line::new`] is the set-up, [`Line::pixels`] iterates over the pixels in a rectangle, and [`draw`]
 //! writes them. The engine cuts lines into [`Piece`]s.
 

@@ -18,7 +18,7 @@ const EVEN_BITS: u32 = 7;
 /// [`trace_frame`](crate::trace_frame) draws the mesh first, [`render_field`](crate::raymarch::render_field) the field over it.
 ///
 /// # Errors
-/// [`RenderError::Size`] or [`RenderError::Eye`].
+/// The errors of [`MeshSetup::new`] and [`FieldSetup::new`].
 pub fn constants(
     view: &View,
     size: (u32, u32),

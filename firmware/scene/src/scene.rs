@@ -30,7 +30,7 @@ pub const CUBE: &str = "cube";
 /// The name of a mesh.
 pub type Name = String<MAX_NAME>;
 
-/// Capabilities and meshes of the board of a scene.
+/// Capabilities and meshes of the board that draws a scene.
 pub trait Board {
     /// Whether the board supports pictures of this size.
     fn has_size(&self, size: Size) -> bool;

@@ -4,7 +4,8 @@ use super::command::{Command, Setting};
 use super::object::ObjectAction;
 use super::values::{GestureAction, ImuAction};
 
-/// Effect of a command on the picture. The lines of a scene are the commands that change the picture, or the source of its motion.
+/// Effect of a command on the picture. A line of a scene is a command with one of the effects `Option`, `Subject`, `Wireframe` and
+/// `Motion`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Effect<'c, 'a> {
     /// None: the command shows or measures something, or sets state outside the scene.

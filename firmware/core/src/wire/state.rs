@@ -13,7 +13,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Time-outs for the board, the side with the console. A simulated board takes two minutes to send its first frame.
+    /// Time-outs for the board, the side with the console. The second of silence takes about two minutes on a virtual board.
     pub const CONSOLE: Self = Self {
         silence_ms: 1_000,
         quiet_ms: 5,

@@ -38,7 +38,7 @@ impl<'a> Violation<'a> {
         Self { expected, found }
     }
 
-    /// Adds the line number to the error.
+    /// Adds the position to the error.
     pub(super) const fn at(self, place: Location) -> ProgramError<'a> {
         ProgramError {
             place,

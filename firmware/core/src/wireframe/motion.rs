@@ -139,7 +139,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Moves a point: Computes R(p + d), rounded once to nearest. Each coordinate is within ±56.
+    /// Moves a point p to R(p + d), rounded once to nearest. Each coordinate is within ±56.
     pub fn point(&self, point: Point) -> [Q12_20; 3] {
         let [x, y, z] = point.map(|x| i64::from(x.to_bits()) << 9);
         let [dx, dy, dz] = self.displacement.map(i64::from);

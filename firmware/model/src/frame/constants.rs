@@ -44,7 +44,8 @@ impl FrameConstants {
         }
     }
 
-    /// Returns the constants of the mesh with this number in `frame`, of which `self` has the constants; `None` after the last mesh.
+    /// Returns the constants of the mesh with this number in `frame`; `None` after the last mesh. `self` must hold the constants of
+    /// `frame`.
     ///
     /// The constants of an object are computed in `own`, which the caller reuses for all objects of a frame, in order: to copy shared
     /// constants, or to store the constants of all objects, is slow on the soft core.
@@ -89,7 +90,7 @@ impl FrameConstants {
         Ok(self.mesh_setup(frame, number, &mut own)?.copied())
     }
 
-    /// Checks that each mesh of `frame`, of which `self` has the constants, can be drawn.
+    /// Checks that each mesh of `frame` can be drawn. `self` must hold the constants of `frame`.
     ///
     /// # Errors
     /// As [`mesh_setup`](Self::mesh_setup).

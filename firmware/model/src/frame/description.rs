@@ -45,7 +45,7 @@ pub enum Subject<'a> {
     Field(FieldSubject<'a>),
     /// A mesh in a distance field.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
-    /// Several meshes, each with its own position. At equal depths the later object wins.
+    /// Several meshes, each with its own model matrix. At equal depths the later object covers the earlier one.
     Objects(&'a [Object<'a>]),
     /// A program of the wireframe simulator.
     Wireframe(WireframeSubject<'a>),
@@ -205,8 +205,8 @@ impl<'a> Subject<'a> {
         Some((self.mesh_part()?, is_hidden.then_some(Rgb565(0))))
     }
 
-    /// The mesh with this number, and its drawing options for a light ([`FrameConstants::light`](super::FrameConstants::light)), whose
-    /// `clear` has no effect; `None` after the last mesh.
+    /// The mesh with this number, and its drawing options under the light [`FrameConstants::light`](super::FrameConstants::light); `None`
+    /// after the last mesh. The option `clear` has no effect.
     pub fn numbered_mesh<'s>(
         &'s self,
         number: usize,
@@ -261,7 +261,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// A frame with one eye, and the mesh lights and the background of `appearance`. A wireframe has a black background.
+    /// A frame with one eye, and with the mesh lights and the background of `appearance`. Wireframes and hidden edges have a black
+    /// background.
     pub fn in_appearance(
         subject: Subject<'a>,
         view: View,
@@ -284,7 +285,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The lighting of the meshes: of the frame, or for a mesh in a field of the field's appearance.
+    /// The lighting of the meshes: the frame's, or for a mesh in a field that of the field's appearance.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {

@@ -79,7 +79,7 @@ impl Piece {
     }
 }
 
-/// The memory of a band of a picture.
+/// The columns and rows of a band of a picture.
 pub fn band_bounds(size: Size, band: u32) -> Bounds {
     let rows = size.band_lines() as i32;
     Bounds {

@@ -165,7 +165,7 @@ impl MeshSetup {
         Ok(Self { volume, ..self })
     }
 
-    /// Replaces the clipping of triangles, as [`with_clip`](Self::with_clip).
+    /// Replaces the clipping of triangles, as [`with_clip`](Self::with_clip) does.
     ///
     /// # Errors
     /// As [`with_clip`](Self::with_clip).

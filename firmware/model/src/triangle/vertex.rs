@@ -48,8 +48,8 @@ pub enum Projected {
     Visible(ScreenVertex),
     /// Nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band. The position is saturated, so it only shows beyond which sides of the picture
-    /// the vertex is.
+    /// Beyond the near plane, but outside the guard band, or outside a view volume to which triangles are clipped. A position outside the
+    /// guard band may be saturated, so it only shows beyond which sides of the picture the vertex is.
     BeyondGuard(ScreenVertex),
 }
 
@@ -62,7 +62,7 @@ impl Projected {
         }
     }
 
-    /// Whether the vertex is beyond the near plane but outside the guard band.
+    /// Whether the vertex is beyond the near plane, but its triangles need clipping.
     pub const fn is_beyond_guard(&self) -> bool {
         matches!(self, Self::BeyondGuard(_))
     }
