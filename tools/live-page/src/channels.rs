@@ -28,7 +28,7 @@ pub enum Request {
 }
 
 impl Request {
-    /// A later request with the same key replaces this one: one of the same kind, and for the same command.
+    /// The kind of the request, and for a description its command. A later request with the same key replaces a waiting one.
     pub fn key(&self) -> (Discriminant<Self>, &str) {
         let command = match self {
             Self::Help(command) => command,

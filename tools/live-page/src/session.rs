@@ -27,7 +27,7 @@ const INTERRUPT: &[u8] = b"\x03";
 /// have a prompt; a board on a serial port has already answered.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
-/// Number of progress reports of a transfer.
+/// Maximum number of progress reports of a transfer.
 const REPORTS: u64 = 100;
 
 /// A board that sends its picture and its pins to the page while its line is read.
@@ -154,7 +154,7 @@ impl<'a> Session<'a> {
         self.board.board.early()
     }
 
-    /// Runs the board for a short time, and executes one request.
+    /// Runs the board for a short time, and then executes one request or a measurement that is due.
     ///
     /// # Errors
     /// The line to the board has failed.
@@ -195,7 +195,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Queues a request until the console waits for a command. A newer model or picture request replaces the queued one.
+    /// Queues a request until the console waits for a command. A request replaces a queued one with the same [`Request::key`].
     /// Requests for descriptions above the limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting
@@ -219,7 +219,7 @@ impl<'a> Session<'a> {
         self.hub.send_console(output);
         self.end.append(output);
         self.has_prompt |= self.end.ends_with(PROMPT.as_bytes());
-        // Nothing can answer a transfer that a user typed on the console, so it is cancelled.
+        // The page cannot serve a transfer that a user has started on the console, so it is cancelled.
         let is_transfer = self.end.ends_with(b"\nready\r\n");
         let kept = self.end.len().saturating_sub(2 * PROMPT.len());
         self.end.drain(..kept);
@@ -334,7 +334,7 @@ fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), Transfer
     Ok(())
 }
 
-/// Fetches the colours of the last frame.
+/// Downloads the colours of the last frame, and sends them as a picture to the viewers.
 fn send_picture(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
     let command = "info size";
     let lines = console.command(command)?;

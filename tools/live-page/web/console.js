@@ -11,7 +11,7 @@ function common(words) {
   return start;
 }
 
-// The words that may stand for an argument, of a line such as `ACTION: list or show or X,Y,Z`: those without capital letters.
+// The fixed words for an argument in a line of help such as `ACTION: list or show or X,Y,Z`: those without capital letters.
 function alternatives(line) {
   const words = line.slice(line.indexOf(":") + 1).split(" or ");
   return words.map((word) => word.trim().split(/[\[ ]/)[0]).filter((word) => word && !/[A-Z]/.test(word.split(":")[0]));
@@ -31,7 +31,7 @@ export function startConsole(send) {
   function show(text) {
     raw = (raw + text).slice(-MAX_LOG);
     const isAtEnd = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
-    // A prompt shows here only before a command.
+    // A prompt is shown only before a command.
     const lines = raw.replace(CONTROL, "").split("\n");
     log.textContent = lines.map((line) => line.replace(PROMPT, "glint> ")).join("\n").replace(/glint> $/, "");
     if (isAtEnd) log.scrollTop = log.scrollHeight;
@@ -43,7 +43,7 @@ export function startConsole(send) {
   }
 
   function run(typed) {
-    // Tabs, and halves of characters that a limit of the browser has cut.
+    // Replaces tabs, and halves of characters that a length limit of the browser has cut.
     const line = typed.replace(/[\t\p{Surrogate}]/gu, " ");
     if (line.trim() === "") return;
     if (history.at(-1) !== line) history.push(line);

@@ -1,4 +1,4 @@
-// Curves over time: of a frame, of the engines' cycles, of the attitude.
+// Curves over time: duration of a frame, cycles of the engine, attitude.
 const SHOWN_MS = 60_000;
 const COLOURS = ["#3a9bff", "#ff8a3c", "#3fbf7f"];
 const CURVES = [

@@ -94,7 +94,7 @@ export function startMotion(send, notify) {
   function fail() {
     use.checked = false;
     removeEventListener("deviceorientation", follow);
-    notify("This device does not tell its orientation. Expected a device with a sensor, a page of https or localhost, and permission.");
+    notify("This device does not report its orientation. Expected a device with a sensor, a page of https or localhost, and permission.");
   }
   use.addEventListener("change", async () => {
     clearTimeout(patience);

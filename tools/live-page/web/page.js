@@ -33,7 +33,7 @@ const showProgress = startUpload(send, (bytes) => sendData(bytes), notify);
 const showSample = startCurves();
 const motion = startMotion(send, notify);
 
-const HOLDERS = { you: "You have control.", other: "Another page has control; this one shows.", nobody: "No page has control." };
+const HOLDERS = { you: "You have control.", other: "Another page has control; this one only watches.", nobody: "No page has control." };
 
 // Shows who has control. Without it the controls are disabled.
 function setHolder(found) {

@@ -33,7 +33,7 @@ pub struct Options {
 pub struct Report {
     /// Number of points in the file.
     pub points: usize,
-    /// Polygons in the file.
+    /// Number of polygons in the file, plus the added back faces.
     pub faces: usize,
     /// Number of vertices in the mesh. A vertex in several chunks is counted once per chunk.
     pub vertices: u32,
@@ -115,7 +115,8 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// The polygons with usual magnitudes, with repaired winding if it is an option, and with both sides of double-sided faces.
+/// The polygons with usual magnitudes, with repaired winding if `options` requests it, and with back faces of double-sided faces if
+/// they can be visible.
 fn prepared(
     polygons: &Polygons,
     options: Options,
@@ -136,10 +137,10 @@ fn prepared(
     Ok(polygons)
 }
 
-/// Translates and scales the points and reverses the faces like [`convert`], without rounding and in the order of the file.
+/// Translates and scales the points, and reverses and adds faces, like [`convert`], but without rounding and in the order of the file.
 ///
 /// # Errors
-/// The mesh has no extent.
+/// The mesh has no extent, or too many triangles.
 pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatError> {
     let unusual = Unusual::of(polygons).filter(|_| !options.keep_scale);
     if let Cow::Owned(prepared) = prepared(polygons, options, unusual)? {

@@ -15,7 +15,7 @@ pub struct Model {
     pub report: Option<Report>,
 }
 
-/// Whether `name` is a generator. If a file of this name exists, it is the file instead.
+/// Whether `name` selects a generator. A file with the name of a generator has precedence.
 fn is_generated(name: &str) -> bool {
     generate::is_name(name) && !Path::new(name).exists()
 }
@@ -64,7 +64,7 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
 /// Reads or generates a model and converts it.
 ///
 /// # Errors
-/// As [`polygons`] and [`convert::convert`].
+/// Those of [`polygons`] and [`convert::convert`].
 pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
     if is_generated(name) {
@@ -84,7 +84,7 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
 /// Converts a mesh file in memory, without auxiliary files. The extension of its name selects the format.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn of_file(name: &str, bytes: Vec<u8>, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
     of_bytes(path, Format::of(path)?, bytes, options, &mut |_| None)

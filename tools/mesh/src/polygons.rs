@@ -98,7 +98,7 @@ pub struct Polygons {
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Location)>);
 
-/// Number of occurrences of a fault that gives one remark, and the position of the first.
+/// Number of occurrences of a fault that gives one remark, and the position of the first occurrence.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally(Option<(usize, Location)>);
 
@@ -145,7 +145,7 @@ impl Polygons {
         push(&mut self.points, point, "points", place)
     }
 
-    /// Adds a normal and returns its index. A normal that is not a number or infinite counts as none.
+    /// Adds a normal and returns its index. A normal that is infinite or not a number counts as none.
     ///
     /// # Errors
     /// There are more than [`MAX_POINTS`] normals.

@@ -105,7 +105,7 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) -> f
     }
     let extent = sub(high, low);
     let square = extent.iter().fold(0.0_f64, |m, c| m.max(*c)).powi(2);
-    // The normals of a polygon that crosses itself can cancel out. The shortest extent is then nearest to its normal.
+    // The normals of a polygon that crosses itself can cancel out. The axis of the shortest extent is then nearest to its normal.
     let cancels = normal.iter().all(|c| c.abs() <= NO_AREA * square);
     let length = if cancels {
         extent.map(|c| -c)

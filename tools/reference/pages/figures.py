@@ -140,7 +140,7 @@ def variants(forms, clocks, costs):
     added = costs[["LUT", "DSP48"]].mul(sign, axis=0).groupby(costs.engine).sum()
     divisions = costs[costs.division_dsp > 0].groupby("engine")[["division_lut", "division_dsp"]].first().set_axis(["LUT", "DSP48"], axis=1)
     eight = "eight divisions a clock, planes of the channels at once"
-    # The planes of the channels one after the other.
+    # The cells that planes of the channels one after the other save.
     saved = added.loc["a division a clock, planes of the channels at once"] - added.loc["a division a clock, planes one after the other"]
 
     def group(count):

@@ -115,8 +115,8 @@ def save_labelled(figure, axis, texts, path):
 
 
 def lines(path, rows, *, title, across, up, at, series, band, least=0.0):
-    """Writes lines over a column, in front of a band from an expression to three times of it. A line has a name, an expression and, unless it
-    has all rows, a query."""
+    """Writes lines over a column, in front of a band from an expression's value to three times this value. A line has a name, an expression
+    and, unless it has all rows, a query."""
     figure, axis = axes(title, across, up, right=0.98, bottom=0.2)
     scale(axis.xaxis, rows[at])
     values = [rows.eval(expression).abs().clip(lower=least) for _, expression, *_ in series] + [3 * rows.eval(band)]

@@ -130,7 +130,7 @@ impl Fans {
     }
 
     /// The vertex of `drawn` with triangles left that was fetched first, among those that stay in the cache until their triangles are
-    /// drawn.
+    /// drawn; if none stays, the first vertex of `drawn` with triangles left.
     fn best(&self, drawn: &[IndexedTriangle]) -> Option<u32> {
         let mut best = None;
         for vertex in drawn.iter().flat_map(|triangle| triangle.indices) {

@@ -7,7 +7,7 @@ use glint_core::mesh::{Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
 /// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are merged.
 ///
 /// # Errors
-/// As [`check_file`], or the mesh has no triangles.
+/// Those of [`check_file`], or the mesh has no triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let mesh = check_file(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);

@@ -25,7 +25,7 @@ fn radius([x, y, z]: Vector) -> f64 {
         + 0.012 * (31.0 * x).sin() * (29.0 * y).sin() * (30.0 * z).sin()
 }
 
-/// Divides faces into runs, and reorders the runs with a stride of the golden section of their number.
+/// Divides faces into runs, and reorders the runs with a stride of about 0.618 times their number.
 fn scattered(faces: &[Face]) -> Vec<Face> {
     let mut runs = Vec::new();
     let mut rest = faces;

@@ -17,7 +17,7 @@ use serde::Deserialize;
 /// Maximum number of bytes of JSON outside of strings. This bounds the memory, because three such bytes can become an object of some
 /// hundred bytes. Buffers within the file are strings.
 const MAX_STRUCTURE: usize = 4 << 20;
-/// Maximum length in an error of a message of the JSON parser.
+/// Maximum number of characters of the JSON parser's message in an error.
 const MAX_MESSAGE: usize = 200;
 
 /// Columns of an affine map: the images of the axes, and the translation.
@@ -25,9 +25,9 @@ type Affine = [Vector; 4];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
 
-/// Parses a glTF. The meshes of the first scene are merged, each with the transforms of its nodes and instances
-/// (EXT_mesh_gpu_instancing), without hidden nodes (KHR_node_visibility). Colours come from materials, also of
-/// KHR_materials_pbrSpecularGlossiness, and vertices, converted from linear intensities to sRGB. Textures, skins, morph targets and
+/// Parses a glTF. The meshes of the default scene, or of the first scene if there is no default, are merged, each with the transforms
+/// of its nodes and instances (EXT_mesh_gpu_instancing), without hidden nodes (KHR_node_visibility). Colours come from materials, also
+/// of KHR_materials_pbrSpecularGlossiness, and vertices, converted from linear intensities to sRGB. Textures, skins, morph targets and
 /// animations are ignored with a remark. `beside` reads a file in the same folder.
 ///
 /// # Errors
