@@ -41,7 +41,8 @@ impl Default for Demo {
 }
 
 impl Demo {
-    /// Starts the demo after reset, if the flash has a list or damaged contents. Returns the error of damaged contents.
+    /// Starts the demo after reset, if the flash has a list or damaged contents. Returns the error of damaged contents or of a damaged
+    /// list, and the name of the damaged part.
     pub fn power_up(&mut self, library: &Library) -> Option<(&'static str, FlashError)> {
         if let Some(error) = library.error() {
             self.start(library);

@@ -200,7 +200,7 @@ impl CommandError<'_> {
         }
     }
 
-    /// Whether a sensor is missing or failed, so that nothing moves the camera.
+    /// Whether the image sensor or the gesture engine is missing or failed, so that no hand moves the camera.
     pub const fn is_of_sensor(&self) -> bool {
         matches!(self, Self::ImageSensor(_) | Self::NoGesture)
     }

@@ -1,7 +1,7 @@
 //! Gesture control: processes the frames of the image sensor, so that a hand steers the camera.
 //!
 //! The interrupt at the end of an image sensor's frame stores the time. The main loop then reads the statistics of the frame, computes the
-//! camera's position, and sets the pixels that the engine counts in the next frame.
+//! camera's position, and sets the region and the minimum run for the next frame.
 
 use core::cell::Cell;
 use core::time::Duration;

@@ -98,7 +98,7 @@ impl MainLoop {
         }
     }
 
-    /// Starts the demo, if the flash has a list. The first picture then shows the list's first scene.
+    /// Starts the demo, if the flash has a list or damaged contents. The first picture then shows the list's first scene.
     fn power_up(&mut self) {
         let machine = &mut self.machine;
         if let Some((name, error)) = machine.demo.power_up(&machine.library) {

@@ -111,7 +111,7 @@ impl Models {
         }
     }
 
-    /// The wireframe program.
+    /// The uploaded wireframe program, or else the built-in one.
     pub fn program(&self) -> &Program<'_> {
         self.uploaded_program().unwrap_or(&self.cube_program)
     }

@@ -33,13 +33,13 @@ pub enum Verdict {
     Failed(Failure),
 }
 
-/// Result of a test.
+/// Reason why a test failed.
 pub enum Failure {
     /// The build ids of gateware and firmware differ.
     Identity,
     /// A clock does not advance.
     Stopped,
-    /// A word of memory.
+    /// A word of memory does not keep its value.
     Memory {
         /// Address of the word.
         address: usize,
@@ -52,7 +52,7 @@ pub enum Failure {
     Blanking,
     /// Number of screen lines since reset whose pixels came too late.
     Underflows(u32),
-    /// The checksum of a picture.
+    /// A picture has a wrong checksum.
     Checksum {
         /// The model's checksum.
         expected: u32,
@@ -61,11 +61,11 @@ pub enum Failure {
     },
     /// The gateware did not draw a picture.
     Engine(Fallback),
-    /// The motion sensor.
+    /// The motion sensor reports an error.
     Sensor(SensorError),
     /// The motion sensor sends no sample, without reporting an error.
     NoSample,
-    /// The image sensor.
+    /// The image sensor cannot be set up.
     ImageSensor(SetUpError),
 }
 

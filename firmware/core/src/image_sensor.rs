@@ -163,8 +163,8 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
 
 /// A driver of an image sensor on an I2C bus. The chip responds only while its clock XCLK runs.
 ///
-/// A set-up takes about 60 transactions. On a bus with periodic reads of another sensor ([`PeriodicI2c`](glint_i2c::PeriodicI2c))
-/// each transaction would end the periodic reads, so set up the chip before them or on a separate bus.
+/// A set-up takes 50 to 80 transactions. On a bus with periodic reads of another sensor ([`PeriodicI2c`](glint_i2c::PeriodicI2c)) each
+/// transaction would end the periodic reads, so set up the chip before them or on a separate bus.
 pub struct ImageSensor<B> {
     bus: B,
 }

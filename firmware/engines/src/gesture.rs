@@ -55,7 +55,7 @@ pub fn keeps(
     block_on(sensor(engine, clock).keeps(model, size))
 }
 
-/// Finds an image sensor after another one was unplugged. Takes some 2 ms, or less than 1 ms without a sensor.
+/// Finds an image sensor after the last one has stopped answering. Takes some 2 ms, or less than 1 ms without a sensor.
 ///
 /// # Errors
 /// No known chip answers.

@@ -11,8 +11,8 @@ use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
 use crate::transfer::{Purpose, Transfer};
 
-/// Begins to receive the data that `manifest` announces into the staging memory. If the memory already holds them, the reply has the line
-/// `present` instead. `command` is the name of the command that uploads them.
+/// Begins to receive the data that `manifest` announces into the staging memory. The reply has the line `ready`, or `present` if the
+/// memory already holds the data. `command` is the name of the uploading command.
 ///
 /// # Errors
 /// The upload is longer than the free memory.

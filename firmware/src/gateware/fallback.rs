@@ -25,7 +25,8 @@ pub enum Fallback {
     NoRaymarcher,
     /// The gateware has no line engine for a wireframe.
     NoLineEngine,
-    /// The soft core cannot make the descriptors of the frame, because of an option that geometry passes do not support.
+    /// The frame has an option that geometry passes do not support, and this firmware lacks the code that makes descriptors on the soft
+    /// core.
     Descriptors(Unsupported),
 }
 
@@ -105,7 +106,7 @@ pub enum Unsupported {
     Winding,
     /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
-    /// Memory for a copy of the object's mesh with transformed normals. Objects are numbered from 1.
+    /// Transformed normals of an object, if no memory is free for a copy of its mesh. Objects are numbered from 1.
     Normals {
         /// Number of the object.
         object: usize,

@@ -1,4 +1,4 @@
-//! What scenes and lists consist of.
+//! Content of scenes and lists.
 
 /// Content of a scene or a list.
 #[derive(Clone, Copy, Debug)]

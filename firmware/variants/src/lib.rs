@@ -1,7 +1,7 @@
-//! Kernels that Glint does not use: other word lengths, other methods, and other libraries.
+//! Kernels that Glint uses, and kernels of other word lengths, other methods and other libraries for comparison.
 //!
 //! The report measures their errors on the host and their cycles on the soft core (`cargo xtask report`), from this single source. No
-//! other code uses them.
+//! other code uses this crate.
 #![no_std]
 #![forbid(unsafe_code)]
 

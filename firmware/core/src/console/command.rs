@@ -184,7 +184,7 @@ commands! {
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";
         stats Stats(json: Flag): "show statistics of the last frame";
-        bench Bench(benchmark: Option<Benchmark>) in BENCH: "measure all kernels in clock cycles, or one; triangle and field draw FRAMES frames (default 8)";
+        bench Bench(benchmark: Option<Benchmark>) in BENCH: "measure sine and frames in clock cycles, or one kernel; triangle and field draw FRAMES frames (default 8)";
     }
     options {}
 }

@@ -11,7 +11,7 @@ use super::GatewareRenderer;
 use crate::gateware::fallback::Fallback;
 use crate::gateware::geometry::Cpu;
 
-/// Number of words of a program that are projected between two samples of the buttons.
+/// Number of words of a program that one call of `project` projects.
 const WORDS_A_CALL: usize = 16;
 
 /// Error: the memory is too small for all segments of a frame.
