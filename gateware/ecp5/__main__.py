@@ -10,8 +10,8 @@ FOLDER is what `python -m glint_soc` has written. The steps, one after the other
 
     pack           netlist.json                ──▶ FOLDER/ecp5/cells.json
 
-Synthesis removes the last step's files, and the bitstream is complete when it gets its name. `route` fails if a clock is too
-slow. The programs of nextpnr are WebAssembly with a `/tmp` of their own, so every path is relative.
+`synthesis` first deletes the files of the step `bitstream`, and a bitstream gets its name only when it is complete. `route` fails if
+a clock is too slow. The programs of nextpnr are WebAssembly with a `/tmp` of their own, so every path is relative.
 """
 
 import argparse

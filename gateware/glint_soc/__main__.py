@@ -34,8 +34,8 @@ def main():
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--no-depths", dest="depths", action="store_false",
                         help="omit the depth buffer, which a build without `triangle` does not need for pictures")
-    parser.add_argument("--fields", help="build of the raymarcher, or its features: `raymarch.build` (default: all; for a board with "
-                                         "an FPGA: faces)")
+    parser.add_argument("--fields", help="build of the raymarcher, or a list of its features, see `raymarch.build` (default: all; "
+                                         "for a board with an FPGA: faces)")
     parser.add_argument("--lanes", type=int, choices=[1, 2, 4], help="lanes of the raymarcher (default: those of its build)")
     parser.add_argument("--clock", type=float, metavar="MHZ",
                         help="frequency of the system clock, a multiple of 0.25 (default: the board's)")

@@ -18,7 +18,7 @@ class Serializer(LiteXModule):
 
     def __init__(self, words):
         self.pairs = []
-        # `toggle` changes when new words begin. `load` is high in the third or fourth clock after a change, far from the next change.
+        # `toggle` changes when new words begin. `load` is high in the second clock after a change, far from the next change.
         toggle, seen, load = Signal(), Signal(2), Signal()
         self.sync.pix += toggle.eq(~toggle)
         self.sync.pix5x += [seen.eq(Cat(toggle, seen[0])), load.eq(seen[0] ^ seen[1])]

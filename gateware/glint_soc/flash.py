@@ -12,9 +12,9 @@ from .rtl import add_sources
 class FlashReader(LiteXModule):
     """Wishbone slave with the words of the flash on `pads`. A write has no effect.
 
-    `pads` has `cs_n`, and either `reset_n` and `dq`, the four data lines of an FPGA of the 7 series whose configuration has loaded from this flash, or
-    the clock and the data lines in both directions (the virtual board). Lines that the reader does not send on are high: they hold or protect a
-    flash that has not been told to use them for data.
+    `pads` has `cs_n`, and either `reset_n` and `dq`, the four data lines of an FPGA of the 7 series whose configuration has loaded from
+    this flash, or the clock and the data lines in both directions (the virtual board). Lines that the reader does not send on are high:
+    a flash that is not yet set to four data lines takes a low level on them as hold or as write protection.
     """
 
     def __init__(self, platform, pads):

@@ -36,13 +36,13 @@ class MemoryCrossbar(LiteDRAMCrossbar):
             raise ValueError("expected one rank of memory and addresses ROW_BANK_COL")
         column_bits = settings.geom.colbits - controller.address_align
         banks = [getattr(controller, f"bank{number}") for number in range(self.nbanks)]
-        # Each queue holds all commands of a port. With fewer commands, a port waits less for its last command before it changes to another
-        # bank; a command takes at least four clocks from its port to its completion.
+        # Largest number of pending commands of a port; the queue of a bank holds all of them. The smaller this number, the shorter the
+        # wait of a port before it changes to another bank; a command takes at least four clocks from its port to its completion.
         most = 5
         if most > self.cmd_buffer_depth:
             raise ValueError(f"expected queues of {most} commands, got {self.cmd_buffer_depth}")
 
-        # The bank of the command that completes: at most one per clock, in the multiplexer.
+        # The bank whose command completes in this clock. LiteDRAM's multiplexer completes at most one command per clock.
         done, done_read, done_write = Signal(self.bank_bits), Signal(), Signal()
         self.comb += [
             done.eq(reduce(or_, (Mux(bank.rdata_valid | bank.wdata_ready, number, 0) for number, bank in enumerate(banks)))),

@@ -75,7 +75,8 @@ class CRG(LiteXModule):
         pixel_mmcm.create_clkout(self.cd_pix, CEA_1280X720.clk_freq)
         pixel_mmcm.create_clkout(self.cd_pix5x, 5 * CEA_1280X720.clk_freq)
 
-        # Every path between these two clocks goes through a crossing module of rtl/common, or through two flip-flops that LiteX adds.
+        # Signals between these two clocks pass through a crossing module of rtl/common or two flip-flops of LiteX, or are stable when the
+        # other side reads them.
         platform.add_false_path_constraints(self.cd_sys.clk, self.cd_pix.clk)
 
 

@@ -47,7 +47,7 @@ def with_flat_build(sizes):
 class Budget:
     """The contents of the file: resources of the FPGA, which are the limits of the SoC; limits for every other block; limits of single
     blocks, with `ratio`, the least ratio of the clock rate to the soft core's; the soft core's rate with the first seed of the placer,
-    which a version of nextpnr always finds."""
+    and the version of nextpnr that reached it."""
 
     device: dict
     own: dict
@@ -59,7 +59,7 @@ class Budget:
             known = {*RESOURCES, "ratio"} if name in self.block else {*RESOURCES}
             for resource, limit in limits.items():
                 if resource not in known or limit < 0:
-                    raise ToolError(f"{PATH.name}: {resource} = {limit} of {name}: expected a positive number of {', '.join(sorted(known))}")
+                    raise ToolError(f"{PATH.name}: {resource} = {limit} of {name}: expected 0 or more of {', '.join(sorted(known))}")
         for name in self.block:
             if name not in ROWS:
                 raise ToolError(f"{PATH.name}: unknown block {name}: expected one of {' '.join(ROWS)}")
@@ -101,8 +101,8 @@ class Budget:
                 for rate in rates if (minimum := self.ratio(rate["name"])) is not None and rate["mhz"] / reference < minimum]
 
     def stale_reference(self, rates):
-        """Lines on the rates that do not fit the soft core's in the budget: that of another measurement, or by another nextpnr, without
-        which two rates cannot be compared."""
+        """A line for a measured rate of the soft core that differs from the reference in the budget, and for each rate by another version
+        of nextpnr: only rates by one version can be compared."""
         mhz, nextpnr = self.reference["mhz"], self.reference["nextpnr"]
         for rate in rates:
             if rate["name"] == REFERENCE and (rate["seeds"][0], rate["nextpnr"]) != (mhz, nextpnr):
@@ -113,8 +113,8 @@ class Budget:
                        f"--route {REFERENCE}` measures that again")
 
     def problems(self, sizes, rates):
-        """A line for each resource above its limit, and for each rate below its limit. Without a rate of the soft core, that of the
-        budget counts."""
+        """A line for each resource above its limit, and for each rate below its limit. If `rates` lacks the soft core, its rate is that
+        of the budget."""
         reference = next((rate["mhz"] for rate in rates if rate["name"] == REFERENCE), self.reference["mhz"])
         return [
             *(f"{excess['block']}: {RESOURCES[excess['resource']]}: budget {number(excess['budget'])}, measured "

@@ -25,8 +25,8 @@ _CYCLES = ("cycles", "cycles_soft_core", "cycles_geometry", "cycles_raster", "cy
 
 
 def rows(data, sizes):
-    """The builds with their amounts of resources. A frame gets its rate, when one follows the other, and the megabytes a second of
-    main memory: the engines' at this rate, and scan-out's."""
+    """The builds with their amounts of resources. To each frame it adds `rate`, the frames per second if one follows the other, and
+    `memory`, the traffic with main memory in MB/s: that of the engines at this rate, and that of scan-out."""
     found = []
     for build in data["builds"]:
         frame = build["frame"]

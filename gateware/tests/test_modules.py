@@ -13,7 +13,7 @@ _BUILDS = [pytest.param(module, name, parameters, id=name) for module in MODULES
 
 @pytest.mark.parametrize(("module", "name", "parameters"), _BUILDS)
 def test_model(module, name, parameters):
-    """Builds the model of a module, which checks all warnings of Verilator too, or checks these alone of one that is only measured."""
+    """Builds the model of a module, with all warnings of Verilator as errors; a build that is only measured is checked for warnings."""
     if name in module.measured:
         run_verilator("--lint-only", "-Wall", "--top-module", module.top,
                       *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)

@@ -92,7 +92,8 @@ def test_flat_build():
 @pytest.mark.parametrize(("name", "changes", "expected"), [
     ("setup", [], []),
     ("setup", [("1234", "1233")], ["setup: LUT: budget 1,233, measured 1,234"]),
-    # Every own block has a path, and may have its own. A half block RAM counts. The SoC has to fit the device, and may have a longer path.
+    # Every block but the SoC has the default limit of the path, unless it has its own. A half block RAM counts. The SoC has to fit the
+    # device, and its path has no limit.
     *((name, [("path = 9", "path = 7")], [f"{name}: path: budget 7, measured 9"]) for name in ("setup", "scanout", "binner")),
     ("band_buffer", [], ["band_buffer: path: budget 8, measured 9"]),
     ("soc", [], ["soc: RAMB36: budget 2, measured 2.5"]),

@@ -70,7 +70,7 @@ fn ray_record(layout: &Layout, place: RayPlace, ray: &Ray) -> Record {
 /// Final state of a ray. `NAMES` has the states' names in the SystemVerilog type `state_t`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
-    /// The ray reached the far limit.
+    /// The ray left the box or reached the far limit.
     #[default]
     Miss,
     /// The ray reached a surface.
@@ -112,7 +112,7 @@ pub struct End {
     pub face: u64,
     /// Weight of the sphere in the surface, u0.8: 0 on a face, 255 on a sphere, between 0 and 255 on a fillet.
     pub share: u64,
-    /// Distance along the ray, u11.12; after a miss, the sine of the direction's angle above the horizon in 8 bits.
+    /// Distance along the ray, u11.12; after a miss, the upward component of the direction, u0.8, 0 if it points downward.
     pub t: u64,
     /// Number of evaluations of the field; 255 stands for 255 or more.
     pub steps: u64,

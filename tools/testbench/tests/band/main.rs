@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::bench::Bench;
 use crate::pixels::{Band, Group, LANES, PICTURE_LINES};
 
-/// Makes a random group in one of `rows` rows at one of a few depths, for frequent overlaps and ties.
+/// Makes a random group in one of `rows` rows, mostly with one of a few depth codes, for frequent overlaps and ties.
 fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     Group {
         row: random.random_range(0..rows),

@@ -71,14 +71,14 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins, in the middle of a frame.
+    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins. The engine is enabled, and a frame can follow.
     pub fn usual(clocks: Clocks, settings: Settings, seed: u64) -> Self {
         let mut bench = Self::new(HASTY, clocks, Polarity::default(), false, settings, seed);
         bench.begin();
         bench
     }
 
-    /// Makes a bench of the build `name`, in the middle of a frame. The engine is enabled before the first VSYNC.
+    /// Makes a bench of the build `name`. The engine is enabled in the middle of a frame, and waits for a VSYNC.
     pub fn new(
         name: &str,
         clocks: Clocks,

@@ -39,8 +39,9 @@ pub enum End {
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     pub polarity: Polarity,
-    /// Number of clocks between two lines; also the length of VSYNC.
+    /// Number of clocks before and after each line, and after VSYNC.
     pub blank: usize,
+    /// Length of VSYNC in clocks.
     pub between: usize,
     /// Whether HREF changes at random during VSYNC.
     pub is_noisy: bool,

@@ -4,7 +4,7 @@ use glint_core::colour::Rgb565;
 use glint_model::gesture::{Channel, channels};
 use glint_testbench::Module;
 
-/// Number of clocks from a pixel to the result of its comparison with the windows.
+/// Number of clocks from the input of a pixel to the comparison of its channels with the windows.
 const LATENCY: u32 = 4;
 
 /// The window of each colour contains only the model's value, so a marked pixel has this value.

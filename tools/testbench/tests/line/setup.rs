@@ -87,7 +87,8 @@ fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     }
 }
 
-/// A segment takes 31 clocks, or 59 with a depth step, plus one for each of its 10 pixels, for its piece, and for each band above.
+/// A segment takes 31 clocks, or 59 with a depth step, plus one for each of its 10 pixels, for its piece, and for each band above. With
+/// a depth step, the clocks for the bands overlap with the division.
 #[test]
 fn clocks_of_a_segment() {
     let above = u64::from(100 / Size::W640.band_lines());

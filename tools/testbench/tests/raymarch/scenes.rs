@@ -34,7 +34,7 @@ pub const UNIONS: [&str; 7] = [
     "smooth:0.01,menger:1+moving:1,0.5,30",
 ];
 
-/// Every kind of field with flat faces.
+/// Fields with faces perpendicular to the axes.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
@@ -58,8 +58,8 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Returns fields of all kinds: `FIELDS`, `ROUND` and `UNIONS`, unions with a box, an example of each further kind, and random
-/// fields, some with values at the ends of their ranges.
+/// Returns fields of all kinds: `FIELDS`, `ROUND` and `UNIONS`, unions with a box, an example of each kind, and random fields, some
+/// with values at the ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
