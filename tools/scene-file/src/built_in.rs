@@ -1,4 +1,4 @@
-//! The scenes of the folder `scenes`, which are built into this program and into the firmware.
+//! The scenes of the folder `scenes`, which are built into the programs that use this crate and, by `cargo xtask scenes`, into the firmware.
 
 /// Defines the built-in scenes by their names.
 macro_rules! built_in {

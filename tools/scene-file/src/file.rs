@@ -110,7 +110,7 @@ impl<'a> File<'a> {
     /// The members of a key whose type is a table of positive numbers.
     ///
     /// # Errors
-    /// The value has another type, or a member has a name that is not in `known`.
+    /// The value or a member has another type, or a member has a name that is not in `known`.
     pub fn numbers(
         &self,
         key: &str,

@@ -29,7 +29,7 @@ pub trait Device {
     fn answers(&self, address: u8) -> bool;
     /// Whether the device acknowledges the bytes after its address.
     fn acknowledges(&self) -> bool;
-    /// Time in ns for which the device stretches the clock after each byte.
+    /// Time in ns for which the device stretches the clock after each acknowledged byte from the master.
     fn stretch(&self) -> Option<u64>;
     /// Whether the device still holds SDA low after this number of clocks from the master since the fault was set.
     fn is_stuck(&self, clocks: u32) -> bool;

@@ -119,7 +119,7 @@ impl Images {
     /// Reads all PNG pictures of a folder, in the order of their names.
     ///
     /// # Errors
-    /// A file cannot be read, there is no picture, or the sizes differ.
+    /// The folder or a file cannot be read, a file is not a PNG picture, there is no picture, or the sizes differ.
     pub fn read(folder: &Path) -> Result<Self, Error> {
         let unreadable = |source| Error::Read {
             path: folder.to_owned(),

@@ -154,7 +154,7 @@ pub enum Fault {
     NoAcknowledge,
     /// The chip holds SDA low until the master has sent this number of clocks; with 0, forever.
     StuckData(u32),
-    /// The chip stretches the clock for this time in ns after each byte.
+    /// The chip stretches the clock for this time in ns after each byte; on its [`Wires`](crate::Wires), only after those of the master.
     Stretched(u64),
     /// The data registers do not change, but INT_STATUS still announces new data.
     Frozen,

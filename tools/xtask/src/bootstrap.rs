@@ -34,7 +34,7 @@ pub const WEB_TARGET: &str = "wasm32-unknown-unknown";
 /// Rust targets.
 const RUST_TARGETS: [&str; 2] = [firmware::TARGET, WEB_TARGET];
 
-/// Pinned Python packages, for the gateware and for the tests.
+/// Pinned Python packages, for the gateware and for the report.
 const REQUIREMENTS: [&str; 2] = [
     "gateware/requirements.txt",
     "tools/reference/requirements.txt",
@@ -51,7 +51,7 @@ pub fn bootstrap() -> Result<()> {
 /// Installs the prerequisites of the Rust crates: all of [`bootstrap`] but the Python environment.
 ///
 /// # Errors
-/// As [`bootstrap`].
+/// Those of [`bootstrap`].
 pub fn programs() -> Result<()> {
     all([debian_packages(), rust_targets()])
 }

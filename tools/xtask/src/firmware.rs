@@ -72,7 +72,7 @@ pub fn build(board: Board, features: &[&str]) -> Result<Image> {
 /// crate.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn check_peers() -> Result<Image> {
     let suffixes = [PEERS, "check"];
     let for_speed = format!("profile.firmware.package.{FIRMWARE}");
@@ -83,7 +83,7 @@ pub fn check_peers() -> Result<Image> {
 /// or `glint-all.bin` for all built-in scenes; its name includes board and features as for [`build`].
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_for(board: Board, scenes: &[SceneFile], features: &[&str]) -> Result<Image> {
     let mut names: Vec<&str> = scenes.iter().map(SceneFile::name).collect();
     if names == NAMES {

@@ -86,7 +86,7 @@ impl Options {
     /// The options as arguments of `glint_soc` for a board.
     ///
     /// # Errors
-    /// A scene cannot be read, or the scenes state different clocks.
+    /// A scene cannot be read, or, without `--clock`, the scenes state different clocks.
     pub fn arguments(&self, board: Board) -> Result<Vec<String>> {
         let mut arguments = Vec::new();
         let mut clock = self.clock.clone();
@@ -144,7 +144,7 @@ pub fn build(board: Board) -> Result<()> {
 /// Builds the gateware of `board` with `options` of `glint_soc` in the folder of the standard build, which it replaces.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     let folder = board.folder();
     generate(board, &folder, options)?;
@@ -159,7 +159,7 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
 /// build. Returns the folder.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_beside(name: &str, options: &[&str], library: Library) -> Result<PathBuf> {
     let folder = generate_beside(Board::Virtual, name, options)?;
     verilate(&folder, library)?;
@@ -170,7 +170,7 @@ pub fn build_beside(name: &str, options: &[&str], library: Library) -> Result<Pa
 /// Returns the folder.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn generate_beside(board: Board, name: &str, options: &[&str]) -> Result<PathBuf> {
     let folder = board
         .folder()
@@ -182,7 +182,7 @@ pub fn generate_beside(board: Board, name: &str, options: &[&str]) -> Result<Pat
 /// Builds the slower library of the virtual board that writes waveforms.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_with_waveforms() -> Result<()> {
     let folder = Board::Virtual.folder();
     generate(Board::Virtual, &folder, &[])?;
@@ -302,10 +302,11 @@ fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
 /// Numbers of used and available cells by kind.
 pub type Cells = BTreeMap<String, [u64; 2]>;
 
-/// Counts the cells of the ULX3S's build with `options` of `glint_soc` in `target/gateware/ulx3s-NAME`. The build stops after synthesis.
+/// Counts the cells of the ULX3S's build with `options` of `glint_soc` in `target/gateware/ulx3s-NAME`. The build stops before place and
+/// route.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn ulx3s_cells(name: &str, options: &[&str]) -> Result<Cells> {
     let folder = generate_beside(Board::Ulx3s, name, options)?;
     let cells = folder.join("ecp5/cells.json");

@@ -37,7 +37,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install missing prerequisites: Install Debian packages, Rust targets and the Python environment
+    /// Install missing prerequisites: Debian packages, Rust targets and the Python environment
     Bootstrap,
     /// Build the gateware of a board
     Gateware {

@@ -197,7 +197,7 @@ impl Crate {
         None
     }
 
-    /// As [`Self::item`], for a path that starts with a name in the scope of `module`.
+    /// Like [`Self::item`], for a path that starts with a name in the scope of `module`.
     fn named(
         &self,
         module: &[String],

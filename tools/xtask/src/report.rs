@@ -12,7 +12,7 @@ use crate::{bootstrap, firmware, paths, run};
 /// The Snakemake description of the workflow.
 const WORKFLOW: &str = "tools/reference/workflow/Snakefile";
 
-/// File with the checksums of the jobs' programs and sources.
+/// File with the checksums of all files that the jobs run.
 const STAMP: &str = "inputs.sha256";
 
 /// Builds everything, makes the measurements of the report's page `name`, and writes the page. The name `pages` writes all pages from the
@@ -71,8 +71,8 @@ fn model(module: &str) -> Result<()> {
 }
 
 /// Builds everything and runs the whole report with `workers` jobs at a time, into docs/report; `quick` measures samples only,
-/// into target/report/quick/pages. Jobs finished by an interrupted run are skipped, unless their programs or sources have changed.
-/// `arguments`, such as other targets, are passed to Snakemake.
+/// into target/report/quick/pages. Jobs finished by an interrupted run are skipped, unless a file that the jobs run has changed.
+/// `arguments`, such as other targets, are passed to Snakemake; with any, docs/report does not change.
 ///
 /// # Errors
 /// A build or a job fails, or another report runs.
@@ -135,7 +135,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the checksums of the jobs' programs and sources to a file, which is an input of the jobs.
+/// Writes the checksums of all files that the jobs run to a file, which is an input of the jobs.
 fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     let target = paths::target();
     let mut files = vec![

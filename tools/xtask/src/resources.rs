@@ -72,7 +72,7 @@ pub fn resources(options: &Options) -> Result<()> {
 /// Measures this project's own blocks, and the clock rates of those that have a minimum in the budget, and compares them with it.
 ///
 /// # Errors
-/// As [`resources`].
+/// Those of [`resources`].
 pub fn check() -> Result<()> {
     run::step(
         "sizes and clock rates",

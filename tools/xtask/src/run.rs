@@ -72,7 +72,7 @@ pub fn step(name: &str, command: &mut Command) -> Result<()> {
 /// Runs a step like [`step`], and calls `watch` with each line of output.
 ///
 /// # Errors
-/// As [`step`].
+/// Those of [`step`].
 pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&str)) -> Result<()> {
     let start = Instant::now();
     let bar = spinner(name);
@@ -136,7 +136,7 @@ pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
 /// Builds the `program` of a `package` of the workspace.
 ///
 /// # Errors
-/// As [`step`].
+/// Those of [`step`].
 pub fn build_program(package: &str, program: &str) -> Result<()> {
     step(
         &format!("build {program}"),

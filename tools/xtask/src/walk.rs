@@ -72,7 +72,7 @@ struct Frame {
 /// Sets up, and tests the builds `names`, or all builds if `names` is empty: names of scenes, and `only-BLOCK`.
 ///
 /// # Errors
-/// As [`walk`].
+/// Those of [`walk`].
 pub fn set_up_and_walk(names: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     firmware::build(Board::Virtual, &[])?;
@@ -83,7 +83,8 @@ pub fn set_up_and_walk(names: &[String]) -> Result<()> {
 /// Tests builds, after `glint` and the firmware with all parts are built.
 ///
 /// # Errors
-/// A name is unknown, a build fails, a board does not answer, its picture differs from the complete build's, or it takes more cycles.
+/// A name is unknown, a build fails, a board does not answer or does not refuse a command of a missing part, its picture differs from the
+/// complete build's, or it takes more cycles.
 pub fn walk(names: &[String]) -> Result<()> {
     let all: Vec<SceneFile> = scenes::all().collect();
     let everything = || all.iter().map(SceneFile::name).map(str::to_owned);
@@ -173,7 +174,7 @@ impl Build {
         })
     }
 
-    /// Builds the virtual board with a single block.
+    /// Builds the virtual board with only these blocks. Its firmware has all parts.
     fn single(name: &str, blocks: &[Block]) -> Result<Self> {
         let mut options = vec!["--blocks"];
         options.extend(blocks.iter().map(|block| block.name()));

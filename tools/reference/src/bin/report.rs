@@ -59,7 +59,7 @@ enum Page {
         /// Measure only the errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
-        /// Measure only one table: pictures, rates, or a study: fraction, cap, threshold, norm, end, prepass or normal
+        /// Measure only one table: pictures, rates, or a study: fraction, cap, threshold, norm, end, prepass, block or normal
         #[arg(long, value_name = "NAME", conflicts_with = "quick")]
         study: Option<String>,
     },
@@ -147,7 +147,7 @@ enum Page {
 }
 
 impl Page {
-    /// Whether the options select only a part of the page's measurements.
+    /// Whether `--quick` or `--only` restricts the page's measurements.
     fn is_partial(&self) -> bool {
         match self {
             Self::Sine { quick, .. }
@@ -193,7 +193,7 @@ impl Folder {
         self.write_alone(name, &rows)
     }
 
-    /// Writes a table as soon as it is complete, because the next table may take minutes to measure.
+    /// Writes a table of the rows alone. A table is written as soon as it is complete, because the next table may take minutes.
     fn write_alone<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<()> {
         let path = self.path.join(name).with_extension("csv");
         write_csv(rows, &path)?;

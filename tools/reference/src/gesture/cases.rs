@@ -84,7 +84,7 @@ impl Fault {
 pub struct CaseResult {
     /// Presence of the hand half a second after the start of the fault.
     pub presence: Presence,
-    /// Reason for not using the last frame of the fault; `None` if it was used.
+    /// Reason for not using the last frame of the fault; `None` if it was used, or if the fault has no frames.
     pub doubt: Option<Doubt>,
     /// Largest angle between a direction of the camera during the fault and its direction before the fault, in degrees.
     pub moved: f64,

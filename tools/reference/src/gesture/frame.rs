@@ -214,7 +214,7 @@ impl Frame {
     }
 }
 
-/// Measures the centre in successive frames of a hand at rest.
+/// Number of successive frames of a hand at rest, for each position.
 const FRAMES: u32 = 8;
 
 /// Returns the errors, in pixels, of the centre that is computed from the statistics, compared with the noise-free centre in f64. The hand

@@ -70,7 +70,7 @@ pub fn angles([x, y]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Runs the control on the frames along a path, after a second to detect the hand.
+/// Runs the control on the frames along a path, after two seconds at its start in which the control detects the hand.
 ///
 /// # Panics
 /// When the control loses the hand.

@@ -10,7 +10,7 @@ use virtual_board::{Start, VirtualBoard};
 
 use super::workspace;
 
-/// Numbers of the soft core's cycles per call of a kernel (a measured function of the firmware).
+/// Cycles of the soft core for a call of a kernel, which is a measured function of the firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
     /// Cycles of the fastest call.
@@ -27,7 +27,7 @@ pub type Cycles = BTreeMap<String, Figures>;
 /// Parses the lines `bench NAME min MIN median MEDIAN max MAX cycles` in the output of a console.
 ///
 /// # Errors
-/// When a line that starts with `bench` is malformed or missing.
+/// When such a line is malformed, or the output has none.
 pub fn parse(console: &str) -> Result<Cycles> {
     let mut cycles = Cycles::new();
     for line in console.lines() {

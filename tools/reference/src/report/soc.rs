@@ -115,7 +115,7 @@ impl BackToBack {
 /// simulation keeps a core busy.
 ///
 /// # Errors
-/// When `work` fails or panics.
+/// When `work` fails. If `work` panics, the result is an error or a panic.
 pub fn two_at_a_time<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> Result<R> + Sync,

@@ -108,7 +108,7 @@ impl Pixel {
 }
 
 impl Triangle {
-    /// Computes the triangle's setup; `None` if the triangle covers no pixel.
+    /// Computes the triangle's setup; `None` if its [`Bounds`] contain no pixel.
     pub fn setup(&self) -> Option<Setup> {
         let (width, height) = self.size;
         let bounds = Bounds::new(&self.oriented.vertices, width, height)?;

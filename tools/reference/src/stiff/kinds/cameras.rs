@@ -94,7 +94,7 @@ struct Spherical {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Fitted {
-    /// Half the side of a cube in 2^-14, and its position in world units.
+    /// Half the side of a cube in 2^-14. `place` is its position in world units.
     half: i16,
     scale: f64,
     place: [f64; 3],

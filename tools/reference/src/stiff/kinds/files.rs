@@ -168,10 +168,10 @@ struct Flash {
     /// Number of bytes of the firmware.
     #[serde(default = "small")]
     firmware: usize,
-    /// Text of the only scene.
+    /// Text of each scene.
     #[serde(default)]
     scene: String,
-    /// Number of copies of the scene.
+    /// Number of scenes.
     #[serde(default = "one")]
     scenes: usize,
 }

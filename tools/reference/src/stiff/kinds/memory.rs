@@ -23,13 +23,14 @@ struct Memory {
 enum Step {
     /// Allocates this number of bytes.
     Keep(usize),
-    /// Releases the region of an earlier step, identified by the number of regions at that time.
+    /// Releases the region of an earlier step, identified by the number of regions that were allocated before it.
     Release(usize),
     /// Compacts the regions.
     CloseGaps,
 }
 
-/// Runs steps on a memory of at most four regions; states the result of each step, and the final gaps.
+/// Runs steps on a memory of at most four regions; states the allocated regions, the moves of each compaction, the final gap, and the number
+/// of free bytes.
 fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
     let mut memory = Allocator::<4>::new(length);
     let mut kept: Vec<Region> = Vec::new();

@@ -6,7 +6,7 @@ use glint_variants::{division, inverse_root, length, reciprocal, root, unit};
 
 use super::trial::{Errors, Trial};
 
-/// Number of inputs of a kernel whose input is one mantissa: all mantissas.
+/// Number of mantissas of 24 bits: the numbers in [1, 2) with 23 fraction bits.
 const MANTISSAS: u32 = 1 << 23;
 /// Number of inputs of a kernel whose input is more than one number.
 const SEVERAL: u32 = 1 << 20;

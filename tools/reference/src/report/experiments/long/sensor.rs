@@ -80,7 +80,7 @@ impl Path {
     }
 }
 
-/// Errors of the attitude at a time: a line of `long-sensor.csv`.
+/// Errors of the attitude at a time: a line of `long-rest.csv` or of `long-turning.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Motion of the sensor.

@@ -1,4 +1,5 @@
-//! Trials of raymarching with different parameters. Each trial draws the four views of the sponge at 320 × 180.
+//! Trials of raymarching with different parameters. Each trial draws views of the sponge: all four at 320 × 180, or for the study `block`
+//! the slowest one at 1280 × 720.
 
 use std::cell::RefCell;
 
