@@ -204,7 +204,7 @@ mod tests {
     use super::*;
     use litex_pac::recording::connect;
 
-    /// Registers that exist in every build, at the addresses of docs/registers.md.
+    /// The registers of the gesture engine.
     fn engine() -> Gesture {
         // SAFETY: a model on the bus answers all accesses, so no device is affected.
         unsafe { Gesture::steal() }

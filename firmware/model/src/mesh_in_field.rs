@@ -9,7 +9,8 @@ use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
 
 /// Number of low bits that are cleared in the mantissa of the shared scale. The conversion of the scale to depths in
-/// field units multiplies it by up to 40.5 for bounded fields; with cleared bits the mantissa still fits 17 bits without truncation.
+/// field units multiplies it by up to 40.5 for fields without a period; with cleared bits the mantissa still fits 17 bits without
+/// truncation.
 const EVEN_BITS: u32 = 7;
 
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth codes for both.

@@ -59,7 +59,7 @@ fn lines(scene: &Scene) -> String {
     text
 }
 
-/// Returns lines for all options of a scene, with random values. Some lines are errors in some scenes.
+/// Generates a line of a scene, with random values. Some lines are errors in some scenes.
 fn line() -> impl Strategy<Value = String> {
     let number = |low: i32, high: i32| (low..high).prop_map(|x| format!("{}", f64::from(x) / 64.0));
     let word = |words: &'static [&'static str]| proptest::sample::select(words);

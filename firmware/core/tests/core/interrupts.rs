@@ -2,8 +2,7 @@
 
 use glint_core::wire::{self, Failure, MAX_FRAME, Reason, Receiver, Sender, State, Timing};
 
-/// A receiver of 300 bytes in the middle of a transfer whose sender has stopped, after the first frames and a part of the next
-/// frame.
+/// A receiver of 300 bytes in the middle of a transfer: its sender has stopped after the first frame and a part of the second.
 fn left_alone(buffer: &mut [u8]) -> Receiver<'_> {
     let data = [0x5A; 300];
     let mut sender = Sender::new(&data, 0, Timing::HOST, 0);
@@ -28,7 +27,7 @@ fn a_new_conversation_ends_a_transfer_that_was_left() {
     let length = wire::reset(&mut reset);
     let reset = &reset[..length];
     let (mut small, mut large) = ([0; 10], [0; 300]);
-    // Ctrl-C before the first frame, and within a frame.
+    // The frame that cancels comes before the first frame, and within a frame.
     for mut receiver in [
         Receiver::new(&mut small, None, Timing::CONSOLE, 0),
         left_alone(&mut large),

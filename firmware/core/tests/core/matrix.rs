@@ -63,7 +63,7 @@ fn rotation(axis: Axis, angle: Turns) -> Rows {
     }
 }
 
-/// A rotation about three axes, a scale for each axis, a second rotation and a translation: every matrix is such a product.
+/// A product of rotations about z and x, a scale for each axis, rotations about y and z, and a translation.
 fn any_matrix(scales: [f64; 3], angles: [u32; 4], by: [f64; 3]) -> Result<Matrix, MatrixError> {
     let [a, b, c, d] = angles.map(Turns);
     Matrix::rotation(Axis::Z, a)
@@ -234,7 +234,7 @@ fn many_small_turns_keep_the_shape() {
     assert!(turned.abs() < 36_000.0 * 1.8e-6, "{turned}");
 }
 
-/// One rotation gives the same entries as the product alone.
+/// After a single rotation, `with_shape_of` leaves the product as it is.
 #[test]
 fn one_turn_is_the_product() {
     for size in [0.002, 0.01, 0.3, 1.0, 5.0, 15.9] {

@@ -242,7 +242,7 @@ fn the_checksum_covers_every_byte() {
     assert_eq!((stated_checksum(&short), &short[..]), (None, &good[..31]));
 }
 
-/// The small mesh with a 32-bit word at a place is refused, with this message; the stiff cases have more of them.
+/// The small mesh with one 32-bit word changed is refused with the stated message; `tools/reference/stiff` contains further cases.
 #[test]
 fn every_field_is_checked() {
     assert_eq!(small().len(), 144);

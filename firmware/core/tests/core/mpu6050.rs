@@ -217,8 +217,8 @@ fn counts_are_those_of_the_registers() {
             .map(|(.., sample)| f64::from(pick(sample)));
         all.sum::<f64>() / record.samples.len() as f64
     };
-    // The expected means are sums of three terms: the modelled chip's bias, its drift over 11.53 °C, and the rate or force with
-    // the error of its scale.
+    // The expected mean of a rate is the sum of the modelled chip's bias, its drift over 11.53 °C, and the rate with the error of its
+    // scale; the mean of a force has no drift.
     let rate = [
         -4.5 + 1.8448 + 10.1,
         1.25 - 1.153 - 19.8,

@@ -184,7 +184,7 @@ fn the_pole_is_defined() {
             let got = quaternion.angles();
             let from_pole = (90_000 - thousandth).abs() as f64 / 1_000.0;
             let most = 3e-7 / from_pole.to_radians().sin().max(1e-9);
-            // Beyond the pole the pitch decreases again, and yaw and roll differ by half a turn.
+            // Beyond the pole the pitch decreases again, and yaw and roll are each half a turn from the given angles.
             let beyond = thousandth > 90_000;
             let [yaw, roll] = [20.0, 30.0].map(|angle| if beyond { angle - 180.0 } else { angle });
             let said = [degrees(got.yaw), degrees(got.roll)];
@@ -371,7 +371,7 @@ fn wrong_times_do_not_end_the_attitude() {
     assert!((yaw - 99.5).abs() < 1e-3, "{yaw}");
 }
 
-/// A wrong time far ahead is no gap, so the tilt stays settled.
+/// A single time far ahead does not count as a gap when the next sample continues the earlier times, so the tilt stays settled.
 #[test]
 fn a_wrong_time_is_no_doubt_of_the_tilt() {
     let mut tracker = tracker();
@@ -396,7 +396,8 @@ fn a_shock_at_the_start_is_no_gravity() {
     ];
     for (name, shock, rejected) in shocks {
         let mut tracker = tracker();
-        // The sensor is rolled by 90° and turns about its y axis, which is vertical, by 90°; the first 0.1 s are a shock.
+        // The sensor is rolled by 90° and turns about its y axis, which is vertical, by 90°; for the first 0.1 s the accelerometer reads
+        // `shock`.
         for i in 0..=1_000 {
             let accel = if i < 100 { shock } else { [0, 4_096, 0] };
             let effect = tracker.on_sample(&Sample {

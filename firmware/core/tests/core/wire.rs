@@ -159,7 +159,8 @@ impl Scene {
                     0 => break,
                     length => {
                         there.send(now_us, &frame[..length]);
-                        // Kind, numbers, CRC-16, COBS code and zeros are ten bytes; only data frames have a block of 16 bytes.
+                        // A frame has ten bytes besides its data: kind, numbers, CRC-16, COBS code and zeros. Only data frames have 16 or
+                        // more bytes of data.
                         sent.extend(length.checked_sub(10).filter(|&bytes| bytes >= 16));
                     }
                 }

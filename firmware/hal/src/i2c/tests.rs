@@ -17,7 +17,8 @@ use crate::timer::tests::{Uptime, clock};
 /// Capacity of the command queue and of the receive queue.
 const PLACES: usize = i2c::I2c::COMMAND_PLACES as usize;
 
-/// Model of the registers of the I2C master, with one device on its bus. Each read of the register `status` executes one command.
+/// Model of the registers of the I2C master, with one device on its bus. Each read of the register `status` executes one command, except
+/// during periodic reads.
 struct Master {
     /// Address of the device.
     address: u8,
@@ -33,7 +34,7 @@ struct Master {
     addressing: bool,
     transaction: bool,
     error: Error,
-    /// Error that the model reports at the next start, or `Error::None`.
+    /// Error that the model reports at each start, or `Error::None`.
     breaks: Error,
     /// Whether the model stops executing commands.
     hangs: bool,

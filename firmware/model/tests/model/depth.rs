@@ -44,7 +44,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         let accumulator = (v0[2] << 8) + ((gx * dx + gy * dy) >> 8);
         let as_written = ((accumulator + (1 << 13)) >> 14).rem_euclid(1 << 18).max(1);
         assert_eq!(i128::from(code), as_written, "{vertices:?} at {i}, {j}");
-        // Error in codes, exact depth minus stored code, times 64 times the doubled area of the triangle.
+        // The exact depth minus the stored depth, in codes, times 64 and times the doubled area of the triangle.
         let exact = (v0[2] - 64 * i128::from(code)) * area
             + (p1[2] * p2[1] - p2[2] * p1[1]) * dx
             + (p2[2] * p1[0] - p1[2] * p2[0]) * dy;

@@ -1,4 +1,4 @@
-//! Tests of frames: constants, drawing in one call, and the band lists of clipped triangles.
+//! Tests of frames: constants, drawing in one call, and the band lists of triangles.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;

@@ -22,7 +22,7 @@ fn pixels(ends: [ScreenVertex; 2], rectangle: Bounds) -> Vec<LinePixel> {
     pixels.into_iter().flatten().collect()
 }
 
-/// A random position: in or near the picture, on a coarse grid that causes ties, or anywhere.
+/// A random position in the picture or at most 30 pixels outside, mostly on a grid that causes ties.
 fn place(random: &mut Random) -> [i64; 2] {
     let grid = [1, 64, 128, 256][random.integer(0, 3) as usize];
     [SIZE.0, SIZE.1]
@@ -110,8 +110,8 @@ fn positions_have_a_range() {
     assert!(Line::new(&[at([0, low - 1]), at([0, 0])]).is_none());
 }
 
-/// A line without depth test hides later pixels, except lines. A tested line is hidden by nearer pixels, and replaces pixels of equal
-/// depth.
+/// A line without depth test replaces all pixels, and stores the largest depth code. A tested line is hidden by nearer pixels, and
+/// replaces pixels of equal depth.
 #[test]
 fn lines_meet_depths() {
     let ends = [[10, 10], [20, 10]].map(|[x, y]| at([256 * x + 128, 256 * y + 128]));

@@ -28,7 +28,7 @@ use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_model::{MeshSubject, Object, Placement, ScreenVertex};
 
-/// A number of a matrix.
+/// Converts a number to an entry of a matrix.
 fn number(x: f64) -> Q8_24 {
     Q8_24::from_num(x)
 }
@@ -41,7 +41,7 @@ fn object(mesh: Mesh, matrix: Matrix) -> Object {
     }
 }
 
-/// The place of a point of an object.
+/// Transforms a point by a matrix.
 fn applied(matrix: &Matrix, point: [f64; 3]) -> [f64; 3] {
     let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
     let place = matrix.place().map(Q8_24::to_num::<f64>);

@@ -301,7 +301,7 @@ fn objects_share_one_depth() {
     assert!(empty.colour.iter().all(|&x| x == 0) && empty.covered() == 0);
 }
 
-/// Clipped triangles of all objects come after all others, as in the lists of the gateware.
+/// A frame draws as many triangles as its objects in frames of their own, including clipped triangles.
 #[test]
 fn clipped_objects_are_drawn() {
     let bytes = Model::sphere(0.5, 6).encoded();
@@ -312,7 +312,7 @@ fn clipped_objects_are_drawn() {
         let matrix = Matrix::scale([number(size); 3]).unwrap().then(&place);
         object(mesh, matrix.unwrap())
     };
-    // The eye is inside the second object and on the surface of the third.
+    // The eye is inside the second object and near the surface of the third.
     let objects = [at(0.0, 0.5), at(0.0, 4.0), at(2.0, 4.4)].map(|mut object| {
         object.subject.cull = false;
         object

@@ -162,7 +162,7 @@ fn steps_as_written() {
             expected,
             [found.x.into(), found.y.into(), i128::from(found.w)]
         );
-        // The depth in the world for the code, and the code range for depths in the mesh's bounding sphere.
+        // The depth code converts back to the depth in the world, and is in the range of codes of the mesh's bounding sphere.
         let code = found.w >> 6;
         let depth = frame.depth.distance(code).unwrap().to_num::<f64>();
         let [.., exact] = projected(&view, world(point), (width, height));

@@ -39,8 +39,8 @@ impl Worst {
     }
 }
 
-/// Returns a random camera within 8 world units of the origin, a point of a mesh that appears in its guard band, and the
-/// depth of this point. The coordinates of the point are in ±`reach`.
+/// Returns a random camera within 8 world units of the origin, a point of a mesh in the camera's guard band, and the depth of this point.
+/// The coordinates of the point are in ±`reach`.
 fn aimed(
     random: &mut Random,
     (width, height): (u32, u32),
@@ -173,8 +173,8 @@ fn fields_of_view_against_f64() {
     assert!(MeshSetup::new(&camera(0.016), 320, 180, RADII[0]).is_ok());
 }
 
-/// Compares the depth code w of a vertex with K/z, and the scale K with its definition: the nearest possible depth of the mesh must have
-/// the code 2^18 − 4, or less by a relative 2^−16 at most.
+/// Compares the depth w of a vertex, in 1/64 code, with K/z, and the scale K with its definition: the nearest possible depth of the mesh
+/// must have the code 2^18 − 4, or less by a relative 2^−16 at most.
 #[test]
 fn depths_against_f64() {
     let mut random = Random(2);
@@ -300,7 +300,7 @@ fn steps_as_written() {
         let (width, height) = SIZES[round % 3];
         let half_width = random.logarithmic(HALF_WIDTHS[0], HALF_WIDTHS[1]);
         let (camera, point, _) = aimed(&mut random, (width, height), half_width, 2.0);
-        // The nearest near plane for each half width.
+        // A near plane that is accepted for every half width.
         let near = camera.near.max(0.0625);
         let view = Camera { near, ..camera }.rounded();
         let frame = MeshSetup::new(&view, width, height, RADII[1]).unwrap();
@@ -359,8 +359,8 @@ fn steps_as_written() {
     }
 }
 
-/// The scale shift is the largest for which the components of the scaled camera axes `u` and `v` fit 25 bits. This is
-/// tested with the longest axes that a camera may have, over the whole range of half widths.
+/// The scale shift is the largest, up to 18, for which the components of the scaled camera axes `u` and `v` fit 25 bits. This is tested
+/// with the longest axes that a camera may have, over the whole range of half widths.
 #[test]
 fn rows_fill_their_width() {
     let mut random = Random(5);

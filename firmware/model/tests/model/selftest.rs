@@ -7,7 +7,7 @@ use glint_model::Projected;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};
 use glint_vectors::Picture;
 
-/// The committed checksums.
+/// Returns the contents of the file `checksums.rs`.
 fn file(checksums: &[u32]) -> String {
     let lines: String = checksums
         .iter()
@@ -47,7 +47,7 @@ fn the_stored_checksums_are_those_of_the_model() {
         };
         picture.describe(Some(mesh), &mut draw).unwrap();
     }
-    // All pictures differ, so that no two checksums are equal.
+    // No two checksums are equal, so all pictures differ.
     let mut distinct = seen.clone();
     distinct.sort_unstable();
     distinct.dedup();

@@ -66,7 +66,7 @@ fn eyes_against_f64() {
     }
 }
 
-/// Anaglyph colour of a pixel of each eye, by the formulas of docs/formats/camera.md in integers.
+/// Anaglyph colour of a pixel in the pictures `left` and `right` of the eyes, by the formulas of docs/formats/camera.md in integers.
 fn composed(tint: Tint, left: u16, right: u16) -> u16 {
     let grey = |pixel: u16| {
         let [r, g, b] = Rgb565(pixel).to_rgb888().map(u32::from);

@@ -167,7 +167,7 @@ fn neighbours_have_no_cracks() {
     assert!(cracks == 0 && cut > pairs / 10);
 }
 
-/// A camera at the origin that looks along y, with square view volume sides at ±0.9 at distance 1.
+/// A camera at the origin that looks along y; at distance 1 the left and the right side of its view volume are at ±0.9.
 fn level_frame() -> MeshSetup {
     let camera = Camera {
         eye: [0.0; 3],

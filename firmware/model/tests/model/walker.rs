@@ -23,8 +23,8 @@ fn alone(vertices: [ScreenVertex; 3], size: (u32, u32)) -> (Vec<bool>, Coverage)
     (covered, coverage)
 }
 
-/// Whether all three edge functions pass, for each pixel of the picture. Every pixel is computed independently, without
-/// the walker.
+/// Whether all three edge functions are at least 0, for each pixel of the picture. Every pixel is computed independently, without the
+/// walker.
 fn by_edges(vertices: [ScreenVertex; 3], (width, height): (u32, u32)) -> Vec<bool> {
     let mut covered = vec![false; (width * height) as usize];
     let Some((oriented, setup)) = set_up(vertices, (width, height)) else {
@@ -94,7 +94,8 @@ fn both_accumulators_walk_alike() {
     }
 }
 
-/// The walker's work is proportional to the covered pixels and to the triangle's extents, not to the bounding box.
+/// The number of tested pixels exceeds that of covered pixels by at most a multiple of the triangle's extents, not of its bounding box's
+/// area.
 #[test]
 fn the_walker_does_not_look_through_the_box() {
     let mut random = Random(3);
@@ -147,7 +148,7 @@ fn top_left_torture_on_the_half_pixel_grid() {
     assert_eq!(tried, 2148);
 }
 
-/// Compares the covered pixels of squares and triangles with known results of the top-left rule.
+/// Compares the covered pixels of the two triangles of a square with known results of the top-left rule.
 #[test]
 fn a_square_on_pixel_centres() {
     let [a, b, c, d] = [[0, 0], [4, 0], [4, 4], [0, 4]]

@@ -46,7 +46,7 @@ fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
     (picture, stats)
 }
 
-/// The column range and the row range of the drawn pixels.
+/// The column and the row of each drawn pixel.
 fn pixels(picture: &Picture, width: usize) -> Vec<[usize; 2]> {
     let drawn = picture.colour.iter().enumerate();
     drawn

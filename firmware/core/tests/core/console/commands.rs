@@ -89,7 +89,7 @@ fn a_blank_line_is_no_command() {
     }
 }
 
-/// Lines, and the Debug forms of the commands they are.
+/// Lines, and the Debug forms of their commands.
 const SIMPLE: &str = r#"
 help => Help { command: None }
 help view => Help { command: Some("view") }

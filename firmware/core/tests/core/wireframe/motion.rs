@@ -90,7 +90,8 @@ proptest! {
             let mut motion = Motion::default();
             prop_assert!(motion.apply(step));
             let pose = motion.pose();
-            // One step of the accumulated form is within half a unit of the exact motion, apart from the length of (c, s).
+            // One step of the accumulated form is within half a unit of the exact motion, apart from the length of (c, s), which is not
+            // exactly 1.
             for (old, new) in before.iter().flatten().zip(after.iter().flatten()) {
                 for (exact, new) in pose.point(*old).into_iter().zip(*new) {
                     prop_assert!((exact - Q12_20::from(new)).abs().to_num::<f64>() * 2048.0 < 0.51);
