@@ -34,7 +34,7 @@ pub struct Raymarcher {
 pub struct Taken {
     /// Clocks from the start of the frame to its end.
     pub clocks: u64,
-    /// Sum over the lanes of the clocks without an evaluation.
+    /// Sum over the lanes of the clocks in which a lane had room for a ray and no ray came.
     pub idle: u64,
     /// Statistics of the model, which the module's counters confirm.
     pub stats: FieldStats,

@@ -22,7 +22,7 @@ uint32_t soc_build_id(void);
 /* Frequency of sys_clk in Hz. */
 uint32_t soc_clock_hz(void);
 
-/* Runs `cycles` cycles of sys_clk; pix_clk runs along at 297/325 of its rate. */
+/* Runs `cycles` cycles of sys_clk; pix_clk runs along at 74.25 MHz. */
 void soc_run(Soc *soc, uint64_t cycles);
 /* Runs as soc_run does, but only moves the clocks and evaluates the model, to measure what the rest of the harness costs. Serial
  * output of the SoC in these cycles is lost. */
@@ -51,9 +51,9 @@ uint64_t soc_run_to_edge(Soc *soc, uint64_t cycles);
 
 /* Sets how the image sensor drives its SCCB wires, coded as for soc_i2c_drive. */
 void soc_camera_drive(Soc *soc, uint8_t released);
-/* Queues levels of the image sensor's port, one entry a period of PCLK; `frequency` of PCLK in Hz, a multiple of 250 kHz that is at most that
- * of sys_clk. The levels change at the beginning of the period, PCLK rises in its middle. Bits 7:0 data, bit 8 HREF, bit 9 VSYNC, bit
- * 10: PCLK stands still, bit 11: PCLK is inverted. While the queue is empty, nothing changes. */
+/* Queues levels of the image sensor's port, one entry for each period of PCLK. `frequency` is that of PCLK in Hz, a multiple of 250 kHz
+ * and at most the frequency of sys_clk. The levels change at the beginning of the period, PCLK rises in its middle. Bits 7:0: data,
+ * bit 8: HREF, bit 9: VSYNC, bit 10: PCLK stands still, bit 11: PCLK is inverted. While the queue is empty, nothing changes. */
 void soc_camera_send(Soc *soc, uint32_t frequency, const uint16_t *levels, size_t count);
 /* Number of queued periods. */
 size_t soc_camera_queued(const Soc *soc);

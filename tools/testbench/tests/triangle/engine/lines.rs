@@ -51,7 +51,7 @@ fn difficult_segments() {
     }
 }
 
-/// A frame of 10,000 segments of 50 pixels takes less than 1/60 s, as both passes run concurrently.
+/// A frame of 10,000 segments of 50 pixels takes less than 1/60 s if both passes run concurrently.
 #[test]
 fn ten_thousand_segments_of_50_pixels() {
     for (size, &picture) in SIZES.iter().enumerate() {

@@ -1,4 +1,4 @@
-# Lights the segments LEFT_SHOWN and RIGHT_SHOWN of the displays of digits.
+# Lights the segments LEFT_SHOWN and RIGHT_SHOWN of the two digit displays.
     .option norelax
     li   s0, LEFT
     li   s1, LEFT_SHOWN

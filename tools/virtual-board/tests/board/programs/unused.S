@@ -1,5 +1,5 @@
-# Accesses addresses that no memory and no register has, and leaves after each the count of bus errors and the cycle at RESULTS, after the
-# last a word that is not 0.
+# Accesses addresses that no memory and no register has. Before the first access and after each one, stores the count of bus errors and
+# the cycle at RESULTS; finally stores a word that is not 0 behind them.
     .option norelax
     .option arch, +zicsr
     .macro store
