@@ -20,8 +20,8 @@ class Netlist:
     def take_logic_off_resets(self):
         """Connects LUTs to the input of a reset's global buffer instead of its output.
 
-        A global buffer reaches the resets of flip-flops by wires of its own. To a LUT, nextpnr leads it through wires of the
-        ordinary kind, before it routes any other net, and these may be the only ones that another net can take.
+        A global buffer reaches the resets of flip-flops by dedicated wires. To reach a LUT, nextpnr uses ordinary wires, and it
+        routes them before any other net: these wires may be the only ones that another net can take.
         """
         for buffer in [cell for cell in self._cells.values() if cell["type"] == "DCCA"]:
             source, output = (buffer["connections"][port] for port in ("CLKI", "CLKO"))

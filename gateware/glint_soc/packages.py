@@ -44,7 +44,7 @@ def main():
     parser = argparse.ArgumentParser(prog="python -m glint_soc.packages", description=__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; fail if a file is not up to date")
     check = parser.parse_args().check
-    logging.disable(logging.INFO) # LiteX describes all it does
+    logging.disable(logging.INFO) # LiteX logs each step
     texts = stale(full_soc())
     for path, text in texts.items():
         if not check:

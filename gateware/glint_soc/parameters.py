@@ -52,13 +52,13 @@ class PassParameters(LiteXModule):
     """The parameters of the passes of a block: registers that software may write at any time, and copies that hold during a pass.
 
     Each of `passes` lists the `Parameter`s of one pass. `load[k]` (one clock) requests the copies of pass k. `loading[k]` is high
-    from the next clock until they are complete: one register is copied in a clock, one pass after another. `storage` of a
-    register is its copy. `copies[k]` maps the registers of pass k to their copies, because a register of several passes has one
-    in each, and `storage` in the first.
+    from the next clock until they are complete: one register is copied in a clock, one pass after another. `copies[k]` maps the
+    registers of pass k to their copies, because a register of several passes has a copy in each of them. `storage` of a register
+    is its copy in the first of its passes.
 
-    The registers are words of a block RAM as large as the block's window of the bus. The copies of a pass are a chain, so one enable
-    would do for all of them; each `_LOADS` flip-flops have one. The widest copy is next to the memory: then each flip-flop of the
-    chain is a bit of a copy.
+    The registers are words of a block RAM as large as the block's window of the bus. The copies of a pass are a chain with a common
+    enable, which is duplicated so that each duplicate drives at most `_LOADS` flip-flops. The widest copy is next to the memory, so
+    the chain needs no flip-flops other than the bits of the copies.
 
         bus ─▶ words ─▶ widest copy ─▶ … ─▶ narrowest copy
     """

@@ -119,8 +119,8 @@ class UrbanaSoC(GlintSoC):
         """Constrains the clock of the image sensor, and the paths between it and `sys`, which all go through crossings of rtl/common.
 
         The bits of a pointer of `cdc_fifo` may arrive apart by less than a period of either clock, so the limit is the shorter
-        one. It is not known whether the pin can reach the clock network directly. The commands come before the placement, because
-        the XDC would have them before those that make the clocks.
+        one. It is not known whether the pin can reach the clock network directly. The commands run before the placement, because
+        in the XDC they would precede the commands that create the clocks.
         """
         platform.add_period_constraint(self.gesture.pclk, 1e9 / PIXEL_CLOCK)
         limit = round(1e9 / max(PIXEL_CLOCK, self.sys_clk_freq), 2)

@@ -79,7 +79,7 @@ def main():
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--write", action="store_true", help="write the page in docs")
     arguments = parser.parse_args()
-    logging.disable(logging.INFO) # LiteX describes all it does
+    logging.disable(logging.INFO) # LiteX logs each step
     start, budget = time.monotonic(), Budget.read()
     if arguments.check:
         return check(budget)

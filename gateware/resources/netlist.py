@@ -96,7 +96,7 @@ class Netlist:
         for name, cell in self.cells.items():
             names = [None if name.startswith("$") else re.sub(r"(\.\d+)+$", "", name), *map(self.name, _bits(cell, "output"))]
             if is_flat_source and "." not in (names[0] or "."):
-                names.append(names.pop(0) + "_") # a name such as that of a memory or a primitive, all of whose words count
+                names.append(names.pop(0) + "_") # the name of a memory or a primitive: its last word counts too
             if own := next(filter(None, names), None):
                 owners[name] = path(own)
         waiting = self.cells.keys() - owners.keys()

@@ -109,8 +109,8 @@ def _ports(netlist, top):
 
 
 def wrapper(top, ports):
-    """Verilog of the wrapper of a module. The flip-flops of its ports have the first of its clocks. Paths between two clocks
-    are not measured, so a port of another clock counts for nothing."""
+    """Verilog of the wrapper of a module. The first of the module's clocks drives the flip-flops of all ports. Paths between two
+    clocks are not measured, so ports that belong to another clock do not affect the rate."""
     clocks = [port for port in ports if port.is_clock]
     inputs = [port for port in ports if port.is_input and not port.is_clock]
     outputs = [port for port in ports if not port.is_input]
@@ -140,8 +140,8 @@ endmodule
 
 
 def split_products(module, operand_bits=18):
-    """Replaces each product with an operand above the bits of a multiplier's in a flat netlist by products that fit, a register
-    for each of them, and their sum. The register's clock is the wrapper's first port."""
+    """Replaces each product in a flat netlist that has an operand of more than `operand_bits` bits by products that fit, a register
+    after each of them, and the sum of the registers. The clock of the registers is the first port of the wrapper."""
     clock = next(iter(module["ports"].values()))["bits"][0]
     wires = itertools.count(1 + max(bit for net in module["netnames"].values() for bit in net["bits"] if isinstance(bit, int)))
     for name, cell in list(module["cells"].items()):

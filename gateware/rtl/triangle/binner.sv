@@ -1,7 +1,7 @@
 // Writes the results of the setup to memory: each descriptor once, the descriptor's number to the list of every band that the triangle
 // touches, and the numbers of exceptions to a separate list.
 //
-// Layout in words of 16 bytes; entries are u32 (docs/formats/triangle.md "Band lists"):
+// Layout in words of 16 bytes; entries are u32 (docs/formats/triangle.md, "Descriptors and band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
 //   lists         list_base                            16 words: the lengths of 64 lists
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries per word
