@@ -208,7 +208,7 @@ fn readme(page: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// No colour takes more than 49 of 50 pixels of a picture, and it has at least six colours. A wireframe is white lines of at least
+/// No colour takes more than 49 of 50 pixels of a picture, and a picture has at least six colours. The lines of a wireframe have at least
 /// 1,000 pixels.
 #[test]
 fn every_picture_of_the_readme_shows_something() {

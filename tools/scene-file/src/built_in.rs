@@ -1,4 +1,5 @@
-//! The scenes of the folder `scenes`, which are built into the programs that use this crate and, by `cargo xtask scenes`, into the firmware.
+//! The scenes of the folder `scenes`, which are built into the programs that use this crate. `cargo xtask scenes` writes them for the
+//! firmware.
 
 /// Defines the built-in scenes by their names.
 macro_rules! built_in {

@@ -30,7 +30,7 @@ const HEADER: u32 = 32;
 /// A colour that is neither a drawn colour nor the background.
 pub const UNTOUCHED: u16 = 0x7777;
 
-/// Both passes.
+/// Kind of a pass.
 #[derive(Clone, Copy)]
 pub enum Kind {
     Geometry,
@@ -96,7 +96,7 @@ impl Bench {
         self.finish(kind)
     }
 
-    /// Runs until all passes have ended. Returns the error of a pass, if any; the pass's event must then be pending.
+    /// Runs until all passes have ended, when an event must be pending. Returns the error of the last pass of this kind.
     pub fn finish(&mut self, kind: Kind) -> Error {
         while self.status().geometry_busy() || self.status().raster_busy() {
             assert!(!self.engine.interrupt());

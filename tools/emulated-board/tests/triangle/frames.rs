@@ -240,8 +240,8 @@ fn a_frame_is_whole_after_a_cancelled_one() {
     }
 }
 
-/// A pass takes about as many cycles as the gateware alone with a memory (docs/triangle.md): 4,200 and 7,517 for icosphere:6,
-/// which is similar to this sphere. Counters grow meanwhile.
+/// A pass takes about as many cycles as the gateware's for icosphere:6 (docs/report/triangle.md), which is similar to this sphere.
+/// Counters grow meanwhile.
 #[test]
 fn passes_take_about_the_time_of_the_gateware() {
     let mut bench = Bench::new();

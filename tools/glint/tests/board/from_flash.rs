@@ -191,8 +191,8 @@ fn the_built_in_demo_runs_without_valid_contents() {
     runs_the_built_in_demo(cut, 2, "start: flash byte ");
 }
 
-/// A board with the scenes `good`, `bad` and `good`: at the second scene it prints the error, shows its number on the digits, and
-/// keeps the previous picture.
+/// A board with the scenes `good`, `bad` and `also`: at the second scene it prints the error, shows its number on the digits, and keeps the
+/// previous picture. At the third scene it goes on.
 fn keeps_the_scene(pieces: &[Piece], blocks: u32, number: u8, error: &str) {
     let mut all = vec![
         piece(Kind::Scene, "good", "size 320 180\nfield menger:1\n"),

@@ -49,8 +49,7 @@ impl View {
     }
 }
 
-/// A scene with a hand at a position that depends on the time in s, sensor noise and a face beside the hand; the path records the
-/// hand of each frame.
+/// A scene with a hand at a position that depends on the time in s, and sensor noise; the path records the hand of each frame.
 fn sensor_with(hand: impl Fn(f64) -> Hand + Send + 'static) -> (Scene, Path) {
     let path = Path::default();
     let seen = path.clone();
@@ -233,7 +232,8 @@ const MIDDLE: Hand = Hand {
 /// set-up, and three frames.
 const RETURN: u64 = 125;
 
-/// The camera does not move during any fault and in any case of the table; afterwards the hand is tracked again.
+/// The camera does not move during any fault; afterwards the hand is tracked again. Then the cases of the table "the image sensor sees"
+/// have their outcomes.
 #[test]
 fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let mut board = emulator();
@@ -314,8 +314,7 @@ fn stays(before: &[String], after: &[String], case: &str) {
     }
 }
 
-/// The views of the image sensor for the table in docs/gesture-control.md, in the order of its rows: hands, light, and time in
-/// ms.
+/// The views of the image sensor for the table in docs/gesture-control.md, in the order of its rows: name, hands, light, and time in ms.
 fn sights() -> [(&'static str, Vec<Hand>, f64, u64); 5] {
     let far = Hand {
         centre: [285.0, 150.0],

@@ -1,4 +1,4 @@
-//! Tests of the complete system: the virtual board, its firmware, and the host's side of the serial line.
+//! Tests of the complete system: the virtual or the emulated board, its firmware, and the host's side of the serial line.
 //!
 //! Require the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
 

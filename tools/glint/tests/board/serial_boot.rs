@@ -138,7 +138,7 @@ fn accept(board: &mut SimulatedBoard<EmulatedBoard>) {
     board.write(flash::ACCEPT).unwrap();
 }
 
-/// Nothing has read the output of these boards, so their requests for a serial boot are old.
+/// Nothing has read the output of this board, so its requests for a serial boot are old.
 #[test]
 fn a_board_that_has_waited_is_flashed_at_once() {
     let mut board = board::emulated_bios().unwrap();

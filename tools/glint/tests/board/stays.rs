@@ -231,7 +231,7 @@ fn a_board_that_waits_for_a_program_can_always_be_flashed() {
     stay.succeed("flash small.bin --board port", "");
 }
 
-/// A program that never prints a prompt, or nothing, does not make the program deaf to signals.
+/// Signals end `glint board` even if the program on the board prints no prompt, or nothing.
 #[test]
 fn a_board_without_a_prompt_ends_by_a_signal() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-programs");

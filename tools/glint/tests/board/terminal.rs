@@ -107,7 +107,7 @@ impl Terminal {
     }
 }
 
-/// Returns true after a number of calls; a wait for a terminal makes one call a second.
+/// Returns a function that returns true after a number of calls; a wait for a terminal calls it after each second without output.
 pub fn patience(seconds: u32) -> impl FnMut() -> bool {
     let mut left = seconds;
     move || {

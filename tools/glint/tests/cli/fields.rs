@@ -156,7 +156,7 @@ fn warnings_of_pictures_that_show_nothing() {
         None => format!("{line}\n"),
     });
     std::fs::write(folder.join("room.obj"), inside_out.collect::<String>()).unwrap();
-    // A square and a small one above it, whose back is in view.
+    // A square, and a small triangle above it whose back is in view from above.
     let two = format!("{SQUARE}v 0 0 .1\nv .2 0 .1\nv .2 .2 .1\nf 7 6 5\n");
     std::fs::write(folder.join("two.obj"), two).unwrap();
     for (arguments, expected) in [

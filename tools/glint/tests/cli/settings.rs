@@ -3,7 +3,7 @@
 use crate::common::{all_refused, folder, glint, glint_in, report, said, succeed, words};
 use std::path::Path;
 
-/// The error of an upload to a serial port that does not exist; it names the port.
+/// The error of a command that must fail; the error has one line.
 fn error(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> String {
     let output = glint_in(folder, arguments, variables);
     let error = String::from_utf8(output.stderr).unwrap();

@@ -203,7 +203,7 @@ fn move_the_hand(browser: &mut Browser, page: &Page) {
     browser.evaluate(page, "document.getElementById('away').click()");
 }
 
-/// Drops a mesh on the page, and uploads it to the board.
+/// Drops a mesh on the page, and uploads it to another board.
 fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<EmulatedBoard>) {
     let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let name = "corner.obj";

@@ -99,8 +99,8 @@ const ONE: i128 = 1 << 62;
 /// π with 93 fraction bits, rounded to nearest.
 const PI_Q93: i128 = 31_112_826_664_028_885_653_815_243_078;
 
-/// Computes sine and cosine of a first-octant phase with 62 fraction bits by Taylor series. Each of the two series has about ten terms, each
-/// with a truncation error below four units in the last place.
+/// Computes sine and cosine of a first-octant phase with 62 fraction bits by Taylor series. Each of the two series has about ten terms. A
+/// term's truncation error is below four units in the last place.
 fn series(phase: u32) -> (i128, i128) {
     // The angle is phase·2π/2^32 = phase·π/2^31. The product with `PI_Q93` stays below 2^124, so it fits an i128.
     let angle = (i128::from(phase) * PI_Q93) >> 62;

@@ -172,8 +172,8 @@ pub struct Tolerance {
 
 /// Computes the visible surface of each pixel of a picture, row by row.
 ///
-/// `cull` removes back faces. A pixel near an edge of a back face can still be unstable, because snapping can turn a very thin back face into
-/// a front face.
+/// `cull` removes back faces. A pixel near an edge of a back face can still be unstable, because snapping can turn a very thin back face
+/// into a front face.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,

@@ -18,7 +18,8 @@ const TOLERANCE: f64 = 1e-6;
 /// Distance from the surface at which a trace ends, in world units.
 const TRACE: f64 = 1e-9;
 
-/// Tolerance at edges, in world units. The two methods may disagree on a ray if geometry and trace agree on the ray moved by this distance.
+/// Tolerance at edges, in world units. The two methods may disagree on a ray if the trace of the ray agrees with the geometry of the ray
+/// moved by this distance.
 const BESIDE: f64 = 1e-6;
 
 fn ball(centre: Vector, radius: f64) -> Field {

@@ -169,8 +169,8 @@ fn a_million_random_segments_have_exactly_their_pixels() {
     assert!(tally.clipped > 100_000, "{tally:?}");
 }
 
-/// Every segment of at most one pixel, in steps of 1/8 pixel, from every position in a pixel: ends on centres, corners and sides
-/// of diamonds, and segments along these sides.
+/// Every segment of at most 1.25 pixels in each direction, in steps of 1/8 pixel, from every position in a pixel: ends on centres, corners
+/// and sides of diamonds, and segments along these sides.
 #[test]
 fn short_segments_have_exactly_their_pixels() {
     let mut tally = Tally::default();

@@ -33,7 +33,7 @@ impl Run {
         run
     }
 
-    /// Sets the checksums of the jobs' programs and sources.
+    /// Writes a text in place of the checksums of all files that the jobs run.
     fn stamp(&self, text: &str) {
         fs::write(self.folder.join("inputs"), text).expect("writable");
     }

@@ -296,7 +296,7 @@ fn the_soc_draws_at_1280x720() {
 }
 
 #[test]
-#[ignore = "takes minutes, nearly all of them for the firmware's look at the meshes"]
+#[ignore = "takes minutes, nearly all of them for the firmware's check of the meshes"]
 fn the_soc_draws_large_meshes() {
     draw(Size::W1280, scenes(false));
 }

@@ -252,8 +252,8 @@ fn required_extensions_of_the_shape_are_named() {
     }
 }
 
-/// Nodes whose extension places two instances: one at the node, one scaled by 2 and moved by (2, 2, 1), which are the last point of the
-/// positions.
+/// A node whose extension places an instance, scaled and moved by the last point of the positions, (2, 2, 1); then two instances, by the
+/// last two points.
 #[test]
 fn instances_of_a_mesh() {
     let views = "\"accessors\": [";
@@ -297,7 +297,7 @@ fn hidden_nodes_and_colours_of_an_extension() {
     assert_eq!(polygons.faces[3].colour, Some(Rgb8([255, 0, 0])));
 }
 
-/// The third index, a number of 16 bits at the start of view 3, replaces the point 0 with the first normal, (0, 0, 1).
+/// The sparse index, the number of 16 bits at the start of view 3, is 0: the first normal, (0, 0, 1), replaces point 0.
 #[test]
 fn sparse_positions() {
     let sparse = "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 3, \"componentType\": 5123}, \"values\": {\"bufferView\": 1}}";

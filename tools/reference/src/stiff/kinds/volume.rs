@@ -129,8 +129,8 @@ fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
     ))
 }
 
-/// Draws a cube of side 0.2 at this position with a far plane at 3. A cube whose middle is at a depth of at most 2 must look the same without
-/// a far plane.
+/// Draws a cube of side 0.2 at this position with a far plane at 3. A cube whose middle is at a depth of at most 2 must look the same
+/// without a far plane.
 fn object_at(place: [f64; 3]) -> Result<Outcome> {
     let bytes = Model::cube(1638).encoded();
     let drawn = |clip: Clip| -> Result<_> {

@@ -130,7 +130,7 @@ pub fn scenes() -> Vec<Scene> {
         let made = glint::convert::convert(&polygons, glint::convert::Options::default());
         made.expect("a good mesh").0
     };
-    // Two triangles of a floor: the narrow near edge is at y = `from`, just in front of the eye or behind it, the wide far edge at y = 1.99,
+    // Two triangles of a floor: the narrow near edge is at y = `from`, just before or behind the eye, the wide far edge at y = 1.99,
     // near the largest coordinate of a mesh.
     let floor = |from: f64| {
         let (near, far) = (0.05, 1.9);
