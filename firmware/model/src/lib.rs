@@ -6,9 +6,10 @@
 //! segments of a mesh's edges, and [`wireframe`] runs the programs of the wireframe simulator. [`gesture`] counts the pixels of a hand in
 //! the frames of an image sensor.
 //!
-//! The crate uses no floating point and no allocation, and 128-bit integers only for the fog's table. No sum or product overflows its
-//! type, for every camera that [`glint_core::camera::View`] accepts and every mesh: comments at the functions prove this, and tests with
-//! overflow checks run the extreme cases. Intended modular arithmetic uses the `wrapping` methods.
+//! The crate uses no floating point and no allocation, and 128-bit integers only for the fog's table and for the translation of an
+//! orthographic frame. No sum or product overflows its type, for every camera that [`glint_core::camera::View`] accepts and every mesh:
+//! comments at the functions prove this, and tests with overflow checks run the extreme cases. Intended modular arithmetic uses the
+//! `wrapping` methods.
 #![no_std]
 #![forbid(unsafe_code)]
 

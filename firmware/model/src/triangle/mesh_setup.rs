@@ -264,7 +264,7 @@ impl Scale {
     fn place(&self, view: &View, translation: &mut [i64; 3]) {
         let eye = view.eye().map(Q32_32::to_bits);
         for (axis, translation) in [view.u(), view.v()].into_iter().zip(translation) {
-            // |C·axis| is below 2^58.1 in units of 2^−55 and is truncated to 40 fraction bits; s·2^24 is below 2^41.
+            // |C·axis| is below 2^58.1 in units of 2^−55 and is rounded to 40 fraction bits; s·2^24 is below 2^41.
             let along = nearest(-dot(eye, &axis.map(Q2_23::to_bits)), 15);
             let pixels = i128::from(along) * i128::from(self.whole);
             let shift = 50 - self.shift;

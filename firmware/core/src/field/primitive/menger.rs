@@ -75,7 +75,7 @@ impl FlatSolid for FixedSponge {
     ///
     /// S − |x| replaces every coordinate x; it is above S/2 if x is in the middle third. A point is in a hole if at
     /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2 if it is above S/2: all
-    /// points outsidethe holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations preserve the
+    /// points outside the holes are then in the cube |x| ≤ S/2, and points in a hole are not. Mirrors and permutations preserve the
     /// maximum norm.
     #[inline]
     fn sample(&self, point: [i32; 3]) -> FieldSample {
