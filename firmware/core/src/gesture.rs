@@ -14,9 +14,9 @@
 //! returns the [`EngineSetting`] for the next frame: the region around the hand, outside which no pixels are counted.
 //! [`calibrate`] finds the windows of the hand's colour from a small picture.
 //!
-//! Noise pixels all over the frame pull the mean of all pixels to the frame's middle: 5 % of noise pixels shift it by 80 pixels
-//! for a hand of 500 pixels at the border. Therefore the engine ignores short runs of pixels in a line, and all pixels outside
-//! the region. Around a hand at rest the region is small, so shorter runs, such as fingertips, may count.
+//! Noise pixels all over the frame pull the mean of all pixels to the frame's middle: 5 % of noise pixels shift it by up to 90 pixels for
+//! a hand of 500 pixels (docs/report/gesture.md). Therefore the engine ignores short runs of pixels in a line, and all pixels outside the
+//! region. Around a hand at rest the region is small, so shorter runs, such as fingertips, may count.
 
 mod blob;
 mod calibration;
