@@ -136,7 +136,7 @@ fn the_free_camera_is_what_it_should_be() {
     assert!(largest <= 2f64.powi(-20), "{largest}");
 }
 
-/// A vector with random direction and length, with `size` components in [−1, 1).
+/// Returns `count` vectors with random directions, whose components have all magnitudes up to 2^23.
 fn vectors(count: u32) -> impl Iterator<Item = [Q32_32; 3]> {
     (1..=count).map(|k| {
         let mut state = u64::from(k).wrapping_mul(0x9E37_79B9_7F4A_7C15);

@@ -65,7 +65,7 @@ fn pictures_without_a_hand_are_refused() {
     );
 }
 
-/// More than 2^16 samples, of which more than 2^32/100 are outside the box.
+/// A picture with more than 2^16 samples in the box, and a picture with more than 2^32/100 samples outside the box.
 #[test]
 fn large_pictures_are_counted() {
     let calibrated = |columns: u16, rows: u16, rest: [u8; 2]| {
