@@ -15,7 +15,7 @@ use crate::vector::{cross, unit};
 pub enum Shape {
     /// A sphere of radius 0.5.
     Sphere,
-    /// A torus of radius 0.5 about the z axis. The tube has a radius of 0.15.
+    /// A torus about the z axis with the outer radius 0.5. The tube has the radius 0.15.
     Torus,
     /// A cylinder of radius 0.3 and length 1 about the z axis.
     Cylinder,

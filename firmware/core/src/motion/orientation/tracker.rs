@@ -47,7 +47,7 @@ const RESTART: u8 = 4;
 /// The samples since the last step whose times do not follow it, from which a wrong time or a restart of the clock is recognised.
 #[derive(Clone, Copy, Debug, Default)]
 struct Detour {
-    /// Time of the tracker's last sample after the latest of these samples. If the tracker has another time, the detour has ended.
+    /// Value of [`Tracker::last`] after the latest of these samples. If the tracker has another value, the detour has ended.
     last: u64,
     /// Time of the tracker's last sample before the gap, and the age of the tilt at that time.
     before: Option<(u64, u32)>,
