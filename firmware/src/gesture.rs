@@ -134,7 +134,7 @@ impl Gesture {
         })
     }
 
-    /// Schedules the next check of the image sensor after this time.
+    /// Schedules the next check of the image sensor for the time `span` from now.
     fn look_after(&mut self, span: Duration) {
         let counters = self.engine.counters();
         self.watch = Some(Watch {

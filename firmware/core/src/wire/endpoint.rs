@@ -110,7 +110,7 @@ impl<R: Role> Endpoint<R> {
         self.enter(State::Failed(Failure::Aborted(Reason::Cancelled)), now_ms);
     }
 
-    /// Ends the transfer with the outcome `state`, unless the transfer goes on or ends already.
+    /// Ends the transfer with the outcome `state`; does nothing for [`State::Running`], and after the end has begun.
     pub(super) fn enter(&mut self, state: State, now_ms: u64) {
         if state != State::Running && self.ending.is_none() {
             let report = self.role.session().zip(self.role.report(state));
