@@ -213,7 +213,8 @@ fn end_by(signal: &str, child: &mut Child) {
 fn a_board_that_waits_for_a_program_can_always_be_flashed() {
     let stay = Stay::start_with("board-waits", &["--bios"]);
     let mut large = printer("Large program runs\n");
-    large.resize(4 << 20, 0);
+    // Loading takes longer than this test runs.
+    large.resize(64 << 20, 0);
     std::fs::write(stay.folder.join("large.bin"), large).unwrap();
     let mut small = printer("Program runs\n");
     small.resize(1000, 0);
