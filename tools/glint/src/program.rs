@@ -1,6 +1,7 @@
 //! Checks that a file can be a program of a board: a flat binary that begins with an instruction.
 
 use crate::error::{FormatError, InputError, quote};
+use crate::formats::read_up_to;
 use glint_core::flash::Image;
 use std::path::Path;
 
@@ -15,6 +16,16 @@ const START: usize = 256;
 const OPCODES: [u8; 11] = [
     0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
 ];
+
+/// Reads and checks the file at `path`, or standard input.
+///
+/// # Errors
+/// The file cannot be read, or those of [`check`].
+pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
+    let bytes = read_up_to(path, MEMORY)?;
+    check(&bytes, path)?;
+    Ok(bytes)
+}
 
 /// Checks the bytes of the file at `path`.
 ///
@@ -40,10 +51,6 @@ pub fn check(bytes: &[u8], path: &Path) -> Result<(), InputError> {
     if Image::new_checked(bytes).is_ok() {
         let found = "an image of the flash, which `glint flash --spi` writes";
         return error(flat, found.to_owned());
-    }
-    if bytes.len() > MEMORY {
-        let expected = format!("at most {MEMORY} bytes of a program");
-        return error(&expected, bytes.len().to_string());
     }
     if !OPCODES.contains(&(first[0] & 0x7f)) {
         return error(flat, format!("the bytes {first:02x?}"));

@@ -9,8 +9,8 @@ use anyhow::Context;
 use clap::Args;
 use glint::board::{self, AnyBoard, BoardName, SerialBoard};
 use glint::console::BIOS_PROMPT;
-use glint::error::{FormatError, quote};
-use glint::formats::read_file;
+use glint::error::quote;
+use glint::formats::read_up_to;
 use glint::web::Server;
 use glint_board_api::pace::SystemClock;
 use glint_core::console::PROMPT;
@@ -36,11 +36,12 @@ const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 /// at once; Ctrl-] ends it and the board.
 #[derive(Args)]
 pub struct BoardArguments {
-    /// Create this symbolic link to the port, and remove it at the end; an earlier link is replaced.
+    /// Create this symbolic link to the port, and remove it at the end; a link to another pseudo-terminal, as an earlier board leaves
+    /// it, is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File that receives the port's path or the page's address as soon as the board is ready; an earlier file is removed at the
-    /// start.
+    /// File that receives the port's path or the page's address as soon as the board is ready, removed at the end; an earlier file
+    /// is removed at the start.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, like a board without a program in its flash memory.
@@ -73,15 +74,9 @@ impl BoardArguments {
         self.stay()
     }
 
-    /// Opens the file of `--ready-file`. Removes an earlier file, so that the file exists only when the board is ready.
-    fn ready(&self) -> anyhow::Result<Option<Output>> {
-        let ready = self.ready_file.as_deref();
-        if let Some(earlier) = ready.filter(|ready| ready.is_file()) {
-            std::fs::remove_file(earlier).with_context(|| earlier.display().to_string())?;
-        }
-        ready
-            .map(|path| Output::open(path, &[], [""; 0]))
-            .transpose()
+    /// Opens the file of `--ready-file`.
+    fn ready(&self) -> anyhow::Result<Option<Ready>> {
+        self.ready_file.as_deref().map(Ready::open).transpose()
     }
 
     /// Serves the live page.
@@ -108,9 +103,7 @@ impl BoardArguments {
         if address.ip().is_unspecified() {
             note("on other devices, replace the host in this address by this machine's address");
         }
-        if let Some(ready) = ready {
-            ready.write(|out| writeln!(out, "{url}"))?;
-        }
+        let _ready = ready.map(|ready| ready.write(&url)).transpose()?;
         Ok(server.run(&mut *board, &self.board.to_string(), &stop)?)
     }
 
@@ -127,13 +120,7 @@ impl BoardArguments {
         let board = board::simulated(&self.board, None)?;
         let mut board = board.context("expected a simulated board")?;
         if let Some(path) = &self.flash {
-            let image = read_file(path)?;
-            let (found, limit) = (image.len(), MAX_BYTES);
-            if found > limit {
-                let expected = format!("at most {limit} bytes of an image");
-                let error = FormatError::whole(expected, format!("{found} bytes"));
-                return Err(error.in_path(path).into());
-            }
+            let image = read_up_to(path, MAX_BYTES)?;
             board.inner().plug_flash(Flash::new(image));
         }
         show_simulation(board.meter());
@@ -142,20 +129,21 @@ impl BoardArguments {
 
     fn stay(&self) -> anyhow::Result<()> {
         let ready = self.ready()?;
+        // Until here a signal ends the program, also while it waits for a pipe.
+        let board = self.simulated()?;
         let (report, events) = channel();
         let end = report.clone();
         ctrlc::set_handler(move || {
             // Without a receiver the program is already ending.
             let _ = end.send(Event::End);
         })?;
-        let pty = Pty::watched(self.simulated()?, first_prompt(report))?;
+        let pty = Pty::watched(board, first_prompt(report))?;
         let port = pty.path();
         let link = self.pty.as_deref().map(|link| Link::new(link, port));
         let _link = link.transpose()?;
         say(port.display())?;
-        if let Some(ready) = ready {
-            ready.write(|out| writeln!(out, "{}", port.display()))?;
-        }
+        let ready = ready.map(|ready| ready.write(&port.display().to_string()));
+        let _ready = ready.transpose()?;
         if self.pty.is_none() && self.ready_file.is_none() && isatty(std::io::stdin()) {
             let port = port.to_string_lossy();
             let is_ended = || events.try_iter().any(|event| matches!(event, Event::End));
@@ -203,27 +191,83 @@ fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8], &[u8]) + Send {
     }
 }
 
-/// A symbolic link that is removed when it is dropped.
-struct Link(PathBuf);
+/// The file of `--ready-file`, which exists only while the board runs.
+struct Ready(Output);
+
+impl Ready {
+    /// Removes an earlier file.
+    fn open(path: &Path) -> anyhow::Result<Self> {
+        if path.is_file() {
+            std::fs::remove_file(path).with_context(|| path.display().to_string())?;
+        }
+        Ok(Self(Output::open(path, &[], [""; 0])?))
+    }
+
+    /// Writes the file. The result removes it when it is dropped, unless it is a device or a pipe.
+    fn write(self, text: &str) -> anyhow::Result<Removal> {
+        let path = self.0.path().to_owned();
+        self.0.write(|out| writeln!(out, "{text}"))?;
+        let removed = path.is_file().then_some(path);
+        Ok(Removal(removed))
+    }
+}
+
+/// A file or a link that is removed when the value is dropped.
+struct Removal(Option<PathBuf>);
+
+impl Drop for Removal {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0
+            && let Err(error) = std::fs::remove_file(path)
+        {
+            warn(format_args!(
+                "{}: cannot be removed: {error}",
+                path.display()
+            ));
+        }
+    }
+}
+
+/// A symbolic link to a port, which is removed when the value is dropped, unless another program has replaced it.
+struct Link {
+    link: PathBuf,
+    port: PathBuf,
+}
+
+/// The folder of pseudo-terminals.
+const TERMINALS: &str = "/dev/pts";
 
 impl Link {
     fn new(link: &Path, port: &Path) -> anyhow::Result<Self> {
         let cannot = || format!("{}: cannot be linked to {}", link.display(), port.display());
-        if link.is_symlink() {
+        if let Ok(present) = link.symlink_metadata() {
+            let target = std::fs::read_link(link).ok();
+            if !target
+                .as_ref()
+                .is_some_and(|target| target.starts_with(TERMINALS))
+            {
+                let found = match target {
+                    Some(target) => format!("a link to {}", target.display()),
+                    None if present.is_dir() => "a folder".to_owned(),
+                    None => "a file".to_owned(),
+                };
+                let expected = "a new name, or a link to a pseudo-terminal";
+                return Err(bad_value(&link.display().to_string(), expected, found).into());
+            }
             std::fs::remove_file(link).with_context(cannot)?;
         }
         symlink(port, link).with_context(cannot)?;
-        Ok(Self(link.to_owned()))
+        Ok(Self {
+            link: link.to_owned(),
+            port: port.to_owned(),
+        })
     }
 }
 
 impl Drop for Link {
     fn drop(&mut self) {
-        if let Err(error) = std::fs::remove_file(&self.0) {
-            warn(format_args!(
-                "{}: cannot be removed: {error}",
-                self.0.display()
-            ));
-        }
+        let target = std::fs::read_link(&self.link);
+        let is_own = target.is_ok_and(|target| target == self.port);
+        drop(Removal(is_own.then(|| self.link.clone())));
     }
 }

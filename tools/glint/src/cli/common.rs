@@ -132,12 +132,10 @@ impl LineArguments {
 
     /// The firmware of simulated boards.
     pub fn firmware(&self) -> anyhow::Result<Vec<u8>> {
-        let path = self.firmware.as_deref();
-        let firmware = built_firmware(path)?;
-        if let Some(path) = path {
-            program::check(&firmware, path)?;
-        }
-        Ok(firmware)
+        Ok(match &self.firmware {
+            Some(path) => program::read(path)?,
+            None => built_firmware(None)?,
+        })
     }
 
     /// Starts the simulated board `name`. Its program runs when the board's serial line is read, and need not print a prompt.

@@ -93,10 +93,10 @@ impl DemoArguments {
         };
         let models = names.into_iter().map(|name| Ok((name, load(name, false)?)));
         let models = models.collect::<anyhow::Result<Vec<_>>>()?;
-        let firmware = built_firmware(self.firmware.as_deref())?;
-        if let Some(path) = &self.firmware {
-            program::check(&firmware, path)?;
-        }
+        let firmware = match &self.firmware {
+            Some(path) => program::read(path)?,
+            None => built_firmware(None)?,
+        };
 
         // The two boards run in parallel: the simulation of a board uses one CPU core, and most hosts have at least two.
         let (first, others) = models.split_first().context("no model")?;

@@ -10,7 +10,7 @@ use clap::Args;
 use glint::board::{self, Board, SerialBoard};
 use glint::console::Console;
 use glint::flash;
-use glint::formats::read_file;
+use glint::formats::read_up_to;
 use glint::image;
 use glint::program;
 use glint::render::BoardRenderer;
@@ -20,6 +20,7 @@ use std::io::{self, Write};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use virtual_board::virtual_flash::MAX_BYTES;
 
 /// Load a program onto a board through its BIOS, and start it; with --spi, write an image to the board's SPI flash.
 ///
@@ -112,8 +113,7 @@ impl FlashArguments {
         }
         let name = self.board.name()?;
         self.baud.check(&name)?;
-        let program = read_file(&self.program)?;
-        program::check(&program, &self.program)?;
+        let program = program::read(&self.program)?;
         let mut board: Box<dyn Board> = match board::simulated(&name, None)? {
             Some(board) => {
                 show_simulation(board.meter());
@@ -154,7 +154,7 @@ const LOADER_BOARD: &str = "arty_s7_50";
 
 /// Checks an image, and writes it to the SPI flash from its first present part on.
 fn write_flash(path: &Path) -> anyhow::Result<()> {
-    let bytes = read_file(path)?;
+    let bytes = read_up_to(path, MAX_BYTES)?;
     let image = image::check(&bytes).map_err(|error| error.in_path(path))?;
     let offset = match image.bitstream {
         Some(_) => 0,

@@ -3,12 +3,13 @@
 use super::messages::{print_json, say};
 use super::output::{IMAGE, Output};
 use clap::{Args, Subcommand};
-use glint::formats::read_file;
+use glint::formats::{read_file, read_up_to};
 use glint::image;
 use glint::program;
 use glint_core::flash::{CONTENTS, FIRMWARE, Image};
 use glint_core::wire::crc32;
 use std::path::{Path, PathBuf};
+use virtual_board::virtual_flash::MAX_BYTES;
 
 /// Make, list or check images for a board's SPI flash: bitstream, firmware and scenes (docs/formats/flash.md, "Flash image").
 #[derive(Subcommand)]
@@ -87,8 +88,7 @@ impl MakeArguments {
         let inputs = [&self.firmware].into_iter().chain(&self.bitstream);
         let scenes = self.scene.iter().map(PathBuf::from);
         let out = Output::open(&self.out, IMAGE, inputs.cloned().chain(scenes))?;
-        let firmware = read_file(&self.firmware)?;
-        program::check(&firmware, &self.firmware)?;
+        let firmware = program::read(&self.firmware)?;
         let bitstream = match &self.bitstream {
             Some(path) => {
                 let file = read_file(path)?;
@@ -154,7 +154,7 @@ fn parts<'a>(image: &Image<'a>) -> Vec<Part<'a>> {
 
 impl ListArguments {
     fn run(self) -> anyhow::Result<()> {
-        let bytes = read_file(&self.image)?;
+        let bytes = read_up_to(&self.image, MAX_BYTES)?;
         let image = image::check(&bytes).map_err(|error| error.in_path(&self.image))?;
         let parts = parts(&image);
         if self.json {
@@ -172,7 +172,7 @@ impl ListArguments {
 impl CheckArguments {
     fn run(self) -> anyhow::Result<()> {
         for path in &self.images {
-            let bytes = read_file(path)?;
+            let bytes = read_up_to(path, MAX_BYTES)?;
             image::check(&bytes).map_err(|error| error.in_path(path))?;
             if !self.json {
                 say(format_args!("{}: valid", path.display()))?;

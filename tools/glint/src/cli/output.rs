@@ -120,6 +120,11 @@ impl Output {
         })
     }
 
+    /// The path of the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Opens the file for an output that grows while the command runs, such as a log.
     ///
     /// # Errors

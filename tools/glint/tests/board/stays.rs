@@ -147,7 +147,102 @@ fn programs_use_one_board_in_turn() {
     let pid = stay.child.id().to_string();
     assert!(Command::new("kill").arg(pid).status().unwrap().success());
     assert!(stay.child.wait().unwrap().success());
-    assert!(!port.is_symlink());
+    assert!(!port.is_symlink() && !stay.folder.join("ready").exists());
+}
+
+/// `--pty` replaces only links to pseudo-terminals, and at the end removes only its own link.
+#[test]
+fn only_links_to_pseudo_terminals_are_replaced() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-links");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(folder.join("folder")).unwrap();
+    std::fs::write(folder.join("file"), "mine\n").unwrap();
+    for (link, target) in [
+        ("to-file", "file"),
+        ("dangling", "none"),
+        ("to-null", "/dev/null"),
+    ] {
+        std::os::unix::fs::symlink(target, folder.join(link)).unwrap();
+    }
+    for (name, found) in [
+        ("file", "a file"),
+        ("folder", "a folder"),
+        ("to-file", "a link to file"),
+        ("dangling", "a link to none"),
+        ("to-null", "a link to /dev/null"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(["board", "--pty", name, "--ready-file", "ready"])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        let expected = format!(
+            "error: {name}: expected a new name, or a link to a pseudo-terminal, found {found}\n"
+        );
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), expected);
+        assert!(folder.join(name).symlink_metadata().is_ok() && !folder.join("ready").exists());
+    }
+    assert_eq!(
+        std::fs::read_to_string(folder.join("to-file")).unwrap(),
+        "mine\n"
+    );
+    // The link of a killed board.
+    let folder = folder.join("folder");
+    std::os::unix::fs::symlink("/dev/pts/999999", folder.join("port")).unwrap();
+    let mut stay = Stay::start_with("board-links/folder", &[]);
+    let other = Path::new("/dev/pts/999998");
+    std::fs::remove_file(folder.join("port")).unwrap();
+    std::os::unix::fs::symlink(other, folder.join("port")).unwrap();
+    end_by("INT", &mut stay.child);
+    assert_eq!(std::fs::read_link(folder.join("port")).unwrap(), other);
+}
+
+/// A firmware file without an end is rejected within bounded memory, and a signal ends the wait for a pipe.
+#[test]
+fn firmware_of_devices_and_pipes() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-pipes");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    for [command, option] in [
+        ["board", "--firmware"],
+        ["flash", "--board=emulated"],
+        ["board", "--flash"],
+    ] {
+        let output = Command::new("sh")
+            .args([
+                "-c",
+                "ulimit -v 800000; exec \"$0\" \"$@\"",
+                env!("CARGO_BIN_EXE_glint"),
+            ])
+            .args([command, option, "/dev/zero"])
+            .output()
+            .unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(
+            error.starts_with("error: /dev/zero: expected at most "),
+            "{error}"
+        );
+    }
+    let pipe = folder.join("pipe");
+    assert!(
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    for option in ["--firmware", "--flash"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(["board", "--pty", "port", option, "pipe"])
+            .current_dir(&folder)
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(500));
+        assert!(child.try_wait().unwrap().is_none());
+        end_by("INT", &mut child);
+    }
 }
 
 /// Makes an image with the built firmware.

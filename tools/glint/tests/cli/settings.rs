@@ -2,6 +2,7 @@
 
 use crate::common::{all_refused, folder, glint, glint_in, report, said, succeed, words};
 use std::path::Path;
+use std::process::Command;
 
 /// The error of a command that must fail; the error has one line.
 fn error(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> String {
@@ -219,6 +220,33 @@ fn a_baud_rate_is_one_of_a_serial_line() {
         &folder,
         &format!("info --board /dev/ttyUSB9\nthe configuration file's baud: {expected} '0'"),
     );
+}
+
+/// A script from a device without an end is rejected within bounded memory; a pipe is read as its lines arrive.
+#[test]
+fn scripts_of_devices_and_pipes() {
+    let folder = folder("settings-scripts");
+    let output = glint(&folder, "console emulated --file /dev/zero");
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success());
+    assert!(
+        error.contains("expected lines of at most 65536 bytes, found a longer one"),
+        "{error}"
+    );
+    let pipe = folder.join("pipe");
+    assert!(
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let writer = std::thread::spawn(move || std::fs::write(pipe, "echo one\necho two\n"));
+    assert_eq!(
+        succeed(&folder, "console emulated --file pipe"),
+        "one\ntwo\n"
+    );
+    writer.join().unwrap().unwrap();
 }
 
 /// Files that a board cannot run are rejected before it is opened.

@@ -93,16 +93,24 @@ pub const STDIN: &str = "-";
 /// # Errors
 /// The file cannot be read, or is larger than [`MAX_FILE`].
 pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
+    read_up_to(path, MAX_FILE)
+}
+
+/// Reads a whole file, or standard input, as [`read_file`].
+///
+/// # Errors
+/// The file cannot be read, or has more than `most` bytes.
+pub fn read_up_to(path: &Path, most: usize) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
-    let limit = MAX_FILE as u64 + 1;
+    let limit = most as u64 + 1;
     let read = if path == Path::new(STDIN) {
         io::stdin().lock().take(limit).read_to_end(&mut bytes)
     } else {
         File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes))
     };
     read.map_err(|error| FormatError::whole("a file to read", error.to_string()).in_path(path))?;
-    if bytes.len() > MAX_FILE {
-        return Err(FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_path(path));
+    if bytes.len() > most {
+        return Err(FormatError::whole(format!("at most {most} bytes"), "more").in_path(path));
     }
     Ok(bytes)
 }
