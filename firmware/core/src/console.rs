@@ -24,6 +24,6 @@ pub use command::{
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use effect::Effect;
 pub use error::ParseError;
-pub use forms::{FIELD, Forms, HostOption, Order, Row};
+pub use forms::{FIELD, Forms, HostOption, MESHES, Order, Row};
 pub use object::ObjectAction;
 pub use values::{DemoAction, GestureAction, ImuAction};

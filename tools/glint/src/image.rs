@@ -10,6 +10,7 @@ use glint_scene::{Board, LineError, Reason, Scene, lines};
 use glint_scene_file::SceneFile;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
 /// Name of the list of scenes in an image; the board shows its first scene after power-up.
 pub const START: &str = "start";
@@ -70,7 +71,7 @@ pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
         for name in scene.meshes() {
             if !is_built_in(name) && meshes.iter().all(|mesh| mesh.name != *name) {
                 check_name(name)?;
-                meshes.push(piece(Kind::Mesh, name, scene::mesh(name)?));
+                meshes.push(piece(Kind::Mesh, name, scene::mesh(name, scene.folder())?));
             }
         }
         list += &format!("{}\n", scene.name());
@@ -194,7 +195,7 @@ impl Board for ImageBoard<'_> {
         }
         let bytes = match self.contents.find(Kind::Mesh, name) {
             Some(item) => item.checked().ok().map(Cow::Borrowed),
-            None if is_built_in(name) => scene::mesh(name).ok().map(Cow::Owned),
+            None if is_built_in(name) => scene::mesh(name, Path::new("")).ok().map(Cow::Owned),
             None => None,
         };
         let bytes = bytes.map(|bytes| self.meshes.insert(name.to_owned(), bytes));

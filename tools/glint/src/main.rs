@@ -33,6 +33,9 @@ fn main() -> ExitCode {
     let bad_input = error.chain().any(|cause| {
         cause.is::<InputError>() || cause.is::<FormatError>() || cause.is::<SceneError>()
     });
-    cli::fail(one_line(&error));
+    match error.downcast_ref::<SceneError>() {
+        Some(error) => error.to_string().lines().for_each(cli::fail),
+        None => cli::fail(one_line(&error)),
+    }
     ExitCode::from(if bad_input { BAD_INPUT } else { FAILED })
 }

@@ -2,6 +2,7 @@
 
 use crate::convert::Options;
 use crate::error::{FormatError, InputError};
+use crate::generate;
 use crate::model;
 use glint_core::colour::Shading;
 use glint_core::console::Setting;
@@ -11,9 +12,10 @@ use glint_core::quality::Quality;
 use glint_core::shape::{MAX_BYTES, Shape};
 use glint_core::wireframe::{CUBE, Program};
 use glint_model::Frame;
-use glint_scene::{AnyBoard, Assets};
+use glint_scene::{AnyBoard, Assets, Board};
 use glint_scene_file::SceneFile;
 use std::fmt::Display;
+use std::path::Path;
 
 /// The error for a scene that no board can draw, with the reason.
 fn refuse(reason: impl Display) -> FormatError {
@@ -36,11 +38,11 @@ pub fn is_shape(name: &str) -> bool {
     Shape::NAMES.contains(&name)
 }
 
-/// The mesh of a scene by name: a shape that is built into the firmware, a file, or a generator.
+/// The mesh of a scene by name: a shape that is built into the firmware, a file in the folder of the scene, or a generator.
 ///
 /// # Errors
 /// Those of [`model::load`].
-pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
+pub fn mesh(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
     match Shape::ALL.into_iter().find(|shape| shape.name() == name) {
         Some(shape) => {
             let mut bytes = vec![0; MAX_BYTES];
@@ -48,7 +50,42 @@ pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
             bytes.truncate(length);
             Ok(bytes)
         }
-        None => Ok(model::load(name, Options::default())?.mesh),
+        None => Ok(model::load(&path(name, folder), Options::default())?.mesh),
+    }
+}
+
+/// The path of a scene's mesh in the folder of the scene; its name if it is a generator, and no file has this name.
+pub fn path(name: &str, folder: &Path) -> String {
+    let file = folder.join(name);
+    let is_generated = generate::is_name(name) && !file.exists();
+    match file.to_str() {
+        Some(file) if !is_generated => file.to_owned(),
+        _ => name.to_owned(),
+    }
+}
+
+/// The meshes of a scene, with their names.
+struct Meshes<'a> {
+    names: &'a [String],
+    meshes: &'a [Mesh<'a>],
+}
+
+impl Board for Meshes<'_> {
+    fn has_size(&self, size: Size) -> bool {
+        AnyBoard.has_size(size)
+    }
+
+    fn has_engine(&self) -> bool {
+        AnyBoard.has_engine()
+    }
+
+    fn has_mesh(&mut self, name: &str) -> bool {
+        self.mesh(name).is_some()
+    }
+
+    fn mesh(&self, name: &str) -> Option<Mesh<'_>> {
+        let known = self.names.iter().position(|known| known == name)?;
+        self.meshes.get(known).copied()
     }
 }
 
@@ -64,31 +101,35 @@ pub fn program() -> Result<Program<'static>, InputError> {
 /// Calls `draw` with the frame of a scene after `changes`.
 ///
 /// # Errors
-/// A mesh cannot be read, or no board can draw the scene.
+/// A mesh cannot be read, or no board can draw the scene, or no camera shows all meshes.
 pub fn draw<T>(
     file: &SceneFile,
     changes: &Changes,
     draw: impl FnOnce(&Frame) -> T,
 ) -> Result<T, InputError> {
     let in_scene = |error: FormatError| error.in_file(file.name());
-    let mut scene = file.scene().clone();
+    let names = file.meshes();
+    let bytes = names.iter().map(|name| mesh(name, file.folder()));
+    let bytes = bytes.collect::<Result<Vec<_>, _>>()?;
+    let meshes = bytes.iter().map(|bytes| Mesh::new_checked(bytes));
+    let meshes = meshes.collect::<Result<Vec<_>, _>>();
+    let meshes = meshes.map_err(|error| in_scene(refuse(error)))?;
+    let mut board = Meshes {
+        names,
+        meshes: &meshes,
+    };
+    let scene = file.scene_on(&mut board);
+    let mut scene = scene.map_err(|reason| in_scene(refuse(reason)))?;
     scene.options.shading = changes.shading.unwrap_or(scene.options.shading);
     if let Some(quality) = changes.quality {
         let set = scene.apply(&Setting::Quality { quality }, &mut AnyBoard);
         set.map_err(|error| in_scene(refuse(error)))?;
     }
     scene.size = changes.size.unwrap_or(scene.size);
-    let names = file.meshes();
-    let bytes = names.iter().map(|name| mesh(name));
-    let bytes = bytes.collect::<Result<Vec<_>, _>>()?;
-    let meshes = bytes.iter().map(|bytes| Mesh::new_checked(bytes));
-    let meshes = meshes.collect::<Result<Vec<_>, _>>();
-    let meshes = meshes.map_err(|error| in_scene(refuse(error)))?;
     let objects: Vec<_> = (scene.objects.iter())
         .flat_map(|placed| {
-            let known = names.iter().position(|known| *known == *placed.mesh);
-            let mesh = known.and_then(|known| meshes.get(known));
-            mesh.map(|mesh| scene.object(&placed.place, *mesh))
+            let mesh = board.mesh(&placed.mesh);
+            mesh.map(|mesh| scene.object(&placed.place, mesh))
         })
         .collect();
     Ok(draw(&scene.frame(Assets {

@@ -1,22 +1,50 @@
 //! Errors in scene files.
 
+use std::fmt;
 use std::ops::Range;
 
-/// A scene file that violates the format. `Display` prints one line: the file, the line, the key, its value, and the allowed
-/// values.
+/// A scene file that violates the format. `Display` prints a line for each violation, with the name of the file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {}{message}", place(.line))]
+#[error("{}", lines(file, violations))]
 pub struct SceneError {
     /// Name of the file.
     pub file: String,
-    /// Number of the line, from 1; `None` for an error that concerns the whole file.
+    /// All violations, in the order of the file; those of the whole file are first.
+    pub violations: Vec<Violation>,
+}
+
+/// A violation of the format. `Display` prints one line: the line of the file, the key, its value, and the allowed values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// Number of the line, from 1; `None` for a violation that concerns the whole file.
     pub line: Option<usize>,
     /// The key with its value, and the allowed values.
     pub message: String,
 }
 
-fn place(line: &Option<usize>) -> String {
-    line.map_or(String::new(), |line| format!("line {line}: "))
+fn lines(file: &str, violations: &[Violation]) -> String {
+    let lines = violations
+        .iter()
+        .map(|violation| format!("{file}: {violation}"));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        f.write_str(&self.message)
+    }
+}
+
+impl Violation {
+    fn new(line: Option<usize>, message: impl Into<String>) -> Self {
+        // The message may quote the file.
+        let message: String = message.into();
+        let message = message.replace(char::is_control, " ");
+        Self { line, message }
+    }
 }
 
 /// A parsed file, for the locations of errors.
@@ -35,25 +63,16 @@ impl Source<'_> {
         1 + before.filter(|&&byte| byte == b'\n').count()
     }
 
-    /// An error at a position of the file.
-    pub fn error(self, span: &Range<usize>, message: impl Into<String>) -> SceneError {
-        SceneError {
-            line: Some(self.line(span.start)),
-            ..self.whole(message)
-        }
+    /// A violation at a position of the file, or of the whole file.
+    pub fn violation(self, span: Option<&Range<usize>>, message: impl Into<String>) -> Violation {
+        Violation::new(span.map(|span| self.line(span.start)), message)
     }
 
     /// An error that applies to the whole file.
     pub fn whole(self, message: impl Into<String>) -> SceneError {
-        // The message may quote the file.
-        let message: String = message.into();
         SceneError {
             file: self.file.to_owned(),
-            line: None,
-            message: message
-                .chars()
-                .map(|c| if c.is_control() { ' ' } else { c })
-                .collect(),
+            violations: vec![self.violation(None, message)],
         }
     }
 }
@@ -65,4 +84,33 @@ pub fn quote(text: &str) -> String {
     let start: String = rest.by_ref().take(SHOWN).collect();
     let more = if rest.next().is_some() { "…" } else { "" };
     format!("`{start}{more}`")
+}
+
+/// The known name that a misspelt one resembles, if any.
+pub fn resembled<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    /// Least similarity, from 0 to 1.
+    const LEAST: f64 = 0.75;
+    let known = known
+        .into_iter()
+        .map(|known| (strsim::jaro(name, known), known));
+    let near = known.filter(|(similarity, _)| *similarity >= LEAST);
+    let nearest = near.max_by(|(one, _), (other, _)| one.total_cmp(other));
+    nearest.map(|(_, known)| known)
+}
+
+/// The message for an unknown name: what is expected, and the name that it resembles or the known names.
+pub fn unknown<'n>(
+    name: &str,
+    expected: &str,
+    known: impl IntoIterator<Item = &'n str> + Clone,
+) -> String {
+    let name_of = quote(name);
+    match resembled(name, known.clone()) {
+        Some(known) => format!("{name_of}: expected {expected}, did you mean `{known}`?"),
+        None => {
+            let known: Vec<_> = known.into_iter().collect();
+            let known = known.join(", ");
+            format!("{name_of}: expected {expected}, one of {known}")
+        }
+    }
 }

@@ -15,8 +15,8 @@ mod read;
 mod scene;
 
 pub use built_in::{NAMES, TEXTS};
-pub use error::SceneError;
+pub use error::{SceneError, Violation};
 pub use keys::{BUDGET, names as keys};
 pub use needs::{Fields, Needs};
 pub use read::{built_in, read};
-pub use scene::{Budget, SceneFile, Steer};
+pub use scene::{Budget, SceneFile, Steer, upright};

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::built_in::{NAMES, TEXTS};
-use crate::error::{SceneError, Source};
+use crate::error::{SceneError, Source, resembled};
 use crate::scene::SceneFile;
 
 /// The name of standard input.
@@ -33,11 +33,11 @@ pub fn read(name: &str) -> Result<SceneFile, SceneError> {
     let source = Source { file, text: "" };
     let is_stdin = name == STDIN;
     if !is_stdin && path.extension().is_none_or(|extension| extension != "toml") {
-        let message = format!(
-            "expected a scene file FILE.toml or one of {}",
-            NAMES.join(", ")
-        );
-        return Err(source.whole(message));
+        let expected = "expected a scene file FILE.toml or";
+        return Err(source.whole(match resembled(name, NAMES) {
+            Some(known) => format!("{expected} a built-in scene, did you mean `{known}`?"),
+            None => format!("{expected} one of {}", NAMES.join(", ")),
+        }));
     }
     let text = match is_stdin {
         true => contents(io::stdin().lock()),

@@ -2,19 +2,29 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use glint_core::camera::ViewError;
-use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX, Row};
+use glint_core::choice::Choice;
+use glint_core::console::{
+    Command, GestureAction, ImuAction, LINE_MAX, MESHES, ObjectAction, Order, Row, Setting,
+};
 use glint_core::feature::{BASE, Feature};
+use glint_core::fixed::Turns;
 use glint_core::imu::Follow;
+use glint_core::light::Material;
+use glint_core::matrix::Axis;
 use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
-use glint_scene::{AnyBoard, Line, Scene};
+use glint_scene::{AnyBoard, Board, Line, Scene};
 
 use crate::built_in::{NAMES, TEXTS};
-use crate::error::{SceneError, Source, quote};
-use crate::file::File;
+use crate::error::{SceneError, Source, quote, unknown};
+use crate::file::{File, such_as};
 use crate::keys::{BUDGET, commands};
+
+/// The camera of fields without one.
+const CAMERA: &str = "4 30 60";
 
 /// The control that moves the camera, or the segments of a wireframe program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,6 +46,8 @@ pub type Budget = Vec<(&'static str, f64)>;
 pub struct SceneFile {
     name: String,
     title: String,
+    /// The folder of the file, which contains its meshes.
+    folder: PathBuf,
     /// Console commands that set the picture.
     settings: Vec<String>,
     /// The state of the scene after the settings.
@@ -55,107 +67,190 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Parses the text of a scene file. `name` is the scene's name, and `file` the file's name in messages.
+    /// Parses the text of a scene file. `name` is the scene's name, and `file` the file's name in messages; the file's folder
+    /// contains its meshes.
     ///
     /// # Errors
-    /// The first violation of the format.
+    /// All violations of the format.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, SceneError> {
         Self::parse_as(name, Source { file, text }, true)
     }
 
     /// Parses the text of a scene file. A list of scenes is accepted only if `may_be_list`.
     fn parse_as(name: &str, source: Source, may_be_list: bool) -> Result<Self, SceneError> {
-        let file = File::read(source)?;
+        let start = Scene::new(Backend::Gateware);
+        let start = start.map_err(|error: ViewError| source.whole(error.to_string()))?;
+        let file = File::read(source);
+        let scene = Self::of(name, &file, start, may_be_list);
+        file.check()?;
+        Ok(scene)
+    }
+
+    /// The scene of a file, which applies only if the file has no violations.
+    fn of(name: &str, file: &File, start: Scene, may_be_list: bool) -> Self {
         if let (Some(value), false) = (file.get("scenes"), may_be_list) {
-            return Err(file.refuse("scenes", value, "a picture"));
+            file.refuse("scenes", value, "a picture");
         }
-        let title = file.text("title")?;
-        let title = title.ok_or_else(|| {
-            file.source
-                .whole("no title: expected the key title, one line about the scene")
-        })?;
-        let scenes = file.texts("scenes")?;
+        if !file.has("title") {
+            file.add_missing("no title: expected the key title, one line about the scene");
+        }
+        let title = file.text("title").unwrap_or_default();
+        let scenes = if may_be_list {
+            file.texts("scenes")
+        } else {
+            Vec::new()
+        };
+        let scenes = scenes.into_iter();
+        let folder = Path::new(file.source.file)
+            .parent()
+            .unwrap_or(Path::new(""));
         let mut scene = Self {
             name: name.to_owned(),
             title: title.split_whitespace().collect::<Vec<_>>().join(" "),
+            folder: folder.to_owned(),
             settings: Vec::new(),
-            scene: Scene::new(Backend::Gateware)
-                .map_err(|error: ViewError| file.source.whole(error.to_string()))?,
+            scene: start,
             meshes: Vec::new(),
             features: BTreeSet::new(),
             steer: Steer::default(),
             scenes: scenes
-                .into_iter()
-                .map(|(name, span)| member(&file, name, &span))
-                .collect::<Result<_, _>>()?,
-            depth: file.switch("depth")?.unwrap_or(false),
-            lanes: lanes(&file)?,
-            clock: file.number("clock")?,
-            budget: file.numbers("budget", &BUDGET)?,
+                .filter_map(|(name, span)| member(file, name, &span))
+                .collect(),
+            depth: file.switch("depth").unwrap_or(false),
+            lanes: lanes(file),
+            clock: file.number("clock"),
+            budget: file.numbers("budget", &BUDGET),
         };
         if file.has("scenes") {
-            check_list(&file, &scene.scenes)?;
-            return Ok(scene);
+            check_list(file);
+        } else {
+            scene.set_picture(file);
         }
-        check_subject(&file)?;
+        scene
+    }
+
+    /// Adds the console commands of a single scene.
+    fn set_picture(&mut self, file: &File) {
+        const SUBJECTS: [&str; 4] = ["model", "object", "field", "program"];
+        if !file.has_any(&SUBJECTS) {
+            file.add_missing(
+                "nothing to show: expected one of the keys model, object, field, program, scenes",
+            );
+        }
         if !file.has("quality") && !file.has("size") {
-            let line = format!("quality {}", Quality::default());
-            scene.add(&file, "quality", "", line, &(0..0))?;
+            self.add_default(file, "quality", &Quality::default().to_string());
         }
-        for row in commands() {
+        let has_camera = file.has_any(&["camera", "lookat", "view"]);
+        if !has_camera && file.has("field") {
+            self.add_default(file, "camera", CAMERA);
+        }
+        let fits = !has_camera && !file.has("field") && file.has_any(MESHES);
+        let mut rows = commands();
+        // A camera that shows whole meshes replaces the lens.
+        rows.sort_by_key(|row| fits && row.forms.order == Order::Lens);
+        let colour = mesh_colour(file);
+        for row in rows {
             let key = row.key();
-            let Some(value) = file.get(key) else {
-                continue;
-            };
-            check_others(&file, row)?;
-            for (words, span) in file.words(key, value, row.forms.is_list)? {
-                let line = match row.forms.action {
-                    Some(action) => format!("{} {action} {words}", row.command),
-                    None if key != "program" => format!("{} {words}", row.command),
-                    None if words == "cube" => row.command.to_owned(),
-                    None => {
-                        return Err(file.refuse(key, value, "`cube`, the built-in program"));
-                    }
-                };
-                if key == "field" && file.has("model") {
-                    scene.add(&file, key, &words, "mesh on".to_owned(), &span)?;
+            if key == "up" && fits {
+                self.add_fit(file, row);
+            } else if file.get(key).is_some() && has_right_others(file, row) {
+                for (words, span) in file.words(row) {
+                    self.set(file, row, &words, &span, colour.as_deref());
                 }
-                scene.add(&file, key, &words, line, &span)?;
             }
         }
-        let lights = scene.scene.appearance.lights.len();
+        let lights = self.scene.appearance.lights.len();
         if let (Some(value), true, false) = (file.get("light"), lights > 1, file.has("field")) {
-            return Err(file.refuse("light", value, "one light on meshes"));
+            file.refuse("light", value, "one light on meshes");
         }
-        let (steer, feature) = steer(&file)?;
-        scene.steer = steer;
-        scene.features.insert(feature);
-        scene.features.remove(&BASE);
-        Ok(scene)
+        let (steer, feature) = steer(file);
+        self.steer = steer;
+        self.features.insert(feature);
+        self.features.remove(&BASE);
+    }
+
+    /// Adds the console command of a key with this value. `colour` replaces the colours of meshes.
+    fn set(
+        &mut self,
+        file: &File,
+        row: &Row,
+        words: &str,
+        span: &Range<usize>,
+        colour: Option<&str>,
+    ) {
+        let key = row.key();
+        let line = match (key, colour) {
+            ("program", _) if words == "cube" => row.command.to_owned(),
+            ("program", _) => {
+                let expected = "expected `cube`, the built-in program";
+                return file.add(span, format!("program: {}: {expected}", quote(words)));
+            }
+            // The material of a mesh is the colour of an object.
+            ("material", Some(_)) => return,
+            ("model", Some(colour)) => format!("object add {words} colour {colour}"),
+            ("object", Some(colour)) => {
+                let line = format!("object add {words}");
+                match has_colour(&line) {
+                    true => line,
+                    false => format!("{line} colour {colour}"),
+                }
+            }
+            _ => match row.forms.action {
+                Some(action) => format!("{} {action} {words}", row.command),
+                None => format!("{} {words}", row.command),
+            },
+        };
+        if key == "field" && file.has("model") {
+            self.add(file, row, words, "mesh on".to_owned(), span);
+        }
+        self.add(file, row, words, line, span);
+    }
+
+    /// Adds the console command of a key that the file does not contain.
+    fn add_default(&mut self, file: &File, key: &str, words: &str) {
+        if let Some(row) = commands().into_iter().find(|row| row.key() == key) {
+            self.set(file, row, words, &(0..0), None);
+        }
+    }
+
+    /// Adds the camera that shows all meshes: with the axis of the key `up`, or of the format of the model, up on the screen, and
+    /// from the distance that the key `fov` determines.
+    fn add_fit(&mut self, file: &File, row: &Row) {
+        let stated = file.words(row).pop();
+        let model = file.get("model").and_then(|model| model.get_ref().as_str());
+        let usual = model.and_then(upright).map_or(Axis::Z, |(axis, _)| axis);
+        let (up, span) = stated.unwrap_or((usual.name().to_owned(), 0..0));
+        let mut line = format!("{} {up}", row.command);
+        let angle = commands().into_iter().find(|row| row.key() == "fov");
+        let angle = angle.and_then(|row| Some(format!("{line} {}", file.peek(row)?)));
+        // The key `fov` reports a wrong angle.
+        if let Some(with_angle) = angle.filter(|line| Line::parse(line).is_ok()) {
+            line = with_angle;
+        }
+        self.add(file, row, &up, line, &span);
     }
 
     /// Adds a console command that sets the picture, after the board's checks.
-    fn add(
-        &mut self,
-        file: &File,
-        key: &str,
-        words: &str,
-        line: String,
-        span: &Range<usize>,
-    ) -> Result<(), SceneError> {
+    fn add(&mut self, file: &File, row: &Row, words: &str, line: String, span: &Range<usize>) {
         let refuse = |reason: String| {
-            file.source
-                .error(span, format!("{key} = {}: {reason}", quote(words)))
+            file.add(span, format!("{} = {}: {reason}", row.key(), quote(words)));
         };
         let is_visible = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
         if line.len() > LINE_MAX || !line.bytes().all(is_visible) {
-            return Err(refuse(format!(
+            return refuse(format!(
                 "expected at most {LINE_MAX} visible ASCII characters"
-            )));
+            ));
         }
-        let parsed = Line::parse(&line).map_err(|reason| refuse(reason.to_string()))?;
-        let applied = parsed.apply(&mut self.scene, &mut AnyBoard);
-        applied.map_err(|error| refuse(error.to_string()))?;
+        let parsed = match Line::parse(&line) {
+            Ok(parsed) => parsed,
+            Err(reason) => return refuse(format!("{reason}{}", such_as(row))),
+        };
+        // The host or the board fits the camera, when it has the meshes.
+        if !matches!(parsed, Line::Option(Setting::Fit { .. }))
+            && let Err(error) = parsed.apply(&mut self.scene, &mut AnyBoard)
+        {
+            return refuse(error.to_string());
+        }
         self.features.insert(parsed.feature());
         if let Some(mesh) = parsed.mesh()
             && self.meshes.iter().all(|known| known != mesh)
@@ -163,7 +258,6 @@ impl SceneFile {
             self.meshes.push(mesh.to_owned());
         }
         self.settings.push(line);
-        Ok(())
     }
 
     /// The name of the scene.
@@ -200,7 +294,7 @@ impl SceneFile {
         self.settings().iter().map(String::as_str).chain(steer)
     }
 
-    /// The scene after the console commands; for a list of scenes, the first scene.
+    /// The scene after the console commands, except the camera that shows all meshes; for a list of scenes, the first scene.
     pub fn scene(&self) -> &Scene {
         self.scenes.first().map_or(&self.scene, Self::scene)
     }
@@ -208,6 +302,36 @@ impl SceneFile {
     /// Names of the meshes, without repetition; for a list of scenes, those of the first scene.
     pub fn meshes(&self) -> &[String] {
         self.scenes.first().map_or(&self.meshes, Self::meshes)
+    }
+
+    /// The folder that contains the meshes; for a list of scenes, that of the first scene.
+    pub fn folder(&self) -> &Path {
+        self.scenes.first().map_or(&self.folder, Self::folder)
+    }
+
+    /// Axis and field of view of the camera that shows all meshes; `None` if the scene has a camera of its own.
+    pub fn fit(&self) -> Option<(Axis, Option<Turns>)> {
+        self.settings()
+            .iter()
+            .find_map(|line| match Line::parse(line) {
+                Ok(Line::Option(Setting::Fit { lens })) => lens,
+                _ => None,
+            })
+    }
+
+    /// The scene after the console commands, with a camera that shows the meshes of `board`.
+    ///
+    /// # Errors
+    /// The board excludes a command, which the message names.
+    pub fn scene_on(&self, board: &mut dyn Board) -> Result<Scene, String> {
+        let scene = Scene::new(Backend::Gateware);
+        let mut scene = scene.map_err(|error| error.to_string())?;
+        for line in self.settings() {
+            let parsed = Line::parse(line).map_err(|reason| reason.to_string())?;
+            let applied = parsed.apply(&mut scene, board);
+            applied.map_err(|error| error.to_string())?;
+        }
+        Ok(scene)
     }
 
     /// The parts of the firmware that implement the console commands.
@@ -231,100 +355,125 @@ impl SceneFile {
     }
 }
 
+/// The axis that points up on the screen in models of the format of a file with this name, and the format's extension; `None` for
+/// a name of another format, or of a generator.
+pub fn upright(model: &str) -> Option<(Axis, &'static str)> {
+    let extension = Path::new(model).extension()?.to_str()?;
+    let mut known = ["obj", "gltf", "glb"].into_iter();
+    let known = known.find(|known| extension.eq_ignore_ascii_case(known))?;
+    Some((Axis::Y, known))
+}
+
 /// A scene of a list of scenes: a built-in single scene.
-fn member(file: &File, name: &str, span: &Range<usize>) -> Result<SceneFile, SceneError> {
+fn member(file: &File, name: &str, span: &Range<usize>) -> Option<SceneFile> {
     let picture = |(name, text): (&str, &str)| {
         let file = &format!("scenes/{name}.toml");
         SceneFile::parse_as(name, Source { file, text }, false).ok()
     };
     let pictures = || NAMES.into_iter().zip(TEXTS);
     let found = pictures().find(|(known, _)| *known == name);
-    found.and_then(picture).ok_or_else(|| {
-        let pictures = pictures().filter_map(picture);
-        let names: Vec<_> = pictures.map(|scene| scene.name).collect();
-        let names = names.join(", ");
-        file.source.error(
+    let found = found.and_then(picture);
+    if found.is_none() {
+        let pictures: Vec<_> = pictures().filter_map(picture).collect();
+        let names = pictures.iter().map(SceneFile::name);
+        file.add(
             span,
-            format!("scenes: {}: expected one of {names}", quote(name)),
-        )
-    })
+            format!("scenes: {}", unknown(name, "a built-in scene", names)),
+        );
+    }
+    found
 }
 
 /// Checks that a list of scenes contains scenes, and no keys of a single scene.
-fn check_list(file: &File, scenes: &[SceneFile]) -> Result<(), SceneError> {
-    if let (true, Some(value)) = (scenes.is_empty(), file.get("scenes")) {
-        return Err(file.refuse("scenes", value, "at least one scene"));
-    }
-    let keys = commands().into_iter().map(Row::key);
-    match keys
-        .chain(["steer"])
-        .find_map(|key| file.get(key).map(|value| (key, value)))
+fn check_list(file: &File) {
+    if let Some(value) = file.get("scenes")
+        && value
+            .get_ref()
+            .as_array()
+            .is_some_and(|list| list.is_empty())
     {
-        Some((key, value)) => Err(file.refuse(key, value, "no such key beside scenes")),
-        None => Ok(()),
+        file.refuse("scenes", value, "at least one scene");
+    }
+    for key in commands().into_iter().map(Row::key).chain(["steer"]) {
+        if let Some(value) = file.get(key) {
+            file.refuse(key, value, "no such key beside scenes");
+        }
     }
 }
 
-/// Checks that the file sets the subject of the picture and the camera.
-fn check_subject(file: &File) -> Result<(), SceneError> {
-    if !["model", "object", "field", "program"]
-        .iter()
-        .any(|key| file.has(key))
-    {
-        return Err(file.source.whole(
-            "nothing to show: expected one of the keys model, object, field, program, scenes",
-        ));
-    }
-    let has_camera = ["camera", "lookat", "view"].iter().any(|key| file.has(key));
-    if !has_camera && !file.has("program") {
-        return Err(file
-            .source
-            .whole("no camera: expected one of the keys camera, lookat, view"));
-    }
-    Ok(())
-}
-
-/// Checks that the file contains the keys that another key requires, and none that it excludes.
-fn check_others(file: &File, row: &Row) -> Result<(), SceneError> {
+/// Whether the file contains the keys that another key requires, and none that it excludes.
+fn has_right_others(file: &File, row: &Row) -> bool {
     let (key, forms) = (row.key(), &row.forms);
     let at = |name| file.get(name).map(|value| value.span()).unwrap_or_default();
-    if !forms.with.is_empty() && !forms.with.iter().any(|name| file.has(name)) {
+    if !forms.with.is_empty() && !file.has_any(forms.with) {
         let message = format!("{key}: expected only beside {}", forms.with.join(" or "));
-        return Err(file.source.error(&at(key), message));
+        file.add(&at(key), message);
+        return false;
     }
     if let Some(other) = forms.without.iter().find(|name| file.has(name)) {
         let line = file.source.line(at(other).start);
         let message = format!("{key}: expected only without {other}, found it in line {line}");
-        return Err(file.source.error(&at(key), message));
+        file.add(&at(key), message);
+        return false;
     }
-    Ok(())
+    true
 }
 
-fn lanes(file: &File) -> Result<Option<u8>, SceneError> {
-    let Some(value) = file.get("lanes") else {
-        return Ok(None);
-    };
-    let found = file.number("lanes")?;
-    let lanes = [1, 2, 4]
-        .into_iter()
-        .find(|lanes| found == Some(f64::from(*lanes)));
-    let lanes = lanes.ok_or_else(|| file.refuse("lanes", value, "1, 2 or 4"))?;
-    if !file.has("field") && !file.has("scenes") {
-        return Err(file.refuse("lanes", value, "the key only beside field or scenes"));
+/// The colour, as RRGGBB, that the key `material` gives meshes instead of their own ones. Beside a field the material is the field's.
+fn mesh_colour(file: &File) -> Option<String> {
+    let value = file.get("material").filter(|_| !file.has("field"))?;
+    if file.has("edges") {
+        file.refuse(
+            "material",
+            value,
+            "a mesh with faces, without the key edges",
+        );
     }
-    Ok(Some(lanes))
+    let name = value.get_ref().as_str()?.trim();
+    let material = Material::from_word(name)?;
+    if material == Material::Normal {
+        file.refuse("material", value, "a material of one colour on meshes");
+    }
+    let [r, g, b] = material.faces()[0];
+    Some(format!("{r:02x}{g:02x}{b:02x}"))
+}
+
+/// Whether a console command adds an object with a colour.
+fn has_colour(line: &str) -> bool {
+    let Ok(Line::Option(Setting::Object { action })) = Line::parse(line) else {
+        return false;
+    };
+    matches!(action, ObjectAction::Add { place, .. } if place.colour.is_some())
+}
+
+fn lanes(file: &File) -> Option<u8> {
+    let value = file.get("lanes")?;
+    let found = file.number("lanes")?;
+    let mut known = [1, 2, 4].into_iter();
+    let lanes = known.find(|lanes| found == f64::from(*lanes));
+    if lanes.is_none() {
+        file.refuse("lanes", value, "1, 2 or 4");
+    } else if !file.has_any(&["field", "scenes"]) {
+        file.refuse("lanes", value, "the key only beside field or scenes");
+    }
+    lanes
 }
 
 /// The control of the camera, and the part of the firmware that implements its command.
-fn steer(file: &File) -> Result<(Steer, Feature), SceneError> {
-    let (Some(value), Some(text)) = (file.get("steer"), file.text("steer")?) else {
-        return Ok((Steer::Fixed, BASE));
+fn steer(file: &File) -> (Steer, Feature) {
+    const FIXED: (Steer, Feature) = (Steer::Fixed, BASE);
+    let (Some(value), Some(text)) = (file.get("steer"), file.text("steer")) else {
+        return FIXED;
+    };
+    let refuse = |expected| {
+        file.refuse("steer", value, expected);
+        FIXED
     };
     let is_program = file.has("program");
     match text {
-        "fixed" => return Ok((Steer::Fixed, BASE)),
-        "buttons" if is_program => return Ok((Steer::Buttons, BASE)),
-        "buttons" => return Err(file.refuse("steer", value, "buttons only beside program")),
+        "fixed" => return FIXED,
+        "buttons" if is_program => return (Steer::Buttons, BASE),
+        "buttons" => return refuse("buttons only beside program"),
         _ => {}
     }
     // Whether the camera moves around the origin.
@@ -341,18 +490,17 @@ fn steer(file: &File) -> Result<(Steer, Feature), SceneError> {
             },
         )) => (true, command.feature()),
         Ok(_) | Err(_) => {
-            let expected =
-                "fixed, buttons, orbit FRAMES, imu look, imu orbit, gesture on or gesture vga";
-            return Err(file.refuse("steer", value, expected));
+            return refuse(
+                "fixed, buttons, orbit FRAMES, imu look, imu orbit, gesture on or gesture vga",
+            );
         }
     };
     if is_program {
-        return Err(file.refuse("steer", value, "fixed or buttons beside program"));
+        return refuse("fixed or buttons beside program");
     }
     if around && !file.has("camera") {
-        let expected = "the key camera beside it, whose distance it keeps";
-        return Err(file.refuse("steer", value, expected));
+        return refuse("the key camera beside it, whose distance it keeps");
     }
     let command = text.split_ascii_whitespace().collect::<Vec<_>>().join(" ");
-    Ok((Steer::Command(command), feature))
+    (Steer::Command(command), feature)
 }

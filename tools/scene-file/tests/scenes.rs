@@ -6,7 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use glint_core::block::Block;
+use glint_core::console::{Command, FORMS, Row};
+use glint_core::feature::FIT;
 use glint_core::field::FRACTION;
+use glint_core::light::Material;
 use glint_core::picture::Size;
 use glint_core::quality::{Preset, Quality, Threshold};
 use glint_scene::lines;
@@ -154,25 +157,28 @@ fn refused_files() {
             title = 3 → line 1: title: `3`: expected a text in quotation marks
             title = "a → line 1: invalid basic string
             title = "a" → nothing to show: expected one of the keys model, object
-            title = "a"; model = "cube" → no camera: expected one of the keys camera
             title = "a"; program = "gear" → expected `cube`, the built-in program
             title = "a"; scenes = [] → scenes: `[]`: expected at least one scene
-            title = "a"; scenes = ["demo"] → scenes: `demo`: expected one of cubes
+            title = "a"; scenes = ["demo"] → scenes: `demo`: expected a built-in scene, one of cubes
+            title = "a"; scenes = ["menger", "sphere"] → scenes: `sphere`: expected a built-in scene, did you mean `spheres`?
             title = "a"; scenes = ["cubes"]; fog = 1 → fog: `1`: expected no such key beside scenes
         "#,
         ),
         (
             MODEL,
             r#"
-            sise = "640 360" → line 4: `sise`: expected a key, one of title, steer
+            sise = "640 360" → line 4: `sise`: expected a key, did you mean `size`?
+            picture = 3 → line 4: `picture`: expected a key, one of title, steer
             model = "cube" → line 4: duplicate key
             quality = "best" → line 4: quality = `best`: quality: fast|balanced|exact is "best" (column 9): expected fast or balanced or exact
             quality = 1 → quality = `1`: quality: fast|balanced|exact is "1"
             size = "640 480" → line 4: size = `640 480`: size: 640 x 480: expected 320 180, 640 360
             size = ["640 360"] → size: `["640 360"]`: expected a text, a number, true or false
-            size = "" → expected a text, a number
+            size = "" → size: `""`: expected a text, a number, true or false, such as size = "640 360"
+            fov = [66] → fov: `[66]`: expected a text, a number, true or false, such as fov = 66
+            zoom = "2x" → line 4: zoom = `2x`: zoom: FACTOR is "2x" (column 6): expected
             shading = "gouraud" → shading = `gouraud`: shading: flat|smooth is "gouraud" (column 9): expected flat or smooth
-            cull = 2020-01-01 → cull: `2020-01-01`: expected
+            cull = 2020-01-01 → cull: `2020-01-01`: expected a text, a number, true or false, such as cull = "off"
             cull = "on ü" → expected at most 640 visible ASCII
             fog = 0.1 → line 4: fog: expected only beside field
             light = ["camera", "1,2,3"] → expected one light on meshes
@@ -184,7 +190,13 @@ fn refused_files() {
             steer = "imu off" → steer: `"imu off"`: expected fixed, buttons, orbit FRAMES
             clock = -1 → clock: `-1`: expected a number above 0
             clock = 1e999 → expected a number above 0
-            [budget]; luts = 3 → line 5: budget: `luts`: expected one of lut, ff
+            [budget]; luts = 3 → line 5: budget: `luts`: expected a limit, did you mean `lut`?
+            [budget]; watts = 3 → line 5: budget: `watts`: expected a limit, one of lut, ff
+            up = "y" → line 4: up: expected only without camera, found it in line 3
+            material = "normal" → line 4: material: `"normal"`: expected a material of one colour on meshes
+            material = "wood" → line 4: material = `wood`: material: MATERIAL is "wood" (column 10): expected normal or clay
+            material = "jade"; edges = "over" → line 4: material: `"jade"`: expected a mesh with faces, without the key edges
+            steer = "orbt 60" → line 4: steer: `"orbt 60"`: expected fixed, buttons, orbit FRAMES
             [budget]; lut = "3" → budget.lut: `"3"`: expected a number above 0
             orthographic = 2; stereo = "0.1,4" → stereo: expected only without orthographic, found it in line 4
         "#,
@@ -215,8 +227,110 @@ fn refused_files() {
                 error.starts_with("a.toml: ") && error.contains(expected),
                 "{text}: {error}"
             );
-            assert!(!error.contains('\n'), "{error:?}");
+            assert!(
+                error.lines().all(|line| line.starts_with("a.toml: ")),
+                "{error:?}"
+            );
         }
+    }
+}
+
+/// The error states all violations, in the order of the file. Missing keys are not reported if a key is misspelt or a line is
+/// damaged.
+#[test]
+fn all_violations_of_a_file() {
+    let text = "titel = \"a\"\nmodel = \"cube\"\ncamera = \"4,30,70\"\nlight = 3\nsize = \"640\"\nfog = 1\ndepth = 2\n\
+                [budget]\nluts = 3\nff = 0\n";
+    let camera = r#"camera = `4,30,70`: camera: R is "4,30,70" (column 8): expected a number"#;
+    let light = "light = `3`: light: 3: expected";
+    let size = "size = `640`: size: H is missing: expected";
+    let expected = [
+        (1, "`titel`: expected a key, did you mean `title`?", ""),
+        (3, camera, r#", such as camera = "4 30 70""#),
+        (4, light, r#", such as light = "1,-2,3,fff0d8""#),
+        (5, size, r#", such as size = "640 360""#),
+        (6, "fog: expected only beside field", ""),
+        (7, "depth: `2`: expected true or false", ""),
+        (
+            9,
+            "budget: `luts`: expected a limit, did you mean `lut`?",
+            "",
+        ),
+        (10, "budget.ff: `0`: expected a number above 0", ""),
+    ];
+    let error = parse(text).unwrap_err();
+    let found: Vec<_> = error.lines().collect();
+    assert_eq!(found.len(), expected.len(), "{error}");
+    for (found, (line, start, end)) in found.into_iter().zip(expected) {
+        let start = format!("a.toml: line {line}: {start}");
+        assert!(found.starts_with(&start) && found.ends_with(end), "{found}");
+    }
+    let damaged = parse("title = \"a\nfield = menger\ncamera = \"3 30\"\n").unwrap_err();
+    let lines: Vec<_> = damaged.lines().map(|line| &line[..16]).collect();
+    assert_eq!(
+        lines,
+        ["a.toml: line 1: ", "a.toml: line 2: ", "a.toml: line 3: "],
+        "{damaged}"
+    );
+}
+
+/// Errors quote an example of each key's value.
+#[test]
+fn each_example_is_valid() {
+    for Row { command, forms } in FORMS {
+        let action = forms.action.unwrap_or_default();
+        let line = format!("{command} {action} {}", forms.example);
+        assert!(
+            *command == "program" || Command::parse(&line).is_ok(),
+            "{line}"
+        );
+    }
+}
+
+/// Without a camera, the scene shows whole meshes with the axis of their format up; a field has the camera of `glint render`.
+#[test]
+fn automatic_cameras() {
+    let table = r#"
+        model = "cube" → scene cube; fit z
+        model = "a/b.obj" → scene a/b.obj; fit y
+        model = "b.GLTF"; up = "x" → scene b.GLTF; fit x
+        model = "b.stl"; fov = 60; zoom = 2 → scene b.stl; fit z 60; fov 60; zoom 2
+        object = ["cube", "torus"]; orthographic = 2 → object add cube; object add torus; fit z; orthographic 2
+        field = "menger:2" → camera 4 30 60; field menger:2
+        field = "menger:2"; model = "b.obj"; fov = 50 → camera 4 30 60; fov 50; scene b.obj; mesh on; field menger:2
+        model = "cube"; view = "0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1" → view 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1; scene cube
+    "#;
+    for (text, expected) in rows(table) {
+        let scene = parse(&format!("title = \"a\"\n{text}")).unwrap();
+        let lines: Vec<_> = scene.lines().collect();
+        assert_eq!(
+            lines.join("; "),
+            format!("quality balanced; {expected}"),
+            "{text}"
+        );
+        let fits = scene.needs().features.contains(&FIT);
+        assert_eq!(fits, expected.contains("fit "), "{text}");
+    }
+}
+
+/// A material gives meshes its colour, except objects with a colour of their own.
+#[test]
+fn materials_of_meshes() {
+    let table = r#"
+        model = "cube"; material = "jade" → object add cube colour JADE
+        object = ["cube", "torus move 0,0,1 colour 00ff00"]; material = "jade" → object add cube colour JADE; object add torus move 0,0,1 colour 00ff00
+        model = "cube"; field = "box:1,1,1"; material = "jade" → material jade; scene cube; mesh on; field box:1,1,1
+    "#;
+    let [r, g, b] = Material::Jade.faces()[0];
+    for (text, expected) in rows(table) {
+        let expected = expected.replace("JADE", &format!("{r:02x}{g:02x}{b:02x}"));
+        let scene = with_camera(&text);
+        let lines: Vec<_> = scene.lines().collect();
+        let lines = lines.join("; ");
+        assert_eq!(
+            lines,
+            format!("quality balanced; camera 3 30 60; {expected}")
+        );
     }
 }
 

@@ -54,20 +54,20 @@ commands! {
     /// Commands of scenes, meshes and wireframe programs.
     SceneCommands {
         scene Scene(name: Option<Name>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
-            => key(Order::Subject).named("model").without(&["object", "program"]);
+            => key(Order::Subject, "teapot").named("model").without(&["object", "program"]);
         load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh (binary) under a name (default model) and show it";
         models Models() in UPLOAD: "list the meshes and the memory for uploads";
         unload Unload(name: MeshName) in UPLOAD: "remove an uploaded mesh";
         program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; alone: show the last one"
-            => key(Order::Subject);
+            => key(Order::Subject, "cube");
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
     }
     options {
         field Field(field: Or<Off, Field>) or show in FIELD: "show or set the distance field; off shows the mesh"
-            => key(Order::Subject).without(&["program"]);
+            => key(Order::Subject, "menger:3").without(&["program"]);
         mesh Mesh(on: bool) or show in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
         stereo Stereo(eyes: Or<Off, Stereo>) or show in STEREO: "show or set two eyes: E to each side of the camera, zero parallax at ZERO; off is one eye"
-            => key(Order::Option).with(LIT).without(&["orthographic"])
+            => key(Order::Option, "0.05,3").with(LIT).without(&["orthographic"])
                 .host(option("stereo", stereo::FORM, "Stereo: one eye E to the left of the camera and one E to the right (0 to 1), with zero parallax at the distance ZERO; lengths in world units. The left eye is red, the right one blue or cyan [default tint: red-blue]")
                     .expects("two eyes"));
     }
@@ -78,57 +78,57 @@ commands! {
     }
     options {
         object Object(action: Object) or show in OBJECT: "list or show the objects, add one, change its place or colour, or remove it"
-            => key(Order::Subject).action("add").list().without(&["field", "program"]);
+            => key(Order::Subject, "torus scale 0.5 move 1,0,0").action("add").list().without(&["field", "program"]);
         material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours faces by direction"
-            => key(Order::Option).with(FIELD)
-                .host(option("material", "MATERIAL", "Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes instead of their own ones")
-                    .free());
+            => key(Order::Option, "jade").with(LIT)
+                .host(option("material", "MATERIAL", "Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes instead of their own ones"));
         light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default"
-            => key(Order::Option).list().with(LIT)
+            => key(Order::Option, "1,-2,3,fff0d8").list().with(LIT)
                 .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; of several, the first one lights the mesh in a field")
                     .expects("a light"));
         ambient Ambient(colour: Or<Default, Rgb>) or show in LIGHT: "show or set the ambient light"
-            => key(Order::Option).with(LIT)
+            => key(Order::Option, "404040").with(LIT)
                 .host(option("ambient", "RRGGBB", "Ambient light [default: 404040 with a --light; without, white on a field and black on meshes]")
                     .expects("a colour RRGGBB"));
         background Background(background: Or<Default, Background>) or show: "show or set the background; default is white for a field and black for meshes, which have one colour"
-            => key(Order::Option).with(LIT)
+            => key(Order::Option, "sky").with(LIT)
                 .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")
                     .expects("white, sky or a colour RRGGBB"));
         fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)"
-            => key(Order::Option).with(FIELD)
+            => key(Order::Option, "0.1").with(FIELD)
                 .host(option("fog", "DENSITY", "Fog in the background's colour: transmittance is exp(-distance * DENSITY), with the distance in world units. DENSITY is from 0 to below 16")
                     .expects("a density of at least 0 and below 16"));
         occlusion Occlusion(on: bool) or show in FIELD: "turn ambient occlusion of a field on or off, or show the setting"
-            => key(Order::Option).with(FIELD)
+            => key(Order::Option, "on").with(FIELD)
                 .host(switch("occlusion", "on", "Ambient occlusion: darken a field's surface where other surfaces are close"));
         undecided Undecided(on: bool) or show in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting"
-            => key(Order::Option).with(FIELD)
+            => key(Order::Option, "on").with(FIELD)
                 .host(switch("undecided", "on", "Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour"));
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
-            => key(Order::Camera).with(LIT).without(&["lookat"])
+            => key(Order::Camera, "4 30 70").with(LIT).without(&["lookat"])
                 .host(option("camera", "R,THETA,PHI", "A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The half width of the image plane at distance 1 is 0.9, and the near plane is at 0.1 [default: a camera that shows the whole model; with a field 4,30,60]")
                     .expects("a camera R,THETA,PHI such as 3,30,60"));
         view View(view: View) or show: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
-            => key(Order::Camera).with(LIT).without(&["camera", "lookat"]);
+            => key(Order::Camera, "0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1").with(LIT).without(&["camera", "lookat"]);
         look Look(yaw: Turns, pitch: Turns, roll: Turns): "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
         lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen"
-            => key(Order::Camera).with(LIT)
+            => key(Order::Camera, "3 0 1 -3 0 -1").with(LIT)
                 .host(option("look-at", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]", "A camera at the eye E in the direction of the gaze G, with the direction U (by default z) up on the screen")
                     .expects("a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1"));
         fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees"
-            => key(Order::Lens).with(LIT).without(&["orthographic"])
+            => key(Order::Lens, "66").with(LIT).without(&["orthographic"])
                 .host(option("fov", "DEGREES", "The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square")
                     .expects("1 to 179 degrees"));
         orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
-            => key(Order::Lens).with(MESHES).without(FIELD)
+            => key(Order::Lens, "2").with(MESHES).without(FIELD)
                 .host(option("orthographic", "WIDTH", "Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field requires perspective")
                     .expects("a width in world units"));
         zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more"
-            => key(Order::Lens).with(LIT).without(&["orthographic"])
+            => key(Order::Lens, "1.5").with(LIT).without(&["orthographic"])
                 .host(option("zoom", "FACTOR", "Enlarge the middle of the picture by this factor, with a narrower field of view")
                     .expects("a factor that leaves a field of view of 1 to 179 degrees"));
-        fit Fit(lens: Option<Fit>) in FIT: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
+        fit Fit(lens: Option<Fit>) in FIT: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view"
+            => key(Order::Fit, "y").named("up").with(MESHES).without(&["field", "camera", "lookat", "view"]);
     }
 
     /// Commands for camera motion.
@@ -152,30 +152,30 @@ commands! {
     }
     options {
         quality Quality(quality: Quality) or show: "show or set the quality: the picture size, and the precision of a field's rays"
-            => key(Order::Size);
+            => key(Order::Size, "balanced");
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720"
-            => key(Order::Size);
+            => key(Order::Size, "640 360");
         backend Backend(backend: Backend) or show: "show or set the backend that draws frames"
-            => key(Order::Size);
+            => key(Order::Size, "gateware");
         shading Shading(shading: Shading) or show in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)"
-            => key(Order::Option).with(MESHES)
+            => key(Order::Option, "smooth").with(MESHES)
                 .host(option("shading", "SHADING", "Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated) [default: flat]"));
         cull Cull(on: bool) in MESH: "turn culling of back faces on or off"
-            => key(Order::Option).with(MESHES)
+            => key(Order::Option, "off").with(MESHES)
                 .host(switch("no-cull", "off", "Draw back faces too"));
         clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band"
-            => key(Order::Option).with(MESHES)
+            => key(Order::Option, "10").with(MESHES)
                 .host(option("far", "DISTANCE", "Clip triangles to the picture, the near plane and a far plane at this distance, instead of to the near plane and the engine's guard band")
                     .expects("a distance from 0 to below 256"));
         winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)"
-            => key(Order::Option).with(MESHES)
+            => key(Order::Option, "screen").with(MESHES)
                 .host(option("winding", "WINDING", "The rule for the seen side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the upper left vertex: all triangles are seen, and none is culled) [default: mesh]"));
         edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces"
-            => key(Order::Option).with(&["model"]).without(FIELD)
+            => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
         overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";
         prepass Prepass(on: bool) in PREPASS: "turn the cone prepass of a field on or off"
-            => key(Order::Option).with(FIELD)
+            => key(Order::Option, "on").with(FIELD)
                 .host(switch("prepass", "on", "Before the rays, march a cone around the rays of each block of pixels; the block's rays start where its cone ends. This saves evaluations of the field"));
     }
 

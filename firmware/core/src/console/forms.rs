@@ -18,6 +18,8 @@ pub struct Forms {
     pub action: Option<&'static str>,
     /// Position of the command in the order of execution.
     pub order: Order,
+    /// An example of the value.
+    pub example: &'static str,
     /// Whether the value may be a list, with one command per element.
     pub is_list: bool,
     /// Required keys, of which the file must contain at least one; empty if no other key is required.
@@ -41,8 +43,6 @@ pub struct HostOption {
     pub help: &'static str,
     /// Description of the expected value, for errors.
     pub expected: &'static str,
-    /// Whether the option of a field is also accepted without a field.
-    pub is_free: bool,
 }
 
 /// The order in which the commands of a scene file are executed.
@@ -58,14 +58,17 @@ pub enum Order {
     Option,
     /// Content of the picture.
     Subject,
+    /// The camera that shows the whole content.
+    Fit,
 }
 
-/// Makes a key that has the command's name, and whose command is executed at this position.
-pub const fn key(order: Order) -> Forms {
+/// Makes a key that has the command's name, whose command is executed at this position, and an example of its value.
+pub const fn key(order: Order, example: &'static str) -> Forms {
     Forms {
         key: None,
         action: None,
         order,
+        example,
         is_list: false,
         with: &[],
         without: &[],
@@ -81,7 +84,6 @@ pub const fn option(name: &'static str, value: &'static str, help: &'static str)
         switch: None,
         help,
         expected: "",
-        is_free: false,
     }
 }
 
@@ -97,14 +99,6 @@ impl HostOption {
     /// Sets the description of the expected value for errors.
     pub const fn expects(self, expected: &'static str) -> Self {
         Self { expected, ..self }
-    }
-
-    /// Accepts the option also without a field.
-    pub const fn free(self) -> Self {
-        Self {
-            is_free: true,
-            ..self
-        }
     }
 }
 

@@ -4,14 +4,15 @@ use super::common::{bad_value, named};
 use super::messages::note;
 use super::options::OptionArguments;
 use clap::Args;
+use glint::error::InputError;
 use glint::render::Frame;
 use glint::view;
 use glint_core::camera::View;
 use glint_core::fixed::Turns;
-use glint_core::framing::BoundingSphere;
+use glint_core::framing::{BoundingSphere, FramingError};
 use glint_core::matrix::Axis;
 use glint_model::{MAX_EYE, RenderError};
-use glint_scene_file::SceneFile;
+use glint_scene_file::{SceneFile, upright};
 use std::path::{Path, PathBuf};
 
 /// The camera without a subject and without options.
@@ -94,7 +95,8 @@ impl CameraArguments {
     }
 
     /// The cameras of a full turn in the given number of steps, starting with the camera of [`view`](Self::view). A camera that
-    /// shows the whole model goes around the model about the up axis; any other camera goes around the origin about z.
+    /// shows the whole model, also of a scene, goes around the model about the up axis; any other camera goes around the origin
+    /// about z.
     pub fn turn(
         &self,
         options: &OptionArguments,
@@ -102,7 +104,19 @@ impl CameraArguments {
         steps: u16,
     ) -> anyhow::Result<Vec<View>> {
         let Some(sphere) = self.framing(options, shown) else {
-            return turn(&self.view(options, shown)?, steps);
+            let first = self.view(options, shown)?;
+            let fit = shown.scene.and_then(SceneFile::fit);
+            let fit = fit.filter(|_| !self.is_given(options));
+            return match (fit, shown.frame.subject.sphere()) {
+                (Some((up, angle)), Some(sphere)) => angles(steps)
+                    .map(|turned| {
+                        let view = sphere.framed(up, turned, angle);
+                        let view = view.map_err(|error| no_camera("--scene", &error))?;
+                        Ok(view.with_lens_of(&first))
+                    })
+                    .collect(),
+                _ => turn(&first, steps),
+            };
         };
         let up = self.up_of(shown.model);
         angles(steps)
@@ -113,17 +127,14 @@ impl CameraArguments {
     /// The up axis from the option or from the format of the model; prints a note in the second case.
     fn up_of(&self, model: Option<&str>) -> Axis {
         self.up.unwrap_or_else(|| {
-            let extension = model.and_then(|model| Path::new(model).extension()?.to_str());
-            let is_upright = |known: &&str| {
-                extension.is_some_and(|extension| extension.eq_ignore_ascii_case(known))
-            };
-            let Some(extension) = ["obj", "gltf", "glb"].into_iter().find(is_upright) else {
+            let Some((up, extension)) = model.and_then(upright) else {
                 return Axis::Z;
             };
             note(format_args!(
-                "y is up, as usual in .{extension}; --up z changes it"
+                "{} is up, as usual in .{extension}; --up z changes it",
+                up.name()
             ));
-            Axis::Y
+            up
         })
     }
 }
@@ -138,7 +149,12 @@ fn framed(
 ) -> anyhow::Result<View> {
     let view = sphere.framed(up, turned, options.field_of_view()?);
     let name = shown.model.unwrap_or("--object");
-    options.camera(view.map_err(|error| bad_value(name, "a camera", error.to_string()))?)
+    options.camera(view.map_err(|error| no_camera(name, &error))?)
+}
+
+/// The error for meshes that no camera shows completely.
+fn no_camera(name: &str, error: &FramingError) -> InputError {
+    bad_value(name, "a camera", error.to_string())
 }
 
 /// The angles of a full turn in the given number of steps, starting with 0.

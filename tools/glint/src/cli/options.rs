@@ -129,7 +129,7 @@ impl Given {
     fn lines(&self) -> impl Iterator<Item = String> {
         self.values.iter().map(|value| match self.row.forms.order {
             Order::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
-            Order::Size | Order::Lens | Order::Option | Order::Subject => {
+            Order::Size | Order::Lens | Order::Option | Order::Subject | Order::Fit => {
                 format!("{} {value}", self.row.command)
             }
         })
@@ -167,7 +167,7 @@ impl Given {
             values,
         } = self;
         let name = format!("--{}", option.name);
-        if !has_field && !option.is_free && row.forms.with == console::FIELD {
+        if !has_field && row.forms.with == console::FIELD {
             return Err(bad_value(&name, "a --field", "a mesh"));
         }
         let most = if has_field { MAX_LIGHTS } else { 1 };

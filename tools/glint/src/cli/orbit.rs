@@ -18,8 +18,8 @@ use std::path::PathBuf;
 
 /// Render an animation in which the camera goes once around a model, a distance field, a model in a field, or a scene.
 ///
-/// A camera that shows the whole model goes around the model about the up axis. With a camera option, in a field, and in a scene,
-/// it goes around the origin about the z axis, starting with the camera of `glint render`.
+/// A camera that shows the whole model goes around the model about the up axis. With a camera option, in a field, and in a scene
+/// that has a camera, it goes around the origin about the z axis, starting with the camera of `glint render`.
 #[derive(Args)]
 pub struct OrbitArguments {
     #[command(flatten)]

@@ -115,12 +115,12 @@ impl SubjectArguments {
             self.scene.as_deref(),
             self.field.file(),
         ];
-        let meshes = scene.into_iter().flat_map(SceneFile::meshes);
-        let names = names
-            .into_iter()
-            .flatten()
-            .chain(meshes.map(String::as_str));
+        let names = names.into_iter().flatten().map(PathBuf::from);
+        let meshes = scene.into_iter().flat_map(|scene| {
+            let meshes = scene.meshes().iter();
+            meshes.map(|name| scene::path(name, scene.folder()).into())
+        });
         let camera = self.camera.file().map(PathBuf::from);
-        names.map(PathBuf::from).chain(camera).collect()
+        names.chain(meshes).chain(camera).collect()
     }
 }

@@ -137,11 +137,13 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
             if !scene::is_shape(name) {
-                self.upload(&scene::mesh(name)?, Some(name))?;
+                self.upload(&scene::mesh(name, scene.folder())?, Some(name))?;
             }
         }
         let mut lines = vec!["scene default".to_owned()];
-        lines.extend_from_slice(scene.settings());
+        // The frame has the camera that shows all meshes.
+        let settings = scene.settings().iter();
+        lines.extend(settings.filter(|line| !line.starts_with("fit ")).cloned());
         let field = frame.subject.field_part();
         lines.extend(field.map(|field| format!("quality {}", field.quality)));
         lines.extend([size_command(frame.size), view_command(&frame.view)]);

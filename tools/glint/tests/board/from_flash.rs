@@ -6,6 +6,7 @@ use glint::board::{EmulatedBoard, built_firmware};
 use glint::board::{Simulation, Uart};
 use glint::fuzz::{Inputs, Target};
 use glint::image;
+use glint::scene::{self, Changes};
 use glint_core::block::Block;
 use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
@@ -102,6 +103,20 @@ fn a_board_with_a_list_runs_alone() {
         );
     }
     assert_eq!(answer.matches("scene cubes ").count(), 1, "{answer}");
+}
+
+/// A board fits the camera of a scene without one to the mesh in its flash, as the host does.
+#[test]
+fn a_board_fits_the_camera_of_a_scene() {
+    let text = "title = \"Fitted\"\nmodel = \"icosphere:2\"\nup = \"y\"\nfov = 40\nzoom = 1.5\n";
+    let scene = SceneFile::parse("fitted", "fitted.toml", text).unwrap();
+    let pieces = image::pieces(std::slice::from_ref(&scene)).unwrap();
+    let flash = image::make(&[], &[0x13; 32], &pieces).unwrap();
+    let (mut board, _) = powered_up(flash, |_| ());
+    command(&mut board, "scene fitted");
+    let view = scene::draw(&scene, &Changes::default(), |frame| frame.view).unwrap();
+    let answer = command(&mut board, "view");
+    assert!(answer.contains(&format!("view {view}\r\n")), "{answer}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Scenes with options, and scenes that cannot be drawn.
 
-use crate::common::{drawn, files_refused, folder, glint, refused, succeed};
+use crate::common::{drawn, files_refused, folder, glint, glint_within, picture, refused, succeed};
 
 const LAMP: &str =
     "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 30 70\"\n";
@@ -31,6 +31,112 @@ fn scenes_that_cannot_be_shown() {
         assert_eq!(error, expected, "{command}");
     }
     assert!(!folder.join("a.png").exists());
+}
+
+/// A scene file without a camera has the picture of `glint render`: of the mesh in the folder of the scene file, with its axis up,
+/// the lens, and the material.
+#[test]
+fn scenes_of_meshes_are_those_of_render() {
+    let folder = folder("scene-of-meshes");
+    let inner = folder.join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    succeed(&folder, "model gear inner/a.obj");
+    succeed(&folder, "model gear inner/a.stl");
+    for (number, (keys, options)) in [
+        ("model = \"a.obj\"", "inner/a.obj"),
+        (
+            "model = \"a.stl\"\nup = \"x\"\nshading = \"smooth\"",
+            "inner/a.stl --up x --shading smooth",
+        ),
+        (
+            "model = \"a.obj\"\nfov = 40\nzoom = 1.5",
+            "inner/a.obj --fov 40 --zoom 1.5",
+        ),
+        (
+            "model = \"a.stl\"\northographic = 2",
+            "inner/a.stl --orthographic 2",
+        ),
+        (
+            "model = \"a.stl\"\nmaterial = \"gold\"",
+            "inner/a.stl --material gold",
+        ),
+        (
+            "model = \"teapot\"\nmaterial = \"jade\"\ncamera = \"3 20 60\"",
+            "teapot --material jade --camera 3,20,60",
+        ),
+        (
+            "object = [\"a.obj move 1,0,0\", \"cube colour ff0000\"]\nmaterial = \"sky\"",
+            "--object 'inner/a.obj move 1,0,0' --object 'cube colour ff0000' --material sky",
+        ),
+        (
+            "model = \"a.obj\"\nfield = \"box:0.2,2,0.2\"",
+            "inner/a.obj --field box:0.2,2,0.2",
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("inner/{number}.toml");
+        let text = format!("title = \"A\"\nquality = \"fast\"\n{keys}\n");
+        std::fs::write(folder.join(&name), text).unwrap();
+        assert_eq!(
+            succeed(&folder, &format!("scene check {name}")),
+            format!("{name}: valid\n")
+        );
+        for board in ["model", "emulated"] {
+            let render = |what: &str| {
+                let options = format!("--board {board} --quality fast --force --out a.png");
+                let output = glint_within(800, &folder, &format!("render {what} {options}"), &[]);
+                let error = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "{keys}: {error}");
+                picture(&folder.join("a.png"))
+            };
+            assert!(
+                render(&format!("--scene {name}")) == render(options),
+                "{board}: {keys}"
+            );
+        }
+    }
+    // The animation turns about the axis of the model.
+    let orbit = |what: &str| {
+        succeed(
+            &folder,
+            &format!("orbit {what} --quality fast --frames 3 --out a.png"),
+        );
+        std::fs::read(folder.join("a.png")).unwrap()
+    };
+    assert!(orbit("--scene inner/2.toml") == orbit("inner/a.obj --fov 40 --zoom 1.5"));
+    // A generator has its name in any folder, unless the folder has such a file.
+    let missing = "title = \"A\"\nmodel = \"b.obj\"\n";
+    std::fs::write(inner.join("missing.toml"), missing).unwrap();
+    assert_eq!(
+        refused(&folder, "scene check inner/missing.toml"),
+        "error: inner/b.obj: expected a file to read, found No such file or directory (os error 2)"
+    );
+    let output = glint(&folder, "render --scene inner/1.toml --out inner/a.stl");
+    assert_eq!(output.status.code(), Some(2), "the output is an input");
+}
+
+/// All errors of a scene file have a line.
+#[test]
+fn all_errors_of_a_scene_file() {
+    let folder = folder("scene-errors");
+    let text = "title = \"A\"\nfeild = \"menger:3\"\ncamera = [4, 30, 70]\nsize = \"640 480\"\n";
+    std::fs::write(folder.join("a.toml"), text).unwrap();
+    for command in ["scene check a.toml", "render --scene a.toml --out a.png"] {
+        let output = glint(&folder, command);
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(
+            String::from_utf8(output.stderr).unwrap(),
+            "error: a.toml: line 2: `feild`: expected a key, did you mean `field`?\n\
+             error: a.toml: line 3: camera: `[4, 30, 70]`: expected a text, a number, true or false, such as camera = \"4 30 70\"\n\
+             error: a.toml: line 4: size = `640 480`: size: 640 x 480: expected 320 180, 640 360 or 1280 720, such as size = \"640 360\"\n"
+        );
+    }
+    assert_eq!(
+        glint(&folder, "render --scene mengr --out a.png").stderr,
+        b"error: mengr: expected a scene file FILE.toml or a built-in scene, did you mean `menger`?\n"
+    );
 }
 
 /// The lens options apply to the camera of a scene.
