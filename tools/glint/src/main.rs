@@ -5,6 +5,8 @@ mod cli;
 
 use clap::Parser;
 use glint::error::{FormatError, InputError};
+use glint::render;
+use glint_model::RenderError;
 use glint_scene_file::SceneError;
 use std::process::ExitCode;
 
@@ -26,13 +28,21 @@ fn one_line(error: &anyhow::Error) -> String {
     messages.join(": ").trim_end().replace('\n', " ")
 }
 
+/// Whether an error is one of a file or an option. A frame that no board can draw is described by files and options.
+fn is_bad_input(error: &(dyn std::error::Error + 'static)) -> bool {
+    let is_undrawable = matches!(error.downcast_ref(), Some(render::Error::Render(_)));
+    is_undrawable
+        || error.is::<RenderError>()
+        || error.is::<InputError>()
+        || error.is::<FormatError>()
+        || error.is::<SceneError>()
+}
+
 fn main() -> ExitCode {
     let Err(error) = cli::Arguments::parse().run() else {
         return ExitCode::SUCCESS;
     };
-    let bad_input = error.chain().any(|cause| {
-        cause.is::<InputError>() || cause.is::<FormatError>() || cause.is::<SceneError>()
-    });
+    let bad_input = error.chain().any(is_bad_input);
     match error.downcast_ref::<SceneError>() {
         Some(error) => error.to_string().lines().for_each(cli::fail),
         None => cli::fail(one_line(&error)),

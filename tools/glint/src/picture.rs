@@ -103,9 +103,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn add(&mut self, image: &Image) -> io::Result<()> {
-        let picture = image.picture();
-        let (rgb, [width, height]) = (picture.rgb(), [image.width, image.height]);
+    pub fn add(&mut self, picture: &Picture) -> io::Result<()> {
+        let (rgb, [width, height]) = (picture.rgb(), [picture.width(), picture.height()]);
         match self {
             Self::Png(writer) => Ok(writer.write_image_data(rgb)?),
             Self::Gif { encoder, delay } => {
@@ -142,6 +141,7 @@ pub fn write_animation(
         .first()
         .map_or([0; 2], |first| [first.width, first.height]);
     let mut animation = Animation::png(out, size, images.len() as u32, images_per_second)?;
-    images.iter().try_for_each(|image| animation.add(image))?;
+    let mut pictures = images.iter().map(Image::picture);
+    pictures.try_for_each(|picture| animation.add(&picture))?;
     animation.finish()
 }

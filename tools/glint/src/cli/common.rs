@@ -49,6 +49,36 @@ impl SizeArguments {
     }
 }
 
+/// Pictures that are drawn larger than they are written.
+#[derive(clap::Args)]
+pub struct SamplingArguments {
+    /// Draw the picture with 2 or 4 times the width and height, and average 2×2 or 4×4 pixels for each output pixel; the larger
+    /// picture has at most 1280x720 pixels. Requires --board model. The counts are those of the larger picture.
+    #[arg(long, value_name = "2|4", value_parser = PossibleValuesParser::new(["2", "4"]))]
+    supersample: Option<String>,
+}
+
+impl SamplingArguments {
+    /// The size to draw for a picture of this size, and the number of drawn pixels per output pixel in each direction.
+    pub fn of(&self, size: Size, board: &ModelOrBoard) -> Result<(Size, usize), InputError> {
+        let Some(text) = &self.supersample else {
+            return Ok((size, 1));
+        };
+        if *board != ModelOrBoard::Model {
+            let found = format!("--board {board}");
+            return Err(bad_value("--supersample", "--board model", found));
+        }
+        let factor = if text == "2" { 2 } else { 4 };
+        let mut sizes = Size::ALL.into_iter();
+        let drawn = sizes.find(|drawn| drawn.width() == factor * size.width());
+        let drawn = drawn.ok_or_else(|| {
+            let expected = "2 for 320x180 or 640x360, or 4 for 320x180";
+            bad_value("--supersample", expected, format!("{text} for {size}"))
+        });
+        Ok((drawn?, factor as usize))
+    }
+}
+
 /// The speed of a serial port.
 #[derive(clap::Args)]
 pub struct Baud {

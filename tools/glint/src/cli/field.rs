@@ -1,6 +1,7 @@
 //! The command-line options for a distance field, and for the appearance of a scene.
 
 use super::common::{SizeArguments, bad_value};
+use super::heading;
 use super::options::OptionArguments;
 use clap::Args;
 use glint::error::InputError;
@@ -14,7 +15,7 @@ use glint_scene::Scene;
 /// A distance field, and the options of a scene.
 #[derive(Args)]
 pub struct FieldArguments {
-    #[arg(long, value_name = "FIELD", help = field_help(), conflicts_with = "scene")]
+    #[arg(long, value_name = "FIELD", help = field_help(), conflicts_with = "scene", help_heading = heading::SUBJECT)]
     field: Option<String>,
     #[command(flatten)]
     pub options: OptionArguments,

@@ -10,6 +10,7 @@ mod demo;
 mod field;
 mod flash;
 mod gesture;
+mod heading;
 mod image;
 mod imu;
 mod info;

@@ -1,6 +1,7 @@
 //! The scene options of the command line, generated from the console's table of options.
 
 use super::common::bad_value;
+use super::heading;
 use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use glint::error::{InputError, quote};
@@ -51,7 +52,14 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
         ..
     } = row.forms;
     let is_of_subject = order == Order::Option;
+    let heading = match order {
+        Order::Camera | Order::Lens | Order::Fit => heading::CAMERA,
+        Order::Size => heading::PICTURE,
+        Order::Subject => heading::SUBJECT,
+        Order::Option => heading::APPEARANCE,
+    };
     let argument = Arg::new(row.key()).long(option.name).help(option.help);
+    let argument = argument.help_heading(heading);
     // With a scene only its camera can be replaced.
     let argument = match is_of_subject {
         true => argument.conflicts_with("scene"),

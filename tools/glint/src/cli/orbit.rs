@@ -1,6 +1,7 @@
 //! `glint orbit`.
 
-use super::common::{DrawingArguments, bad_value};
+use super::common::{DrawingArguments, SamplingArguments, bad_value};
+use super::heading;
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
 use super::progress::count_bar;
@@ -25,15 +26,17 @@ pub struct OrbitArguments {
     #[command(flatten)]
     subject: SubjectArguments,
     /// Animation to write: an animated PNG, or a GIF, which has 256 colours per frame. `-` is standard output, for a PNG.
-    #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif")]
+    #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif", help_heading = heading::PICTURE)]
     out: PathBuf,
     /// Number of frames.
-    #[arg(long, default_value_t = 36, value_parser = clap::value_parser!(u16).range(1..=360))]
+    #[arg(long, help_heading = heading::PICTURE, default_value_t = 36, value_parser = clap::value_parser!(u16).range(1..=360))]
     frames: u16,
     /// Frames per second of the animation. The frame time of a GIF is a multiple of 1/100 s.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=50))]
+    #[arg(long, help_heading = heading::PICTURE, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=50))]
     rate: u16,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = heading::PICTURE)]
+    sampling: SamplingArguments,
+    #[command(flatten, next_help_heading = heading::RENDERER)]
     drawing: DrawingArguments,
 }
 
@@ -78,12 +81,15 @@ impl OrbitArguments {
         views: &[View],
         scene: Option<&SceneFile>,
     ) -> anyhow::Result<()> {
+        let (size, factor) = self.sampling.of(frame.size, &self.drawing.board)?;
         let mut spool = out.spool()?;
         let mut drawn = Vec::new();
         let animation = self.animation(BufWriter::new(&spool), frame.size.pixels());
         let mut animation = animation.with_context(|| out.unwritable())?;
-        self.draw(frame, views, scene, &mut |Rendered { image, stats }| {
-            animation.add(&image).with_context(|| out.unwritable())?;
+        let large = Frame { size, ..*frame };
+        self.draw(&large, views, scene, &mut |Rendered { image, stats }| {
+            let picture = image.picture().reduced(factor);
+            animation.add(&picture).with_context(|| out.unwritable())?;
             drawn.push(stats);
             Ok(())
         })?;

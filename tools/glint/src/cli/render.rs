@@ -1,17 +1,16 @@
 //! `glint render`.
 
-use super::common::{DrawingArguments, Opened, bad_value};
+use super::common::{DrawingArguments, Opened, SamplingArguments};
+use super::heading;
 use super::messages::{print_json, say, warn};
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
 use super::progress::{advance, bar, spinner};
 use super::subject::SubjectArguments;
 use anyhow::Context;
-use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard};
 use glint::object::Description;
 use glint::render::{Frame, Parts, RayCounts, Rendered, Stats, on_model, remarks};
-use glint_core::picture::Size;
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -24,29 +23,27 @@ pub struct RenderArguments {
     /// An additional model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S`
     /// or `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour
     /// RRGGBB`.
-    #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"])]
+    #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"], help_heading = heading::SUBJECT)]
     object: Vec<String>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = heading::RENDERER)]
     drawing: DrawingArguments,
     /// Picture file to write; `-` is standard output.
-    #[arg(long, value_name = "PICTURE.png")]
+    #[arg(long, value_name = "PICTURE.png", help_heading = heading::PICTURE)]
     out: PathBuf,
-    /// Draw the picture with 2 or 4 times the width and height, and average 2×2 or 4×4 pixels for each output pixel; the larger
-    /// picture has at most 1280x720 pixels. Requires --board model. The counts are those of the larger picture.
-    #[arg(long, value_name = "2|4", conflicts_with = "depth", value_parser = PossibleValuesParser::new(["2", "4"]))]
-    supersample: Option<String>,
+    #[command(flatten, next_help_heading = heading::PICTURE)]
+    sampling: SamplingArguments,
     /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 for each pixel, +inf for a
     /// pixel without a surface.
-    #[arg(long, value_name = "DEPTH.f32")]
+    #[arg(long, value_name = "DEPTH.f32", conflicts_with = "supersample", help_heading = heading::PICTURE)]
     depth: Option<PathBuf>,
     /// Write clock cycles, the clock frequency in Hz, and counts of triangles, pixels and rays as JSON.
-    #[arg(long, value_name = "STATS.json")]
+    #[arg(long, value_name = "STATS.json", help_heading = heading::PICTURE)]
     stats: Option<PathBuf>,
     /// Keep the model's coordinates; those outside [-2, 2) are an error.
-    #[arg(long, requires = "model")]
+    #[arg(long, requires = "model", help_heading = heading::SUBJECT)]
     keep_scale: bool,
     /// Source of a board's picture: its memory, or the monitor of the emulated or the virtual board.
-    #[arg(long, value_enum, default_value_t = Capture::Frame)]
+    #[arg(long, value_enum, default_value_t = Capture::Frame, help_heading = heading::RENDERER)]
     capture: Capture,
 }
 
@@ -109,7 +106,7 @@ impl RenderArguments {
         let depth = depth.transpose()?;
         let statistics = self.stats.as_deref().map(|path| open(path, STATISTICS));
         let statistics = statistics.transpose()?;
-        let (drawn, factor) = self.supersampled(frame.size)?;
+        let (drawn, factor) = self.sampling.of(frame.size, &self.drawing.board)?;
         let Rendered { image, stats } = self.render(
             &Frame {
                 size: drawn,
@@ -144,25 +141,6 @@ impl RenderArguments {
             return print_json(&outcome);
         }
         print_stats(&stats)
-    }
-
-    /// The size to draw for a picture of this size, and the number of drawn pixels per output pixel in each direction.
-    fn supersampled(&self, size: Size) -> anyhow::Result<(Size, usize)> {
-        let Some(text) = &self.supersample else {
-            return Ok((size, 1));
-        };
-        if self.drawing.board != ModelOrBoard::Model {
-            let found = format!("--board {}", self.drawing.board);
-            return Err(bad_value("--supersample", "--board model", found).into());
-        }
-        let factor = if text == "2" { 2 } else { 4 };
-        let mut sizes = Size::ALL.into_iter();
-        let drawn = sizes.find(|drawn| drawn.width() == factor * size.width());
-        let drawn = drawn.ok_or_else(|| {
-            let expected = "2 for 320x180 or 640x360, or 4 for 320x180";
-            bad_value("--supersample", expected, format!("{text} for {size}"))
-        });
-        Ok((drawn?, factor as usize))
     }
 
     fn objects(&self) -> anyhow::Result<Vec<Description>> {

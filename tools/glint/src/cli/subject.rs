@@ -4,12 +4,13 @@ use super::camera::{CameraArguments, CameraSubject};
 use super::common::{SizeArguments, bad_value};
 use super::convert::load;
 use super::field::FieldArguments;
+use super::heading;
 use clap::Args;
 use glint::object::Description;
 use glint::scene;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_core::object::Place;
+use glint_core::object::{MAX_OBJECTS, Place};
 use glint_scene::{Assets, Kind};
 use glint_scene_file::SceneFile;
 use std::path::PathBuf;
@@ -21,13 +22,13 @@ pub struct SubjectArguments {
     pub model: Option<String>,
     /// A scene: the name of a built-in scene (`glint scene list`), a scene file (docs/scenes.md), or `-` for standard input. It
     /// sets camera, quality and size; the camera options, --quality and --size override them.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model", help_heading = heading::SUBJECT)]
     pub scene: Option<String>,
     #[command(flatten)]
     pub field: FieldArguments,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = heading::CAMERA)]
     camera: CameraArguments,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = heading::PICTURE)]
     size: SizeArguments,
 }
 
@@ -81,6 +82,10 @@ impl SubjectArguments {
             let expected =
                 format!("a mesh file or a generator such as teapot, or {instead} in its place");
             return Err(bad_value("MODEL", &expected, "none").into());
+        }
+        if objects.len() > MAX_OBJECTS {
+            let expected = format!("at most {MAX_OBJECTS} objects");
+            return Err(bad_value("--object", &expected, objects.len().to_string()).into());
         }
         if !objects.is_empty() {
             scene.kind = Kind::Objects;

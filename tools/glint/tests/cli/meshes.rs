@@ -1,6 +1,6 @@
 //! `glint render` of meshes with the model.
 
-use crate::common::{VIEW, all_refused, depths, drawn, folder, json, refused};
+use crate::common::{VIEW, all_refused, depths, drawn, folder, glint, json, refused};
 
 #[test]
 fn renders_and_their_files() {
@@ -159,6 +159,51 @@ fn supersampled_pictures() {
     let board = "render gear --supersample 2 --board emulated --out x.png";
     let error = refused(&folder, board);
     assert!(error.ends_with("expected --board model, found --board emulated"));
+}
+
+/// Frames that no board can draw are bad input.
+#[test]
+fn frames_beyond_the_limits() {
+    let folder = folder("limits");
+    for board in ["model", "emulated"] {
+        let objects = "--object cube ".repeat(17);
+        all_refused(
+            &folder,
+            &format!(
+                "
+                render {objects} --board {board} --out x.png
+                    --object: expected at most 16 objects, found 17
+                render cube {objects} --board {board} --out x.png
+                    --object: expected at most 16 objects, found 18
+                "
+            ),
+        );
+    }
+    let objects = "\"cube\", ".repeat(1000);
+    let text = format!("title = \"A\"\nobject = [{objects}]\n");
+    std::fs::write(folder.join("a.toml"), text).unwrap();
+    for command in [
+        "scene check a.toml",
+        "render --scene a.toml --out x.png",
+        "image make --scene a.toml --firmware a --out x.bin",
+    ] {
+        let output = glint(&folder, command);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{command}: {error}");
+        if !command.starts_with("image") {
+            let first =
+                "error: a.toml: line 2: object = `cube`: object: expected at most 16 objects";
+            assert!(error.starts_with(first), "{error}");
+            assert!(
+                error.ends_with("error: a.toml: 964 further errors\n"),
+                "{error}"
+            );
+        }
+    }
+    for options in ["--far 0.05", "--field box:1,1,1 --camera 2,0,60 --far 0.01"] {
+        let output = glint(&folder, &format!("render cube {options} --out x.png"));
+        assert_eq!(output.status.code(), Some(2), "{options}");
+    }
 }
 
 #[test]

@@ -60,6 +60,32 @@ fn a_full_file_system_leaves_no_part_of_a_file() {
     assert_eq!(fs::read(folder.join("old.png")).unwrap(), b"before");
 }
 
+/// An error names its cause once, also of a reader that ends early.
+#[test]
+fn a_closed_pipe_is_stated_once() {
+    let folder = folder("closed-pipe");
+    for command in [
+        "render cube --out -",
+        "orbit cube --frames 3 --out -",
+        "model teapot - --to obj",
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(words(command))
+            .current_dir(&folder)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            error.matches("roken pipe").count() <= 1,
+            "{command}: {error}"
+        );
+    }
+}
+
 #[test]
 fn an_input_is_never_an_output() {
     let folder = folder("inputs");

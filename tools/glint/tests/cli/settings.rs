@@ -249,6 +249,49 @@ fn scripts_of_devices_and_pipes() {
     writer.join().unwrap().unwrap();
 }
 
+/// The help of `render` and `orbit` has groups; only the options of all commands are in none.
+#[test]
+fn the_help_has_groups() {
+    let folder = folder("settings-help");
+    for command in ["render", "orbit"] {
+        let [help, _] = said(&folder, &format!("{command} --help"));
+        let mut group = "";
+        let mut options = Vec::new();
+        for line in help.lines() {
+            match line.strip_suffix(':') {
+                Some(heading) if !line.starts_with(' ') => group = heading,
+                _ if line.trim_start().starts_with('-') => {
+                    let mut words = line.split_whitespace();
+                    let option = words.find_map(|word| word.strip_prefix("--"));
+                    options.extend(option.map(|option| (group, option)));
+                }
+                _ => {}
+            }
+        }
+        for expected in [
+            ("Subject", "scene"),
+            ("Subject", "field"),
+            ("Camera", "camera"),
+            ("Camera", "fov"),
+            ("Camera", "up"),
+            ("Appearance", "shading"),
+            ("Picture", "size"),
+            ("Picture", "out"),
+            ("Picture", "supersample"),
+            ("Renderer", "board"),
+            ("Renderer", "baud"),
+        ] {
+            assert!(
+                options.contains(&expected),
+                "{command} {expected:?}: {options:?}"
+            );
+        }
+        let common = options.iter().filter(|(group, _)| *group == "Options");
+        let common: Vec<_> = common.map(|(_, option)| *option).collect();
+        assert_eq!(common, ["quiet", "verbose", "force", "help"], "{command}");
+    }
+}
+
 /// Files that a board cannot run are rejected before it is opened.
 #[test]
 fn only_programs_are_flashed() {
