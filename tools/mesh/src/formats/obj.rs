@@ -3,7 +3,7 @@
 //! This parser replaces `tobj`, whose errors have no line number, and which accepts NaN and infinity as coordinates and lines of any
 //! length.
 
-use super::mtl;
+use super::mtl::{self, Ignored};
 use super::text::{Line, Lines, component, coordinate, vector};
 use crate::error::{FormatError, InputError, Location, MAX_LINE, MAX_REMARKS, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
@@ -12,21 +12,15 @@ use std::collections::{HashMap, HashSet};
 
 /// Keywords of statements without effect on the drawn surface.
 const IGNORED: &[&[u8]] = &[
-    b"vt",
     b"vp",
     b"g",
     b"o",
     b"s",
-    b"l",
-    b"p",
     b"mg",
     b"deg",
     b"cstype",
     b"bmat",
     b"step",
-    b"curv",
-    b"curv2",
-    b"surf",
     b"parm",
     b"trim",
     b"hole",
@@ -46,6 +40,16 @@ const IGNORED: &[&[u8]] = &[
     b"csh",
     b"maplib",
     b"usemap",
+];
+
+/// Keywords of statements that other programs draw, and the remark that they are ignored.
+const UNDRAWN: &[(&[&[u8]], &str)] = &[
+    (&[b"vt"], "texture coordinates are ignored (vt)"),
+    (&[b"l", b"p"], "points and lines are ignored"),
+    (
+        &[b"curv", b"curv2", b"surf"],
+        "curves and free-form surfaces are ignored",
+    ),
 ];
 
 /// Reads a material file by name; `None` if it does not exist.
@@ -123,6 +127,8 @@ struct Reader {
     corners: Vec<Corner>,
     /// Unknown keywords that already have a remark.
     skipped: Vec<Vec<u8>>,
+    /// The kinds of [`UNDRAWN`] statements that already have a remark.
+    undrawn: [bool; UNDRAWN.len()],
     /// Material files that were requested. Each file is read once.
     libraries: HashSet<Vec<u8>>,
 }
@@ -144,6 +150,7 @@ impl Reader {
             b"usemtl" => self.colour = self.palette.get(rest_of(line)).copied(),
             b"mtllib" => self.library(rest_of(line), materials)?,
             _ if IGNORED.contains(&keyword) => {}
+            _ if self.is_undrawn(keyword) => {}
             _ if keyword.iter().all(u8::is_ascii_graphic) => self.skip(keyword, place),
             _ => {
                 return Err(FormatError::new(
@@ -155,6 +162,19 @@ impl Reader {
             }
         }
         Ok(())
+    }
+
+    /// Whether a statement is one that other programs draw; adds a remark for the first one of each kind.
+    fn is_undrawn(&mut self, keyword: &[u8]) -> bool {
+        let mut kinds = UNDRAWN.iter().enumerate();
+        let Some((kind, (_, remark))) = kinds.find(|(_, (words, _))| words.contains(&keyword))
+        else {
+            return false;
+        };
+        if !std::mem::replace(&mut self.undrawn[kind], true) {
+            self.polygons.remark(*remark);
+        }
+        true
     }
 
     /// Skips an unknown statement, with a remark for its first occurrence.
@@ -262,12 +282,9 @@ impl Reader {
             };
             if let Some(text) = materials(name) {
                 found = true;
-                let has_texture = mtl::parse(&text, &mut self.palette)
+                let ignored = mtl::parse(&text, &mut self.palette)
                     .map_err(|error| ObjError::Mtl(error.in_file(name)))?;
-                if has_texture {
-                    let remark = "textures are ignored: materials have their diffuse colours";
-                    self.polygons.remark(remark);
-                }
+                self.remark_ignored(ignored);
                 if name.as_bytes() == names {
                     break;
                 }
@@ -280,6 +297,29 @@ impl Reader {
             ));
         }
         Ok(())
+    }
+
+    fn remark_ignored(&mut self, ignored: Ignored) {
+        let Ignored {
+            has_texture,
+            is_transparent,
+            has_light,
+        } = ignored;
+        for (is_ignored, remark) in [
+            (
+                has_texture,
+                "textures are ignored: materials have their diffuse colours",
+            ),
+            (
+                is_transparent,
+                "transparency is ignored: surfaces are opaque",
+            ),
+            (has_light, "light from surfaces is ignored (Ke)"),
+        ] {
+            if is_ignored {
+                self.polygons.remark(remark);
+            }
+        }
     }
 
     fn finish(mut self) -> Result<Polygons, FormatError> {
@@ -361,6 +401,22 @@ mod tests {
     fn normals_and_textures() {
         let polygons = read(&format!("{SQUARE}vn 0 0 1\nvt 0 0\nf 1/1/1 2/1/-1 3//1\n")).unwrap();
         assert!(polygons.corners.iter().all(|c| c.normal == 0));
+        assert_eq!(polygons.remarks, ["texture coordinates are ignored (vt)"]);
+    }
+
+    #[test]
+    fn statements_that_are_not_drawn_have_a_remark() {
+        let text = format!(
+            "{SQUARE}vt 0 0\nvt 1 0\nl 1 2\np 1\nl 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1\nf 1 2 3\n"
+        );
+        assert_eq!(
+            read(&text).unwrap().remarks,
+            [
+                "texture coordinates are ignored (vt)",
+                "points and lines are ignored",
+                "curves and free-form surfaces are ignored",
+            ]
+        );
     }
 
     #[test]
@@ -422,11 +478,15 @@ mod tests {
         assert!(polygons.remarks.is_empty());
         let polygons = parse(
             format!("mtllib b\n{SQUARE}f 1 2 3\n").as_bytes(),
-            &mut |_| Some(b"newmtl b\nmap_Kd b.png\n".to_vec()),
+            &mut |_| Some(b"newmtl b\nmap_Kd b.png\nd 0.5\nKe 1 1 1\n".to_vec()),
         );
         assert_eq!(
             polygons.unwrap().remarks,
-            ["textures are ignored: materials have their diffuse colours"]
+            [
+                "textures are ignored: materials have their diffuse colours",
+                "transparency is ignored: surfaces are opaque",
+                "light from surfaces is ignored (Ke)",
+            ]
         );
         let polygons = read(&format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
         assert_eq!(polygons.remarks.len(), 1);

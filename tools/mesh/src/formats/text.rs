@@ -97,9 +97,49 @@ impl<'a> Words<'a> {
         }
     }
 
+    /// The words after the lines that are already read.
+    pub fn after(lines: Lines<'a>) -> Self {
+        Self {
+            rest: lines.rest,
+            line: lines.number + 1,
+        }
+    }
+
+    /// The number of the line of the last word, counted from 1.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
     /// The position of the last word.
     pub fn place(&self) -> Location {
         Location::Line(self.line)
+    }
+
+    /// Goes to the next line with a word, or stays on the current line if it has a further word. Returns whether there is one.
+    pub fn skip_blank_lines(&mut self) -> bool {
+        while !self.has_more_on_line() {
+            self.rest = match self.rest {
+                [] => return false,
+                [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
+            };
+            // The end of the text is on its last line, not after it.
+            if !self.rest.is_empty() {
+                self.line += 1;
+            }
+        }
+        true
+    }
+
+    /// The next word on the current line, if any.
+    pub fn next_on_line(&mut self) -> Option<&'a [u8]> {
+        if !self.has_more_on_line() {
+            return None;
+        }
+        let is_end = |b: &u8| b.is_ascii_whitespace();
+        let length = self.rest.iter().position(is_end);
+        let (word, rest) = self.rest.split_at(length.unwrap_or(self.rest.len()));
+        self.rest = rest;
+        Some(word)
     }
 
     /// Skips white space on the current line. Returns whether the line has a further word.
@@ -115,21 +155,8 @@ impl<'a> Iterator for Words<'a> {
     type Item = &'a [u8];
 
     fn next(&mut self) -> Option<&'a [u8]> {
-        while !self.has_more_on_line() {
-            self.rest = match self.rest {
-                [] => return None,
-                [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
-            };
-            // The end of the text is on its last line, not after it.
-            if !self.rest.is_empty() {
-                self.line += 1;
-            }
-        }
-        let is_end = |b: &u8| b.is_ascii_whitespace();
-        let length = self.rest.iter().position(is_end);
-        let (word, rest) = self.rest.split_at(length.unwrap_or(self.rest.len()));
-        self.rest = rest;
-        Some(word)
+        self.skip_blank_lines();
+        self.next_on_line()
     }
 }
 

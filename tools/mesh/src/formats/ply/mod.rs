@@ -401,6 +401,20 @@ mod tests {
         );
     }
 
+    /// A strip is one line of any length.
+    #[test]
+    fn long_strips() {
+        let count = 100_000;
+        let indices: String = (0..count).map(|i| format!(" {}", i % 4)).collect();
+        let text = format!(
+            "{VERTICES}element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n{count}{indices}\n"
+        );
+        assert_eq!(parse(text.as_bytes()).unwrap().faces.len(), count - 2);
+        let error = parse(text.replace("1 2 3\n", "1 2 -3\n").as_bytes());
+        let error = error.unwrap_err().to_string();
+        assert_eq!(error, "line 14: expected an index (0, 1, …), found -3");
+    }
+
     #[test]
     fn colours_of_floats_to_1_and_to_255() {
         for (one, half) in [("1", "0.5"), ("255", "127.5")] {

@@ -2,7 +2,7 @@
 
 use super::header::Scalar;
 use crate::error::{FormatError, Location, quote};
-use crate::formats::text::{Lines, any_number};
+use crate::formats::text::{Lines, Words, any_number};
 
 /// The values of a PLY's elements in file order.
 pub trait Source {
@@ -16,11 +16,10 @@ pub trait Source {
     fn place(&self) -> Location;
 }
 
-/// Values as decimal words, with one line per instance of an element.
+/// Values as decimal words, with one line per instance of an element. A line may have any length, as that of a strip of triangles.
 pub struct AsciiSource<'a> {
-    lines: Lines<'a>,
-    words: Vec<&'a [u8]>,
-    next: usize,
+    words: Words<'a>,
+    /// The line of the instance.
     number: usize,
 }
 
@@ -28,9 +27,7 @@ impl<'a> AsciiSource<'a> {
     /// Creates the source from the lines after the header.
     pub fn new(lines: Lines<'a>) -> Self {
         Self {
-            lines,
-            words: Vec::new(),
-            next: 0,
+            words: Words::after(lines),
             number: 0,
         }
     }
@@ -38,38 +35,29 @@ impl<'a> AsciiSource<'a> {
 
 impl Source for AsciiSource<'_> {
     fn start(&mut self) -> Result<(), FormatError> {
-        loop {
-            let line = self.lines.next_line()?.ok_or_else(|| {
-                FormatError::new(
-                    Location::Line(self.number),
-                    "as many elements as the header declares",
-                    "the end of the file",
-                )
-            })?;
-            self.number = line.number;
-            self.words.clear();
-            self.words.extend(line.words());
-            self.next = 0;
-            if !self.words.is_empty() {
-                return Ok(());
-            }
+        if !self.words.skip_blank_lines() {
+            return Err(FormatError::new(
+                self.place(),
+                "as many elements as the header declares",
+                "the end of the file",
+            ));
         }
+        self.number = self.words.line();
+        Ok(())
     }
 
     fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
         let place = self.place();
-        let word = self
-            .words
-            .get(self.next)
-            .ok_or_else(|| FormatError::new(place, scalar.describe(), "the end of the line"))?;
-        self.next += 1;
+        let word = self.words.next_on_line();
+        let word =
+            word.ok_or_else(|| FormatError::new(place, scalar.describe(), "the end of the line"))?;
         any_number(word)
             .filter(|value| scalar.holds(*value))
             .ok_or_else(|| FormatError::new(place, scalar.describe(), quote(word)))
     }
 
     fn end(&mut self) -> Result<(), FormatError> {
-        match self.words.get(self.next) {
+        match self.words.next_on_line() {
             None => Ok(()),
             Some(word) => Err(FormatError::new(
                 self.place(),
