@@ -331,11 +331,36 @@ fn wrong_times_do_not_end_the_attitude() {
     };
     // The sensor turns at 100 °/s for a second. For each case: the times of the samples from number 500 on, the numbers of steps,
     // stale samples and gaps, and the final yaw in degrees.
-    let cases: [(&str, &[u64], [u64; 3], f64); 6] = [
+    let cases: [(&str, &[u64], [u64; 3], f64); 10] = [
         ("one ahead", &[u64::MAX >> 1], [998, 1, 0], 99.9),
         ("one in an hour", &[3_600_000_000], [998, 1, 0], 99.9),
         ("one at 0", &[0], [998, 1, 0], 99.9),
-        ("two ahead", &[90_000_000, 95_000_000], [997, 1, 1], 99.9),
+        ("two ahead", &[90_000_000, 95_000_000], [997, 2, 0], 99.9),
+        (
+            "two ahead, the second before the first",
+            &[95_000_000, 90_000_000],
+            [997, 2, 0],
+            99.9,
+        ),
+        (
+            "three ahead",
+            &[90_000_000, 99_000_000, 95_000_000],
+            [996, 3, 0],
+            99.9,
+        ),
+        // The time between two wrong times of one clock counts.
+        (
+            "two ahead, in order",
+            &[90_000_000, 90_001_000],
+            [998, 1, 0],
+            99.9,
+        ),
+        (
+            "two ahead, in order, and one more",
+            &[90_000_000, 90_001_000, 95_000_000],
+            [997, 2, 0],
+            99.9,
+        ),
         (
             "out of order",
             &[START + 497_500, START + 498_000, START + 499_000],

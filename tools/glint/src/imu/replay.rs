@@ -333,6 +333,23 @@ mod tests {
         }
     }
 
+    /// Two wrong time stamps in a row cost two samples.
+    #[test]
+    fn two_wrong_stamps_are_two_samples() {
+        for wrong in [
+            [90_000_000, 95_000_000],
+            [95_000_000, 90_000_000],
+            [90_000_000, 90_001_000],
+        ] {
+            let mut stamps: Vec<u64> = (0..1000).map(|i| 9_000_000 + i * 1000).collect();
+            stamps[500..502].copy_from_slice(&wrong);
+            let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
+            assert!((yaw(replayed.attitudes[999]) - 99.9).abs() < 1e-3);
+            let counts = replayed.counts;
+            assert_eq!((counts.steps, counts.stale, counts.gaps), (997, 2, 0));
+        }
+    }
+
     /// The second half of a log whose clock restarts is integrated too.
     #[test]
     fn a_restart_is_a_gap() {

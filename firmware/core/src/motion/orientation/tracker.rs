@@ -47,10 +47,14 @@ const RESTART: u8 = 4;
 /// The samples since the last step whose times do not follow it, from which a wrong time or a restart of the clock is recognised.
 #[derive(Clone, Copy, Debug, Default)]
 struct Detour {
-    /// Value of [`Tracker::last`] after the latest of these samples. If the tracker has another value, the detour has ended.
-    last: u64,
-    /// Time of the tracker's last sample before the gap, and the age of the tilt at that time.
+    /// Time of the first sample after the latest gap.
+    start: u64,
+    /// Time of the tracker's last sample before the first gap, and the age of the tilt at that time.
     before: Option<(u64, u32)>,
+    /// Number of gaps since then.
+    gaps: u64,
+    /// Time of the tracker's last sample before the stale ones.
+    last: u64,
     /// Time of the latest stale sample, and number of successive ones in order.
     stale: u64,
     in_order: u8,
@@ -204,28 +208,35 @@ impl Tracker {
     }
 
     /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap. A clock that returns
-    /// from a gap has had wrong times in between; the attitude then continues from the time before the gap.
+    /// from gaps has had wrong times in between; the attitude then continues from the time before the gaps.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, sample: &Sample, last: u64) -> SampleEffect {
         let mut detour = self.detour;
-        if detour.last != last {
-            detour = Detour::default();
+        // A clock that has had right steps for longer does not return.
+        let since = last.wrapping_sub(detour.start);
+        if since > u64::from(LONGEST_STEP) {
+            detour.before = None;
         }
-        if let Some((before, age)) = detour.before
+        // The steps since the gap have integrated their time.
+        let before = detour.before;
+        let before = before.map(|(before, age)| (before.wrapping_add(since), age));
+        if let Some((before, age)) = before
             && follows(sample.t_us, before)
         {
-            self.counts.gaps -= 1;
-            self.counts.stale += 1;
+            self.counts.gaps -= detour.gaps;
+            self.counts.stale += detour.gaps;
             if let Some(tilt) = &mut self.tilt {
                 tilt.set_age(age);
             }
             self.last = Some(before);
+            self.detour = Detour::default();
             return self.on_sample(sample);
         }
         let is_earlier = sample.t_us.wrapping_sub(last).cast_signed() <= 0;
         if is_earlier {
-            let is_in_order = detour.in_order > 0 && follows(sample.t_us, detour.stale);
+            let is_in_order =
+                detour.in_order > 0 && detour.last == last && follows(sample.t_us, detour.stale);
             detour.in_order = 1 + if is_in_order { detour.in_order } else { 0 };
             detour.stale = sample.t_us;
             detour.last = last;
@@ -237,9 +248,10 @@ impl Tracker {
         }
         let age = self.tilt.map_or(0, |tilt| tilt.age());
         self.detour = Detour {
-            last: sample.t_us,
+            start: sample.t_us,
             // After several wrong times, the clock returns to the time before the first of them.
-            before: detour.before.or(Some((last, age)).filter(|_| !is_earlier)),
+            before: before.or(Some((last, age)).filter(|_| !is_earlier)),
+            gaps: 1 + before.map_or(0, |_| detour.gaps),
             ..Detour::default()
         };
         self.last = Some(sample.t_us);
