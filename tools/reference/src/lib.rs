@@ -8,6 +8,7 @@
 //! - [`gesture`]: camera frames with a hand, and the errors of the camera's control by the hand.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions with known true attitudes.
 //! - [`line`](mod@line): exact pixels of a segment, by the diamond-exit rule.
+//! - [`object`]: drift of objects that turn by many small steps.
 //! - [`picture`]: whole pictures in f64, and the errors of the model's pictures as displayed on a monitor.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
@@ -23,6 +24,7 @@ pub mod errors;
 pub mod gesture;
 pub mod imu;
 pub mod line;
+pub mod object;
 pub mod picture;
 pub mod raymarch;
 pub mod report;

@@ -241,6 +241,7 @@ fn main() -> Result<()> {
             let cycles = cycles.measure("geometry")?;
             to.write("geometry-precision", &geometry::precision::measure(&cycles))?;
             to.write("geometry-drift", &geometry::drift::measure())?;
+            to.write("geometry-turns", &geometry::turns::measure()?)?;
         }
         Page::Imu { quick, cycles } => measure_imu(quick, &cycles, &to)?,
         Page::Gesture { cycles } => measure_gesture(&cycles, &to)?,

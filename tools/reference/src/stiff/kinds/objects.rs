@@ -1,18 +1,60 @@
-//! Mirrored objects.
+//! Mirrored objects, and objects that turn by small steps.
 
-use anyhow::{Result, ensure};
-use glint_core::fixed::Q8_24;
-use glint_core::matrix::Matrix;
+use anyhow::{Context, Result, ensure};
+use glint_core::choice::Choice;
+use glint_core::fixed::{Q8_24, Turns};
+use glint_core::matrix::{Axis, Matrix};
 use glint_core::picture::Size;
 use glint_model::{Frame, Subject};
 use glint_vectors::{Camera, Model, Picture, Random};
 
+use serde::Deserialize;
+
 use super::frames::{mesh, number, object};
+use crate::object::{Method, Turned, turned};
 use crate::stiff::kind::Kind;
 use crate::stiff::outcome::Outcome;
 
 pub fn kinds() -> Vec<Kind> {
-    vec![Kind::new("mirrored-object", mirrored_object)]
+    vec![
+        Kind::new("mirrored-object", mirrored_object),
+        Kind::new("turning-object", turning_object),
+    ]
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Turning {
+    /// Scale of the object along its axes.
+    scale: [f64; 3],
+    /// Axis of the world.
+    axis: String,
+    /// Angle of each rotation in degrees.
+    degrees: String,
+    /// Number of rotations.
+    steps: u32,
+}
+
+/// Whether an object keeps its shape during many small rotations, within 2^-20 of the length of its shortest axis, and the error of
+/// its angle.
+fn turning_object(input: Turning) -> Result<Outcome> {
+    let axis = Axis::from_word(&input.axis).context("expected an axis")?;
+    let shape = Matrix::scale(input.scale.map(number))?;
+    let angle = Turns::from_degrees(input.degrees.parse()?);
+    let turned = turned(Method::Kept, shape, axis, angle, &[input.steps])?;
+    let Turned { error, growth, .. } = turned[0];
+    let [shortest, longest] = [f64::min, f64::max].map(|of| {
+        let lengths = input.scale.map(f64::abs).into_iter();
+        lengths.reduce(of).unwrap_or_default()
+    });
+    let lengths = match growth.abs() * shortest <= 2f64.powi(-20) {
+        true => "kept".to_owned(),
+        false => format!("changed by {growth:e}"),
+    };
+    let degrees = (error / longest).to_degrees();
+    Ok(Outcome::exact(format!(
+        "lengths {lengths}, angle off by {degrees:.4}°"
+    )))
 }
 
 /// Compares, in this number of views, a mirrored object with a mesh of mirrored vertices and reversed windings.
