@@ -55,9 +55,14 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     assert!(damaged.starts_with(&start), "{damaged}");
     std::fs::remove_file(&file).unwrap();
     std::os::unix::fs::symlink("/dev/zero", &file).unwrap();
-    let device = error(&folder, upload, &[]);
     let end = "expected a file, found a folder, a pipe or a device\n";
+    let device = error(&folder, upload, &[]);
     assert!(device.ends_with(end), "{device}");
+    std::fs::remove_file(&file).unwrap();
+    let made = Command::new("mkfifo").arg(&file).status();
+    assert!(made.unwrap().success());
+    let pipe = error(&folder, upload, &[]);
+    assert!(pipe.ends_with(end), "{pipe}");
     // Commands that use no board do not read the file.
     succeed(&folder, "model cube cube.obj");
 }
