@@ -38,7 +38,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
             .iter()
             .filter_map(|text| assemble(text).ok())
             .collect(),
-        Target::Scene => texts(&glint_scene_file::TEXTS),
+        Target::Scene => texts(&[&glint_scene_file::TEXTS[..], SCENES].concat()),
         Target::Flash => contents(),
     };
     seeds
@@ -194,7 +194,14 @@ const STL: &[&str] = &[
     "solid name with words\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\nfacet normal nan nan nan\n outer loop\n  vertex 0 0 1e-3\n  vertex 1 0 .5\n  vertex 0 1 -1e2\n endloop\nendfacet\nendsolid name\nsolid\nendsolid\n",
 ];
 
+/// Scenes of meshes without a camera, with a material.
+const SCENES: &[&str] = &[
+    "title = \"a\"\nmodel = \"gear\"\nup = \"y\"\nfov = 40\nzoom = 1.5\nmaterial = \"jade\"\n",
+    "title = \"a\"\nobject = [\"cube\", \"torus scale 0.5 colour 00ff00\"]\northographic = 2\nmaterial = \"gold\"\n",
+];
+
 const PLY: &[&str] = &[
     "ply\nformat ascii 1.0\ncomment made here\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 0 255 0\n1 1 0 0 0 1 0 0 255\n0 1 0 0 0 1 9 9 9\n3 0 1 2\n4 0 1 2 3\n",
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement edge 1\nproperty int a\nproperty list uchar float b\nelement face 1\nproperty float red\nproperty float green\nproperty float blue\nproperty list uint uint vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n5 2 1 2\n0.5 0.25 1 3 0 1 2\n",
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 2\n",
 ];

@@ -64,13 +64,15 @@ impl Target {
             }
             Self::Imu => "t_us ax ay az gx gy gz temp , 32767 -32768 32768",
             Self::WireframeText => "eye plane window segment end # \n -16 15.9995 16 0x0800",
-            Self::Scene => "= true\n [budget]\n \" [ ] field menger:4 light steer scenes \n",
-            Self::Obj => "v vn vt f usemtl mtllib newmtl Kd # \\\n 1//1 1/1/1",
+            Self::Scene => {
+                "= true\n [budget]\n \" [ ] field menger:4 light steer scenes up material object \n"
+            }
+            Self::Obj => "v vn vt f l curv usemtl mtllib newmtl Kd d Tr Ke # \\\n 1//1 1/1/1",
             Self::Stl => "solid facet normal outer loop vertex endloop endfacet endsolid COLOR=",
             Self::Gltf => super::gltf::WORDS,
             Self::Host => host::WORDS,
             Self::Ply => {
-                "element property list vertex face uchar int8 ushort int uint float double format ascii \
+                "element property list vertex face tristrips -1 uchar int8 ushort int uint float double format ascii \
                  binary_little_endian binary_big_endian end_header vertex_indices red"
             }
         };
@@ -208,17 +210,27 @@ fn run_replay(entries: &[log::Entry]) {
     }
 }
 
-/// Parses a scene file. Every line of an accepted file must be a command.
+/// Parses a scene file. Every line of an accepted file must be a command, and every line of an error must name the file.
 fn run_scene(input: &[u8]) -> bool {
-    let scene = std::str::from_utf8(input).ok();
-    match scene.and_then(|text| SceneFile::parse("scene", "scene.toml", text).ok()) {
-        Some(scene) => {
+    let Ok(text) = std::str::from_utf8(input) else {
+        return false;
+    };
+    match SceneFile::parse("scene", "scene.toml", text) {
+        Ok(scene) => {
             let is_command = |line: &str| matches!(Command::parse(line), Ok(Some(_)));
             assert!(scene.lines().all(is_command), "every line is a command");
             assert!(!scene.needs().options().is_empty());
             true
         }
-        None => false,
+        Err(error) => {
+            let error = error.to_string();
+            let mut lines = error.lines();
+            assert!(
+                lines.all(|line| line.starts_with("scene.toml: ")),
+                "{error}"
+            );
+            false
+        }
     }
 }
 
