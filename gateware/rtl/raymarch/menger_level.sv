@@ -1,5 +1,5 @@
-// One level of the Menger sponge: folds space by mirrors, so that one cube represents all of the level's 3x3x3 cubes
-// (docs/formats/raymarch.md, "Fields"). S is the side length of this cube.
+// One level of the Menger sponge: mirrors space onto itself, so that one cube represents the 20 solid cubes of the level's 3x3x3
+// (docs/formats/raymarch.md, "Fields"); its 7 holes move outside of this cube. S is the side length of the cube.
 //
 //         ┌───┬───┬───┐
 //         │   │   │   │     1  S - |x| of each coordinate: above S/2 in the middle third

@@ -144,8 +144,8 @@ module round_light #(
         wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
     end
 
-    // The suffix of a name is the signal's clock: 9 for the scalar product of the point and the light's direction; 11 for this product
-    // after a shift to 17 bits or more; 12 for the shifted product, saturated at 17 bits.
+    // The suffix of a name is the signal's clock: 9 for the scalar product of the light's direction and the vector from the sphere's
+    // centre to the point; 11 for this product, shifted right; 12 for the shifted product, saturated to 17 bits.
     logic [22:0]        apart_y_5, apart_z_6;
     logic [17:0]        towards_y_5, towards_z_6;
     logic signed [42:0] x_7, x_y_8, product_9;

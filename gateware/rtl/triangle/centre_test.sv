@@ -88,8 +88,8 @@ module centre_test (
         both     <= 12'(step_x_3) + 12'(step_y_3);
     end
 
-    // For P, the centre to its right, the centre below it, and the diagonal centre: whether the centre is outside of at least one of the
-    // edges evaluated so far. A centre is inside an edge if the edge function is at least its bias; centres are 256 units apart, so the low
+    // Bit k of `beyond`: the centre k (P, right, below, diagonal) is outside of the current edge; of `outside`: outside of at least one of
+    // the edges evaluated so far. A centre is inside an edge if the edge function is at least its bias; centres are 256 units apart, so the low
     // 8 bits are not needed.
     logic signed [13:0] value, right, below, across;
     logic [3:0]         beyond, outside;

@@ -14,8 +14,8 @@
 //
 // Latency: 8 clocks for a hit, 11 clocks plus the latency of memory for a miss. Throughput one hit per 4 clocks, or one miss per 5
 // clocks, 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. If `forget` is high for one clock, all lines are
-// invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while no request is in the
-// cache.
+// invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while the cache holds no
+// item: each item from the input has left at the output.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
 // moved. Memory: a client of read_port.

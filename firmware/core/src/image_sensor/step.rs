@@ -1,6 +1,6 @@
-//! The steps of a set-up.
+//! The steps of an image sensor's set-up.
 
-/// A step of a set-up.
+/// A register access or a wait in an image sensor's set-up.
 #[derive(Clone, Copy, Debug)]
 pub enum SetupStep {
     /// Writes a value to the register with this number.

@@ -77,7 +77,7 @@ struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Clock cycles that the board's soft core takes for the frame drawn by the accelerators, if measured.
+    /// Clock cycles that the board's soft core takes to draw the same frame without the accelerators, if measured.
     cpu_cycles: Option<u64>,
     cycles_per_second: f64,
 }

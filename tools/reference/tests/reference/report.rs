@@ -399,9 +399,10 @@ const BOUNDS: [(&str, [f64; 7]); 8] = [
     ("cubes:0.25", [0.0, 0.0, 1e-5, 3e-4, 2e-3, 0.0, 13.0]),
     ("planes:12", [8.0, 0.0, 2e-3, 1.1e-2, 0.0, 0.0, 13.0]),
     // Towards the horizon, rays run along faces. Some of these rays stay undecided, and some end at a face that the exact ray only
-    // passes. Spheres are smaller than a pixel there.
+    // passes.
     ("cubes:2", [30.0, 240.0, 2e-5, 0.5, 1.3e-2, 0.0, 35.0]),
     ("planes:0.5", [0.0, 1150.0, 6e-4, 5e-2, 0.0, 0.0, 55.0]),
+    // Towards the horizon, spheres are smaller than a pixel, so the normals of hits there have large errors.
     ("lattice", [40.0, 0.0, 3e-4, 6e-3, 0.01, 0.7, f64::INFINITY]),
     ("", [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY]),
 ];

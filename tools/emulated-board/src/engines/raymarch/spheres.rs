@@ -11,7 +11,7 @@ pub struct Spheres {
     pub list: [FixedSphere; MAX_SPHERES],
     pub lights: Lights,
     pub blend: Blend,
-    /// Colours of the faces 6 and 7.
+    /// Colours of the faces 6 and 7 of a field with eight faces.
     pub faces: [[u8; 3]; 2],
     /// The constants that the next write to an entry of `list` stores.
     next: FixedSphere,

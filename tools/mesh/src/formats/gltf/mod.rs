@@ -154,7 +154,7 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Checks that the file has version 2, and that a reader of version 2.0 can read it: later minor versions are compatible.
+/// Checks that the file's version is 2.x, and that its `minVersion`, if any, is 2.0: a reader of 2.0 can then read the file.
 fn check_version(json: &[u8]) -> Result<(), FormatError> {
     let Head { asset } = from_json(json)?;
     let minor = asset.version.strip_prefix("2.").unwrap_or_default();
