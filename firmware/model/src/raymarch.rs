@@ -14,6 +14,7 @@
 mod blend;
 mod cone;
 mod directions;
+pub mod exits;
 mod fog;
 mod lights;
 mod options;

@@ -6,11 +6,13 @@
 //! - [`views`]: cameras that look at the Menger sponge.
 //! - [`metrics`]: errors of a picture against the reference.
 //! - [`raymarched`]: pictures of Glint's raymarcher, in the form that `metrics` compares.
+//! - [`exited`]: pictures of the rays by exits, in the same form.
 //! - [`variant`]: other marching methods, for comparisons of their cost.
 //!
 //! If a ray only touches a solid, or lies in the plane of a face of the solid, a hit and a miss are both correct.
 
 mod distance;
+pub mod exited;
 mod grid;
 mod menger;
 pub mod metrics;

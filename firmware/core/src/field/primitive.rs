@@ -16,7 +16,7 @@ use super::surface::FieldSample;
 use crate::feature::SPHERES;
 
 pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
-pub use fixed_sphere::{FixedSphere, FixedSpheres, length};
+pub use fixed_sphere::{FixedSphere, FixedSpheres, length, normalised_root};
 pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};

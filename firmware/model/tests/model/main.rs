@@ -5,6 +5,7 @@
 mod clipping;
 mod depth;
 mod descriptor;
+mod exits;
 mod frame;
 mod light;
 mod line;

@@ -59,7 +59,7 @@ enum Page {
         /// Measure only the errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
-        /// Measure only one table: pictures, rates, or a study: fraction, cap, threshold, norm, end, prepass, block or normal
+        /// Measure only one table: pictures, rates, words, or a study: fraction, cap, threshold, norm, end, prepass, block or normal
         #[arg(long, value_name = "NAME", conflicts_with = "quick")]
         study: Option<String>,
     },
@@ -320,7 +320,12 @@ fn measure_raymarch(quick: bool, study: Option<&str>, to: &Folder) -> Result<()>
     if study.map_or(!quick, |study| study == "rates") {
         to.write_with_commit("raymarch-rates", &raymarch::rates::measure()?)?;
     }
-    if study.map_or(!quick, |study| !["pictures", "rates"].contains(&study)) {
+    if study.map_or(!quick, |study| study == "words") {
+        to.write_with_commit("raymarch-words", &raymarch::words::measure()?)?;
+    }
+    if study.map_or(!quick, |study| {
+        !["pictures", "rates", "words"].contains(&study)
+    }) {
         raymarch::studies::measure(study, |name, trials| {
             to.write_with_commit(&format!("raymarch-{name}"), trials)
         })?;

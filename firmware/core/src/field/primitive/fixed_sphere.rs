@@ -109,11 +109,14 @@ pub fn length(q: [i32; 3]) -> i32 {
         .iter()
         .sum();
     let doubled = (square >> 34 != 0) as u32;
-    let square = square >> (2 * doubled);
-    let (root, slope) = ROOTS[(square >> 25) as usize & 511];
-    let rest = (square >> 8) as u32 & 0x1_FFFF;
-    let root = root + ((u64::from(slope) * u64::from(rest)) >> 17) as u32;
-    ((root << 4) >> (22 - lead - doubled)) as i32
+    ((normalised_root(square >> (2 * doubled)) << 4) >> (22 - lead - doubled)) as i32
+}
+
+/// Returns a lower bound of 4·√x for x from 2^32 to 2^34 − 1. The relative error is at most 2^−18.
+pub fn normalised_root(x: u64) -> u32 {
+    let (root, slope) = ROOTS[(x >> 25) as usize & 511];
+    let rest = (x >> 8) as u32 & 0x1_FFFF;
+    root + ((u64::from(slope) * u64::from(rest)) >> 17) as u32
 }
 
 #[cfg(test)]

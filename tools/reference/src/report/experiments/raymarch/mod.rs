@@ -6,3 +6,4 @@ pub mod rates;
 pub mod requirements;
 pub mod studies;
 pub mod trials;
+pub mod words;

@@ -1,0 +1,33 @@
+//! Rays that leave whole empty prisms: exact hits without distances and thresholds (docs/raymarch-exits.md).
+//!
+//! The planes of a solid cut each axis into intervals. A field is a rule about the three intervals of a point: whether the point is in the
+//! solid, or which planes bound an empty prism around the point. An *evaluation* moves the ray to the end of this prism. A ray therefore
+//! ends after a few evaluations, and its end is on a plane of the solid, exact up to the rounding of one product.
+//!
+//! A ray is o + T·D with the unscaled direction D, so T is a depth. Each axis along which a ray leads down is mirrored, as all solids here
+//! are symmetric about the origin: all rays lead up, and every exit is at the upper border of an interval.
+//!
+//! Spheres of a list are met before the flat solid, by their closest approach to the ray. Spheres of a lattice are met in the boxes about
+//! them.
+//!
+//! [`Exits`] has the constants of a frame, [`Exits::ray`] makes the ray of a pixel, [`Exits::follow`] finds its end, and [`Words`] has the
+//! word lengths.
+
+mod balls;
+mod follow;
+mod intervals;
+mod lattice;
+mod narrow;
+mod ray;
+mod rectangle;
+mod setup;
+mod spheres;
+mod words;
+
+pub use balls::{Ball, Sight};
+pub use follow::End;
+pub use intervals::{AXES, Border, Exit, Place, Prism, Rule, Solid};
+pub use ray::{Beam, Way};
+pub use rectangle::Rectangle;
+pub use setup::{Exits, Eye, Start};
+pub use words::{Inverse, Words};

@@ -1,0 +1,106 @@
+//! The way of a ray through the empty prisms of a solid, to its end.
+
+use glint_core::field::{Surface, cropped};
+
+use super::intervals::{AXES, PERIOD, Place};
+use super::lattice;
+use super::narrow::floor;
+use super::ray::Beam;
+use super::setup::Exits;
+use crate::raymarch::State;
+
+/// The end of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// A hit or a miss; no ray is undecided.
+    pub state: State,
+    /// Parameter T at the end, u14 with the fraction bits of `Words::parameter`; of a miss, the last exit.
+    pub t: i64,
+    /// Number of evaluations of the flat solid or the lattice.
+    pub steps: u32,
+    /// Number of spheres of a list that were tested.
+    pub tests: u32,
+}
+
+impl Exits {
+    /// Follows a ray to its end.
+    ///
+    /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
+    pub fn follow(&self, beam: &Beam) -> End {
+        let (met, tests) = self.meet(beam);
+        let met = met.filter(|met| met.t <= self.far);
+        let limit = met.map_or(self.far, |met| met.t);
+        let end = |state, t, steps| End {
+            state,
+            t,
+            steps,
+            tests,
+        };
+        // The end of a ray that meets nothing but possibly a sphere of the list.
+        let beyond = |t, steps| match met {
+            Some(met) => end(
+                State::Hit(Surface::Round { number: met.number }),
+                met.t,
+                steps,
+            ),
+            None => end(State::Miss, t, steps),
+        };
+        let mut way = beam.start;
+        let mut steps = 0;
+        let Some(solid) = self.solid.as_ref().filter(|_| !beam.is_away) else {
+            return beyond(way.t, steps);
+        };
+        while way.t <= limit && !(0..AXES).any(|axis| solid.is_above(axis, way.reached[axis])) {
+            steps += 1;
+            let point = self.point(beam, way.t);
+            let intervals = solid.intervals(&point, &way.reached);
+            let prism = match solid.place(&intervals) {
+                Place::Solid => {
+                    return end(
+                        State::Hit(solid.surface(&beam.down, way.face)),
+                        way.t,
+                        steps,
+                    );
+                }
+                Place::Gone => break,
+                Place::Empty(prism) => prism,
+                Place::Box(prism) => {
+                    match lattice::meet(self, solid, beam, way.t, &point, &intervals) {
+                        Some(t) if t <= limit => {
+                            return end(State::Hit(Surface::Round { number: 0 }), t, steps);
+                        }
+                        Some(_) => break,
+                        None => prism,
+                    }
+                }
+            };
+            way.reached = intervals;
+            way = self.left(beam, &way, &prism);
+        }
+        beyond(way.t, steps)
+    }
+
+    /// The vector from the centre of the sphere that was hit to the hit, in field units with 12 fraction bits; `None` if the ray hit no
+    /// sphere. It is about as long as the radius.
+    pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i64; 3]> {
+        let State::Hit(surface) = end.state else {
+            return None;
+        };
+        let number = surface.number()?;
+        // The direction with 18 fraction bits, and the way to the hit, rounded down.
+        let way = |axis: usize| {
+            let speed = i64::from(beam.speed[axis] >> 7 | 1);
+            floor(end.t * speed, self.words.parameter as i32 + 6)
+        };
+        let eye = &self.eyes[beam.eye];
+        let upward = |axis: usize, x: i64| if beam.down[axis] { -x } else { x };
+        Some([0, 1, 2].map(|axis: usize| {
+            let place = i64::from(eye.origin[axis]) + upward(axis, way(axis));
+            match self.balls[..self.count].get(usize::from(number)) {
+                Some(ball) => place - i64::from(ball.centre[axis]),
+                // The nearest centre of a lattice.
+                None => i64::from(cropped(place as i32, PERIOD)),
+            }
+        }))
+    }
+}

@@ -1,0 +1,265 @@
+//! Solids as rules about the intervals of a point along three axes.
+//!
+//! Coordinates are those of mirrored axes, along which every ray leads up, from the solid's lower corner: a bounded solid is between 0 and
+//! its side. Interval numbers increase along every axis.
+
+use core::ops::Range;
+
+use glint_core::field::Surface;
+
+/// Number of axes: three, and a fourth for the fourth pair of faces of an octahedron.
+pub const AXES: usize = 4;
+
+/// Exponent of the period of a repeated solid, 64 field units with 12 fraction bits.
+pub(super) const PERIOD: u32 = 18;
+
+/// The rule of a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// The inside of a box. Intervals: below −1, inside 0, above 1.
+    Box,
+    /// The outside of a slab between two planes perpendicular to z, with the same intervals.
+    Planes,
+    /// The Menger sponge. Intervals: the smallest cells that the scale has, from 0; below −1.
+    Sponge {
+        /// Number of the smallest cells along an axis: 3^4 or 3^6.
+        cells: i32,
+        /// Side of the last level's cells, in smallest cells.
+        last: i32,
+        /// Exponent of the side of a smallest cell, with 12 fraction bits.
+        exponent: u32,
+    },
+    /// Cubes, or spheres in such cubes, in every cell of a lattice. Intervals: 2·cell in a cube, 2·cell + 1 in the gap above it.
+    Repeated {
+        /// Whether spheres with the cube's side as diameter replace the cubes.
+        round: bool,
+    },
+    /// The octahedron: a box along its four diagonals, with the intervals of a box.
+    Octahedron,
+}
+
+/// A solid, for one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Solid {
+    /// The rule.
+    pub rule: Rule,
+    /// Side of the solid along each axis, u12.12; for a repeated solid, the side of a cube.
+    pub side: [i64; AXES],
+}
+
+/// The place of a point in a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the solid.
+    Solid,
+    /// Above the solid along an axis: the ray does not come back.
+    Gone,
+    /// In an empty prism.
+    Empty(Prism),
+    /// In the box about a sphere.
+    Box(Prism),
+}
+
+/// An empty prism: the upper borders that bound it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Prism {
+    /// The upper border along each axis; `None` if the axis does not bound the prism.
+    pub borders: [Option<Border>; AXES],
+    /// The exit at which the ray leaves the prism.
+    pub exit: Exit,
+}
+
+/// The upper border of an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Border {
+    /// The coordinate, s13.12.
+    pub at: i64,
+    /// Number of the interval above the border.
+    pub next: i32,
+}
+
+/// Which of the exits along the axes leaves a prism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// The first: the ray is in a prism while it is in all intervals.
+    First,
+    /// The second of three: the ray is in one of three prisms while it is in two of the intervals.
+    Second,
+    /// The last: each interval alone is empty.
+    Last,
+}
+
+impl Prism {
+    /// The axis of the exit at which the ray leaves the prism; of equal exits, the first axis. `exits` has the parameters at the borders.
+    pub(super) fn leaving(&self, exits: &[Option<i64>; AXES]) -> usize {
+        let before = |a: usize, b: usize| match (exits[a], exits[b]) {
+            (Some(first), Some(second)) => first < second || first == second && a < b,
+            (first, _) => first.is_some(),
+        };
+        let axes = 0..AXES;
+        let found = match self.exit {
+            Exit::First => axes.reduce(|best, axis| if before(axis, best) { axis } else { best }),
+            Exit::Last => axes.reduce(|best, axis| match (exits[best], exits[axis]) {
+                (Some(first), Some(second)) if second > first => axis,
+                (None, Some(_)) => axis,
+                _ => best,
+            }),
+            Exit::Second => axes.clone().find(|&axis| {
+                exits[axis].is_some()
+                    && axes.clone().filter(|&other| before(other, axis)).count() == 1
+            }),
+        };
+        found.unwrap_or_default()
+    }
+}
+
+impl Solid {
+    /// The intervals of a point. Rounding may place a point below a border that its ray has crossed: intervals are never below those
+    /// that the ray has `reached`.
+    pub(super) fn intervals(&self, point: &[i64; AXES], reached: &[i32; AXES]) -> [i32; AXES] {
+        [0, 1, 2, 3].map(|axis: usize| {
+            let (x, side) = (point[axis], self.side[axis]);
+            let interval = match self.rule {
+                Rule::Sponge { exponent, .. } => (x >> exponent).max(-1) as i32,
+                Rule::Repeated { .. } => {
+                    let within = x & ((1 << PERIOD) - 1);
+                    2 * (x >> PERIOD) as i32 + i32::from(within >= side)
+                }
+                Rule::Box | Rule::Planes | Rule::Octahedron => {
+                    i32::from(x >= side) - i32::from(x < 0)
+                }
+            };
+            interval.max(reached[axis])
+        })
+    }
+
+    /// The place of a point with these intervals.
+    pub(super) fn place(&self, k: &[i32; AXES]) -> Place {
+        match self.rule {
+            Rule::Box => outside(k, 1, 0..3).unwrap_or(Place::Solid),
+            // The gateware has three dividers: the fourth axis follows when the ray is within the slabs of the other three.
+            Rule::Octahedron => match outside(k, 1, 0..3) {
+                None => outside(k, 1, 3..AXES).unwrap_or(Place::Solid),
+                _ if k[3] == 1 => Place::Gone,
+                Some(place) => place,
+            },
+            Rule::Planes if k[2] == 0 => Place::Empty(prism(Exit::First, |axis| {
+                (axis == 2).then_some(Border {
+                    at: self.side[2],
+                    next: 1,
+                })
+            })),
+            Rule::Planes => Place::Solid,
+            Rule::Sponge {
+                cells,
+                last,
+                exponent,
+            } => outside(k, cells, 0..3).unwrap_or_else(|| {
+                sponge(k, cells, last).map_or(Place::Solid, |(exit, next)| {
+                    let border = |next| Border {
+                        at: i64::from(next) << exponent,
+                        next,
+                    };
+                    Place::Empty(prism(exit, |axis| (axis < 3).then(|| border(next[axis]))))
+                })
+            }),
+            Rule::Repeated { round } => self.repeated(k, round),
+        }
+    }
+
+    fn repeated(&self, k: &[i32; AXES], round: bool) -> Place {
+        let in_gap = |axis: usize| axis < 3 && k[axis] & 1 == 1;
+        let border = |axis: usize| {
+            let cell = i64::from(k[axis] >> 1);
+            Border {
+                at: match in_gap(axis) {
+                    true => (cell + 1) << PERIOD,
+                    false => (cell << PERIOD) + self.side[axis],
+                },
+                next: k[axis] + 1,
+            }
+        };
+        if (0..3).any(in_gap) {
+            return Place::Empty(prism(Exit::Last, |axis| in_gap(axis).then(|| border(axis))));
+        }
+        match round {
+            true => Place::Box(prism(Exit::First, |axis| (axis < 3).then(|| border(axis)))),
+            false => Place::Solid,
+        }
+    }
+
+    /// Whether the interval of an axis is above the solid: a ray that has reached it does not come back.
+    pub(super) fn is_above(&self, axis: usize, interval: i32) -> bool {
+        match self.rule {
+            Rule::Sponge { cells, .. } => interval >= cells,
+            Rule::Octahedron => interval >= 1,
+            Rule::Box => interval >= 1 && axis < 3,
+            Rule::Planes | Rule::Repeated { .. } => false,
+        }
+    }
+
+    /// The surface at a hit by a ray that has crossed a border along the axis `face` last, with the axes mirrored that are `down`.
+    pub(super) fn surface(&self, down: &[bool; AXES], face: usize) -> Surface {
+        match self.rule {
+            Rule::Octahedron => {
+                // Normals of the slabs: bit i is set if component i is positive. A ray meets the face whose normal is against it.
+                const NORMALS: [u8; AXES] = [0b110, 0b101, 0b011, 0b111];
+                let normal = NORMALS[face];
+                Surface::Octant {
+                    signs: if down[face] { normal } else { !normal & 7 },
+                }
+            }
+            _ => Surface::Face {
+                axis: face as u8,
+                positive: down[face],
+            },
+        }
+    }
+}
+
+fn prism(exit: Exit, border: impl Fn(usize) -> Option<Border>) -> Prism {
+    Prism {
+        borders: [0, 1, 2, 3].map(border),
+        exit,
+    }
+}
+
+/// The place of a point outside a box, `None` inside. `above` is the first interval above the box.
+fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
+    if axes.clone().any(|axis| k[axis] >= above) {
+        return Some(Place::Gone);
+    }
+    let below = |axis: usize| axes.contains(&axis) && k[axis] < 0;
+    (0..AXES).any(below).then(|| {
+        let border = Border { at: 0, next: 0 };
+        Place::Empty(prism(Exit::Last, |axis| below(axis).then_some(border)))
+    })
+}
+
+/// The place of a point in the cube about a sponge.
+///
+/// The sponge is what three extruded carpets have in common: a point is outside if, at some level, two of its digits are 1. It is then in a
+/// prism between the borders of the two cells, which goes through the whole sponge along the third axis. With three such digits there are
+/// three prisms.
+///
+/// Returns which exit leaves the prism, and the cells above its borders; `None` in the sponge.
+fn sponge(k: &[i32; AXES], cells: i32, last: i32) -> Option<(Exit, [i32; AXES])> {
+    let mut cell = cells / 3;
+    while cell >= last {
+        let middle = [0, 1, 2, 3].map(|axis: usize| axis < 3 && k[axis] / cell % 3 == 1);
+        let exit = match middle.iter().filter(|&&is_middle| is_middle).count() {
+            3 => Some(Exit::Second),
+            2 => Some(Exit::First),
+            _ => None,
+        };
+        if let Some(exit) = exit {
+            let next = |axis: usize| match middle[axis] {
+                true => (k[axis] / cell + 1) * cell,
+                false => cells,
+            };
+            return Some((exit, [0, 1, 2, 3].map(next)));
+        }
+        cell /= 3;
+    }
+    None
+}

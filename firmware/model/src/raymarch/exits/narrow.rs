@@ -1,0 +1,108 @@
+//! Reductions of a number's width, each of which states its rounding; squares and roots.
+
+use glint_core::field::normalised_root;
+
+/// Returns x·2^−`bits`, rounded down. For negative `bits` the number is multiplied.
+pub(super) const fn floor(x: i64, bits: i32) -> i64 {
+    if bits < 0 {
+        x << -bits
+    } else if bits < 64 {
+        x >> bits
+    } else {
+        x >> 63
+    }
+}
+
+/// Returns x·2^−`bits`, rounded to nearest, halves up. For negative `bits` the number is multiplied.
+pub(super) const fn nearest(x: i64, bits: i32) -> i64 {
+    if bits <= 0 {
+        floor(x, bits)
+    } else {
+        (floor(x, bits - 1) + 1) >> 1
+    }
+}
+
+/// Returns the nearest number to x that fits `bits` bits and a sign.
+pub(super) const fn saturated(x: i64, bits: u32) -> i64 {
+    let most = (1 << bits) - 1;
+    if x > most {
+        most
+    } else if x < !most {
+        !most
+    } else {
+        x
+    }
+}
+
+/// Returns floor(x·2^`shift`), saturated to `bits` bits and a sign. The shift may be negative.
+pub(super) const fn shifted(x: i64, shift: i32, bits: u32) -> i64 {
+    let most = (1 << bits) - 1;
+    if shift <= 0 {
+        saturated(floor(x, -shift), bits)
+    } else if x > most >> shift {
+        most
+    } else if x < !most >> shift {
+        !most
+    } else {
+        x << shift
+    }
+}
+
+/// The square of x without the square of its lowest `cut` bits: the product of its other bits and of a number as long as x, so that only one
+/// factor is short.
+pub(super) const fn squared(x: i64, cut: u32) -> i64 {
+    let first = x >> cut << cut;
+    first * (2 * x - first)
+}
+
+/// A lower bound of the square root of x, too small by at most a relative 2^−18 and one unit.
+pub(super) fn root(x: i64) -> i64 {
+    if x <= 0 {
+        return 0;
+    }
+    // An even shift brings the number to the range from 2^32 to 2^34.
+    let shift = 32 - (x.ilog2() as i32 & !1);
+    let root = i64::from(normalised_root(shifted(x, shift, 34) as u64));
+    floor(root, 2 + shift / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_reduction_rounds_as_stated() {
+        assert_eq!([floor(-5, 1), floor(5, 1), floor(3, -2)], [-3, 2, 12]);
+        assert_eq!([nearest(-5, 1), nearest(5, 1), nearest(3, -2)], [-2, 3, 12]);
+        assert_eq!(
+            [saturated(8, 3), saturated(-9, 3), saturated(-8, 3)],
+            [7, -8, -8]
+        );
+        assert_eq!(
+            [shifted(1, 2, 3), shifted(2, 2, 3), shifted(-2, 2, 3)],
+            [4, 7, -8]
+        );
+        assert_eq!([shifted(-3, 2, 3), shifted(-17, -1, 3)], [-8, -8]);
+    }
+    #[test]
+    fn a_square_lacks_that_of_its_lowest_bits() {
+        for x in [-70_001_i64, -1, 0, 5, 123_457] {
+            for cut in [0, 3, 6] {
+                let low = x & ((1 << cut) - 1);
+                assert_eq!(squared(x, cut), x * x - low * low, "{x}, {cut}");
+            }
+        }
+    }
+
+    #[test]
+    fn roots_are_rounded_down() {
+        for x in (0..62).flat_map(|bits| [1_i64 << bits, (1 << bits) + (1 << bits) / 3]) {
+            let (found, exact) = (root(x), x.isqrt());
+            assert!(
+                found <= exact && exact - found <= 1 + (exact >> 18),
+                "{x}: {found}"
+            );
+        }
+        assert_eq!((root(0), root(-1)), (0, 0));
+    }
+}

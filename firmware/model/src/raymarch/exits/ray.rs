@@ -1,0 +1,127 @@
+//! The ray of a pixel, its points and its exits.
+
+use glint_core::field::magnitude;
+
+use super::intervals::{AXES, Prism};
+use super::narrow::{floor, squared};
+use super::setup::Exits;
+use super::words::Inverse;
+
+/// A ray before its first evaluation. Its axes are those of the solid: x, y and z, or the four diagonals of an octahedron.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Beam {
+    /// Number of the eye: 0 for the left or only eye, 1 for the right eye.
+    pub eye: usize,
+    /// Column of the pixel.
+    pub column: u32,
+    /// Row of the pixel.
+    pub row: u32,
+    /// Whether the ray leads down along an axis; the axis is then mirrored.
+    pub down: [bool; AXES],
+    /// Magnitude of the direction's component along each axis, u0.25: an odd number, the middle of the interval of the truncated
+    /// component.
+    pub speed: [u32; AXES],
+    /// Reciprocals of `speed`.
+    pub inverse: [Inverse; AXES],
+    /// The square of the direction's length, u2.36, rounded down.
+    pub square: i64,
+    /// The reciprocal of `square`.
+    pub inverse_square: Inverse,
+    /// Where the ray leaves the empty prism around the eye.
+    pub start: Way,
+    /// Whether the ray leads away from the flat solid.
+    pub is_away: bool,
+}
+
+/// A place on a ray's way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// The parameter T, u14 with the fraction bits of `Words::parameter`.
+    pub t: i64,
+    /// The axis of the last crossed border.
+    pub face: usize,
+    /// The intervals that the ray has reached; the lowest number along an axis without a crossed border.
+    pub reached: [i32; AXES],
+}
+
+impl Exits {
+    /// The ray of pixel (x, y) for an eye.
+    pub fn ray(&self, eye: usize, column: u32, row: u32) -> Beam {
+        // The direction D, s1.24, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
+        // component is therefore its complement.
+        let direction = self.direction(eye, column, row).map(|part| part >> 6);
+        let down = direction.map(|part| part < 0);
+        let speed = direction.map(|part| 2 * magnitude(part) + 1);
+        // The square is that of 23 bits, without the square of the lowest 6.
+        let [x, y, z, _] = speed.map(|speed| squared(i64::from(speed >> 2), 6));
+        let square = (x + y + z) >> 10;
+        // A quarter of the square is below 1.
+        let quarter = Inverse::of((square >> 13) as u32, &self.words);
+        let beam = Beam {
+            eye,
+            column,
+            row,
+            down,
+            speed,
+            inverse: speed.map(|speed| Inverse::of(speed, &self.words)),
+            square,
+            inverse_square: Inverse {
+                exponent: quarter.exponent - 2,
+                ..quarter
+            },
+            // The face of a ray that starts in the solid is perpendicular to the z axis.
+            start: Way {
+                t: self.near,
+                face: 2,
+                reached: [i32::MIN; AXES],
+            },
+            is_away: false,
+        };
+        let Some(start) = &self.eyes[eye].start else {
+            return beam;
+        };
+        let side = |axis: usize| usize::from(down[axis]);
+        let prism = Prism {
+            borders: [0, 1, 2, 3].map(|axis: usize| start.borders[side(axis)][axis]),
+            exit: start.exit,
+        };
+        Beam {
+            start: self.left(&beam, &beam.start, &prism),
+            is_away: (0..AXES).any(|axis| start.is_away[side(axis)][axis]),
+            ..beam
+        }
+    }
+
+    /// The place where a ray leaves a prism that contains `way`.
+    pub(super) fn left(&self, beam: &Beam, way: &Way, prism: &Prism) -> Way {
+        let corner = self.eyes[beam.eye].corner(&beam.down);
+        let exits = [0, 1, 2, 3].map(|axis: usize| {
+            let distance = prism.borders[axis]?.at - corner[axis];
+            Some(self.words.divided(distance, beam.inverse[axis]))
+        });
+        let face = prism.leaving(&exits);
+        let exit = exits[face].unwrap_or_default();
+        // All borders up to the exit have been crossed.
+        let reached = [0, 1, 2, 3].map(|axis: usize| match (prism.borders[axis], exits[axis]) {
+            (Some(border), Some(own)) if own <= exit => border.next,
+            _ => way.reached[axis],
+        });
+        Way {
+            t: way.t.max(exit),
+            face,
+            reached,
+        }
+    }
+
+    /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12, rounded down.
+    pub(super) fn point(&self, beam: &Beam, t: i64) -> [i64; AXES] {
+        let corner = self.eyes[beam.eye].corner(&beam.down);
+        let cut = 24 - self.words.direction;
+        let bits = (self.words.parameter + self.words.direction + 1) as i32 - 12;
+        [0, 1, 2, 3].map(|axis: usize| {
+            // The magnitude loses its lowest bits, and again stands for the middle of its interval.
+            let speed = i64::from((beam.speed[axis] >> 1 >> cut) << 1 | 1);
+            corner[axis] + floor(t * speed, bits)
+        })
+    }
+}

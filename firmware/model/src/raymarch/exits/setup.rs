@@ -1,0 +1,343 @@
+//! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
+
+use glint_core::camera::{Projection, View};
+use glint_core::field::{
+    FRACTION, Field, FixedSpheres, MAX_SPHERES, Placed, Primitive, Solid as Kind, cropped, units,
+};
+use glint_core::fixed::Q32_32;
+use glint_core::stereo::Stereo;
+
+use super::balls::Ball;
+use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
+use super::rectangle::Rectangle;
+use super::words::Words;
+use crate::error::{FIELD_HALF_WIDTH, RenderError, SIZES};
+use crate::raymarch::directions::Directions;
+
+/// Far limit, as an exponent of the depth in field units.
+const FAR: u32 = 11;
+
+/// Position of an eye, and direction of its first ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Eye {
+    /// Position in field units, s13.12.
+    pub origin: [i32; 3],
+    /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis.
+    pub corners: [[i64; AXES]; 2],
+    /// Direction D of the first pixel's ray along each axis, s2.30.
+    pub first: [i32; AXES],
+    /// The empty prism around the eye. `None` if the eye is not in an empty prism, or if it is on a border, so that the prism is not the
+    /// same for all rays.
+    pub start: Option<Start>,
+}
+
+/// The empty prism around an eye, which all rays leave first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// The exit at which a ray leaves the prism.
+    pub exit: Exit,
+    /// The borders along each axis, and along each mirrored axis.
+    pub borders: [[Option<Border>; AXES]; 2],
+    /// Whether a ray along the axis, or along the mirrored axis, leads away from the solid.
+    pub is_away: [[bool; AXES]; 2],
+}
+
+impl Eye {
+    /// The position from the solid's lower corner, with the axes mirrored that are `down`.
+    pub(super) fn corner(&self, down: &[bool; AXES]) -> [i64; AXES] {
+        [0, 1, 2, 3].map(|axis: usize| self.corners[usize::from(down[axis])][axis])
+    }
+}
+
+/// The constants of a frame of a field whose rays leave empty prisms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exits {
+    /// Word lengths.
+    pub words: Words,
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+    /// Field units per world unit.
+    pub scale: Q32_32,
+    /// Exponent e, 0 to 3: D is 2^−e times the direction whose component along the camera's forward axis n is 1.
+    pub exponent: u32,
+    /// The left and the right eye; equal without stereo.
+    pub eyes: [Eye; 2],
+    /// Change of D per pixel to the right and per pixel down, s2.30.
+    pub steps: [[i32; AXES]; 2],
+    /// Parameter of the near plane.
+    pub near: i64,
+    /// Largest parameter of a hit.
+    pub far: i64,
+    /// The flat solid or the lattice; `None` for a list of spheres alone.
+    pub solid: Option<Solid>,
+    /// The spheres of a list.
+    pub balls: [Ball; MAX_SPHERES],
+    /// Number of spheres of the list.
+    pub count: usize,
+}
+
+impl Exits {
+    /// Computes the constants for a field, a camera and one of the [`SIZES`]. A smooth union is drawn as a sharp one.
+    ///
+    /// # Errors
+    /// [`RenderError::Size`] for another size, [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too
+    /// narrow or too wide.
+    pub fn new(
+        field: &Field,
+        view: &View,
+        (width, height): (u32, u32),
+        stereo: Option<Stereo>,
+        words: Words,
+    ) -> Result<Self, RenderError> {
+        if !SIZES.contains(&(width, height)) {
+            return Err(RenderError::Size { width, height });
+        }
+        if view.projection() == Projection::Orthographic {
+            return Err(RenderError::Orthographic);
+        }
+        if !(FIELD_HALF_WIDTH[0]..=FIELD_HALF_WIDTH[1]).contains(&view.half_width()) {
+            return Err(RenderError::HalfWidth(view.half_width()));
+        }
+        let (solid, scale) = match field {
+            Field::Primitive(primitive) => placed(primitive),
+            Field::Union(union) => placed(union.flat()),
+        };
+        let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
+        let rays = Directions::new(&views, width, height, false);
+        let narrow = |direction: [i64; 3]| along(&solid, direction).map(|x| rays.narrow(x));
+        let steps = [narrow(rays.across), narrow(rays.down)];
+        let eyes = [0, 1].map(|i: usize| {
+            let origin = views[i].eye().map(|x| units(x, scale) as i32);
+            let origin = match solid.map(|solid| solid.rule) {
+                Some(Rule::Repeated { .. }) => origin.map(|x| cropped(x, PERIOD)),
+                _ => origin,
+            };
+            let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
+            let place = along(&solid, origin.map(i64::from));
+            let corners =
+                [1, -1].map(|sign| [0, 1, 2, 3].map(|i: usize| half[i] + sign * place[i]));
+            Eye {
+                origin,
+                corners,
+                first: first(&rays, i, [width / 2, height / 2], &steps, narrow),
+                start: solid.and_then(|solid| Start::new(&solid, &corners)),
+            }
+        });
+        let near = units(
+            Q32_32::from_bits(i64::from(view.near().to_bits()) << 4),
+            scale,
+        );
+        let fraction = words.parameter;
+        let mut exits = Self {
+            words,
+            width,
+            height,
+            scale,
+            exponent: rays.exponent,
+            eyes,
+            steps,
+            near: (near << rays.exponent << fraction) >> FRACTION,
+            // A saturated parameter is beyond the far limit.
+            far: (1 << (FAR + rays.exponent + fraction)) - 2,
+            solid,
+            balls: [Ball::default(); MAX_SPHERES],
+            count: 0,
+        };
+        exits.place_spheres(field, &views);
+        Ok(exits)
+    }
+
+    /// The direction D of pixel (x, y) along each axis, s2.30.
+    pub(super) fn direction(&self, eye: usize, column: u32, row: u32) -> [i32; AXES] {
+        [0, 1, 2, 3].map(|axis: usize| {
+            let across = self.steps[0][axis].wrapping_mul(column as i32);
+            let down = self.steps[1][axis].wrapping_mul(row as i32);
+            self.eyes[eye].first[axis]
+                .wrapping_add(across)
+                .wrapping_add(down)
+        })
+    }
+
+    /// Computes the constants of the spheres of a field. `views` are the cameras of the two eyes.
+    fn place_spheres(&mut self, field: &Field, views: &[View; 2]) {
+        let round = match field {
+            Field::Primitive(primitive) => primitive,
+            Field::Union(union) => union.round(),
+        };
+        let Placed {
+            solid:
+                Kind::Spheres(FixedSpheres {
+                    list,
+                    count,
+                    repeated: false,
+                }),
+            scale,
+            ..
+        } = round.placed()
+        else {
+            return;
+        };
+        // Scaled as the flat member of a union. Scales have four fraction bits.
+        let own = self.scale;
+        let [to, from] = [own, scale].map(|scale| scale.to_bits() >> 28);
+        let rescaled = |x: i32| (2 * i64::from(x) * to + from).div_euclid(2 * from) as i32;
+        self.count = count;
+        for (ball, sphere) in self.balls.iter_mut().zip(&list[..count]) {
+            ball.centre = sphere.centre.map(rescaled);
+            ball.radius = rescaled(sphere.radius);
+        }
+        let size = [self.width, self.height];
+        self.see_spheres(|ball, eye| {
+            Rectangle::around(ball.centre, ball.radius, &views[eye], own, size)
+        });
+    }
+
+    /// Replaces the rays of all pixels by one ray with the direction D, s2.30.
+    pub fn aim(&mut self, direction: [i32; 3]) {
+        self.steps = Default::default();
+        let direction = along(&self.solid, direction.map(i64::from)).map(|part| part as i32);
+        for eye in &mut self.eyes {
+            eye.first = direction;
+        }
+        let size = [self.width, self.height];
+        self.see_spheres(|_, _| Rectangle::all(size));
+    }
+
+    /// Computes the constants of the spheres for each eye.
+    fn see_spheres(&mut self, rectangle: impl Fn(&Ball, usize) -> Rectangle) {
+        let world = |[x, y, z, _]: [i32; AXES]| [x, y, z];
+        let [across, down] = self.steps.map(world);
+        for ball in &mut self.balls[..self.count] {
+            ball.sights = [0, 1].map(|eye: usize| {
+                let Eye { origin, first, .. } = self.eyes[eye];
+                ball.seen_from(origin, [world(first), across, down], rectangle(ball, eye))
+            });
+        }
+    }
+
+    /// Depth along the camera's forward axis n at the parameter `t`, in field units times 2^e, u19.21.
+    pub fn depth_of(&self, t: i64) -> u64 {
+        (t as u64) << (21 - self.words.parameter)
+    }
+}
+
+impl Start {
+    /// The empty prism around an eye at `corners`, if it is the same for all rays that do not lead away from the solid: for each of the
+    /// ways to mirror the axes, the borders along an axis depend only on this axis.
+    fn new(solid: &Solid, corners: &[[i64; AXES]; 2]) -> Option<Self> {
+        let intervals = corners.map(|corner| solid.intervals(&corner, &[i32::MIN; AXES]));
+        let is_away = intervals
+            .map(|sides| [0, 1, 2, 3].map(|axis: usize| solid.is_above(axis, sides[axis])));
+        let mut exit = None;
+        let mut borders = [[None; AXES]; 2];
+        for down in 0..1_usize << AXES {
+            let side = |axis: usize| down >> axis & 1;
+            if (0..AXES).any(|axis| is_away[side(axis)][axis]) {
+                continue;
+            }
+            let place = solid.place(&[0, 1, 2, 3].map(|axis: usize| intervals[side(axis)][axis]));
+            let Place::Empty(prism) = place else {
+                return None;
+            };
+            let mut is_same = *exit.get_or_insert(prism.exit) == prism.exit;
+            for axis in 0..AXES {
+                let border = prism.borders[axis];
+                is_same &= *borders[side(axis)][axis].get_or_insert(border) == border;
+            }
+            if !is_same {
+                return None;
+            }
+        }
+        Some(Self {
+            exit: exit?,
+            borders: borders.map(|side| side.map(Option::flatten)),
+            is_away,
+        })
+    }
+}
+
+/// The direction of the first pixel's ray, such that the ray of the pixel `middle` has the nearest direction: rounding of the steps changes
+/// the direction by more, the farther a pixel is from this one.
+fn first(
+    rays: &Directions,
+    eye: usize,
+    middle: [u32; 2],
+    steps: &[[i32; AXES]; 2],
+    narrow: impl Fn([i64; 3]) -> [i32; AXES],
+) -> [i32; AXES] {
+    let [column, row] = middle.map(i64::from);
+    let there = narrow(
+        [0, 1, 2].map(|i: usize| rays.first[eye][i] + column * rays.across[i] + row * rays.down[i]),
+    );
+    [0, 1, 2, 3].map(|axis: usize| {
+        let [across, down] = steps.map(|step| step[axis]);
+        there[axis]
+            .wrapping_sub(across.wrapping_mul(middle[0] as i32))
+            .wrapping_sub(down.wrapping_mul(middle[1] as i32))
+    })
+}
+
+/// A vector along the axes of a solid. Those of an octahedron are a quarter of its diagonals, so that no component exceeds the range of
+/// the vector's own; other solids have no fourth axis.
+fn along(solid: &Option<Solid>, [x, y, z]: [i64; 3]) -> [i64; AXES] {
+    match solid.map(|solid| solid.rule) {
+        Some(Rule::Octahedron) => {
+            [-x + y + z, x - y + z, x + y - z, x + y + z].map(|sum| (sum + 2) >> 2)
+        }
+        _ => [x, y, z, 0],
+    }
+}
+
+/// The solid of a field that has no list of spheres, and the field units per world unit.
+fn placed(primitive: &Primitive) -> (Option<Solid>, Q32_32) {
+    let world = primitive.placed();
+    let constants = match &world.solid {
+        Kind::Flat(flat) => Some(flat.constants()),
+        Kind::Spheres(_) => None,
+    };
+    let side = |half: [u32; 3]| {
+        let [x, y, z] = half.map(|half| 2 * i64::from(half));
+        [x, y, z, 0]
+    };
+    let (rule, side, scale) = match (primitive, constants) {
+        (Primitive::Menger(sponge), _) => {
+            // The side of the smallest cells is a power of two: a field unit, or an eighth of one in a sponge of more than four levels.
+            let (cells, exponent, scale) = match sponge.depth {
+                ..=4 => (81, FRACTION, Q32_32::lit("40.5")),
+                _ => (729, FRACTION - 3, Q32_32::lit("45.5625")),
+            };
+            let rule = Rule::Sponge {
+                cells,
+                last: cells / 3_i32.pow(sponge.depth.into()),
+                exponent,
+            };
+            (rule, [i64::from(cells) << exponent; AXES], scale)
+        }
+        (Primitive::Octahedron(octahedron), _) => {
+            let scale = Q32_32::lit("81");
+            // A quarter of the sum of three coordinates is at most a quarter of the size.
+            let quarter = (units(octahedron.size, scale) + 2) >> 2;
+            (Rule::Octahedron, [2 * quarter; AXES], scale)
+        }
+        (_, Some(flat)) => {
+            let rule = match flat {
+                _ if flat.room => Rule::Planes,
+                _ if flat.repeated => Rule::Repeated { round: false },
+                _ => Rule::Box,
+            };
+            (rule, side(flat.half), world.scale)
+        }
+        (Primitive::Lattice(lattice), _) => {
+            let radius = units(lattice.radius, world.scale) as u32;
+            (
+                Rule::Repeated { round: true },
+                side([radius; 3]),
+                world.scale,
+            )
+        }
+        _ => return (None, world.scale),
+    };
+    (Some(Solid { rule, side }), scale)
+}

@@ -1,0 +1,149 @@
+//! Word lengths, and reciprocals of a direction's components.
+
+use glint_core::field::FRACTION;
+
+use super::narrow::{nearest, shifted};
+
+/// Integer bits of the parameter T: depths up to 2^11 field units, times 2^e with e at most 3.
+const PARAMETER_INTEGER: u32 = 14;
+
+/// Word lengths of rays by exits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// Fraction bits of the magnitude of a direction's component in the product T·D, 8 to 24.
+    pub direction: u32,
+    /// Fraction bits of the mantissa of a reciprocal, 8 to 24; up to 22 with the errors of the gateware's table.
+    pub inverse: u32,
+    /// Fraction bits of the parameter T, 8 to 16.
+    pub parameter: u32,
+    /// Fraction bits of q×D/r, for a sphere of a list with the radius r at q from the eye, 12 to 20.
+    pub cross: u32,
+    /// Fraction bits of q·D, for a sphere of a lattice at q from the ray's point, 8 to 20.
+    pub along: u32,
+}
+
+impl Words {
+    /// The word lengths of the gateware (docs/raymarch-exits.md).
+    pub const CHOSEN: Self = Self {
+        direction: 23,
+        inverse: 18,
+        parameter: 14,
+        cross: 20,
+        along: 14,
+    };
+
+    /// The parameter of a ray at a distance along an axis: the distance, s13.12, divided by the direction's component. Rounded down,
+    /// saturated.
+    pub(super) const fn divided(&self, distance: i64, inverse: Inverse) -> i64 {
+        let Inverse { mantissa, exponent } = inverse;
+        let bits = exponent + self.parameter as i32 - FRACTION as i32 - self.inverse as i32;
+        shifted(
+            distance * mantissa as i64,
+            bits,
+            PARAMETER_INTEGER + self.parameter,
+        )
+    }
+}
+
+/// The reciprocal of a number.
+///
+/// The range of mantissas is about 1, so that a product with one is the other factor plus its product with a signed number below 1/2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Inverse {
+    /// The mantissa, from 3/4 to 3/2, with the fraction bits of [`Words::inverse`].
+    pub mantissa: u32,
+    /// The exponent of 2 by which the mantissa is multiplied.
+    pub exponent: i32,
+}
+
+impl Inverse {
+    /// The reciprocal of x, u0.25. An x of 0 counts as 2^−25.
+    pub const fn of(x: u32, words: &Words) -> Self {
+        let x = x | (x == 0) as u32;
+        let lead = 24 - x.ilog2();
+        // 2^24/x for an x from 2^24 to 2^25: from 1/2 to 1, 32 fraction bits.
+        let exact = words.inverse > TABLE_BITS;
+        let value = if exact {
+            (1 << 56) / ((x as u64) << lead)
+        } else {
+            (interpolated(x << lead) as u64) << (32 - ENTRY)
+        };
+        let is_low = value < 3 << 30;
+        let value = value << is_low as u32;
+        Self {
+            mantissa: nearest(value as i64, 32 - words.inverse as i32) as u32,
+            exponent: lead as i32 + !is_low as i32,
+        }
+    }
+}
+
+/// Longest fraction of a mantissa from [`TABLE`]; longer ones are divided exactly.
+const TABLE_BITS: u32 = 22;
+
+/// Bits of an index of [`TABLE`], and of the rest of a number after its first one and its index.
+const INDEX: u32 = 10;
+const REST: u32 = 24 - INDEX;
+/// Fraction bits of the entries of [`TABLE`].
+const ENTRY: u32 = 24;
+
+/// 1/(1 + i/2^10) to nearest, u1.24, and its decrease to the next entry.
+const TABLE: [(u32, u32); 1 << INDEX] = {
+    let mut table = [(0, 0); 1 << INDEX];
+    let mut i = 0;
+    while i < table.len() {
+        let entry = point(i as u64);
+        table[i] = (entry, entry - point(i as u64 + 1));
+        i += 1;
+    }
+    table
+};
+
+const fn point(i: u64) -> u32 {
+    let divisor = (1 << INDEX) + i;
+    let dividend = 1 << (ENTRY + INDEX);
+    ((dividend + divisor / 2) / divisor) as u32
+}
+
+/// 2^24/x for x in [2^24, 2^25), interpolated linearly: u1.24, above the exact quotient by at most 2^−22.
+const fn interpolated(x: u32) -> u32 {
+    let (entry, decrease) = TABLE[(x >> REST & ((1 << INDEX) - 1)) as usize];
+    let rest = x & ((1 << REST) - 1);
+    entry - ((decrease * rest) >> REST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interpolated_reciprocals_are_slightly_too_large() {
+        for x in (1 << 24..1 << 25).step_by(37) {
+            let error = f64::from(interpolated(x))
+                - f64::from(1_u32 << 24) / f64::from(x) * f64::from(1 << ENTRY);
+            assert!((-1.0..6.0).contains(&error), "{x}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_reciprocal_times_its_number_is_one() {
+        for inverse in [18, 22, 24] {
+            let words = Words {
+                inverse,
+                ..Words::CHOSEN
+            };
+            let numbers = [1, 3, 1 << 24, (1 << 25) - 1, 12_345_677, 25_165_824];
+            for x in numbers.into_iter().chain((1..1 << 25).step_by(10_007)) {
+                let Inverse { mantissa, exponent } = Inverse::of(x, &words);
+                let found = f64::from(mantissa) * f64::from(exponent - inverse as i32 - 25).exp2();
+                let error = (f64::from(x) * found - 1.0).abs();
+                // Half a unit of a mantissa of at least 3/4, and the table's error.
+                let limit = f64::from(-(inverse as i32)).exp2() / 1.5 + 3e-7;
+                assert!(error < limit, "{x}: {error}");
+                assert!(
+                    (3 << inverse..=6 << inverse).contains(&(4 * mantissa)),
+                    "{x}"
+                );
+            }
+        }
+    }
+}
