@@ -5,7 +5,7 @@ from litedram.phy.s7ddrphy import A7DDRPHY
 from litex.gen import LiteXModule
 from litex.soc.cores.clock import S7IDELAYCTRL, S7MMCM, S7PLL
 from litex.soc.cores.video import VideoS7HDMIPHY
-from migen import ClockDomain, Constant, Signal
+from migen import ClockDomain, Constant, Instance, Signal
 
 from .gesture import PIXEL_CLOCK
 from .scanout import VIDEO_LAYOUT
@@ -53,7 +53,10 @@ class CRG(LiteXModule):
 
         # # #
 
-        clk100 = platform.request("clk100")
+        # A clock region has one MMCM, and the pin reaches only the MMCM and the PLL of its own region directly: a second MMCM on the pin
+        # is Vivado's error [Place 30-575]. A global buffer reaches those of all regions.
+        clk100 = Signal()
+        self.specials += Instance("BUFG", i_I=platform.request("clk100"), o_O=clk100)
 
         self.sys_mmcm = sys_mmcm = S7MMCM(speedgrade=_SPEED_GRADE)
         self.comb += sys_mmcm.reset.eq(self.rst)

@@ -1,8 +1,12 @@
-"""The RealDigital Urbana (XC7S50-1CSGA324): pins and programming."""
+"""The RealDigital Urbana (XC7S50-1CSGA324): pins, the Vivado script, and programming."""
+
+import shutil
+from pathlib import Path
 
 from litex.build.generic_platform import IOStandard, Misc, Pins, Subsignal
 from litex.build.openfpgaloader import OpenFPGALoader
 from litex.build.xilinx import Xilinx7SeriesPlatform
+from litex.build.xilinx.vivado import XilinxVivadoToolchain
 
 CONTROL_PIN_LOADS = 5
 """Least number of flip-flops that an enable or a synchronous reset controls by their pins. For fewer, the synthesis puts it into
@@ -90,12 +94,58 @@ _io = [
         Misc("SLEW=FAST")),
 ]
 
+SOURCES = "sources"
+"""Folder beside the script with copies of the source files."""
+
+VIVADO = "2020.1"
+"""Oldest version of Vivado that the script accepts. No version has been tried."""
+
+# Commands before and after the build, with `build_name` as a field. An old bitstream is deleted, so that a failed build leaves none. The
+# text is that of the report when setup, hold and pulse widths of all clocks are met; `get_timing_paths` would miss the pulse widths.
+_CHECK_VERSION = f"""set vivado [version -short]
+regexp {{{{^\\d+\\.\\d+}}}} $vivado release
+if {{{{[package vcompare $release {VIVADO}] < 0}}}} {{{{
+    puts stderr "glint_urbana: Vivado $vivado: expected {VIVADO} or newer"
+    exit 1
+}}}}
+file delete -force {{build_name}}.bit"""
+_CHECK_TIMING = """if {{[string first "All user specified timing constraints are met" [report_timing_summary -no_detailed_paths -return_string]] < 0}} {{
+    puts stderr "{build_name}: Vivado $vivado does not meet the timing, see {build_name}_timing.rpt: no bitstream is written"
+    exit 1
+}}"""
+
+
+class _Toolchain(XilinxVivadoToolchain):
+    """Writes a script whose folder may be moved to another computer, and which writes a bitstream only if the timing is met."""
+
+    def __init__(self):
+        XilinxVivadoToolchain.__init__(self)
+        self.project_commands.append(_CHECK_VERSION)
+        self.bitstream_commands.append(_CHECK_TIMING)
+
+    def build_project(self):
+        # The working folder is that of the script.
+        shutil.rmtree(SOURCES, ignore_errors=True)
+        Path(SOURCES).mkdir()
+        sources = []
+        for filename, *kind in self.platform.sources:
+            path = Path(filename)
+            if path.parent != Path.cwd():
+                copy = Path(SOURCES) / path.name
+                if copy.exists():
+                    raise ValueError(f"{path}: expected sources of different names, found another {path.name}")
+                path = shutil.copyfile(path, copy)
+            sources.append((path.name if path.parent == Path.cwd() else str(path), *kind))
+        self.platform.sources = sources
+        XilinxVivadoToolchain.build_project(self)
+
 
 class Platform(Xilinx7SeriesPlatform):
     """Writes Verilog, constraints and a script for Vivado."""
 
     def __init__(self):
         Xilinx7SeriesPlatform.__init__(self, "xc7s50csga324-1", _io, toolchain="vivado", name="glint_urbana")
+        self.toolchain = _Toolchain()
         for setting in (
             "CFGBVS VCCO",
             "CONFIG_VOLTAGE 3.3",

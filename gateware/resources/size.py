@@ -157,7 +157,7 @@ def synthesis_sources(folder):
     # LiteX ties the unused outputs of its serializers to 0, which Vivado accepts and Yosys does not.
     open_outputs = folder / "open_outputs.v"
     open_outputs.write_text(re.sub(r"(\.SHIFTOUT\d +)\(1'd0\)", r"\1()", verilog.read_text()))
-    sources = [open_outputs if source.endswith(f"/{verilog.name}") else source
+    sources = [open_outputs if source == verilog.name else source
                for source in re.findall(r"^read_verilog (?:-v )?\{(.+)\}$", script.read_text(), re.M)]
     if open_outputs not in sources:
         raise ToolError(f"{script} does not read {verilog.name}")

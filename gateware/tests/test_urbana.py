@@ -2,6 +2,8 @@
 
 import math
 import re
+import shutil
+import tkinter
 from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,6 +14,7 @@ from litex.soc.integration.builder import Builder
 from glint_soc import register_map
 from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.urbana import UrbanaSoC
+from glint_soc.urbana_platform import SOURCES, VIVADO
 from glint_soc.virtual import VirtualSoC
 
 import boards
@@ -73,6 +76,90 @@ def test_constraints(board):
     words = ("-part xc7s50csga324-1", "scanout.sv", "read_xdc glint_urbana.xdc", "write_bitstream",
              "synth_design -directive default -control_set_opt_threshold 4 ")
     assert [word for word in words if word not in board.tcl] == []
+
+
+# The commands of Vivado that the script calls, as procedures that record their words in `calls`. Each reads its files from the script's
+# folder. `$version` is Vivado's version, `$timing` the text of the timing report.
+_VIVADO = """set calls {}
+proc version {option} {return $::version}
+proc report_timing_summary {args} {if {"-return_string" in $args} {return $::timing}}
+proc read_verilog {args} {lappend ::calls "read [lindex $args end]"; close [open [lindex $args end]]}
+proc read_xdc {path} {close [open $path]}
+proc write_bitstream {args} {lappend ::calls write_bitstream; close [open [lindex $args end] w]}
+proc puts {args} {lappend ::calls "says [lindex $args end]"}
+proc exit {status} {lappend ::calls "exit $status"; error exited}
+proc quit {} {}
+proc unknown {args} {}
+"""
+
+
+def _run_script(folder, version, timing):
+    """Runs the Vivado script in `folder` with procedures in place of Vivado's commands. Returns the calls in `_VIVADO`."""
+    interpreter = tkinter.Tcl()
+    interpreter.setvar("version", version)
+    interpreter.setvar("timing", timing)
+    interpreter.eval(_VIVADO)
+    try:
+        interpreter.eval(f"cd {{{folder}}}; source glint_urbana.tcl")
+    except tkinter.TclError as error:
+        assert str(error) == "exited"
+    return interpreter.splitlist(interpreter.getvar("calls"))
+
+
+_MET, _MISSED = "...\nAll user specified timing constraints are met.\n", "...\nTiming constraints are not met.\n"
+
+
+@pytest.mark.usefixtures("board")
+def test_script_in_another_folder(tmp_path, monkeypatch):
+    """Checks that a copy of the folder has all that the script reads, and that the script writes a bitstream if the timing is met."""
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "moved"
+    shutil.copytree(_GATEWARE, folder)
+    calls = _run_script(folder, VIVADO, _MET)
+    read = [call.removeprefix("read ") for call in calls if call.startswith("read ")]
+    assert "glint_urbana.v" in read and f"{SOURCES}/scanout.sv" in read
+    assert [path for path in read if Path(path).is_absolute()] == []
+    for text in (folder / name for name in ("glint_urbana.tcl", "glint_urbana.v", "glint_urbana.xdc")):
+        assert str(_GATEWARE.parents[2]) not in text.read_text(), text.name
+    assert calls[-1] == "write_bitstream"
+    assert (folder / "glint_urbana.bit").exists()
+
+
+@pytest.mark.parametrize("version, timing, message", [
+    ("2024.2", _MISSED, "glint_urbana: Vivado 2024.2 does not meet the timing, see glint_urbana_timing.rpt: no bitstream is written"),
+    ("2019.2.1", _MET, f"glint_urbana: Vivado 2019.2.1: expected {VIVADO} or newer"),
+])
+@pytest.mark.usefixtures("board")
+def test_script_fails_without_a_bitstream(tmp_path, monkeypatch, version, timing, message):
+    """Checks that the script fails with a message and leaves no bitstream if the timing is not met, or for an old Vivado."""
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "built"
+    shutil.copytree(_GATEWARE, folder)
+    if timing == _MISSED:
+        # An earlier build has left a bitstream.
+        (folder / "glint_urbana.bit").touch()
+    calls = _run_script(folder, version, timing)
+    assert calls[-2:] == (f"says {message}", "exit 1")
+    assert "write_bitstream" not in calls
+    assert not (folder / "glint_urbana.bit").exists()
+
+
+def test_clock_pin(board):
+    """Checks that the clock pin reaches the MMCMs and the PLL, which are not all in its clock region, through a global buffer."""
+    wires = dict(re.findall(r"^assign (\w+) = (\w+);$", board.v, re.M))
+    instances = re.findall(r"^(\w+) (?:#\(.*?^\) )?\w+\s*\((.*?)^\);", board.v, re.M | re.S)
+    pins = [(kind, {pin: _source(wires, net) for pin, net in re.findall(r"\.(\w+)\s*\((\w+)\)", text)}) for kind, text in instances]
+    buffered = [pins["O"] for kind, pins in pins if kind == "BUFG" and pins["I"] == "clk100"]
+    inputs = [pins["CLKIN1"] for kind, pins in pins if kind in ("MMCME2_ADV", "PLLE2_ADV")]
+    assert len(buffered) == 1
+    assert inputs == 3 * buffered
+
+
+def _source(wires, net):
+    """Returns the net that drives `net` through assignments."""
+    while net in wires:
+        net = wires[net]
+    return net
 
 
 def test_clocks(board, megahertz=81.25):
