@@ -5,7 +5,7 @@ use core::fmt::{self, Display};
 use glint_core::block::Block;
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
-use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD};
+use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD, WIREFRAME};
 use glint_core::flash::FlashError;
 use glint_core::gesture::ColourError;
 use glint_core::mesh::MeshError;
@@ -110,7 +110,7 @@ pub enum CommandError<'l> {
     },
     /// A transfer failed.
     Transfer(Failure),
-    /// The upload is not a mesh.
+    /// The upload is not a mesh, or one of too many triangles.
     Mesh(MeshError),
     /// The upload is not a wireframe program.
     Program(ProgramError<'static>),
@@ -289,8 +289,8 @@ impl Display for CommandError<'_> {
                 "unload `{name}`: the mesh of object {number}, expected `object remove {number}` first"
             ),
             Self::Transfer(error) => error.fmt(f),
-            Self::Mesh(error) => UPLOAD.when_built(|| write!(f, "load: not a mesh, previous meshes kept: {error}")),
-            Self::Program(error) => UPLOAD.when_built(|| write!(f, "program: previous scene kept: {error}")),
+            Self::Mesh(error) => UPLOAD.when_built(|| write!(f, "load: mesh refused, previous meshes kept: {error}")),
+            Self::Program(error) => WIREFRAME.when_built(|| write!(f, "program: previous scene kept: {error}")),
             Self::NoWireframe => f.write_str(
                 "press: no wireframe shown, expected `program` first",
             ),

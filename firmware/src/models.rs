@@ -50,11 +50,13 @@ pub struct Models {
     /// its name takes a thousand clock cycles.
     shown: Mesh<'static>,
     revision: u32,
+    /// Largest number of triangles of an uploaded mesh.
+    most_triangles: u32,
 }
 
 impl Models {
     /// Makes the initial models. `shapes` is memory for the built-in meshes, `turned` is memory for copies of meshes with transformed
-    /// normals, and `cube_program` is the built-in wireframe program.
+    /// normals, `cube_program` is the built-in wireframe program, and `most_triangles` the largest number of triangles of an uploaded mesh.
     ///
     /// # Errors
     /// [`MeshError`] for a damaged cube.
@@ -63,6 +65,7 @@ impl Models {
         shapes: &'static mut [u8],
         turned: Arena,
         cube_program: Program<'static>,
+        most_triangles: u32,
     ) -> Result<Self, MeshError> {
         let shapes = Shapes::new(shapes)?;
         Ok(Self {
@@ -74,7 +77,13 @@ impl Models {
             cube_program,
             objects: Objects::new(turned),
             revision: 0,
+            most_triangles,
         })
+    }
+
+    /// Largest number of triangles of an uploaded mesh.
+    pub const fn most_triangles(&self) -> u32 {
+        self.most_triangles
     }
 
     /// A number that changes with each change of the uploads.
@@ -197,11 +206,12 @@ impl Models {
     /// progress.
     ///
     /// # Errors
-    /// [`MeshError`] for an invalid mesh; then nothing changes, and the memory is given back.
+    /// [`MeshError`] for an invalid mesh, or one of too many triangles; then nothing changes, and the memory is given back.
     pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), MeshError> {
         let length = loan.as_ref().len();
         let region = self.arena.keep_lent(loan);
-        let mesh = match Mesh::new_checked(self.lasting(region, length)) {
+        let mesh = Mesh::new_checked(self.lasting(region, length));
+        let mesh = match mesh.and_then(|mesh| mesh.with_at_most(self.most_triangles)) {
             Ok(mesh) => mesh,
             Err(error) => {
                 self.arena.release(region);

@@ -177,14 +177,22 @@ pub fn machine() -> Result<Machine, StartError> {
     };
 
     let program = Program::new_checked(CUBE.as_flattened());
+    // Without gateware that draws meshes the soft core draws them, whatever their size.
+    let most_triangles = (gateware.as_ref()).map_or(u32::MAX, GatewareRenderer::most_triangles);
     let program = program.map_err(StartError::Program)?;
 
     let mut machine = Machine::new(
         identity,
         clock,
         Scene::new(backend).map_err(StartError::Camera)?,
-        Models::new(memory.uploads, memory.shapes, memory.turned, program)
-            .map_err(StartError::Cube)?,
+        Models::new(
+            memory.uploads,
+            memory.shapes,
+            memory.turned,
+            program,
+            most_triangles,
+        )
+        .map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,

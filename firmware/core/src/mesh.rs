@@ -151,6 +151,20 @@ impl<'a> Mesh<'a> {
         })
     }
 
+    /// The mesh, if it has at most `limit` triangles.
+    ///
+    /// # Errors
+    /// The mesh has more triangles.
+    pub fn with_at_most(self, limit: u32) -> Result<Self, MeshError> {
+        expect(
+            start(MeshHeader::TRIANGLES),
+            Expected::AtMost("triangles, which this board can draw", limit),
+            self.triangles,
+            self.triangles <= limit,
+        )?;
+        Ok(self)
+    }
+
     /// All bytes of the mesh, including its header.
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes

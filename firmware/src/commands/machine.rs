@@ -53,7 +53,8 @@ impl<'l> MachineCommands<'l> for Machine {
             EMULATED => "emulated",
             _ => "gateware",
         };
-        let entries: [(&str, fmt::Arguments); 20] = [
+        let most = models.most_triangles();
+        let entries: [(&str, fmt::Arguments); 21] = [
             ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
             ("firmware_id", format_args!("{:#010x}", identity.firmware)),
             ("gateware_id", format_args!("{:#010x}", identity.gateware)),
@@ -70,6 +71,7 @@ impl<'l> MachineCommands<'l> for Machine {
             ("frame", format_args!("{:#010x}", frame.addr())),
             ("depth", format_args!("{:#010x}", depth.addr())),
             ("staging", format_args!("{address:#010x} {room}")),
+            ("mesh_triangles", format_args!("{most}")),
             ("video_frames", format_args!("{}", counters.frame_count)),
             (
                 "video_underflows",

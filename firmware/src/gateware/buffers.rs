@@ -100,11 +100,16 @@ impl Buffers {
         self.list_shifts[size as usize]
     }
 
+    /// Number of descriptors that fit a set, on gateware whose best shading is `capability`.
+    pub const fn descriptor_limit(&self, capability: Shading) -> u32 {
+        (self.descriptors.len() / descriptor::words(capability)) as u32
+    }
+
     /// The memory for the output of geometry passes, for a picture of this size, on gateware whose best shading is `capability`.
     pub fn lists(&self, capability: Shading, size: Size) -> Lists {
         Lists {
             descriptors: address(self.descriptors),
-            descriptor_limit: (self.descriptors.len() / descriptor::words(capability)) as u32,
+            descriptor_limit: self.descriptor_limit(capability),
             lists: address(self.lists),
             list_shift: self.list_shift(size),
             exceptions: address(self.exceptions),

@@ -129,6 +129,12 @@ impl GatewareRenderer {
         })
     }
 
+    /// Largest number of triangles of a mesh: twice the descriptors of a frame, because a closed mesh hides half of its triangles.
+    pub fn most_triangles(&self) -> u32 {
+        let [buffers, _] = &self.buffers;
+        2 * buffers.descriptor_limit(self.shading)
+    }
+
     /// The subjects that the gateware draws, as a list for the console. The CPU draws all other subjects.
     pub const fn subjects(&self) -> &'static str {
         match (

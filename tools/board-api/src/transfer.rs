@@ -2,6 +2,7 @@
 
 use crate::console::{self, Console, ConsoleError};
 use crate::line::{Board, BoardError};
+use glint_core::mesh::MeshHeader;
 use glint_core::wire::{
     Endpoint, Failure, MAX_FRAME, Manifest, Receiver, Role, Sender, State, Timing,
 };
@@ -21,6 +22,14 @@ pub enum TransferError {
     /// The transfer failed after this program had been stopped, as by the suspension of a laptop.
     #[error("{0}, after this program had been stopped")]
     Stopped(Failure),
+    /// The mesh has more triangles than the board can draw.
+    #[error("mesh of {found} triangles: expected at most {most}, which this board can draw")]
+    Triangles {
+        /// Number of triangles of the mesh.
+        found: u32,
+        /// Largest number of triangles, from the board.
+        most: u32,
+    },
     /// A transfer through memory on a board that offers no direct access to its memory.
     #[error(
         "memory transfer: expected the emulated or the virtual board, found a board with a serial line only"
@@ -40,10 +49,14 @@ const MAX_STEP_MS: u64 = 500;
 /// Maximum number of attempts at a transfer. A transfer is repeated only if it failed after this program had been stopped.
 const ATTEMPTS: u32 = 5;
 
-/// Uploads a mesh under a name, by default `model`, and draws it.
+/// Number of triangles that a mesh may have on every board.
+const ANY_BOARD: u32 = 1 << 15;
+
+/// Uploads a mesh under a name, by default `model`, and draws it. A mesh of more triangles than the board draws is refused before its
+/// transfer, which may take minutes.
 ///
 /// # Errors
-/// The transfer fails or the firmware refuses the mesh; the board then still shows its last frame.
+/// The mesh has too many triangles, the transfer fails or the firmware refuses the mesh; the board then still shows its last frame.
 pub fn upload<B: Board + ?Sized>(
     console: &mut Console<B>,
     mesh: &[u8],
@@ -51,6 +64,17 @@ pub fn upload<B: Board + ?Sized>(
     session: u8,
     progress: &mut Progress,
 ) -> Result<(), TransferError> {
+    let found = mesh
+        .first_chunk()
+        .map_or(0, |header| MeshHeader::from_bytes(header).triangles);
+    if found > ANY_BOARD {
+        let most = console.info("mesh_triangles")?;
+        if let Ok(most) = most.parse()
+            && found > most
+        {
+            return Err(TransferError::Triangles { found, most });
+        }
+    }
     let mut command = command_for("load", mesh);
     if let Some(name) = name {
         command = format!("{command} {name}");

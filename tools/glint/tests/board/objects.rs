@@ -62,7 +62,7 @@ fn meshes_have_names_and_share_the_memory() {
     let last = damaged.len() - 1;
     damaged[last] ^= 1;
     let refused = transfer::upload(&mut console, &damaged, Some("d"), 4, quiet).unwrap_err();
-    assert!(refused.to_string().contains("not a mesh"), "{refused}");
+    assert!(refused.to_string().contains("mesh refused"), "{refused}");
     assert_eq!(list(&mut console), all);
 
     console.command("object add c scale 0.5").unwrap();

@@ -1,10 +1,11 @@
 //! Uploads of meshes over a faulty line, and uploads of invalid meshes.
 
-use crate::common::{address, console, emulator, info, mesh, read, running_board};
+use crate::common::{address, console, emulator, info, mesh, read, renderer, running_board};
 use glint::board::{Board, BoardError};
 use glint::console::{Console, ConsoleError};
 use glint::fuzz::Random;
 use glint::transfer::{self, TransferError};
+use glint_core::mesh::{IndexedTriangle, Vertex, encode};
 use glint_core::wire::{Failure, Manifest, Reason};
 
 /// A faulty line: in both directions it drops, flips or repeats one byte in a hundred.
@@ -75,6 +76,68 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     assert!(read(&mut console, staging, mesh.len()) == mesh);
 }
 
+/// Points along a side of the mesh of [`many`].
+const SIDE: u32 = 256;
+
+/// A square with `count` triangles of some pixels each, half of which face away.
+fn many(count: u32) -> Vec<u8> {
+    let places = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| [x, y]));
+    let vertices: Vec<_> = places
+        .map(|place| {
+            let [x, y] = place.map(|place| (place as i16 - SIDE as i16 / 2) << 7);
+            Vertex {
+                position: [x, y, 0],
+                ..Vertex::default()
+            }
+        })
+        .collect();
+    let at = |x: u32, y: u32| y.min(SIDE - 1) * SIDE + x.min(SIDE - 1);
+    let triangles: Vec<_> = (0..count)
+        .map(|number| {
+            let (x, y) = (number / 2 % SIDE, number / 2 / SIDE % SIDE);
+            let [a, b, c] = [at(x, y), at(x + 12, y), at(x, y + 12)];
+            IndexedTriangle {
+                indices: if number % 2 == 0 {
+                    [a, b, c]
+                } else {
+                    [a, c, b]
+                },
+                ..IndexedTriangle::default()
+            }
+        })
+        .collect();
+    encode(&vertices, &triangles).unwrap()
+}
+
+/// A board accepts a mesh if a frame has room for the half of its triangles; the host refuses a larger one before it sends a byte.
+#[test]
+fn a_mesh_has_at_most_the_triangles_that_the_board_can_draw() {
+    let mut board = emulator();
+    let mut renderer = renderer(&mut board);
+    renderer.upload(&many(131_072), None).unwrap();
+    let stats = renderer.console().command("render").unwrap();
+    assert!(stats.contains(&"backend gateware".to_owned()), "{stats:?}");
+    assert!(
+        stats.contains(&"triangles_in 131072".to_owned()),
+        "{stats:?}"
+    );
+
+    let large = many(131_073);
+    let refused = renderer.upload(&large, None).unwrap_err();
+    let expected = "mesh of 131073 triangles: expected at most 131072, which this board can draw";
+    assert_eq!(refused.to_string(), expected);
+    // Another host does not ask before.
+    let console = renderer.console();
+    transfer::stage(console, &large).unwrap();
+    let Manifest { length, crc32 } = Manifest::of(&large);
+    let refused = console
+        .command(&format!("load {length} {crc32:08x}"))
+        .unwrap_err();
+    let expected = "expected at most 131072 triangles, which this board can draw, found 131073";
+    assert!(refused.to_string().contains(expected), "{refused}");
+    assert_eq!(info::<u32>(console, "triangles"), 131_072);
+}
+
 /// Draws the scene, and reads the colours of its frame of 320×180 pixels from memory.
 fn frame(console: &mut Console<impl Board>) -> Vec<u8> {
     console.command("render").unwrap();
@@ -119,7 +182,7 @@ fn a_bad_upload_leaves_the_old_model() {
         damaged[at] ^= 0x80;
         let refused = transfer::upload(&mut console, &damaged, None, number, quiet);
         let refused = refused.unwrap_err().to_string();
-        assert!(refused.contains("not a mesh"), "byte {at}: {refused}");
+        assert!(refused.contains("mesh refused"), "byte {at}: {refused}");
     }
     assert_eq!(info::<u32>(&mut console, "triangles"), 12);
     assert!(frame(&mut console) == shown);
