@@ -1,5 +1,6 @@
 //! The state of the machine.
 
+use glint_core::block::Block;
 use glint_hal::digits::Digits;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
@@ -37,6 +38,11 @@ impl Identity {
     /// Whether the registers of the gateware are those for which the firmware was built.
     pub const fn matches(&self) -> bool {
         self.firmware == self.gateware
+    }
+
+    /// Whether the gateware has the block.
+    pub const fn has(&self, block: Block) -> bool {
+        self.blocks & block.bit() != 0
     }
 }
 

@@ -204,9 +204,9 @@ fn imu(machine: &mut Machine) -> Verdict {
     loop {
         sensor::deliver(&mut machine.imu);
         match machine.imu.error() {
-            Some(mpu6050::Error::Bus(BusError::NoAcknowledge(NoAcknowledgeSource::Address))) => {
-                return Verdict::Absent;
-            }
+            Some(mpu6050::Error::Bus(
+                BusError::NoAcknowledge(NoAcknowledgeSource::Address) | BusError::Absent,
+            )) => return Verdict::Absent,
             Some(error) => return Verdict::Failed(Failure::Sensor(error)),
             None if machine.imu.samples() != before => return Verdict::Passed,
             None if end.passed() => return Verdict::Failed(Failure::NoSample),

@@ -140,7 +140,7 @@ pub fn machine() -> Result<Machine, StartError> {
             switches: InputPort::new(peripherals.switches.in_()),
             leds: OutputPort::new(peripherals.leds.out()),
             digits: Digits::new(peripherals.digits),
-            i2c: Some(I2c::new(peripherals.i2c, clock)),
+            i2c: Some(I2c::new(peripherals.i2c, clock, identity.has(Block::I2C))),
         };
         (
             Scanout::probe(peripherals.scanout).ok(),
@@ -176,10 +176,10 @@ pub fn machine() -> Result<Machine, StartError> {
         Backend::Cpu
     };
 
-    let program = Program::new_checked(CUBE.as_flattened());
     // Without gateware that draws meshes the soft core draws them, whatever their size.
     let most_triangles = (gateware.as_ref()).map_or(u32::MAX, GatewareRenderer::most_triangles);
     let program = program.map_err(StartError::Program)?;
+    let program = Program::new_checked(CUBE.as_flattened());
 
     let mut machine = Machine::new(
         identity,

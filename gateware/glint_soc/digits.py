@@ -17,7 +17,7 @@ class Digits(LiteXModule):
 
     A digit has 2^13 clocks, so at 81.25 MHz each one is lit 1,240 times a second. In the first 2^9 of them no digit is lit, because the
     transistors that select a digit turn off slowly. `pads` has for each display the pins that select a digit, the leftmost first, and
-    those of the segments; all are active low. It is None on a board without displays.
+    those of the segments; all are active low.
     """
 
     def __init__(self, pads):
@@ -25,8 +25,6 @@ class Digits(LiteXModule):
                 "segments a to g, bit 7 the point.")
         self._left = Parameter(8 * DIGITS, name="left", description=text.format("left"))
         self._right = Parameter(8 * DIGITS, name="right", description=text.format("right"))
-        if pads is None:
-            return
 
         # # #
 

@@ -57,6 +57,8 @@ BLOCKS = {
     "line": "The line engine, a part of the triangle engine.",
     "gesture": "The gesture engine.",
     "flash": "The SPI flash in a window of memory.",
+    "i2c": "The I2C master, for the motion sensor.",
+    "digits": "The displays of digits.",
 }
 
 OPTIONAL_BLOCKS = {name: bit for bit, name in enumerate(BLOCKS)}

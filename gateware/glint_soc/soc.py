@@ -45,12 +45,12 @@ _PORT_BITS = 128
 class GlintSoC(SoCCore):
     """VexRiscv `full` with BIOS in ROM, main memory without a second cache level, and Glint's peripherals.
 
-    `blocks` names the optional blocks of this build. With the raymarcher but without the
-    triangle engine, the part of the engine that the raymarcher draws through is built: the raster pass, the band buffer and all
-    registers. `line`, the line engine, is a part of the triangle engine. `build_id` is the checksum of the register map of the
-    full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `depths` the memory of depths,
-    which a build without triangles may lack. `fields` are the build options of the raymarcher. `mode` is the video mode, which also
-    limits the picture sizes.
+    `blocks` names the optional blocks of this build. Line engine and raymarcher draw through the triangle engine. Without the block
+    `triangle`, the parts of the engine that draw triangles are left out: with `line`, the parts for lines and all registers remain; with
+    `raymarch` alone, the raster pass, the band buffer and all registers. `build_id` is the checksum of the register map of the full build
+    (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `geometry` its geometry pass, which a build
+    without lines may lack, and `depths` the memory of depths, which a build without triangles may lack. `fields` are the build options of
+    the raymarcher. `mode` is the video mode, which also limits the picture sizes.
     """
 
     csr_map = CSR_MAP
@@ -59,21 +59,23 @@ class GlintSoC(SoCCore):
     default_blocks = possible_blocks
     """The default optional blocks of a build."""
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, depths=True, fields=None,
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, geometry=True, depths=True, fields=None,
                  sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720):
         unknown = set(blocks) - self.possible_blocks
         if unknown:
             raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
-        if "line" in blocks and "triangle" not in blocks:
-            raise ValueError("the block 'line' is a part of the triangle engine: expected 'triangle' too")
+        if "line" in blocks and not geometry:
+            raise ValueError("no geometry pass: expected a build without the block 'line', whose lines need it")
         if "triangle" in blocks and not depths:
             raise ValueError("no depths: expected a build without the block 'triangle', whose meshes need them")
         if sys_clk_freq % CLOCK_UNIT:
             raise ValueError(f"system clock of {sys_clk_freq / 1e6} MHz: expected a multiple of {CLOCK_UNIT / 1e6} MHz")
         self.draws_triangles = "triangle" in blocks
-        self.blocks = frozenset({*blocks, "triangle"} if "raymarch" in blocks else blocks)
+        self.draws_lines = "line" in blocks
+        self.blocks = frozenset({*blocks, "triangle"} if {"line", "raymarch"} & set(blocks) else blocks)
         self.mode = mode
         self.smooth = smooth
+        self.geometry = geometry
         self.depths = depths
         self.fields = fields or Fields()
         # Comes before SoCCore adds `uart` and `timer0`, because SoCCore keeps interrupt numbers that are already set.
@@ -104,11 +106,13 @@ class GlintSoC(SoCCore):
 
         enabled = sum(1 << OPTIONAL_BLOCKS[name] for name in set(blocks))
         self.identity = Identity(build_id, enabled, self.sys_clk_freq)
-        self.i2c = I2CMaster(platform, platform.request("i2c"), sys_clk_freq)
+        if "i2c" in self.blocks:
+            self.i2c = I2CMaster(platform, platform.request("i2c"), sys_clk_freq)
         self.buttons = GPIOIn(self._inputs("buttons", 4), with_irq=True)
         self.switches = GPIOIn(self._inputs("switches", 16))
         self.leds = GPIOOut(self._outputs("leds", 16))
-        self.digits = Digits(platform.request("digits", loose=True))
+        if "digits" in self.blocks:
+            self.digits = Digits(platform.request("digits"))
         if "gesture" in self.blocks:
             self.gesture = GestureEngine(platform, platform.request("camera"), sys_clk_freq)
         if "flash" in self.blocks:
@@ -163,12 +167,15 @@ class GlintSoC(SoCCore):
         if "scanout" in self.blocks:
             self.scanout = Scanout(self.platform, self._port("read", main_ram), self.mode)
         if "triangle" in self.blocks:
-            readers = [self._port("read", main_ram, self.draws_triangles) for _ in range(3)]
-            lists = [self._port("write", main_ram, self.draws_triangles) for _ in range(2)]
+            has_lists = self.draws_triangles or self.draws_lines
+            has_geometry = self.geometry and has_lists
+            readers = [self._port("read", main_ram, built)
+                       for built in (has_geometry, has_geometry and self.draws_triangles, has_lists)]
+            lists = [self._port("write", main_ram, has_geometry) for _ in range(2)]
             frame = [self._port("write", main_ram) for _ in range(2)]
             self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
-                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks, "line" in self.blocks,
-                                           self.depths)
+                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks, self.draws_lines,
+                                           has_geometry, self.depths)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
 

@@ -36,6 +36,7 @@ ERRORS = Enumeration("error", "Results of a pass.", {
     "cancelled": "ended by `cancel`",
     "triangles": "this build draws no triangles; memory is unchanged",
     "lines": "this build draws no lines; memory is unchanged",
+    "geometry": "this build has no geometry passes; memory is unchanged",
 })
 
 SIZES = Enumeration("size", "Sizes of a picture.", {size.name: size.text for size in constants.SIZES})
@@ -47,12 +48,15 @@ class TriangleEngine(LiteXModule):
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
     `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the
-    input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it
-    uses the last two writers; the registers are the same. Then `depths` may be left out too: the memory of the depths of a band.
+    input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws lines and fields only, and does not use
+    the port of the vertices; without both triangles and lines it uses the last two writers only. The registers are the same. Then `depths`
+    may be left out too: the memory of the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from
+    the firmware's lists, and does not use the ports of mesh, vertices, descriptors and lists.
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False,
-                 depths=True):
+                 has_geometry=True, depths=True):
+        has_geometry = has_geometry and (triangles or lines)
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != memory_bits:
@@ -67,11 +71,14 @@ class TriangleEngine(LiteXModule):
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
                      f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, "
                      f"{DESCRIPTOR_BYTES['flat']} without."),
-            CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes, and raster passes with "
-                     "lists. Without them a raster pass draws the raymarcher's field alone."),
-            CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`."),
+            CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes without `lines`, and raster "
+                     "passes of their lists. With neither triangles nor lines a raster pass draws the raymarcher's field alone."),
+            CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`, and raster passes of their "
+                     "lists."),
             CSRField("depths", offset=6, reset=int(depths), description="Depths: the depth test, and `depth` of a raster pass, which "
                      "writes 0 without them."),
+            CSRField("geometry", offset=7, reset=int(has_geometry), description="Geometry passes. Without them a raster pass draws lists that "
+                     "the CPU has written."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
@@ -307,6 +314,7 @@ class TriangleEngine(LiteXModule):
             p_TRIANGLES        = int(triangles),
             p_SMOOTH           = int(smooth),
             p_LINES            = int(lines),
+            p_GEOMETRY         = int(has_geometry),
             i_clk              = ClockSignal("sys"),
             i_rst              = ResetSignal("sys"),
             i_cancel           = cancel,
@@ -335,6 +343,7 @@ class TriangleEngine(LiteXModule):
             p_SMOOTH          = int(smooth),
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
+            p_GEOMETRY        = int(has_geometry),
             p_DEPTHS          = int(depths),
             i_clk             = ClockSignal("sys"),
             i_rst             = ResetSignal("sys"),

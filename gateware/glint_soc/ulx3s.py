@@ -70,15 +70,15 @@ class CRG(LiteXModule):
 class Ulx3sSoC(GlintSoC):
     """The SoC on the board."""
 
-    # The flash of this board is not configured for four data lines: the FPGA loads from it on one line.
-    possible_blocks = GlintSoC.possible_blocks - {"flash"}
+    # The flash of this board is not configured for four data lines: the FPGA loads from it on one line. The board has no digits.
+    possible_blocks = GlintSoC.possible_blocks - {"flash", "digits"}
     # With the raymarcher, nextpnr takes twice as long, and reaches a lower clock frequency (see docs/boards.md).
     default_blocks = possible_blocks - {"raymarch"}
 
-    def __init__(self, build_id, blocks, smooth=False, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, smooth=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
         GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
-                          depths=depths, fields=fields, sys_clk_freq=sys_clk_freq, mode=CEA_640X480)
+                          geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq, mode=CEA_640X480)
         self.sdrphy = GENSDRPHY(platform.request("sdram"), sys_clk_freq)
         self.add_dram(self.sdrphy, MT48LC16M16(sys_clk_freq, "1:1"))
         if "gesture" in self.blocks:

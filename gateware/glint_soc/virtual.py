@@ -98,10 +98,10 @@ class CRG(LiteXModule):
 class VirtualSoC(GlintSoC):
     """SoC of the virtual board."""
 
-    def __init__(self, build_id, blocks, smooth=False, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, smooth=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, depths=depths,
-                          fields=fields, sys_clk_freq=sys_clk_freq)
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth,
+                          geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
         module = MT41K64M16(sys_clk_freq, "1:4")
         self.ddrphy = MemoryModel(module, data_width=16, clk_freq=sys_clk_freq)
         # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
@@ -109,10 +109,14 @@ class VirtualSoC(GlintSoC):
         self.sram.mem.init = None
         self.add_dram(self.ddrphy, module)
         self._gate_clocks(platform)
-        # These pins and the video pins exist in every build, so that one harness fits all builds.
-        for block, pins in (("gesture", "camera"), ("flash", "flash")):
+        # These pins and the video pins exist in every build, so that one harness fits all builds. Wires are released, and digits dark.
+        for block, pins in (("gesture", "camera"), ("flash", "flash"), ("i2c", "i2c"), ("digits", "digits")):
             if block not in self.blocks:
-                platform.request(pins)
+                pads = platform.request(pins)
+                if block == "i2c":
+                    self.comb += [pads.scl_out.eq(1), pads.sda_out.eq(1)]
+                elif block == "digits":
+                    self.comb += [pads.left_digits_n.eq(0b1111), pads.right_digits_n.eq(0b1111)]
         pads = platform.request("vga")
         if "scanout" in self.blocks:
             self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name))

@@ -34,6 +34,8 @@ _SMOOTH = {"SMOOTH": 1}
 _LINES = {"LINES": 1}
 _FIELDS_ALONE = {"TRIANGLES": 0, "FIELDS": 1}
 _NO_DEPTHS = _FIELDS_ALONE | {"DEPTHS": 0}
+_LINES_ALONE = {"TRIANGLES": 0, "LINES": 1}
+_NO_GEOMETRY = {"GEOMETRY": 0}
 # Parameters of builds with every field: of a lane (ring_lane), and of the module that computes the colours of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
@@ -61,7 +63,8 @@ MODULES = [
     Module(top="triangle_engine",
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1},
                      "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_no_depths": _NO_DEPTHS,
-                     "triangle_engine_lines": _LINES,
+                     "triangle_engine_lines": _LINES, "triangle_engine_lines_alone": _LINES_ALONE | {"DEPTHS": 0},
+                     "triangle_engine_no_geometry": _NO_GEOMETRY,
                      "triangle_engine_smooth_lines": _SMOOTH | _LINES},
            measured=("triangle_engine_fields",)),
     Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),
@@ -83,6 +86,7 @@ MODULES = [
     Module(
         top="triangle_control",
         variants={"triangle_control_smooth": _SMOOTH, "triangle_control_32_mb": {"MEMORY_BITS": 21, "SIZES": 3},
-                  "triangle_control_fields_alone": {"TRIANGLES": 0}, "triangle_control_lines": _LINES},
+                  "triangle_control_fields_alone": {"TRIANGLES": 0}, "triangle_control_lines": _LINES,
+                  "triangle_control_lines_alone": _LINES_ALONE, "triangle_control_no_geometry": _NO_GEOMETRY},
     ),
 ]

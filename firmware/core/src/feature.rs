@@ -49,13 +49,15 @@ macro_rules! features {
 }
 
 features! {
+    /// Camera, lens and background of meshes and fields.
+    VIEW = "view";
     /// Meshes, and the options for triangles.
     MESH = "mesh";
     /// Several meshes in a picture, each with its own model matrix.
     OBJECT = "object";
     /// Edges of a mesh.
     EDGES = "edges";
-    /// Programs of the wireframe simulator, and board buttons as its keys.
+    /// Programs of the wireframe simulator and their upload, and board buttons as its keys.
     WIREFRAME = "wireframe";
     /// Cameras that show a whole mesh.
     FIT = "fit";
@@ -79,7 +81,7 @@ features! {
     REPLAY = "replay";
     /// Steering by a hand in front of the image sensor.
     GESTURE = "gesture";
-    /// Upload of meshes and wireframe programs.
+    /// Upload of meshes.
     UPLOAD = "upload";
     /// Drawing on the soft core, by the backend `cpu` or in place of the gateware.
     CPU = "cpu";

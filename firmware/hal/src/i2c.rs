@@ -40,6 +40,8 @@ const MOST_IN_READ: usize = 32;
 /// The I2C master.
 pub struct I2c {
     registers: i2c::I2c,
+    /// Whether the gateware has the master.
+    is_present: bool,
     clock: Clock,
     /// The time-out [`WAIT`] in clock cycles.
     wait: u64,
@@ -71,6 +73,8 @@ pub enum BusError {
     /// A periodic read had not ended when the next read was due, because the device stretches the clock or the receive queue is
     /// full.
     Late,
+    /// The gateware has no I2C master.
+    Absent,
     /// The requested periodic reads exceed the master's limits, or no periodic reads have begun.
     Reads,
     /// The master reports an undocumented error code.
@@ -95,6 +99,7 @@ impl fmt::Display for BusError {
                 whole_millis(WAIT)
             ),
             Self::Late => f.write_str("i2c: a periodic read was not over when the next read was due"),
+            Self::Absent => f.write_str("i2c: this gateware has no master"),
             Self::Reads => f.write_str(
                 "i2c: periodic reads: expected 1 to 32 bytes, batch 1 to 16, period below 2^24 cycles",
             ),
@@ -108,7 +113,9 @@ impl core::error::Error for BusError {}
 impl embedded_hal::i2c::Error for BusError {
     fn kind(&self) -> ErrorKind {
         match *self {
-            Self::Address(_) | Self::Timeout | Self::Reads | Self::Unknown => ErrorKind::Other,
+            Self::Address(_) | Self::Timeout | Self::Absent | Self::Reads | Self::Unknown => {
+                ErrorKind::Other
+            }
             Self::Late => ErrorKind::Overrun,
             Self::NoAcknowledge(source) => ErrorKind::NoAcknowledge(source),
             Self::ClockStuck | Self::DataStuck => ErrorKind::Bus,
@@ -117,11 +124,13 @@ impl embedded_hal::i2c::Error for BusError {
 }
 
 impl I2c {
-    /// The driver of the master at `registers`, with SCL and SDA released. The end of each transaction raises an interrupt.
+    /// The driver of the master at `registers`, with SCL and SDA released. The end of each transaction raises an interrupt. If the gateware
+    /// has no master, every transaction fails with [`BusError::Absent`].
     #[must_use]
-    pub fn new(registers: i2c::I2c, clock: Clock) -> Self {
+    pub fn new(registers: i2c::I2c, clock: Clock, is_present: bool) -> Self {
         let mut master = Self {
             registers,
+            is_present,
             clock,
             wait: clock.frequency().cycles(WAIT),
             periodic: None,
@@ -160,6 +169,9 @@ impl I2c {
 
     /// Runs a transaction to its end.
     async fn transact(&mut self, mut transfer: Transfer<'_, '_>) -> Result<(), BusError> {
+        if !self.is_present {
+            return Err(BusError::Absent);
+        }
         // Clears the remains of a transaction whose future was dropped.
         if self.periodic.is_some() || !matches!(self.status(), Ok(status) if !status.busy()) {
             self.clear();

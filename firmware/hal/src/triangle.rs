@@ -192,8 +192,8 @@ impl TriangleEngine {
         self.registers.ev_enable().write(events);
     }
 
-    /// Whether this gateware draws triangles. If not, [`Error::Triangles`] ends each geometry pass, and each raster pass with a
-    /// [`Set`]; a raster pass without sets draws a raymarcher's field.
+    /// Whether this gateware draws triangles. If not, [`Error::Triangles`] ends each geometry pass of a mesh. If it draws no lines either,
+    /// this error ends each raster pass with a [`Set`], too; a raster pass without sets draws a raymarcher's field.
     #[must_use]
     pub fn draws_triangles(&self) -> bool {
         self.registers.caps().read().triangles()
@@ -203,6 +203,13 @@ impl TriangleEngine {
     #[must_use]
     pub fn draws_lines(&self) -> bool {
         self.registers.caps().read().lines()
+    }
+
+    /// Whether this gateware has geometry passes. If not, [`Error::Geometry`] ends each of them; a raster pass draws the [`Set`]s that the
+    /// program has written.
+    #[must_use]
+    pub fn has_geometry(&self) -> bool {
+        self.registers.caps().read().geometry()
     }
 
     /// Whether this gateware has a depth memory. If not, a raster pass writes depth codes of 0.

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x1a16_7ca8;
+pub const BUILD_ID: u32 = 0xfe49_dc36;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -260,7 +260,7 @@ pub mod identity {
             unsafe { Register::at(0xf000_0800) }
         }
 
-        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`, 4 `gesture`, 5 `flash`.
+        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`, 4 `gesture`, 5 `flash`, 6 `i2c`, 7 `digits`.
         #[inline]
         #[must_use]
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {
@@ -3995,7 +3995,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
 
-        /// `triangles`, bit 4: Triangles: geometry passes, and raster passes with lists. Without them a raster pass draws the raymarcher's field alone.
+        /// `triangles`, bit 4: Triangles: geometry passes without `lines`, and raster passes of their lists. With neither triangles nor lines a raster pass draws the raymarcher's field alone.
         #[inline]
         #[must_use]
         pub const fn triangles(self) -> bool {
@@ -4009,7 +4009,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
         }
 
-        /// `lines`, bit 5: Lines: geometry passes with `lines`.
+        /// `lines`, bit 5: Lines: geometry passes with `lines`, and raster passes of their lists.
         #[inline]
         #[must_use]
         pub const fn lines(self) -> bool {
@@ -4035,6 +4035,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_depths(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
+        }
+
+        /// `geometry`, bit 7: Geometry passes. Without them a raster pass draws lists that the CPU has written.
+        #[inline]
+        #[must_use]
+        pub const fn geometry(self) -> bool {
+            (self.0 >> 7) & 1 != 0
+        }
+
+        /// This value with another `geometry`.
+        #[inline]
+        #[must_use]
+        pub const fn with_geometry(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
         }
 
         /// `count_bits`, bits 13 to 8: Bits of a count of descriptors or entries.
@@ -4610,11 +4624,13 @@ pub mod triangle {
         Triangles = 8,
         /// This build draws no lines; memory is unchanged.
         Lines = 9,
+        /// This build has no geometry passes; memory is unchanged.
+        Geometry = 10,
     }
 
     impl Error {
         /// Every value, in the order of the gateware's description.
-        pub const ALL: [Self; 10] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled, Self::Triangles, Self::Lines];
+        pub const ALL: [Self; 11] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled, Self::Triangles, Self::Lines, Self::Geometry];
 
         /// The value of a field's `bits`; `None` where the gateware has no name for them.
         #[inline]
@@ -4631,6 +4647,7 @@ pub mod triangle {
                 7 => Self::Cancelled,
                 8 => Self::Triangles,
                 9 => Self::Lines,
+                10 => Self::Geometry,
                 _ => return None,
             })
         }
@@ -4649,6 +4666,7 @@ pub mod triangle {
                 Self::Cancelled => "cancelled",
                 Self::Triangles => "triangles",
                 Self::Lines => "lines",
+                Self::Geometry => "geometry",
             }
         }
 
@@ -4666,6 +4684,7 @@ pub mod triangle {
                 Self::Cancelled => "ended by `cancel`",
                 Self::Triangles => "this build draws no triangles; memory is unchanged",
                 Self::Lines => "this build draws no lines; memory is unchanged",
+                Self::Geometry => "this build has no geometry passes; memory is unchanged",
             }
         }
     }

@@ -573,9 +573,8 @@ impl Scene {
     pub fn blocks(&self) -> u32 {
         let engines = match self.subject() {
             SceneSubject::Mesh(_) | SceneSubject::Objects => Block::Triangle.bit(),
-            SceneSubject::Edges(..) | SceneSubject::Wireframe(_) => {
-                Block::Triangle.bit() | Block::Line.bit()
-            }
+            SceneSubject::Edges(..) => Block::Triangle.bit() | Block::Line.bit(),
+            SceneSubject::Wireframe(_) => Block::Line.bit(),
             SceneSubject::Field(_) => Block::Raymarch.bit(),
             SceneSubject::MeshInField(..) => Block::Triangle.bit() | Block::Raymarch.bit(),
         };

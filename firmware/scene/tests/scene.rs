@@ -191,7 +191,7 @@ fn scenes_need_the_blocks_of_what_they_show() {
             &[Block::Triangle, Block::Raymarch],
         ),
         ("field menger:2", &[Block::Raymarch]),
-        ("program", &[Block::Triangle, Block::Line]),
+        ("program", &[Block::Line]),
         ("edges over", &[Block::Triangle, Block::Line]),
         ("object add a", &[Block::Triangle]),
         ("backend cpu\nscene a", &[]),

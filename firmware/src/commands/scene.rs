@@ -2,7 +2,7 @@
 
 use glint_core::block::Block;
 use glint_core::console::{Command, OrbitCommands, SceneCommands, Setting};
-use glint_core::feature::{GESTURE, MESH, UPLOAD};
+use glint_core::feature::{GESTURE, MESH};
 use glint_core::flash::Kind;
 use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
@@ -99,9 +99,6 @@ impl<'l> SceneCommands<'l> for Machine {
             self.scene.show_wireframe();
             return Ok(Reply::Done);
         };
-        if !UPLOAD.is_built {
-            return Err(CommandError::LeftOut(UPLOAD));
-        }
         upload::begin(self, "program", Purpose::Program, upload)
     }
 

@@ -40,6 +40,7 @@ impl Fallback {
                 | Self::NoLineEngine
                 | Self::NoSmoothShading
                 | Self::NoDepths
+                | Self::Descriptors(Unsupported::Geometry)
                 | Self::Triangle(EngineError::Status(Error::Triangles))
         )
     }
@@ -100,6 +101,8 @@ impl fmt::Display for Fallback {
 /// them.
 #[derive(Clone, Copy, Debug)]
 pub enum Unsupported {
+    /// All: this gateware has no geometry passes.
+    Geometry,
     /// Clipping to the view volume.
     Volume,
     /// Winding by the position on the screen.
@@ -117,6 +120,7 @@ impl fmt::Display for Unsupported {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("geometry passes: ")?;
         match self {
+            Self::Geometry => f.write_str("none in this gateware"),
             Self::Volume => f.write_str("no clipping to the view volume"),
             Self::Winding => f.write_str("no winding by the screen"),
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),

@@ -52,6 +52,8 @@ pub struct Job<'a> {
 pub struct GeometryPasses {
     /// Best shading of the engine.
     shading: Shading,
+    /// Whether the engine has geometry passes.
+    has_geometry: bool,
     /// Number of the mesh whose pass was started last.
     number: usize,
     /// Number of triangles of the meshes whose passes have ended, and number of these triangles that were drawn after clipping.
@@ -67,9 +69,10 @@ pub struct GeometryPasses {
 
 impl GeometryPasses {
     /// Geometry passes of an engine whose best shading is `shading`.
-    pub fn new(shading: Shading) -> Self {
+    pub fn new(shading: Shading, has_geometry: bool) -> Self {
         Self {
             shading,
+            has_geometry,
             number: 0,
             triangles: 0,
             drawn_clipped: 0,
@@ -95,7 +98,11 @@ impl GeometryPasses {
         if !MESH.is_built {
             return Ok(());
         }
-        self.unsupported = unsupported(job.frame);
+        self.unsupported = if self.has_geometry {
+            unsupported(job.frame)
+        } else {
+            (job.frame.subject.meshes().next()).map(|_| Unsupported::Geometry)
+        };
         match self.unsupported {
             None => {}
             Some(_) if CPU.is_built => return Ok(()),

@@ -103,7 +103,7 @@ impl GatewareRenderer {
         frequency: Frequency,
     ) -> Option<Self> {
         let capacity = Capacity::of(memory.len())?;
-        let shading = shading(&engine);
+        let (shading, has_geometry) = (shading(&engine), engine.has_geometry());
         Some(Self {
             draws_triangles: engine.draws_triangles(),
             draws_lines: engine.draws_lines(),
@@ -120,7 +120,7 @@ impl GatewareRenderer {
             drawn: [None; 2],
             stage: Stage::Idle,
             constants: Default::default(),
-            geometry: GeometryPasses::new(shading),
+            geometry: GeometryPasses::new(shading, has_geometry),
             watchdog: Watchdog::new(frequency),
             waited: 0,
             start: Start::default(),
@@ -146,8 +146,10 @@ impl GatewareRenderer {
             (true, true, false) => "meshes, fields",
             (true, false, true) => "meshes, wireframes",
             (true, false, false) => "meshes",
-            (false, true, _) => "fields",
-            (false, false, _) => "none",
+            (false, true, true) => "fields, wireframes",
+            (false, true, false) => "fields",
+            (false, false, true) => "wireframes",
+            (false, false, false) => "none",
         }
     }
 

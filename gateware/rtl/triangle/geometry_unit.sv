@@ -23,6 +23,8 @@
 // segments like the triangles of a mesh, two words for each segment, and line_setup cuts the segments into pieces, which replace
 // descriptors.
 //
+// Without TRIANGLES, the units for triangles, from vertex_cache to setup, are not built, and each pass has the flag `lines`.
+//
 // The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled triangle, 6 per vertex
 // that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 clocks for each band of the triangle after the
 // first. Memory: two clients of a read_port, two native write ports. `results` contains the numbers of the frame's triangles, descriptors
@@ -31,6 +33,7 @@
 `default_nettype none
 
 module geometry_unit #(
+    parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          LINES        = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
@@ -128,7 +131,7 @@ module geometry_unit #(
     logic             in_lines, half_ready, piece_valid, piece_ready;
     records_pkg::piece_t piece;
 
-    assign in_lines       = LINES && flags.lines;
+    assign in_lines       = LINES && (flags.lines || !TRIANGLES);
     assign triangle_valid = word_valid && !in_lines;
     assign word_ready     = in_lines ? half_ready : triangle_ready;
 
@@ -165,94 +168,109 @@ module geometry_unit #(
         wire _unused = &{1'b0, piece_ready};
     end
 
-    logic             fetch_valid, fetch_ready, projected_valid, projected_ready, placed_valid, placed_ready;
-    logic [15:0]      fetch_index;
-    triangle_pkg::projected_t       projected;
-    logic [VERTEX_BITS-1:0] shaded;
-    logic [2:0][VERTEX_BITS-1:0] cached;
-    logic [2:0][67:0] placed;
-    logic [2:0][LIGHT_BITS-1:0] placed_light, regular_light;
-    logic [SIDE_BITS-1:0] placed_side;
-
-    /* verilator lint_off PINCONNECTEMPTY */
-    vertex_cache #(.SIDE_BITS(SIDE_BITS), .VERTEX_BITS(VERTEX_BITS)) vertex_cache (
-        .clk, .rst(rst || restart), .clear(chunk), .idle(),
-        .in_valid(triangle_valid), .in_ready(triangle_ready),
-        .in_indices(triangle.indices), .in_side({triangle.normal, triangle.colour}),
-        .fetch_valid, .fetch_ready, .fetch_index,
-        .projected_valid, .projected_ready, .projected_vertex(shaded),
-        .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(cached), .out_side(placed_side)
-    );
-    /* verilator lint_on PINCONNECTEMPTY */
-
-    assign vertex       = data[128 +: 128];
-    assign ask_valid[1] = fetch_valid;
-    assign fetch_ready  = ask_ready[1];
-    assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
-
-    vertex_stage vertex_stage (
-        .clk, .rst(rst || restart), .orthographic(flags.orthographic), .scale_shift(view.scale_shift),
-        .row_u(view.row_u), .row_v(view.row_v), .row_n(view.row_n),
-        .tx(view.tx), .ty(view.ty), .tz(view.tz), .near_z(view.near_z),
-        .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),
-        .depth_mantissa(view.depth_mantissa), .depth_exponent(view.depth_exponent),
-        .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(vertex.position),
-        .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
-    );
-
-    for (genvar i = 0; i < 3; i++) begin : places
-        assign placed[i] = cached[i][67:0];
-    end
-
-    if (SMOOTH) begin : light
-        logic [LIGHT_BITS-1:0] projected_light;
-
-        vertex_light vertex_light (
-            .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
-            .light_colour(parameters.light_colour), .ambient(parameters.ambient), .take(data_valid[1] && data_ready[1]),
-            .in_normal(vertex.normal), .in_colour(flags.recolour ? parameters.colour : vertex.colour),
-            .give(projected_valid && projected_ready), .out_light(projected_light)
-        );
-
-        assign shaded = {projected_light, projected};
-
-        for (genvar i = 0; i < 3; i++) begin : vertices
-            assign placed_light[i] = cached[i][68 +: LIGHT_BITS];
-        end
-    end else begin : flat
-        assign shaded       = projected;
-        assign placed_light = '0;
-    end
-
-    logic                 regular_valid, regular_ready, exception_valid, exception_ready, unseen;
-    logic [2:0][65:0]     regular;
-    logic [SIDE_BITS-1:0] regular_side;
-    logic [31:0]          exception_number;
-
-    /* verilator lint_off PINCONNECTEMPTY */
-    classify #(.SIDE_BITS(SIDE_BITS + 3 * LIGHT_BITS)) classify (
-        .clk, .rst(rst || restart), .restart(clear), .width, .height, .idle(), .unseen, .count(results.triangles),
-        .in_valid(placed_valid), .in_ready(placed_ready), .in_vertices(placed), .in_side({placed_light, placed_side}),
-        .regular_valid, .regular_ready, .regular_vertices(regular),
-        .regular_side({regular_light, regular_side}),
-        .exception_valid, .exception_ready, .exception_number
-    );
-
-    logic        descriptor_valid, descriptor_ready, culled;
-    records_pkg::descriptor_t descriptor;
+    logic                          fetch_valid, fetch_ready, unseen, culled, descriptor_valid, descriptor_ready, exception_valid,
+                                   exception_ready;
+    logic [31:0]                   exception_number;
+    records_pkg::descriptor_t      descriptor;
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-    setup #(.SMOOTH(SMOOTH)) setup (
-        .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .mirror(flags.mirror), .row_light(view.row_light),
-        .light_colour(parameters.light_colour), .ambient(parameters.ambient),
-        .smooth(flags.smooth), .busy(), .culled, .drawn(),
-        .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
-        .in_colour(flags.recolour ? parameters.colour : regular_side[15:0]), .in_normal(regular_side[63:16]),
-        .in_light(regular_light),
-        .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
-        .out_planes(planes)
-    );
-    /* verilator lint_on PINCONNECTEMPTY */
+    // Arrays of the block `triangles`, in which Yosys does not accept them.
+    logic [2:0][VERTEX_BITS-1:0] cached;
+    logic [2:0][67:0]            placed;
+    logic [2:0][65:0]            regular;
+    logic [2:0][LIGHT_BITS-1:0]  placed_light, regular_light;
+
+    if (TRIANGLES) begin : triangles
+        logic             projected_valid, projected_ready, placed_valid, placed_ready;
+        logic [15:0]      fetch_index;
+        triangle_pkg::projected_t       projected;
+        logic [VERTEX_BITS-1:0] shaded;
+        logic [SIDE_BITS-1:0] placed_side;
+
+        /* verilator lint_off PINCONNECTEMPTY */
+        vertex_cache #(.SIDE_BITS(SIDE_BITS), .VERTEX_BITS(VERTEX_BITS)) vertex_cache (
+            .clk, .rst(rst || restart), .clear(chunk), .idle(),
+            .in_valid(triangle_valid), .in_ready(triangle_ready),
+            .in_indices(triangle.indices), .in_side({triangle.normal, triangle.colour}),
+            .fetch_valid, .fetch_ready, .fetch_index,
+            .projected_valid, .projected_ready, .projected_vertex(shaded),
+            .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(cached), .out_side(placed_side)
+        );
+        /* verilator lint_on PINCONNECTEMPTY */
+
+        assign vertex       = data[128 +: 128];
+        assign ask_valid[1] = fetch_valid;
+        assign fetch_ready  = ask_ready[1];
+        assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
+
+        vertex_stage vertex_stage (
+            .clk, .rst(rst || restart), .orthographic(flags.orthographic), .scale_shift(view.scale_shift),
+            .row_u(view.row_u), .row_v(view.row_v), .row_n(view.row_n),
+            .tx(view.tx), .ty(view.ty), .tz(view.tz), .near_z(view.near_z),
+            .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),
+            .depth_mantissa(view.depth_mantissa), .depth_exponent(view.depth_exponent),
+            .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(vertex.position),
+            .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
+        );
+
+        for (genvar i = 0; i < 3; i++) begin : places
+            assign placed[i] = cached[i][67:0];
+        end
+
+        if (SMOOTH) begin : light
+            logic [LIGHT_BITS-1:0] projected_light;
+
+            vertex_light vertex_light (
+                .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
+                .light_colour(parameters.light_colour), .ambient(parameters.ambient), .take(data_valid[1] && data_ready[1]),
+                .in_normal(vertex.normal), .in_colour(flags.recolour ? parameters.colour : vertex.colour),
+                .give(projected_valid && projected_ready), .out_light(projected_light)
+            );
+
+            assign shaded = {projected_light, projected};
+
+            for (genvar i = 0; i < 3; i++) begin : vertices
+                assign placed_light[i] = cached[i][68 +: LIGHT_BITS];
+            end
+        end else begin : flat
+            assign shaded       = projected;
+            assign placed_light = '0;
+        end
+
+        logic                 regular_valid, regular_ready;
+        logic [SIDE_BITS-1:0] regular_side;
+
+        /* verilator lint_off PINCONNECTEMPTY */
+        classify #(.SIDE_BITS(SIDE_BITS + 3 * LIGHT_BITS)) classify (
+            .clk, .rst(rst || restart), .restart(clear), .width, .height, .idle(), .unseen, .count(results.triangles),
+            .in_valid(placed_valid), .in_ready(placed_ready), .in_vertices(placed), .in_side({placed_light, placed_side}),
+            .regular_valid, .regular_ready, .regular_vertices(regular),
+            .regular_side({regular_light, regular_side}),
+            .exception_valid, .exception_ready, .exception_number
+        );
+
+        setup #(.SMOOTH(SMOOTH)) setup (
+            .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .mirror(flags.mirror), .row_light(view.row_light),
+            .light_colour(parameters.light_colour), .ambient(parameters.ambient),
+            .smooth(flags.smooth), .busy(), .culled, .drawn(),
+            .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
+            .in_colour(flags.recolour ? parameters.colour : regular_side[15:0]), .in_normal(regular_side[63:16]),
+            .in_light(regular_light),
+            .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
+            .out_planes(planes)
+        );
+        /* verilator lint_on PINCONNECTEMPTY */
+    end else begin : lines_alone
+        assign {fetch_valid, fetch_ready, unseen, culled, descriptor_valid, exception_valid} = '0;
+        assign {exception_number, descriptor, planes, results.triangles} = '0;
+        assign {cached, placed, regular, placed_light, regular_light} = '0;
+        assign triangle_ready = 1'b0;
+        assign {ask_valid[1], ask_addr[ADDRESS_BITS +: ADDRESS_BITS], data_ready[1]} = '0;
+        assign vertex = '0;
+
+        wire _unused = &{1'b0, flags, view, width, height, chunk, vertex_base, ask_ready, data_valid, data, descriptor_ready,
+                         exception_ready, cached, placed, regular, placed_light, regular_light};
+    end
 
     logic                    binner_ready, write_valid, write_ready, write_descriptor, descriptors_ready, lists_ready;
     logic [ADDRESS_BITS-1:0] write_addr;

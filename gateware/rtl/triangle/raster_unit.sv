@@ -20,8 +20,9 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
-// Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
-// must then be low, and the unit reads no memory.
+// Without TRIANGLES, triangle_raster is not built, and a descriptor that is no piece of a line counts as damaged. With neither TRIANGLES
+// nor LINES, list_reader is not built either: frames have fields only, `flags.first` and `flags.second` must be low, and the unit reads no
+// memory.
 //
 // `slot` is the number of the frame buffer into which the frame is drawn. Only words that can differ from the last frame in the same slot
 // are written. `whole` writes all words; `whole` is required when the contents of the frame buffer are unknown (after a change of its
@@ -175,7 +176,7 @@ module raster_unit #(
 
     triangle_registers_pkg::events_t walk_events, band_events;
 
-    if (TRIANGLES) begin : triangles
+    if (TRIANGLES || LINES) begin : descriptors
         logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
         records_pkg::descriptor_t descriptor;
         logic [(SMOOTH ? 289 : 1)-1:0] planes;
@@ -184,12 +185,12 @@ module raster_unit #(
         logic [9:0] read_row;
         logic       read_odd;
 
-        // `stray` is high for a descriptor with groups outside of the picture, which is skipped.
+        // `stray` is high for a descriptor that is skipped: with groups outside of the picture, or of a triangle without TRIANGLES.
         logic stray, list_damaged;
         // `is_line` is high for a piece of a line, and `piece_taken` in the clock after line_raster has taken it.
         logic is_line, piece_taken, line_idle;
 
-        assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
+        assign stray = !TRIANGLES || descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
                     || descriptor.group_right >= stride;
 
         // The item that ends a band is taken only while that band is drawn, so descriptors are read at most one band ahead.
@@ -222,13 +223,23 @@ module raster_unit #(
             .out_planes(planes)
         );
 
-        triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
-            .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
-            .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
-            .triangle_planes(planes),
-            .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
-            .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
-        );
+        if (TRIANGLES) begin : triangles
+            triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
+                .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
+                .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
+                .triangle_planes(planes),
+                .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
+                .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
+            );
+        end else begin : lines_alone
+            assign triangle_ready = 1'b1;
+            assign raster_idle    = 1'b1;
+            assign walk_events    = '0;
+            assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
+
+            wire _unused = &{1'b0, triangle_valid, descriptor, planes, drawn_ready};
+        end
+
         if (LINES) begin : lines
             records_pkg::stored_piece_t stored;
             logic              piece_valid, piece_ready;
@@ -275,15 +286,15 @@ module raster_unit #(
         wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
-    // Whether groups come from the raymarcher in this clock; without TRIANGLES all groups come from the raymarcher.
+    // Whether groups come from the raymarcher in this clock; with neither TRIANGLES nor LINES all groups come from the raymarcher.
     logic from_field;
 
-    assign from_field = FIELDS && (field_sink.open || !TRIANGLES);
+    assign from_field = FIELDS && (field_sink.open || !TRIANGLES && !LINES);
 
     logic   of_pixels;
     pixel_t pixel;
 
-    assign of_pixels = from_field || from_line;
+    assign of_pixels = from_field || from_line || !TRIANGLES;
 
     always_comb begin
         pixel = line_pixel;

@@ -5,8 +5,10 @@
 //
 // The parameters of a pass contain regions of memory. A region is described by its length and by the byte address of its first 16-byte
 // word, in the CPU's 32-bit address space. A region that is not aligned or not within memory (2^MEMORY_BITS words from BASE on) ends the
-// pass with ERROR_ADDRESS before its first access to memory. A build without TRIANGLES ends each geometry pass, and a raster pass with
-// `first` or `second`, with ERROR_TRIANGLES; a build without LINES ends a geometry pass with `lines` with ERROR_LINES.
+// pass with ERROR_ADDRESS before its first access to memory. A build without TRIANGLES ends a geometry pass without `lines` with
+// ERROR_TRIANGLES, and with neither TRIANGLES nor LINES each geometry pass, and a raster pass with `first` or `second`. A build without LINES
+// ends a geometry pass with `lines` with ERROR_LINES. A build with TRIANGLES but without GEOMETRY ends each geometry pass with
+// ERROR_GEOMETRY.
 //
 // A pass is requested by one clock of `ask`. `ended` (one clock) reports for each request that its pass is refused, done or cancelled;
 // `error` then holds until the next request of this pass.
@@ -27,6 +29,7 @@ module triangle_control #(
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          LINES        = 1'b0,
+    parameter  bit          GEOMETRY     = TRIANGLES || LINES,
     parameter  int unsigned MEMORY_BITS  = triangle_registers_pkg::ADDRESS_BITS,
     parameter  int unsigned SIZES        = 7, // picture sizes of this build: bit k for the size of code k
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
@@ -64,7 +67,8 @@ module triangle_control #(
                            ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
                            ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED,
                            ERROR_TRIANGLES = triangle_registers_pkg::ERROR_TRIANGLES,
-                           ERROR_LINES = triangle_registers_pkg::ERROR_LINES;
+                           ERROR_LINES = triangle_registers_pkg::ERROR_LINES,
+                           ERROR_GEOMETRY = triangle_registers_pkg::ERROR_GEOMETRY;
 
     // Number of bits of a region's length in words; a length may exceed the size of memory.
     localparam int unsigned WORD_BITS  = triangle_registers_pkg::ADDRESS_BITS + 2;
@@ -94,14 +98,16 @@ module triangle_control #(
     assign bands = band_pkg::bands(size);
 
     // The error with which the pass is refused, or ERROR_NONE.
-    logic       misplaced, has_triangles;
+    logic       misplaced, has_lists, has_triangles;
     logic [3:0] refusal;
 
-    assign has_triangles = !rastering || raster_kept.first || raster_kept.second;
+    assign has_lists     = !rastering || raster_kept.first || raster_kept.second;
+    assign has_triangles = LINES ? !rastering && !geometry_kept.lines : has_lists;
 
     always_comb begin
         if (!TRIANGLES && has_triangles)                      refusal = ERROR_TRIANGLES;
         else if (!LINES && !rastering && geometry_kept.lines) refusal = ERROR_LINES;
+        else if (!GEOMETRY && !rastering)                     refusal = ERROR_GEOMETRY;
         else if (!SUPPORTED[size])                            refusal = ERROR_SIZE;
         else if (misplaced)                                   refusal = ERROR_ADDRESS;
         else                                                  refusal = ERROR_NONE;
@@ -141,8 +147,8 @@ module triangle_control #(
             4'd8:    begin first = raster.descriptors[0];  words = descriptor_words; used = raster_kept.first; end
             default: begin first = raster.descriptors[1];  words = descriptor_words; used = raster_kept.second; end
         endcase
-        // A build without triangles only checks frame and depth, and needs no logic for the other regions.
-        if (!TRIANGLES) begin
+        // A build for fields only checks frame and depth, and needs no logic for the other regions.
+        if (!TRIANGLES && !LINES) begin
             first = region[0] ? raster.depth : raster.frame;
             words = region[0] ? frame_words << 1 : frame_words;
             used  = region == 4'd4 || region == 4'd5 && raster_kept.depth;

@@ -18,10 +18,13 @@
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //
-// FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws only the pixels of a raymarcher: the
-// geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
-// `geometry_start` must then stay low. Without TRIANGLES and without DEPTHS, there is no depth test: a later pixel always replaces an
-// earlier one, and depths in memory are 0.
+// FIELDS builds the link to a raymarcher.
+//
+// Without TRIANGLES, the parts of both units that draw triangles and the port of the vertices are not built: a geometry pass must have the
+// flag `lines`. Without GEOMETRY, the geometry unit and its ports are not built: frames are drawn from the firmware's lists, and
+// `geometry_start` must stay low; LINES needs GEOMETRY. With neither TRIANGLES nor LINES, the engine draws only the pixels of a raymarcher:
+// GEOMETRY is then 0, and the port of the lists is not built. Without DEPTHS, for builds without TRIANGLES, there is no depth test: a later
+// pixel always replaces an earlier one, and depths in memory are 0.
 
 `default_nettype none
 
@@ -30,6 +33,7 @@ module triangle_engine #(
     parameter bit SMOOTH    = 1'b0,
     parameter bit FIELDS    = 1'b0,
     parameter bit LINES     = 1'b0,
+    parameter bit GEOMETRY  = TRIANGLES || LINES,
     parameter bit DEPTHS    = 1'b1
 ) (
     input  wire  clk,
@@ -87,7 +91,7 @@ module triangle_engine #(
 
     triangle_registers_pkg::events_t geometry_events, raster_events, port_events;
 
-    if (TRIANGLES) begin : triangles
+    if (GEOMETRY) begin : geometry_pass
         read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) mesh_read (
             .clk, .rst, .drop, .idle(ports_idle[0]),
             .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[1*ADDRESS_BITS-1:0]),
@@ -96,6 +100,27 @@ module triangle_engine #(
             .rdata_valid(mesh_read_answer.rdata_valid), .rdata(mesh_read_answer.rdata)
         );
 
+        geometry_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .LINES(LINES)) geometry_unit (
+            .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
+            .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
+            .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
+            .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
+            .descriptors_write_request, .descriptors_write_answer, .lists_write_request, .lists_write_answer,
+            .results, .events(geometry_events)
+        );
+    end else begin : raster_pass_alone
+        assign mesh_read_request = '0;
+        assign {descriptors_write_request, lists_write_request} = '0;
+        assign {ask_ready[0], data_valid[0], data[1*128-1:0]} = '0;
+        assign {ask_valid[1:0], ask_addr[2*ADDRESS_BITS-1:0], data_ready[1:0]} = '0;
+        assign {status.geometry_busy, status.geometry_done, status.mesh_error, status.full} = '0;
+        assign {results, geometry_events} = '0;
+        assign ports_idle[0] = 1'b1;
+        wire _unused = &{1'b0, geometry_start, geometry_flags, geometry, view, drop, ask_valid[0], ask_ready[1:0],
+                         ask_addr[1*ADDRESS_BITS-1:0], data_valid[1:0], data_ready[0], data[2*128-1:0], mesh_read_answer};
+    end
+
+    if (GEOMETRY && TRIANGLES) begin : vertices
         read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) vertex_read (
             .clk, .rst, .drop, .idle(ports_idle[1]),
             .ask_valid(ask_valid[1]), .ask_ready(ask_ready[1]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS]),
@@ -103,7 +128,14 @@ module triangle_engine #(
             .cmd_valid(vertex_read_request.cmd_valid), .cmd_ready(vertex_read_answer.cmd_ready), .cmd_addr(vertex_read_request.cmd_addr),
             .rdata_valid(vertex_read_answer.rdata_valid), .rdata(vertex_read_answer.rdata)
         );
+    end else begin : no_vertices
+        assign vertex_read_request = '0;
+        assign {ask_ready[1], data_valid[1], data[2*128-1:1*128]} = '0;
+        assign ports_idle[1] = 1'b1;
+        wire _unused = &{1'b0, vertex_read_answer, ask_valid[1], ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS], data_ready[1]};
+    end
 
+    if (TRIANGLES || LINES) begin : descriptors
         // The FIFOs of list words and of descriptor words are in block RAM, which is less scarce in the FPGA than LUTs.
         read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
             .clk, .rst, .drop, .idle(ports_idle[2]),
@@ -112,25 +144,11 @@ module triangle_engine #(
             .cmd_valid(raster_read_request.cmd_valid), .cmd_ready(raster_read_answer.cmd_ready), .cmd_addr(raster_read_request.cmd_addr),
             .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
         );
-
-        geometry_unit #(.SMOOTH(SMOOTH), .LINES(LINES)) geometry_unit (
-            .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
-            .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
-            .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
-            .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
-            .descriptors_write_request, .descriptors_write_answer, .lists_write_request, .lists_write_answer,
-            .results, .events(geometry_events)
-        );
     end else begin : fields_alone
-        assign {mesh_read_request, vertex_read_request, raster_read_request} = '0;
-        assign {descriptors_write_request, lists_write_request} = '0;
-        assign {ask_ready, data_valid, data} = '0;
-        assign {ask_valid[1:0], ask_addr[2*ADDRESS_BITS-1:0], data_ready[1:0]} = '0;
-        assign {status.geometry_busy, status.geometry_done, status.mesh_error, status.full} = '0;
-        assign {results, geometry_events} = '0;
-        assign ports_idle = '1;
-        wire _unused = &{1'b0, geometry_start, geometry_flags, geometry, view, drop, ask_valid, ask_ready, ask_addr,
-                         data_valid, data_ready, data, mesh_read_answer, vertex_read_answer, raster_read_answer};
+        assign raster_read_request = '0;
+        assign {ask_ready[4:2], data_valid[4:2], data[5*128-1:2*128]} = '0;
+        assign ports_idle[2] = 1'b1;
+        wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[4:2], ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS], data_ready[4:2]};
     end
 
     raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS), .LINES(LINES), .DEPTHS(DEPTHS)) raster_unit (

@@ -20,6 +20,7 @@ package triangle_registers_pkg;
     localparam logic [3:0] ERROR_CANCELLED = 4'd7;
     localparam logic [3:0] ERROR_TRIANGLES = 4'd8;
     localparam logic [3:0] ERROR_LINES = 4'd9;
+    localparam logic [3:0] ERROR_GEOMETRY = 4'd10;
 
     // Flags of a geometry pass.
     typedef struct packed {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glint_core::block::Block;
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, DEMO, Feature, GESTURE, MESH, SPHERES, UPLOAD};
+use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SPHERES, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::picture::Backend;
 use glint_core::shape::Shape;
@@ -45,6 +45,8 @@ pub struct Needs {
     pub features: BTreeSet<Feature>,
     /// Smooth shading in the triangle engine.
     pub smooth: bool,
+    /// The geometry pass of the triangle engine, which lines and most meshes require.
+    pub geometry: bool,
     /// The depth buffer in memory, which triangles and depth codes require.
     pub depths: bool,
     /// The raymarcher's features.
@@ -57,6 +59,7 @@ impl SceneFile {
         if !self.scenes().is_empty() {
             let mut needs = Needs::of(self.scenes());
             needs.features.insert(DEMO);
+            needs.blocks.insert(Block::Digits);
             if let (Some(fields), Some(lanes)) = (&mut needs.fields, self.lanes) {
                 fields.lanes = lanes;
             }
@@ -65,8 +68,10 @@ impl SceneFile {
         }
         let scene = self.scene();
         let mut blocks: BTreeSet<Block> = Block::of_bits(scene.blocks()).collect();
-        if self.features().contains(&GESTURE) {
-            blocks.insert(Block::Gesture);
+        for (feature, block) in [(GESTURE, Block::Gesture), (IMU, Block::I2C)] {
+            if self.features().contains(&feature) {
+                blocks.insert(block);
+            }
         }
         let has = |block| blocks.contains(&block);
         let (has_triangles, has_fields) = (has(Block::Triangle), has(Block::Raymarch));
@@ -80,6 +85,11 @@ impl SceneFile {
         Needs {
             features: self.needed_features(),
             smooth: scene.options.shading == Shading::Smooth && has_triangles,
+            // The soft core makes the descriptors of other meshes.
+            geometry: has(Block::Line)
+                || has_triangles
+                    && scene.options.clip == Clip::Guard
+                    && scene.options.winding == Winding::Mesh,
             depths: has_triangles || self.depth,
             fields,
             blocks,
@@ -136,6 +146,7 @@ impl Needs {
             blocks: &self.blocks | &other.blocks,
             features: &self.features | &other.features,
             smooth: self.smooth || other.smooth,
+            geometry: self.geometry || other.geometry,
             depths: self.depths || other.depths,
             fields: match (self.fields, other.fields) {
                 (Some(one), Some(other)) => Some(one.with(&other)),
@@ -151,10 +162,14 @@ impl Needs {
         if self.smooth {
             options.push("--smooth".to_owned());
         }
+        let has = |block| self.blocks.contains(&block);
+        if has(Block::Triangle) && !self.geometry {
+            options.push("--no-geometry".to_owned());
+        }
+        if (has(Block::Line) || has(Block::Raymarch)) && !self.depths {
+            options.push("--no-depths".to_owned());
+        }
         if let Some(fields) = &self.fields {
-            if !self.depths {
-                options.push("--no-depths".to_owned());
-            }
             options.extend([
                 "--fields".to_owned(),
                 fields.names(),

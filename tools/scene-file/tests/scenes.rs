@@ -93,7 +93,7 @@ fn the_scene_of_the_page_is_valid() {
     let needs = scene.needs().options().join(" ");
     assert_eq!(
         needs,
-        "--blocks scanout raymarch --no-depths --fields box,spheres --lanes 2"
+        "--blocks scanout raymarch i2c --no-depths --fields box,spheres --lanes 2"
     );
 }
 
@@ -343,6 +343,10 @@ fn needs_follow_from_the_keys() {
         model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth
         model = "cube"; edges = "over" → --blocks scanout triangle line
         model = "cube"; steer = "gesture vga" → --blocks scanout triangle gesture
+        model = "cube"; steer = "imu look" → --blocks scanout triangle i2c
+        model = "cube"; clip = 10 → --blocks scanout triangle --no-geometry
+        model = "cube"; winding = "screen" → --blocks scanout triangle --no-geometry
+        model = "cube"; edges = "over"; clip = 10 → --blocks scanout triangle line
         field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
         field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres --lanes 1
         field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
@@ -357,6 +361,14 @@ fn needs_follow_from_the_keys() {
     for (text, expected) in rows(table) {
         assert_eq!(options(&text), expected, "{text}");
     }
+    let program = |text: &str| {
+        let scene = parse(&format!(
+            "title = \"A program\"\nprogram = \"cube\"\n{text}"
+        ));
+        scene.unwrap().needs().options().join(" ")
+    };
+    assert_eq!(program(""), "--blocks scanout line --no-depths");
+    assert_eq!(program("depth = true"), "--blocks scanout line");
 }
 
 #[test]
@@ -367,17 +379,17 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         names.collect::<Vec<_>>().join(" ")
     };
     let table = r#"
-        model = "torus" → mesh
-        model = "cow.obj" → mesh upload
-        model = "torus"; backend = "cpu" → cpu mesh
-        model = "torus"; clip = 3 → cpu mesh
-        model = "torus"; edges = "over" → edges mesh
-        object = "torus"; light = "1,1,1" → light mesh object
-        model = "torus"; steer = "gesture on" → gesture mesh
-        field = "menger:3"; steer = "imu orbit" → field imu
-        field = "menger:2"; model = "torus" → field mesh mesh-in-field
-        field = "menger:2"; stereo = "0.1,4" → field stereo
-        field = "union:box:1,1,1+sphere:1"; fog = 0.1; prepass = true → field fog prepass spheres
+        model = "torus" → mesh view
+        model = "cow.obj" → mesh upload view
+        model = "torus"; backend = "cpu" → cpu mesh view
+        model = "torus"; clip = 3 → cpu mesh view
+        model = "torus"; edges = "over" → edges mesh view
+        object = "torus"; light = "1,1,1" → light mesh object view
+        model = "torus"; steer = "gesture on" → gesture mesh view
+        field = "menger:3"; steer = "imu orbit" → field imu view
+        field = "menger:2"; model = "torus" → field mesh mesh-in-field view
+        field = "menger:2"; stereo = "0.1,4" → field stereo view
+        field = "union:box:1,1,1+sphere:1"; fog = 0.1; prepass = true → field fog prepass spheres view
     "#;
     for (text, expected) in rows(table) {
         assert_eq!(features(&text), expected, "{text}");
@@ -388,13 +400,9 @@ fn parts_of_the_firmware_follow_from_the_commands() {
 fn several_scenes_need_what_each_needs() {
     let scenes = ["menger", "wireframe", "spheres"].map(|name| built_in(name).unwrap());
     let needs = Needs::of(&scenes);
-    let blocks = [
-        Block::Scanout,
-        Block::Triangle,
-        Block::Raymarch,
-        Block::Line,
-    ];
+    let blocks = [Block::Scanout, Block::Raymarch, Block::Line];
     assert_eq!(needs.blocks, blocks.into());
+    assert!(needs.geometry && !needs.depths);
     let fields = needs.fields.unwrap();
     assert_eq!(
         (fields.names().as_str(), fields.lanes),

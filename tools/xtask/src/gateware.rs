@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use glint_core::block::Block;
-use glint_scene_file::Needs;
+use glint_scene_file::{Needs, SceneFile};
 
 use crate::{paths, run, scenes};
 
@@ -38,12 +38,20 @@ impl Board {
         }
     }
 
-    /// Whether the board starts its firmware from its SPI flash without a host. The SoC of the ULX3S cannot read the flash.
-    const fn starts_from_flash(self) -> bool {
+    /// Whether the board has the pins of the block. The ULX3S has no digits, and its SoC cannot read the flash.
+    const fn has(self, block: Block) -> bool {
         match self {
             Self::Virtual | Self::Urbana => true,
-            Self::Ulx3s => false,
+            Self::Ulx3s => !matches!(block, Block::Flash | Block::Digits),
         }
+    }
+
+    /// What scenes need of the blocks for which the board has pins. The SPI flash, from which a board starts without a host, is one.
+    pub fn needs(self, scenes: &[SceneFile]) -> Needs {
+        let mut needs = Needs::of(scenes);
+        needs.blocks.insert(Block::Flash);
+        needs.blocks.retain(|block| self.has(*block));
+        needs
     }
 
     /// Build folder.
@@ -57,11 +65,14 @@ impl Board {
 pub struct Options {
     /// Build exactly what these scenes need, with the SPI flash from which a board starts: names of built-in scenes, scene files, or
     /// `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "no_depths", "fields", "lanes"])]
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "no_geometry", "no_depths", "fields", "lanes"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
     smooth: bool,
+    /// Leave out the geometry pass of the triangle engine: the soft core makes the descriptors of meshes
+    #[arg(long)]
+    no_geometry: bool,
     /// Leave out the depth buffer, which a build without `triangle` does not need for pictures
     #[arg(long)]
     no_depths: bool,
@@ -76,8 +87,8 @@ pub struct Options {
     #[arg(long, value_name = "MHZ")]
     clock: Option<String>,
     /// Optional blocks of the build: `scanout`, `triangle`, `raymarch` (without `triangle` the gateware draws fields alone), `line` (a
-    /// part of the triangle engine), `gesture`, `flash` [default: all; all but `flash` and `raymarch` for the ulx3s]. With `--scene`:
-    /// further blocks
+    /// part of the triangle engine), `gesture`, `flash`, `i2c` (for the motion sensor), `digits` [default: all; all but `flash`, `digits` and
+    /// `raymarch` for the ulx3s]. With `--scene`: further blocks
     #[arg(long, value_parser = PossibleValuesParser::new(Block::NAMES), hide_possible_values = true, value_delimiter = ',', num_args = 1..)]
     blocks: Vec<String>,
 }
@@ -92,14 +103,16 @@ impl Options {
         let mut clock = self.clock.clone();
         if !self.scene.is_empty() {
             let scenes = scenes::read(&self.scene)?;
-            let mut needs = Needs::of(&scenes);
-            if board.starts_from_flash() {
-                needs.blocks.insert(Block::Flash);
-            }
+            let mut needs = board.needs(&scenes);
             let further = Block::ALL
                 .into_iter()
                 .filter(|block| self.blocks.iter().any(|name| name == block.name()));
             needs.blocks.extend(further);
+            needs.geometry |= needs.blocks.contains(&Block::Line)
+                || self
+                    .blocks
+                    .iter()
+                    .any(|name| name == Block::Triangle.name());
             needs.depths |= needs.blocks.contains(&Block::Triangle);
             arguments = needs.options();
             clock = match clock {
@@ -113,6 +126,9 @@ impl Options {
         }
         if self.smooth {
             arguments.push("--smooth".to_owned());
+        }
+        if self.no_geometry {
+            arguments.push("--no-geometry".to_owned());
         }
         if self.no_depths {
             arguments.push("--no-depths".to_owned());
@@ -408,7 +424,8 @@ mod tests {
                 assert!(blocks(&found).contains(&"flash"), "{name}: {found:?}");
             }
             let found = arguments(Board::Ulx3s, &line);
-            assert!(!blocks(&found).contains(&"flash"), "{name}: {found:?}");
+            let has_pins = |block: &&str| !["flash", "digits"].contains(block);
+            assert!(blocks(&found).iter().all(has_pins), "{name}: {found:?}");
         }
     }
 

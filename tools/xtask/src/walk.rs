@@ -1,14 +1,19 @@
 //! `cargo xtask walk`: tests builds of the virtual board with only some blocks, each with its own firmware.
 //!
-//! A build is for a scene, or has a single optional block with the blocks that contain it. Each board must start and answer `info`
+//! A build is for a scene, or has a single optional block. Each board must start and answer `info`
 //! with its blocks. The build for a scene draws the scene with its own firmware: the picture must equal that of the complete build
 //! (all blocks, all parts of the firmware), in no more cycles. The scene's firmware must refuse the commands of all other parts,
-//! and depths if the gateware has no depth buffer.
+//! and depths if the gateware has no depth buffer. Without a host, the BIOS of this build, on the emulated board, must start the
+//! firmware with all parts from an image with the scene in the flash.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 use std::slice;
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use glint_core::block::Block;
@@ -19,6 +24,13 @@ use serde::Deserialize;
 use crate::gateware::{self, Board, Library};
 use crate::{bootstrap, firmware, paths, run, scenes};
 
+/// Longest time from power-up to the firmware's prompt. The BIOS waits for a host for 20 million cycles.
+const POWER_UP: Duration = Duration::from_secs(60);
+
+/// Prompts of the firmware and of the BIOS.
+const PROMPT: &str = "glint> ";
+const BIOS_PROMPT: &str = "litex";
+
 /// Prefix of the name of a build with a single block.
 const ONLY: &str = "only-";
 
@@ -26,7 +38,8 @@ const ONLY: &str = "only-";
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
 /// A command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
-const COMMANDS: [(Feature, &str); 19] = [
+const COMMANDS: [(Feature, &str); 20] = [
+    (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),
     (feature::EDGES, "edges"),
@@ -122,20 +135,20 @@ fn subset(name: &str) -> Result<String> {
     let Some(block) = block else {
         bail!("no block {name}: expected {}", Block::NAMES.join(", "));
     };
-    let mut blocks = vec![block];
-    if block == Block::Line {
-        blocks.push(Block::Triangle);
-    }
-    Build::single(&format!("{ONLY}{name}"), &blocks)?.answers(&blocks)?;
+    Build::single(&format!("{ONLY}{name}"), block)?.answers(&[block])?;
     Ok(format!("{ONLY}{name}: answers"))
 }
 
 /// Draws a scene's picture on its own build and on the `complete` build. Returns the result as one line for the log.
 fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     let own = Build::of_scene(scene)?;
-    let blocks: Vec<_> = scene.needs().blocks.into_iter().collect();
-    own.answers(&blocks)?;
+    let blocks = Board::Virtual.needs(slice::from_ref(scene)).blocks;
+    own.answers(&blocks.into_iter().collect::<Vec<_>>())?;
     own.refuses_others(scene)?;
+    if scene.needs().features.contains(&feature::WIREFRAME) {
+        own.draws_other_programs()?;
+    }
+    own.runs_alone(scene)?;
     let [own, reference] = [own.draw(scene)?, complete.draw(scene)?];
     ensure!(
         own.png == reference.png,
@@ -153,6 +166,58 @@ fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
         own.cycles,
         reference.cycles
     ))
+}
+
+/// A program that ends with this value.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended before.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// The text on a board's serial port up to the first prompt, or until `end`.
+fn said_at_power_up(port: &Path, end: Instant) -> Result<String> {
+    let mut line = File::open(port).with_context(|| format!("opening {}", port.display()))?;
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || {
+        let mut bytes = [0; 4096];
+        while let Ok(length @ 1..) = line.read(&mut bytes) {
+            if sender.send(bytes[..length].to_vec()).is_err() {
+                return;
+            }
+        }
+    });
+    let mut said = Vec::new();
+    loop {
+        let text = String::from_utf8_lossy(&said);
+        if [PROMPT, BIOS_PROMPT]
+            .iter()
+            .any(|prompt| text.contains(prompt))
+        {
+            return Ok(text.into_owned());
+        }
+        let rest = end.saturating_duration_since(Instant::now());
+        match receiver.recv_timeout(rest) {
+            Ok(bytes) => said.extend(bytes),
+            Err(_) => return Ok(text.into_owned()),
+        }
+    }
+}
+
+/// Path of the program `glint`.
+fn glint() -> PathBuf {
+    paths::target().join("debug/glint")
+}
+
+/// The folder of pictures and images.
+fn folder() -> Result<PathBuf> {
+    let folder = paths::target().join("walk");
+    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    Ok(folder)
 }
 
 /// Path of a firmware's image in `target`.
@@ -174,10 +239,9 @@ impl Build {
         })
     }
 
-    /// Builds the virtual board with only these blocks. Its firmware has all parts.
-    fn single(name: &str, blocks: &[Block]) -> Result<Self> {
-        let mut options = vec!["--blocks"];
-        options.extend(blocks.iter().map(|block| block.name()));
+    /// Builds the virtual board with this block alone. Its firmware has all parts.
+    fn single(name: &str, block: Block) -> Result<Self> {
+        let options = ["--blocks", block.name()];
         Ok(Self {
             name: name.to_owned(),
             folder: gateware::build_beside(name, &options, Library::Quick)?,
@@ -188,7 +252,7 @@ impl Build {
     /// Builds the virtual board and the firmware for a scene.
     fn of_scene(scene: &SceneFile) -> Result<Self> {
         let name = scene.name();
-        let options = scene.needs().options();
+        let options = Board::Virtual.needs(slice::from_ref(scene)).options();
         let options: Vec<_> = options.iter().map(String::as_str).collect();
         firmware::build_for(Board::Virtual, slice::from_ref(scene), &[])?;
         Ok(Self {
@@ -254,11 +318,87 @@ impl Build {
         Ok(())
     }
 
+    /// Fails unless the firmware, on the emulated board, accepts a wireframe program of a user and draws it.
+    fn draws_other_programs(&self) -> Result<()> {
+        let folder = folder()?;
+        let program = folder.join("ball.wfb");
+        let step =
+            |name: &str, command: &mut Command| run::step(name, command.current_dir(paths::root()));
+        let make = ["wireframe", "make", "icosphere:2", "--force", "--out"];
+        step(
+            "wireframe program",
+            Command::new(glint()).args(make).arg(&program),
+        )?;
+        let [own, expected] = ["board", "model"].map(|by| folder.join(format!("ball-{by}.png")));
+        let render = [Path::new("wireframe"), Path::new("render"), &program];
+        let out = [Path::new("--force"), Path::new("--out")];
+        step(
+            "wireframe program by the model",
+            Command::new(glint()).args(render).args(out).arg(&expected),
+        )?;
+        let mut arguments = [&render[..], &["--board", "emulated"].map(Path::new), &out].concat();
+        arguments.push(&own);
+        step(
+            &format!("wireframe program by the firmware of {}", self.name),
+            &mut self.glint(&arguments),
+        )?;
+        ensure!(
+            fs::read(&own)? == fs::read(&expected)?,
+            "the picture of an uploaded wireframe program differs from the model's"
+        );
+        Ok(())
+    }
+
+    /// Fails unless the BIOS of the build, on the emulated board, starts the firmware with all parts from an image with the scene, without an error.
+    fn runs_alone(&self, scene: &SceneFile) -> Result<()> {
+        let folder = folder()?;
+        let [image, port] =
+            ["bin", "port"].map(|kind| folder.join(scene.name()).with_extension(kind));
+        let mut make = Command::new(glint());
+        make.args([
+            "image",
+            "make",
+            "--force",
+            "--scene",
+            scene.name(),
+            "--firmware",
+        ])
+        .arg(firmware_image("glint"))
+        .arg("--out")
+        .arg(&image)
+        .current_dir(paths::root());
+        run::step(&format!("image of {}", scene.name()), &mut make)?;
+        let start = Instant::now();
+        let mut board = Command::new(glint());
+        board
+            .args(["board", "--board", "emulated", "--flash"])
+            .arg(&image)
+            .arg("--ready-file")
+            .arg(&port)
+            .env("GLINT_VIRTUAL_BOARD", &self.folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        let _ = fs::remove_file(&port);
+        let _board = Running(board.spawn().context("starting `glint board`")?);
+        let port = loop {
+            match fs::read_to_string(&port) {
+                Ok(path) if path.ends_with('\n') => break path,
+                _ => ensure!(start.elapsed() < POWER_UP, "`glint board` is not ready"),
+            }
+            thread::sleep(Duration::from_millis(20));
+        };
+        let said = said_at_power_up(Path::new(port.trim_end()), start + POWER_UP)?;
+        ensure!(
+            said.contains(PROMPT) && !said.contains("error"),
+            "expected the firmware from the flash, got {said:?}"
+        );
+        Ok(())
+    }
+
     /// Draws the scene's picture.
     fn draw(&self, scene: &SceneFile) -> Result<Frame> {
-        let folder = paths::target().join("walk");
-        fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
-        let picture = folder.join(format!("{}-{}.png", scene.name(), self.name));
+        let picture = folder()?.join(format!("{}-{}.png", scene.name(), self.name));
         let stats = picture.with_extension("json");
         let words = [
             "render",
@@ -286,7 +426,7 @@ impl Build {
 
     /// `glint` with these arguments, for this build and its firmware.
     fn glint(&self, arguments: &[&Path]) -> Command {
-        let mut command = Command::new(paths::target().join("debug/glint"));
+        let mut command = Command::new(glint());
         command
             .args(arguments)
             .arg("--firmware")

@@ -90,7 +90,7 @@ commands! {
             => key(Order::Option, "404040").with(LIT)
                 .host(option("ambient", "RRGGBB", "Ambient light [default: 404040 with a --light; without, white on a field and black on meshes]")
                     .expects("a colour RRGGBB"));
-        background Background(background: Or<Default, Background>) or show: "show or set the background; default is white for a field and black for meshes, which have one colour"
+        background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes, which have one colour"
             => key(Order::Option, "sky").with(LIT)
                 .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")
                     .expects("white, sky or a colour RRGGBB"));
@@ -104,26 +104,26 @@ commands! {
         undecided Undecided(on: bool) or show in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
                 .host(switch("undecided", "on", "Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour"));
-        camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
+        camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn) in VIEW: "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
             => key(Order::Camera, "4 30 70").with(LIT).without(&["lookat"])
                 .host(option("camera", "R,THETA,PHI", "A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The half width of the image plane at distance 1 is 0.9, and the near plane is at 0.1 [default: a camera that shows the whole model; with a field 4,30,60]")
                     .expects("a camera R,THETA,PHI such as 3,30,60"));
-        view View(view: View) or show: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
+        view View(view: View) or show in VIEW: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
             => key(Order::Camera, "0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1").with(LIT).without(&["camera", "lookat"]);
-        look Look(yaw: Turns, pitch: Turns, roll: Turns): "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
-        lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen"
+        look Look(yaw: Turns, pitch: Turns, roll: Turns) in VIEW: "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
+        lookat LookAt(view: LookAt) in VIEW: "look from an eye in the direction of a gaze, with z or another direction up on the screen"
             => key(Order::Camera, "3 0 1 -3 0 -1").with(LIT)
                 .host(option("look-at", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]", "A camera at the eye E in the direction of the gaze G, with the direction U (by default z) up on the screen")
                     .expects("a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1"));
-        fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees"
+        fov FieldOfView(angle: FieldOfView) in VIEW: "set a perspective projection by its horizontal field of view, in degrees"
             => key(Order::Lens, "66").with(LIT).without(&["orthographic"])
                 .host(option("fov", "DEGREES", "The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square")
                     .expects("1 to 179 degrees"));
-        orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
+        orthographic Orthographic(width: U8_28) in VIEW: "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
             => key(Order::Lens, "2").with(MESHES).without(FIELD)
                 .host(option("orthographic", "WIDTH", "Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field requires perspective")
                     .expects("a width in world units"));
-        zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more"
+        zoom Zoom(factor: U8_28) in VIEW: "enlarge the picture about its middle by FACTOR; below 1 shows more"
             => key(Order::Lens, "1.5").with(LIT).without(&["orthographic"])
                 .host(option("zoom", "FACTOR", "Enlarge the middle of the picture by this factor, with a narrower field of view")
                     .expects("a factor that leaves a field of view of 1 to 179 degrees"));
@@ -133,7 +133,7 @@ commands! {
 
     /// Commands for camera motion.
     OrbitCommands {
-        orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
+        orbit Orbit(frames: Option<Whole<3_600>>) in VIEW: "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
     options {}
 

@@ -18,6 +18,10 @@ pub enum Block {
     Gesture = 4,
     /// The SPI flash in a window of memory.
     Flash = 5,
+    /// The I2C master, for the motion sensor.
+    I2C = 6,
+    /// The displays of digits.
+    Digits = 7,
 }
 
 choices!(Block {
@@ -27,6 +31,8 @@ choices!(Block {
     Line: "line",
     Gesture: "gesture",
     Flash: "flash",
+    I2C: "i2c",
+    Digits: "digits",
 });
 
 impl Block {

@@ -183,7 +183,7 @@ fn bus_with(master: Master) -> (I2c, Rc<RefCell<Master>>) {
     bus::connect(Registers(master.clone()));
     // SAFETY: a model on the bus answers all accesses, so no device is affected.
     let registers = unsafe { Peripherals::steal() }.i2c;
-    (I2c::new(registers, clock()), master)
+    (I2c::new(registers, clock(), true), master)
 }
 
 fn log(master: &RefCell<Master>) -> String {
@@ -203,6 +203,16 @@ fn writes_and_reads_with_a_repeated_start() {
         log(&master),
         "S d0+ 10+ de+ ad+ P S d0+ 0f+ S d1+ <a0+ <a1+ <a2- P"
     );
+}
+
+#[test]
+fn an_absent_master_is_an_error() {
+    let (mut i2c, master) = bus_with(Master::new());
+    i2c.is_present = false;
+    let mut buffer = [0; 3];
+    let result = i2c.write_read(0x68, &[0x0f], &mut buffer);
+    assert_eq!(result, Err(BusError::Absent));
+    assert_eq!(log(&master), "");
 }
 
 #[test]

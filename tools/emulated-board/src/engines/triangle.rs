@@ -237,6 +237,7 @@ impl Device for TriangleEngine {
                 .with_triangles(true)
                 .with_lines(true)
                 .with_depths(true)
+                .with_geometry(true)
                 .with_count_bits(COUNT_BITS as u8)
                 .bits(),
             offset::STATUS => self.status().bits(),

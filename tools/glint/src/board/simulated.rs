@@ -5,6 +5,7 @@ use super::name::BoardName;
 use crate::formats::read_at_most;
 use emulated_board::EmulatedBoard;
 use glint_board_api::{AnyBoard, built};
+use std::env;
 use std::path::Path;
 use virtual_board::{Start, VirtualBoard};
 
@@ -42,8 +43,12 @@ pub fn emulated(firmware: &[u8]) -> Result<SimulatedBoard<EmulatedBoard>, OpenEr
 /// # Errors
 /// The gateware is not built.
 pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
-    let bios = "gateware/virtual/software/bios/bios.bin";
-    let bios = read(&built::find(bios, "cargo xtask gateware")?)?;
+    let bios = "software/bios/bios.bin";
+    let path = match env::var_os("GLINT_VIRTUAL_BOARD") {
+        Some(folder) => Path::new(&folder).join(bios),
+        None => built::find(&format!("gateware/virtual/{bios}"), "cargo xtask gateware")?,
+    };
+    let bios = read(&path)?;
     Ok(SimulatedBoard::new(EmulatedBoard::full(&bios)))
 }
 

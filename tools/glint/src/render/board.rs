@@ -12,7 +12,7 @@ use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
-use glint_model::Frame;
+use glint_model::{Frame, Subject};
 use glint_scene_file::SceneFile;
 
 /// A renderer that draws frames on a board.
@@ -146,7 +146,11 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         lines.extend(settings.filter(|line| !line.starts_with("fit ")).cloned());
         let field = frame.subject.field_part();
         lines.extend(field.map(|field| format!("quality {}", field.quality)));
-        lines.extend([size_command(frame.size), view_command(&frame.view)]);
+        lines.push(size_command(frame.size));
+        // A program has its own eye, and a firmware for it no command of a camera.
+        if !matches!(frame.subject, Subject::Wireframe(_)) {
+            lines.push(view_command(&frame.view));
+        }
         Ok(lines)
     }
 

@@ -10,7 +10,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::control::bench::{Bench, Events};
 use crate::control::passes::{
     ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LINES, LIST, Limits, MEMORY, MESH,
-    NAMES, NONE, Pass, RASTER, SIZE, TRIANGLES,
+    NAMES, NO_GEOMETRY, NONE, Pass, RASTER, SIZE, TRIANGLES,
 };
 
 /// Places each memory region of a pass at valid and at invalid addresses, and requests this pass alone and both passes. The pass
@@ -74,6 +74,7 @@ fn a_build_has_less_memory_and_fewer_sizes() {
         sizes: 2,
         triangles: true,
         lines: false,
+        geometry: true,
     };
     for which in [GEOMETRY, RASTER] {
         bench.passes = Pass::good();
@@ -134,6 +135,43 @@ fn a_build_without_lines_refuses_them() {
                 .iter()
                 .all(|&n| n > 10)
         );
+    }
+}
+
+/// A build for lines alone refuses geometry passes of meshes, and checks the lists of raster passes; a build without geometry passes
+/// refuses them all.
+#[test]
+fn builds_for_lines_alone_and_without_geometry_refuse_passes() {
+    let mut random = Pcg64Mcg::new(10);
+    for (name, [triangles, lines, geometry]) in [
+        ("triangle_control_lines_alone", [false, true, true]),
+        ("triangle_control_no_geometry", [true, false, false]),
+    ] {
+        let mut bench = Bench::of(name, 48, 6);
+        bench.limits = Limits {
+            triangles,
+            lines,
+            geometry,
+            ..bench.limits
+        };
+        let mut errors = [[0; 11]; 2];
+        for _ in 0..3000 {
+            bench.passes = [GEOMETRY, RASTER].map(|which| some_pass(&mut random, which));
+            bench.list_shift = random.random_range(0..20);
+            let expected = [GEOMETRY, RASTER].map(|which| bench.refusal(which));
+            let found = bench.ask([true, true]);
+            assert_eq!(found, expected, "{name}");
+            for which in [GEOMETRY, RASTER] {
+                errors[which][found[which] as usize] += 1;
+            }
+        }
+        println!("{name}: numbers of passes by error: {errors:?}");
+        let refused = if geometry { TRIANGLES } else { NO_GEOMETRY };
+        assert!(errors[GEOMETRY][refused as usize] > 10);
+        assert_eq!(errors[RASTER][TRIANGLES as usize], 0);
+        for error in [NONE, SIZE, ADDRESS] {
+            assert!(errors[RASTER][error as usize] > 10, "error {error}");
+        }
     }
 }
 

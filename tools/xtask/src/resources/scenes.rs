@@ -32,7 +32,7 @@ pub fn build() -> Result<PathBuf> {
     for (name, _, options) in &builds {
         gateware::generate_beside(Board::Urbana, name, &words(options))?;
     }
-    let ulx3s = gateware::ulx3s_cells(ALL, &words(&builds[0].2))?;
+    let ulx3s = gateware::ulx3s_cells(ALL, &words(&Board::Ulx3s.needs(&scenes).options()))?;
     gateware::build(Board::Virtual)?;
     let full = firmware::build(Board::Virtual, &[])?;
     run::build_program("glint", "glint")?;

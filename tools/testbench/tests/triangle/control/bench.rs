@@ -100,6 +100,7 @@ impl Bench {
                 sizes: 3,
                 triangles: true,
                 lines: false,
+                geometry: true,
             },
             states: [State::Idle; 2],
             errors: [NONE; 2],

@@ -15,6 +15,7 @@ pub const LIST: u64 = 6;
 pub const CANCELLED: u64 = 7;
 pub const TRIANGLES: u64 = 8;
 pub const LINES: u64 = 9;
+pub const NO_GEOMETRY: u64 = 10;
 
 /// Index of the geometry pass in arrays of both passes.
 pub const GEOMETRY: usize = 0;
@@ -193,6 +194,8 @@ pub struct Limits {
     pub triangles: bool,
     /// Whether the build draws lines.
     pub lines: bool,
+    /// Whether the build has geometry passes.
+    pub geometry: bool,
 }
 
 /// Returns the error code of the expected refusal of a pass, or `NONE`.
@@ -208,10 +211,17 @@ pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64, limi
             .iter()
             .any(|name| pass.flags.is_set(name))
     };
-    if !limits.triangles && (which == GEOMETRY || lists()) {
+    let of_lines = pass.flags.is_set("lines");
+    let has_triangles = match which {
+        GEOMETRY => !(limits.lines && of_lines),
+        _ => !limits.lines && lists(),
+    };
+    if !limits.triangles && has_triangles {
         TRIANGLES
-    } else if !limits.lines && pass.flags.is_set("lines") {
+    } else if !limits.lines && of_lines {
         LINES
+    } else if !limits.geometry && which == GEOMETRY {
+        NO_GEOMETRY
     } else if pass.size() >= limits.sizes {
         SIZE
     } else if regions(which, pass, list_shift, descriptor)

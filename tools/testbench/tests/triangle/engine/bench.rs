@@ -97,6 +97,16 @@ impl Bench {
         Self::of("triangle_engine_lines", Shading::Flat, seed, stalls)
     }
 
+    /// Creates a bench as [`new`](Self::new) does, with the module for lines without triangles and without the depth buffer.
+    pub fn lines_alone(seed: u32, stalls: f64) -> Self {
+        Self::of("triangle_engine_lines_alone", Shading::Flat, seed, stalls)
+    }
+
+    /// Creates a bench as [`new`](Self::new) does, with the module for triangles without the geometry pass.
+    pub fn no_geometry(seed: u32, stalls: f64) -> Self {
+        Self::of("triangle_engine_no_geometry", Shading::Flat, seed, stalls)
+    }
+
     /// Creates a bench as [`new`](Self::new) does, with the module for fields without triangles.
     pub fn fields_alone(seed: u32, stalls: f64) -> Self {
         Self::of("triangle_engine_fields_alone", Shading::Flat, seed, stalls)

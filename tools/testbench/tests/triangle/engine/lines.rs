@@ -43,6 +43,61 @@ fn random_segments_with_random_stalls() {
     }
 }
 
+/// A build for lines alone draws lines without depths as one for triangles and lines does.
+#[test]
+fn a_build_for_lines_alone_draws_them() {
+    for (size, &picture) in SIZES.iter().enumerate() {
+        let mut numbers = Pcg64Mcg::new((size as u128) << 1 | 1);
+        let stalls = [0.0, 0.3, 0.7][size];
+        let mut bench = Bench::lines_alone(size as u32, stalls);
+        bench.with_depth = false;
+        for frame in 0..4 {
+            let count = numbers.random_range(0..150);
+            let random = (0..count).map(|_| random(&mut numbers, size));
+            let segments: Vec<_> = random
+                .chain(difficult(size))
+                .map(|segment| Segment {
+                    depth: LineDepth::Over,
+                    ..segment
+                })
+                .collect();
+            bench.slot = frame % 2;
+            draw(&mut bench, "lines alone", picture, &segments);
+        }
+    }
+}
+
+/// A build for lines alone skips the descriptors of triangles, and reports them.
+#[test]
+fn a_build_for_lines_alone_reports_triangles() {
+    let (gathered, _) = gathered_face(29);
+    let mut bench = Bench::lines_alone(30, 0.0);
+    bench.with_depth = false;
+    let clear = Expected::clear(SIZES[0]);
+    bench.start_gathered(&gathered, &clear);
+    bench.wait_for("status.raster_done");
+    assert_eq!(bench.read("status.list_error"), 1);
+}
+
+/// A build without the geometry pass draws the lists of another pass.
+#[test]
+fn a_build_without_geometry_draws_lists() {
+    let (gathered, frame) = gathered_face(31);
+    let mut bench = Bench::no_geometry(32, 0.3);
+    bench.draw_gathered("a face", &gathered, &frame);
+}
+
+/// The descriptors and lists of a face, by the module for triangles, and the frame.
+fn gathered_face(seed: u32) -> (Gathered, Expected) {
+    let mesh = face(0.0, 0xffff);
+    let frame = expected(&mesh, &ahead(1.0, 0.1), SIZES[0], false);
+    let mut gathered = Gathered::default();
+    let mut bench = Bench::new(seed, 0.0);
+    bench.configure(&mesh, &frame);
+    bench.gather("a face", &mut gathered);
+    (gathered, frame)
+}
+
 #[test]
 fn difficult_segments() {
     for (size, &picture) in SIZES.iter().enumerate() {
