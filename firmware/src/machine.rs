@@ -4,7 +4,7 @@ use glint_core::block::Block;
 use glint_hal::digits::Digits;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
-use glint_hal::timer::Clock;
+use glint_hal::timer::{Clock, Deadline};
 use glint_scene::Scene;
 use litex_pac::ctrl::Ctrl;
 
@@ -56,6 +56,8 @@ pub struct Devices {
     pub leds: OutputPort<u16>,
     /// The displays of digits.
     pub digits: Digits,
+    /// Time until which the digits keep the pattern of the self-test.
+    pub tests_digits: Option<Deadline>,
     /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken it.
     pub i2c: Option<I2c>,
 }
@@ -76,6 +78,8 @@ pub struct Machine {
     pub picture: Picture,
     /// The meshes and wireframe program, built-in and uploaded, and the staging memory.
     pub models: Models,
+    /// The bytes of the flash; `None` if the gateware cannot read it.
+    pub flash: Option<&'static [u8]>,
     /// Scenes, lists and meshes of the flash.
     pub library: Library,
     /// The demo.
@@ -103,7 +107,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// A machine in the state after reset, without the gesture engine.
+    /// A machine in the state after reset, without flash and gesture engine.
     pub fn new(
         identity: Identity,
         clock: Clock,
@@ -121,6 +125,7 @@ impl Machine {
             scene,
             picture: Picture::default(),
             models,
+            flash: None,
             library: Library::new(None),
             demo: Demo::default(),
             renderer,

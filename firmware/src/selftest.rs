@@ -4,7 +4,10 @@ use core::fmt;
 use core::time::Duration;
 
 use embedded_hal::i2c::NoAcknowledgeSource;
+use glint_core::block::Block;
+use glint_core::digits::segments;
 use glint_core::feature::{GESTURE, IMU, MESH};
+use glint_core::flash::{DataLines, data_lines};
 use glint_core::{image_sensor, mpu6050};
 use glint_engines::gesture::SetUpError;
 use glint_hal::i2c::BusError;
@@ -23,10 +26,16 @@ const BLANKING: Duration = Duration::from_millis(100);
 /// Timeout for a sample of the motion sensor, which may still be starting.
 const SAMPLE: Duration = Duration::from_millis(300);
 
+/// The characters of the digits from left to right, and the time for which they are shown.
+const PATTERN: [char; 8] = ['1', '2', '3', '4', '5', '6', '7', '8'];
+const LOOK: Duration = Duration::from_secs(3);
+
 /// Result of a test.
 pub enum Verdict {
     /// The part is present and works.
     Passed,
+    /// The part shows a text, which only a person can see.
+    Shows(&'static str),
     /// The part is missing in the board, the gateware or the firmware.
     Absent,
     /// The part is present and does not work.
@@ -48,6 +57,8 @@ pub enum Failure {
         /// The value read.
         found: u32,
     },
+    /// The data lines of the flash.
+    Flash(DataLines),
     /// No vertical blanking came in time.
     Blanking,
     /// Number of screen lines since reset whose pixels came too late.
@@ -73,6 +84,7 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Passed => f.write_str("ok"),
+            Self::Shows(text) => write!(f, "shows {text}"),
             Self::Absent => f.write_str("absent"),
             Self::Failed(failure) => write!(f, "FAILED: {failure}"),
         }
@@ -92,6 +104,7 @@ impl fmt::Display for Failure {
                 f,
                 "{address:#010x} is {found:#010x}, expected {expected:#010x}"
             ),
+            Self::Flash(lines) => lines.fmt(f),
             Self::Blanking => write!(
                 f,
                 "no vertical blanking for {} ms, expected one each 17 ms",
@@ -147,7 +160,7 @@ pub fn run(machine: &mut Machine) -> u32 {
 type Test = fn(&mut Machine) -> Verdict;
 
 /// The tests that run before the tests of the engines, which depend on memory and scan-out.
-const TESTS: [(&str, Test); 7] = [
+const TESTS: [(&str, Test); 9] = [
     ("identity", |machine| {
         Verdict::check(machine.identity.matches(), Failure::Identity)
     }),
@@ -160,6 +173,8 @@ const TESTS: [(&str, Test); 7] = [
         Verdict::check(passed, Failure::Stopped)
     }),
     ("memory", |machine| memory(machine.models.staging())),
+    ("flash", |machine| flash(machine.flash)),
+    ("digits", digits),
     ("imu", imu),
     ("camera", camera),
     ("scan-out", scan_out),
@@ -193,6 +208,27 @@ fn memory(window: &mut [u8]) -> Verdict {
         }
     }
     Verdict::Passed
+}
+
+/// Checks the data lines of the flash by the bytes that an image or a bitstream begins with.
+fn flash(bytes: Option<&[u8]>) -> Verdict {
+    match bytes.map(data_lines) {
+        None | Some(DataLines::Erased) => Verdict::Absent,
+        Some(lines) => Verdict::check(lines == DataLines::Right, Failure::Flash(lines)),
+    }
+}
+
+/// Shows another digit at each place, for a person who compares them with the text.
+fn digits(machine: &mut Machine) -> Verdict {
+    let Some(devices) = &mut machine.devices else {
+        return Verdict::Absent;
+    };
+    if !machine.identity.has(Block::Digits) {
+        return Verdict::Absent;
+    }
+    devices.digits.show(PATTERN.map(segments));
+    devices.tests_digits = Some(machine.clock.after(LOOK));
+    Verdict::Shows("1234 5678")
 }
 
 fn imu(machine: &mut Machine) -> Verdict {

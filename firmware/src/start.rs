@@ -136,6 +136,7 @@ pub fn machine() -> Result<Machine, StartError> {
     UART.start(peripherals.uart);
     let (scanout, engine, raymarcher, gesture, devices) = if identity.matches() {
         let devices = Devices {
+            tests_digits: None,
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
             leds: OutputPort::new(peripherals.leds.out()),
@@ -156,9 +157,9 @@ pub fn machine() -> Result<Machine, StartError> {
     } else {
         (None, None, None, None, None)
     };
-    let contents = identity
+    let flash = identity
         .matches()
-        .then(|| flash::bytes(&peripherals.identity, Block::Flash.bit())?.get(CONTENTS..))
+        .then(|| flash::bytes(&peripherals.identity, Block::Flash.bit()))
         .flatten();
     interrupts::start(Present {
         devices: devices.is_some(),
@@ -178,8 +179,8 @@ pub fn machine() -> Result<Machine, StartError> {
 
     // Without gateware that draws meshes the soft core draws them, whatever their size.
     let most_triangles = (gateware.as_ref()).map_or(u32::MAX, GatewareRenderer::most_triangles);
-    let program = program.map_err(StartError::Program)?;
     let program = Program::new_checked(CUBE.as_flattened());
+    let program = program.map_err(StartError::Program)?;
 
     let mut machine = Machine::new(
         identity,
@@ -205,7 +206,8 @@ pub fn machine() -> Result<Machine, StartError> {
         devices,
         peripherals.ctrl,
     );
-    machine.library = Library::new(contents);
+    machine.flash = flash;
+    machine.library = Library::new(flash.and_then(|flash| flash.get(CONTENTS..)));
     machine.downloads = Downloads::new(memory.copy);
     machine.gesture = gesture.map(|engine| Gesture::new(engine, clock));
     Ok(machine)

@@ -6,6 +6,7 @@
 #[cfg(feature = "alloc")]
 mod encode;
 mod error;
+mod lines;
 
 use core::ops::Range;
 use core::str;
@@ -19,6 +20,7 @@ use crate::wire::crc32;
 #[cfg(feature = "alloc")]
 pub use encode::{EncodeError, Piece, encode};
 pub use error::{Expected, FlashError};
+pub use lines::{DataLines, data_lines};
 
 /// Offset of the firmware in bytes, after the slot of the bitstream.
 pub const FIRMWARE: usize = constants::FLASH_FIRMWARE as usize;

@@ -1,7 +1,8 @@
 //! Tests of flash images: encoding, and detection of every kind of damage.
 
 use glint_core::flash::{
-    CONTENTS, Contents, EncodeError, FIRMWARE, Image, Kind, MAX_BYTES, Piece, encode,
+    CONTENTS, Contents, DataLines, EncodeError, FIRMWARE, Image, Kind, MAX_BYTES, Piece,
+    data_lines, encode,
 };
 use glint_core::wire::crc32;
 
@@ -156,4 +157,62 @@ fn parts_that_the_format_refuses_are_not_encoded() {
     );
     let large = piece(Kind::Mesh, "x", &vec![0; MAX_BYTES - CONTENTS]);
     assert!(one(large).contains("expected at most 16777216 bytes"));
+}
+
+/// The bytes as a reader receives them whose line k is the flash's line `order[k]`, or constant. Only the bytes that the check reads are
+/// changed.
+fn through_lines(bytes: &[u8], order: [Option<u32>; 4], constant: u8) -> Vec<u8> {
+    let half = |half: u8| {
+        (0..4).fold(0, |received, line| {
+            let level = order[line].map_or(constant, |line| half >> line & 1);
+            received | level << line
+        })
+    };
+    let mut received = bytes[..CONTENTS + 4].to_vec();
+    for place in (0..4096).chain(CONTENTS..CONTENTS + 4) {
+        let byte = &mut received[place];
+        *byte = half(*byte >> 4) << 4 | half(*byte & 0xf);
+    }
+    received
+}
+
+#[test]
+fn known_bytes_show_the_order_of_the_data_lines() {
+    let without_bitstream = encode(&[], &firmware(), &pieces()).unwrap();
+    let mut vendors = vec![0xff; CONTENTS + 4];
+    vendors[..bitstream().len()].copy_from_slice(&bitstream());
+    for flash in [image(), without_bitstream, vendors] {
+        assert_eq!(data_lines(&flash), DataLines::Right);
+        for number in 1..256_u32 {
+            // The permutations among all lists of four lines.
+            let order = [0, 2, 4, 6].map(|bit| number >> bit & 3);
+            let carries = |line| order.iter().position(|on| *on == line).map(|on| on as u8);
+            let [Some(a), Some(b), Some(c), Some(d)] = [0, 1, 2, 3].map(carries) else {
+                continue;
+            };
+            let received = through_lines(&flash, order.map(Some), 1);
+            let expected = match [a, b, c, d] {
+                [0, 1, 2, 3] => DataLines::Right,
+                order => DataLines::Exchanged(order),
+            };
+            assert_eq!(data_lines(&received), expected);
+        }
+        for level in [0, 1] {
+            let received = through_lines(&flash, [Some(0), Some(1), None, None], level);
+            assert_eq!(data_lines(&received), DataLines::Two);
+        }
+    }
+    assert_eq!(data_lines(&[0xff; CONTENTS + 4]), DataLines::Erased);
+    assert_eq!(data_lines(&[]), DataLines::Erased);
+    let other = data_lines(&[0x12; CONTENTS + 4]);
+    assert_eq!(other, DataLines::Unknown(0x1212_1212));
+    let texts = [DataLines::Exchanged([1, 0, 2, 3]), DataLines::Two, other];
+    assert_eq!(
+        texts.map(|lines| lines.to_string()),
+        [
+            "data of the lines 0 1 2 3 on the lines 1 0 2 3, expected the same order",
+            "no data on the lines 2 and 3, expected the QE bit set",
+            "0x12121212 at 0x400000, expected a bitstream or the contents of an image",
+        ]
+    );
 }

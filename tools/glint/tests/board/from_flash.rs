@@ -84,6 +84,7 @@ fn a_board_with_a_list_runs_alone() {
     assert!(answer.contains("scene icosphere:2\r\n"), "{answer}");
     assert!(answer.contains("triangles 80\r\n"), "{answer}");
     let answer = command(&mut board, "selftest");
+    assert!(answer.contains("selftest flash ok\r\n"), "{answer}");
     assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
     assert!(
         turn(&mut board).1.contains("demo on\r\n"),

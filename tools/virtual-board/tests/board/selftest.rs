@@ -1,18 +1,25 @@
 //! Tests of the command `selftest`: it finds plugged sensors, and reports faults. For the virtual board, a test of `glint` runs the
 //! command, on a board that starts from its flash.
 
-use crate::firmware::{address, command, emulated, image, patch};
+use crate::firmware::{Console, PROMPT, address, command, emulated, image, patch};
 use crate::sensor::{emulated_with_sensor, sensor};
+use emulated_board::EmulatedBoard;
+use glint_core::block::Block;
+use glint_core::digits::segments;
+use glint_core::flash::{CONTENTS, MAGIC};
+use virtual_board::virtual_flash::Flash;
 use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_board::virtual_mpu6050::{Fault, State};
 use virtual_board::{Simulation, Uart};
 
 /// All parts.
-const PARTS: [&str; 15] = [
+const PARTS: [&str; 17] = [
     "identity",
     "clock",
     "cycle counter",
     "memory",
+    "flash",
+    "digits",
     "imu",
     "camera",
     "scan-out",
@@ -40,7 +47,9 @@ fn check(answer: &str, sensors: &str) {
     for part in PARTS {
         let expected = match part {
             "imu" | "camera" => sensors,
-            "triangle smooth" => "absent",
+            "digits" => "shows 1234 5678",
+            // The flash is erased.
+            "triangle smooth" | "flash" => "absent",
             _ => "ok",
         };
         assert_eq!(verdict(answer, part), expected, "{part}: {answer}");
@@ -58,12 +67,66 @@ fn plugged_sensors_pass() {
     board.plug_image_sensor(ImageSensor::new(Model::Ov7670, nothing, timing));
     let answer = command(&mut board, "selftest");
     check(&answer, "ok");
+    assert_eq!(
+        board.digits(),
+        ['1', '2', '3', '4', '5', '6', '7', '8'].map(segments)
+    );
+    // The digits show the state of the board again.
+    board.run(4 * 81_250_000);
+    assert_eq!(board.digits()[4..], [0; 4]);
 }
 
 #[test]
 fn sensors_that_are_not_plugged_are_absent() {
     let (mut board, _) = emulated(&image());
     check(&command(&mut board, "selftest"), "absent");
+}
+
+/// The bytes of a flash as a CPU reads them if the lines 0 and 1 are exchanged.
+fn exchanged(bytes: &[u8]) -> Vec<u8> {
+    let bytes = bytes.iter();
+    bytes
+        .map(|byte| byte & 0xcc | (byte & 0x11) << 1 | (byte & 0x22) >> 1)
+        .collect()
+}
+
+#[test]
+fn exchanged_lines_of_the_flash_fail() {
+    let mut flash = vec![0xff; CONTENTS];
+    flash.extend(MAGIC);
+    let (mut board, _) = emulated(&image());
+    for (flash, expected) in [
+        (
+            exchanged(&flash),
+            "FAILED: data of the lines 0 1 2 3 on the lines 1 0 2 3, expected the same order",
+        ),
+        (flash, "ok"),
+    ] {
+        board.plug_flash(Flash::new(flash));
+        let answer = command(&mut board, "selftest");
+        assert_eq!(verdict(&answer, "flash"), expected);
+    }
+}
+
+/// A build for a scene may lack the I2C master and the digits.
+#[test]
+fn blocks_that_the_gateware_lacks_are_absent() {
+    let lacks = [Block::I2C, Block::Digits, Block::Flash];
+    let has = Block::ALL.iter().filter(|block| !lacks.contains(block));
+    let mut board = EmulatedBoard::fast(&image()).unwrap();
+    board.state_blocks(has.map(|block| block.bit()).sum());
+    board.plug(sensor(|_| State::default()));
+    board.expect(PROMPT, "start");
+    let answer = command(&mut board, "selftest");
+    for part in ["imu", "digits", "flash"] {
+        assert_eq!(verdict(&answer, part), "absent", "{part}: {answer}");
+    }
+    assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
+    let error = "i2c: this gateware has no master";
+    for line in ["imu", "imu calibrate", "imu stream 1"] {
+        let answer = command(&mut board, line);
+        assert!(answer.contains(error), "{answer}");
+    }
 }
 
 #[test]
