@@ -2,7 +2,7 @@
 
 use glint_core::field::{Surface, cropped};
 
-use super::intervals::{AXES, PERIOD, Place};
+use super::intervals::{PERIOD, Place};
 use super::lattice;
 use super::narrow::floor;
 use super::ray::Beam;
@@ -50,7 +50,7 @@ impl Exits {
         let Some(solid) = self.solid.as_ref().filter(|_| !beam.is_away) else {
             return beyond(way.t, steps);
         };
-        while way.t <= limit && !(0..AXES).any(|axis| solid.is_above(axis, way.reached[axis])) {
+        while !way.has_left(solid, limit) {
             steps += 1;
             let point = self.point(beam, way.t);
             let intervals = solid.intervals(&point, &way.reached);

@@ -13,6 +13,9 @@ pub const AXES: usize = 4;
 /// Exponent of the period of a repeated solid, 64 field units with 12 fraction bits.
 pub(super) const PERIOD: u32 = 18;
 
+/// The first cell beyond a repeated solid, at 2^11 field units.
+const LAST_CELL: i64 = 32;
+
 /// The rule of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
@@ -29,7 +32,8 @@ pub enum Rule {
         /// Exponent of the side of a smallest cell, with 12 fraction bits.
         exponent: u32,
     },
-    /// Cubes, or spheres in such cubes, in every cell of a lattice. Intervals: 2·cell in a cube, 2·cell + 1 in the gap above it.
+    /// Cubes, or spheres in such cubes, in every cell of a lattice. Intervals: 2·cell in a cube, 2·cell + 1 in the gap above it. The solid
+    /// ends before cell `LAST_CELL`.
     Repeated {
         /// Whether spheres with the cube's side as diameter replace the cubes.
         round: bool,
@@ -90,26 +94,24 @@ pub enum Exit {
 }
 
 impl Prism {
-    /// The axis of the exit at which the ray leaves the prism; of equal exits, the first axis. `exits` has the parameters at the borders.
-    pub(super) fn leaving(&self, exits: &[Option<i64>; AXES]) -> usize {
-        let before = |a: usize, b: usize| match (exits[a], exits[b]) {
-            (Some(first), Some(second)) => first < second || first == second && a < b,
-            (first, _) => first.is_some(),
+    /// The axis of the exit at which the ray leaves the prism, and whether the ray has crossed the border along each axis by then. Of equal
+    /// exits, the one along the axis with the smaller number is the earlier one. `exits` has the parameters at the borders.
+    pub(super) fn leaving(&self, exits: &[Option<i64>; AXES]) -> (usize, [bool; AXES]) {
+        let rank = |axis: usize| {
+            let exit = exits[axis]?;
+            let is_earlier =
+                |&other: &usize| exits[other].is_some_and(|found| (found, other) < (exit, axis));
+            Some((0..AXES).filter(is_earlier).count())
         };
-        let axes = 0..AXES;
-        let found = match self.exit {
-            Exit::First => axes.reduce(|best, axis| if before(axis, best) { axis } else { best }),
-            Exit::Last => axes.reduce(|best, axis| match (exits[best], exits[axis]) {
-                (Some(first), Some(second)) if second > first => axis,
-                (None, Some(_)) => axis,
-                _ => best,
-            }),
-            Exit::Second => axes.clone().find(|&axis| {
-                exits[axis].is_some()
-                    && axes.clone().filter(|&other| before(other, axis)).count() == 1
-            }),
+        let ranks = [0, 1, 2, 3].map(rank);
+        let wanted = match self.exit {
+            Exit::First => 0,
+            Exit::Second => 1,
+            Exit::Last => ranks.iter().flatten().count().saturating_sub(1),
         };
-        found.unwrap_or_default()
+        let crossed = ranks.map(|rank| rank.is_some_and(|rank| rank <= wanted));
+        let face = ranks.iter().position(|&rank| rank == Some(wanted));
+        (face.unwrap_or_default(), crossed)
     }
 }
 
@@ -122,8 +124,11 @@ impl Solid {
             let interval = match self.rule {
                 Rule::Sponge { exponent, .. } => (x >> exponent).max(-1) as i32,
                 Rule::Repeated { .. } => {
-                    let within = x & ((1 << PERIOD) - 1);
-                    2 * (x >> PERIOD) as i32 + i32::from(within >= side)
+                    let (cell, within) = (x >> PERIOD, x & ((1 << PERIOD) - 1));
+                    match cell < LAST_CELL {
+                        true => 2 * cell as i32 + i32::from(within >= side),
+                        false => 2 * LAST_CELL as i32,
+                    }
                 }
                 Rule::Box | Rule::Planes | Rule::Octahedron => {
                     i32::from(x >= side) - i32::from(x < 0)
@@ -179,6 +184,9 @@ impl Solid {
                 next: k[axis] + 1,
             }
         };
+        if (0..3).any(|axis| self.is_above(axis, k[axis])) {
+            return Place::Gone;
+        }
         if (0..3).any(in_gap) {
             return Place::Empty(prism(Exit::Last, |axis| in_gap(axis).then(|| border(axis))));
         }
@@ -194,7 +202,8 @@ impl Solid {
             Rule::Sponge { cells, .. } => interval >= cells,
             Rule::Octahedron => interval >= 1,
             Rule::Box => interval >= 1 && axis < 3,
-            Rule::Planes | Rule::Repeated { .. } => false,
+            Rule::Repeated { .. } => i64::from(interval) >= 2 * LAST_CELL,
+            Rule::Planes => false,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use glint_core::field::magnitude;
 
-use super::intervals::{AXES, Prism};
+use super::intervals::{AXES, Prism, Solid};
 use super::narrow::{floor, squared};
 use super::setup::Exits;
 use super::words::Inverse;
@@ -42,6 +42,13 @@ pub struct Way {
     pub face: usize,
     /// The intervals that the ray has reached; the lowest number along an axis without a crossed border.
     pub reached: [i32; AXES],
+}
+
+impl Way {
+    /// Whether the ray has left the solid for good, or is beyond its limit.
+    pub(super) fn has_left(&self, solid: &Solid, limit: i64) -> bool {
+        self.t > limit || (0..AXES).any(|axis| solid.is_above(axis, self.reached[axis]))
+    }
 }
 
 impl Exits {
@@ -92,6 +99,12 @@ impl Exits {
         }
     }
 
+    /// Whether a ray misses without an evaluation.
+    pub fn misses_at_start(&self, beam: &Beam) -> bool {
+        let has_left = |solid: &Solid| beam.start.has_left(solid, self.far);
+        beam.is_away || self.solid.as_ref().is_none_or(has_left)
+    }
+
     /// The place where a ray leaves a prism that contains `way`.
     pub(super) fn left(&self, beam: &Beam, way: &Way, prism: &Prism) -> Way {
         let corner = self.eyes[beam.eye].corner(&beam.down);
@@ -99,11 +112,10 @@ impl Exits {
             let distance = prism.borders[axis]?.at - corner[axis];
             Some(self.words.divided(distance, beam.inverse[axis]))
         });
-        let face = prism.leaving(&exits);
+        let (face, crossed) = prism.leaving(&exits);
         let exit = exits[face].unwrap_or_default();
-        // All borders up to the exit have been crossed.
-        let reached = [0, 1, 2, 3].map(|axis: usize| match (prism.borders[axis], exits[axis]) {
-            (Some(border), Some(own)) if own <= exit => border.next,
+        let reached = [0, 1, 2, 3].map(|axis: usize| match prism.borders[axis] {
+            Some(border) if crossed[axis] => border.next,
             _ => way.reached[axis],
         });
         Way {

@@ -50,7 +50,7 @@ impl Words {
 /// The range of mantissas is about 1, so that a product with one is the other factor plus its product with a signed number below 1/2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inverse {
-    /// The mantissa, from 3/4 to 3/2, with the fraction bits of [`Words::inverse`].
+    /// The mantissa, from 3/4 to below 3/2, with the fraction bits of [`Words::inverse`].
     pub mantissa: u32,
     /// The exponent of 2 by which the mantissa is multiplied.
     pub exponent: i32,
@@ -70,8 +70,10 @@ impl Inverse {
         };
         let is_low = value < 3 << 30;
         let value = value << is_low as u32;
+        let mantissa = nearest(value as i64, 32 - words.inverse as i32) as u32;
+        let most = (3 << (words.inverse - 1)) - 1;
         Self {
-            mantissa: nearest(value as i64, 32 - words.inverse as i32) as u32,
+            mantissa: if mantissa < most { mantissa } else { most },
             exponent: lead as i32 + !is_low as i32,
         }
     }
