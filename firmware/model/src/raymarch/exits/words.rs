@@ -26,7 +26,7 @@ impl Words {
     /// The word lengths of the gateware (docs/raymarch-exits.md).
     pub const CHOSEN: Self = Self {
         direction: 23,
-        inverse: 18,
+        inverse: 22,
         parameter: 14,
         cross: 20,
         along: 14,
