@@ -118,9 +118,12 @@ impl fmt::Display for Field {
     }
 }
 
+/// Number of kinds of fields.
+const KIND_COUNT: usize = Primitive::NAMES.len() + Union::KINDS.len();
+
 /// The text forms of all kinds of fields, with their descriptions.
-pub const KINDS: [(&str, &str); Primitive::NAMES.len() + Union::KINDS.len()] = {
-    let mut kinds = [("", ""); Primitive::NAMES.len() + Union::KINDS.len()];
+pub const KINDS: [(&str, &str); KIND_COUNT] = {
+    let mut kinds = [("", ""); KIND_COUNT];
     let mut i = 0;
     while i < kinds.len() {
         kinds[i] = if i < Primitive::FORMS.len() {
@@ -131,4 +134,32 @@ pub const KINDS: [(&str, &str); Primitive::NAMES.len() + Union::KINDS.len()] = {
         i += 1;
     }
     kinds
+};
+
+/// An example of a kind of field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Example {
+    /// The field in text form.
+    pub field: &'static str,
+    /// The console commands that set camera and appearance for a picture of the field, on top of the default scene.
+    pub look: &'static [&'static str],
+}
+
+/// An example of each kind of field, in the order of [`KINDS`].
+pub const EXAMPLES: [Example; KIND_COUNT] = {
+    let mut examples = [Example {
+        field: "",
+        look: Union::LOOK,
+    }; KIND_COUNT];
+    let mut i = 0;
+    while i < examples.len() {
+        if i < Primitive::EXAMPLES.len() {
+            examples[i].field = Primitive::EXAMPLES[i];
+            examples[i].look = Primitive::LOOKS[i];
+        } else {
+            examples[i].field = Union::EXAMPLES[i - Primitive::EXAMPLES.len()];
+        }
+        i += 1;
+    }
+    examples
 };

@@ -1,5 +1,6 @@
 //! The channel for messages between the pages and the session.
 
+use crate::choices::List;
 use crate::hub::{Hub, Id};
 use crate::inputs::Inputs;
 use crate::live::Live;
@@ -17,6 +18,8 @@ pub const MAX_REQUESTS: usize = 64;
 pub enum Request {
     /// Enters a line on the console.
     Command(String),
+    /// Shows the choice with this name of a list.
+    Choose(List, String),
     /// Cancels the running command.
     Interrupt,
     /// Requests the description of a command.
@@ -32,7 +35,8 @@ impl Request {
     pub fn key(&self) -> (Discriminant<Self>, &str) {
         let command = match self {
             Self::Help(command) => command,
-            Self::Command(_) | Self::Interrupt | Self::Picture | Self::Upload(_) => "",
+            Self::Command(_) | Self::Choose(..) | Self::Interrupt => "",
+            Self::Picture | Self::Upload(_) => "",
         };
         (discriminant(self), command)
     }

@@ -3,6 +3,7 @@
 //! | module | purpose |
 //! |---|---|
 //! | [`files`] | the files of the page |
+//! | [`choices`] | the scenes, meshes and fields that the page offers |
 //! | [`channels`] | the channel for messages between the pages and the session |
 //! | [`message`] | messages between the page and the board's side |
 //! | [`viewer`] | one open page: acts on its messages |
@@ -17,6 +18,7 @@
 #![forbid(unsafe_code)]
 
 pub mod channels;
+pub mod choices;
 pub mod files;
 pub mod hub;
 pub mod inputs;

@@ -1,5 +1,6 @@
 //! Messages between the page and the board's side: JSON texts, and binary messages for pictures and uploads.
 
+use crate::choices::List;
 use glint_board_api::Frame;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -65,13 +66,15 @@ pub enum ToPage {
         /// Whether other pages may show the board too.
         is_shared: bool,
     },
-    /// Lists of the firmware: commands, scenes, and forms of fields.
+    /// Lists of the firmware: commands, and what the page can choose.
     Lists {
         /// Console commands.
         commands: Vec<Entry>,
-        /// Meshes and scenes.
+        /// Names of scenes.
         scenes: Vec<String>,
-        /// Forms of the argument of the command `field`, with parameters in capital letters.
+        /// Names of meshes.
+        meshes: Vec<String>,
+        /// Names of kinds of fields.
         fields: Vec<String>,
     },
     /// Console output.
@@ -172,6 +175,13 @@ pub enum FromPage {
     Command {
         /// The line.
         line: String,
+    },
+    /// Shows a scene, a mesh or a field of the lists.
+    Choose {
+        /// The list.
+        list: List,
+        /// The name in the list.
+        name: String,
     },
     /// Cancels the running command.
     Interrupt,

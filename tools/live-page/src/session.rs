@@ -1,6 +1,7 @@
 //! Runs the board, its console and its transfers for the page.
 
 use crate::channels::{Channels, MAX_REQUESTS, Request};
+use crate::choices::{Choices, List};
 use crate::hub::Hub;
 use crate::inputs::Inputs;
 use crate::live::Live;
@@ -27,7 +28,10 @@ const INTERRUPT: &[u8] = b"\x03";
 /// have a prompt; a board on a serial port has already answered.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
-/// Maximum number of progress reports of a transfer.
+/// Interval in ms of the board's time between two pictures of a moving field.
+const FRAME_MS: u64 = 40;
+
+/// Number of progress reports of a transfer.
 const REPORTS: u64 = 100;
 
 /// A board that sends its picture and its pins to the page while its line is read.
@@ -107,6 +111,12 @@ pub struct Session<'a> {
     requests: Receiver<Request>,
     /// Requests that are queued until the end of a command.
     waiting: VecDeque<Request>,
+    /// The choices of the firmware.
+    choices: Choices,
+    /// The commands of the pictures of a moving field; the first one is next.
+    frames: VecDeque<String>,
+    /// Time of the last picture of a moving field, in ms of the board's time.
+    moved_ms: u64,
     /// Time of the last measurement.
     sampled: Duration,
     /// Number of uploads, which distinguishes successive transfers.
@@ -141,11 +151,17 @@ impl<'a> Session<'a> {
             hub: &channels.hub,
             requests,
             waiting: VecDeque::new(),
+            choices: Choices::default(),
+            frames: VecDeque::new(),
+            moved_ms: 0,
             uploads: 0,
             has_prompt: false,
             end: Vec::new(),
         };
-        session.has_prompt = session.try_ask(Self::send_lists)?;
+        session.has_prompt = session.try_ask(synchronise)?;
+        if session.has_prompt {
+            session.update_lists()?;
+        }
         Ok(session)
     }
 
@@ -163,39 +179,85 @@ impl<'a> Session<'a> {
         self.board.read(&mut output, LOOK_MS)?;
         self.pass(&mut output)?;
         if !self.is_idle() {
-            return match self.requests.try_recv() {
+            return match self.receive() {
                 // The user's keys go to the running program, as on a terminal.
-                Ok(Request::Command(line)) => self.type_line(&line),
-                Ok(Request::Interrupt) => self.board.write(INTERRUPT),
-                Ok(request @ (Request::Help(_) | Request::Picture | Request::Upload(_))) => {
+                Some(Request::Command(line)) => self.type_line(&line),
+                Some(Request::Choose(list, name)) => self.choose(list, &name),
+                Some(Request::Interrupt) => self.board.write(INTERRUPT),
+                Some(request @ (Request::Help(_) | Request::Picture | Request::Upload(_))) => {
                     self.keep(request);
                     Ok(())
                 }
-                Err(_) => Ok(()),
+                None => Ok(()),
             };
         }
         let next = self.waiting.pop_front();
-        match next.or_else(|| self.requests.try_recv().ok()) {
+        match next.or_else(|| self.receive()) {
             Some(Request::Command(line)) => self.type_line(&line),
+            Some(Request::Choose(list, name)) => self.choose(list, &name),
             Some(Request::Help(command)) => {
                 self.ask(|console, hub| send_help(console, hub, command))
             }
             Some(Request::Upload(mesh)) => {
                 self.uploads = self.uploads.wrapping_add(1);
                 let session = self.uploads;
-                self.ask(|console, hub| upload(console, hub, &mesh, session))
+                self.ask(|console, hub| upload(console, hub, &mesh, session))?;
+                self.update_lists()
             }
             Some(Request::Picture) => self.ask(send_picture),
+            Some(Request::Interrupt) => Ok(()),
             None if self.is_sample_due() => {
                 self.ask(send_sample)?;
                 self.sampled = self.board.board.clock();
                 Ok(())
             }
-            Some(Request::Interrupt) | None => Ok(()),
+            None => self.move_field(),
         }
     }
 
-    /// Queues a request until the console waits for a command. A request replaces a queued one with the same [`Request::key`].
+    /// The next request of a page. A request that may change the picture ends the motion of a field.
+    fn receive(&mut self) -> Option<Request> {
+        let request = self.requests.try_recv().ok()?;
+        if !matches!(request, Request::Help(_) | Request::Picture) {
+            self.frames.clear();
+        }
+        Some(request)
+    }
+
+    /// Types the commands of a choice: the first one at once, as it may end a running program, the others one after another.
+    fn choose(&mut self, list: List, name: &str) -> Result<(), BoardError> {
+        self.waiting
+            .retain(|earlier| !matches!(earlier, Request::Command(_)));
+        let Some(choice) = self.choices.find(list, name).cloned() else {
+            return Ok(());
+        };
+        let mut commands = choice.commands.into_iter();
+        let first = commands.next().unwrap_or_default();
+        self.type_line(&first)?;
+        self.waiting.extend(commands.map(Request::Command));
+        self.frames = choice.frames.into();
+        Ok(())
+    }
+
+    /// Sets the next picture of a moving field, if one is shown and its time has come.
+    fn move_field(&mut self) -> Result<(), BoardError> {
+        let now = self.board.now_ms();
+        if now < self.moved_ms + FRAME_MS || !self.hub.has_viewers() {
+            return Ok(());
+        }
+        let Some(command) = self.frames.pop_front() else {
+            return Ok(());
+        };
+        self.moved_ms = now;
+        if self.try_ask(|console, _| Ok(console.command(&command).map(drop)?))? {
+            self.frames.push_back(command);
+        } else {
+            self.frames.clear();
+        }
+        Ok(())
+    }
+
+    /// Queues a request until the console waits for a command. A newer model or picture request replaces the queued one.
     /// Requests for descriptions above the limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting
@@ -254,7 +316,10 @@ impl<'a> Session<'a> {
     ) -> Result<bool, BoardError> {
         let mut console = Console::new(&mut self.board);
         let result = task(&mut console, self.hub).and_then(|()| Ok(console.greet().map(drop)?));
+        // A line that the firmware prints above its prompt belongs to the output.
+        let mut rest = std::mem::take(console.line().1);
         self.end.clear();
+        self.pass(&mut rest)?;
         match result {
             Ok(()) => Ok(true),
             Err(TransferError::Board(error))
@@ -266,35 +331,46 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Sends the firmware's lists of commands, scenes and fields.
-    fn send_lists(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
-        if console.board().memory().is_some() {
-            console.synchronise_within(FIRST_PATIENCE_MS)?;
-        } else {
-            console.synchronise()?;
-        }
-        let entry = |line: &String| {
-            let (name, text) = line.split_once(' ')?;
-            let (name, text) = (name.to_owned(), text.trim().to_owned());
-            (!name.starts_with('`')).then_some(Entry { name, text })
-        };
-        let commands = console.command("help")?.iter().filter_map(entry).collect();
-        let scene =
-            |line: &String| Some(line.strip_prefix("scene ")?.split(' ').next()?.to_owned());
-        let scenes = optional(console.command("scene"))?;
-        let scenes = scenes.iter().filter_map(scene).collect();
-        // The last line of the description names the argument and its forms: `FIELD: off or sphere:R or ...`.
-        let help = optional(console.command("help field"))?;
-        let forms = help.last().and_then(|line| line.split_once(": "));
-        let forms = forms.into_iter().flat_map(|(_, forms)| forms.split(" or "));
-        let fields = forms.map(str::to_owned).collect();
-        hub.send(&ToPage::Lists {
-            commands,
-            scenes,
-            fields,
-        });
+    /// Reads the firmware's lists, and sends them to the pages.
+    fn update_lists(&mut self) -> Result<(), BoardError> {
+        let mut choices = Choices::default();
+        self.ask(|console, hub| {
+            let entry = |line: &String| {
+                let (name, text) = line.split_once(' ')?;
+                let (name, text) = (name.to_owned(), text.trim().to_owned());
+                (!name.starts_with('`')).then_some(Entry { name, text })
+            };
+            let commands = console.command("help")?.iter().filter_map(entry).collect();
+            choices = Choices::new(
+                &optional(console.command("scene"))?,
+                &optional(console.command("models"))?,
+                &optional(console.command("help field"))?,
+            );
+            let names = |list| {
+                let names = choices.of(list).iter().map(|choice| choice.name.clone());
+                names.collect()
+            };
+            hub.send(&ToPage::Lists {
+                commands,
+                scenes: names(List::Scenes),
+                meshes: names(List::Meshes),
+                fields: names(List::Fields),
+            });
+            Ok(())
+        })?;
+        self.choices = choices;
         Ok(())
     }
+}
+
+/// Synchronises with the board.
+fn synchronise(console: &mut Console<Watched>, _: &Hub) -> Result<(), TransferError> {
+    if console.board().memory().is_some() {
+        console.synchronise_within(FIRST_PATIENCE_MS)?;
+    } else {
+        console.synchronise()?;
+    }
+    Ok(())
 }
 
 /// The lines of a reply; empty if the firmware refuses the command.

@@ -100,6 +100,9 @@ impl Viewer {
                     channels.request(self.id, Request::Command(line));
                 }
             }
+            FromPage::Choose { list, name } => {
+                channels.request(self.id, Request::Choose(list, name));
+            }
             FromPage::Interrupt => channels.request(self.id, Request::Interrupt),
             FromPage::Picture => channels.request(self.id, Request::Picture),
             FromPage::Buttons { pressed } => channels.inputs.press(pressed),
@@ -182,6 +185,7 @@ mod tests {
             r#"{"type":"other"}"#,
             r#"{"type":"buttons","pressed":256}"#,
             r#"{"type":"switches","on":65536}"#,
+            r#"{"type":"choose","list":"others","name":"menger"}"#,
             r#"{"type":"turn","attitude":[0,0,0,0]}"#,
             r#"{"type":"turn","attitude":[1,0,0]}"#,
             r#"{"type":"hand","place":[0.5,1.5]}"#,
@@ -270,6 +274,7 @@ mod tests {
         for ignored in [
             r#"{"type":"command","line":"reboot"}"#,
             r#"{"type":"interrupt"}"#,
+            r#"{"type":"choose","list":"fields","name":"menger"}"#,
             r#"{"type":"buttons","pressed":1}"#,
             r#"{"type":"switches","on":1}"#,
             r#"{"type":"picture"}"#,

@@ -120,5 +120,5 @@ export function startConsole(send) {
     asked = new Set(helps.keys());
   }
 
-  return { show, clear, run, showHelp, setCommands };
+  return { show, clear, showHelp, setCommands };
 }

@@ -12,7 +12,7 @@ let holder = "nobody";
 let sendData;
 
 // Messages after which the last notice is out of date.
-const CLEARING = ["command", "picture", "upload"];
+const CLEARING = ["command", "choose", "picture", "upload"];
 
 function send(message) {
   if (CLEARING.includes(message.type)) notify("");
@@ -57,29 +57,22 @@ function showBoard({ name, has_pins, is_shared }) {
   document.body.classList.toggle("alone", !is_shared);
 }
 
-function showLists({ commands, scenes, fields }) {
+const LISTS = ["scenes", "meshes", "fields"];
+
+function showLists({ commands, ...lists }) {
   console_.setCommands(commands);
-  element("scenes").replaceChildren(...scenes.map((name) => choice(name, `scene ${name}`)));
-  const usual = fields.map((form) => PARAMETERS[form] ?? form.replace("DEPTH", PARAMETERS.DEPTH)).filter((form) => !/[A-Z]/.test(form));
-  element("fields").replaceChildren(...usual.map((field) => choice(field.split(":")[0], `field ${field}`)));
+  for (const list of LISTS) element(list).replaceChildren(...lists[list].map((name) => choice(list, name)));
 }
 
-// A button that sends a command.
-function choice(text, command) {
+// A button that shows a scene, a mesh or a field.
+function choice(list, name) {
   const button = document.createElement("button");
   button.type = "button";
-  button.textContent = text;
+  button.textContent = name;
   button.disabled = holder !== "you";
-  button.addEventListener("click", () => console_.run(command));
+  button.addEventListener("click", () => send({ type: "choose", list, name }));
   return button;
 }
-
-// Values for the parameters of a field, by their names in the firmware's help.
-const PARAMETERS = {
-  "DEPTH": "3", "box:X,Y,Z": "box:0.5,0.3,0.2", "cubes:PERIOD,HALF": "cubes:1,0.2", "planes:HALF": "planes:0.8", "octahedron:S": "octahedron:0.6",
-  "spheres:X,Y,Z,R;...": "spheres:0,0,0,0.4;0.5,0,0,0.2", "lattice:PERIOD,R": "lattice:1,0.25", "sphere:R": "sphere:0.5",
-  "moving:R,ORBIT[,DEGREES]": "moving:0.3,0.4", "union:A+B": "union:sphere:0.4+box:0.6,0.2,0.2", "smooth:K,A+B": "smooth:0.2,sphere:0.4+box:0.6,0.2,0.2",
-};
 
 const HANDLERS = {
   board: showBoard,

@@ -46,6 +46,8 @@ macro_rules! primitives {
             /// An example of each kind in text form, in the order of [`NAMES`](Self::NAMES).
             pub const EXAMPLES: [&str; Self::NAMES.len()] = [$(<$shape>::EXAMPLE),*];
 
+            pub(super) const LOOKS: [&[&str]; Self::NAMES.len()] = [$(<$shape>::LOOK),*];
+
             pub(super) const FORMS: [(&str, &str); Self::NAMES.len()] = [$((<$shape>::FORM, <$shape>::ABOUT)),*];
 
             /// Reads the numbers of a field of the kind with the name `kind`; `None` for an unknown name.

@@ -17,8 +17,10 @@ pub trait FieldKind: Sized {
     const FORM: &'static str;
     /// Description of the kind, for the help.
     const ABOUT: &'static str;
-    /// An example of this kind in text form, for tests of pictures.
+    /// An example of this kind in text form, for tests of pictures and for the live page.
     const EXAMPLE: &'static str;
+    /// The console commands that set camera and appearance for a picture of the example.
+    const LOOK: &'static [&'static str] = &["camera 3.2 30 60"];
     /// Whether the kind can be a member of a union: a flat kind is the first member, a round kind the second.
     const JOINS: bool = false;
     /// Whether the kind has spheres.

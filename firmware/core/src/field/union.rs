@@ -31,6 +31,15 @@ impl Union {
         ),
     ];
 
+    /// An example of the sharp and of the smooth union.
+    pub(super) const EXAMPLES: [&str; 2] = [
+        "union:box:1.2,1.2,0.15+sphere:0.7",
+        "smooth:0.3,box:1.2,1.2,0.15+sphere:0.7",
+    ];
+
+    /// The console commands that set camera and appearance for pictures of the examples.
+    pub(super) const LOOK: &[&str] = &["camera 4 30 60"];
+
     /// Makes a union of two fields (its members) with a fillet of the width `blend` in world units; 0 means no fillet.
     ///
     /// # Errors `flat` or `round` is of a kind that unions do not accept, or the width is out of range.

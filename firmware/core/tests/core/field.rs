@@ -1,8 +1,9 @@
 //! Tests of distance fields: their text form, and distances.
 
+use glint_core::console::Command;
 use glint_core::field::{
-    Field, FieldError, Flat, FlatConstants, KINDS, MAX_SPHERES, Menger, Primitive, Solid, Sphere,
-    Spheres,
+    EXAMPLES, Field, FieldError, Flat, FlatConstants, KINDS, MAX_SPHERES, Menger, Primitive, Solid,
+    Sphere, Spheres,
 };
 use glint_core::fixed::Q32_32;
 use proptest::prelude::*;
@@ -79,6 +80,21 @@ fn mistakes_say_what_was_expected() {
     ] {
         let error = Field::parse(text).expect_err(text);
         assert_eq!(error.to_string(), expected);
+    }
+}
+
+/// The example of a kind is of that kind, and all its lines are settings.
+#[test]
+fn every_kind_has_an_example_and_its_look() {
+    for ((form, _), example) in KINDS.iter().zip(&EXAMPLES) {
+        let kind = |text: &str| text.split(':').next().unwrap().to_owned();
+        assert_eq!(kind(form), kind(example.field));
+        Field::parse(example.field).expect(example.field);
+        assert!(!example.look.is_empty());
+        for line in example.look {
+            let command = Command::parse(line).expect(line);
+            assert!(matches!(command, Some(Command::Set(_))), "{line}");
+        }
     }
 }
 

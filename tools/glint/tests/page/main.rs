@@ -4,6 +4,7 @@
 mod alone;
 mod browser;
 mod busy;
+mod buttons;
 mod page;
 mod rates;
 mod refusals;

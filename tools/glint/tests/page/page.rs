@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use glint::board::{self, EmulatedBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::convert::Options;
+use glint_core::field::EXAMPLES;
 use std::path::{Path, PathBuf};
 
 /// The pixels of a page's canvas, as text.
@@ -88,9 +89,19 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
         page,
         "[...document.querySelectorAll('#fields button')].find((button) => button.textContent === 'octahedron').click()",
     );
-    Console::new(&mut board)
-        .command("field octahedron:0.6")
-        .unwrap();
+    let mut examples = EXAMPLES.iter();
+    let example = examples.find(|example| example.field.starts_with("octahedron"));
+    let example = example.unwrap();
+    let field = format!("field {}", example.field);
+    for line in ["scene default"].iter().chain(example.look) {
+        Console::new(&mut board).command(line).unwrap();
+    }
+    Console::new(&mut board).command(&field).unwrap();
+    browser.wait(
+        page,
+        &format!("document.getElementById('log').textContent.trimEnd().endsWith('{field}\\nok')"),
+    );
+    browser.evaluate(page, "document.getElementById('line').focus()");
     command_both(browser, page, &mut board, &["render"]);
     wait_for_picture(browser, page, &mut board);
 

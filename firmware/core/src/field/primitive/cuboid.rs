@@ -70,6 +70,12 @@ impl FieldKind for Cubes {
     const FORM: &'static str = "cubes:PERIOD,HALF";
     const ABOUT: &'static str = "cubes everywhere, by half their side";
     const EXAMPLE: &'static str = "cubes:2,0.8";
+    const LOOK: &'static [&'static str] = &[
+        "lookat 1 -1 1 -1 1.2 -1.5",
+        "fov 66",
+        "background sky",
+        "fog 0.15",
+    ];
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let period = numbers.number("period", PERIOD)?;
@@ -102,6 +108,14 @@ impl FieldKind for Planes {
     const FORM: &'static str = "planes:HALF";
     const ABOUT: &'static str = "a floor and a ceiling at +-HALF";
     const EXAMPLE: &'static str = "planes:0.9";
+    const LOOK: &'static [&'static str] = &[
+        "lookat 0 0 0.3 0.5 1 -0.2",
+        "material jade",
+        "light 1,1,2,ffe0c0",
+        "light 1,1,-2,6080c0",
+        "background sky",
+        "fog 0.2",
+    ];
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let half = numbers.number("half", [SMALLEST, MAX_EXTENT])?;

@@ -26,6 +26,7 @@ impl FieldKind for Menger {
     const FORM: &'static str = "menger:DEPTH";
     const ABOUT: &'static str = "the Menger sponge in [-1, 1]^3, depth 1 to 6";
     const EXAMPLE: &'static str = "menger:4";
+    const LOOK: &'static [&'static str] = &["camera 4 30 60"];
     const JOINS: bool = true;
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {

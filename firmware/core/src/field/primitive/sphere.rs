@@ -165,6 +165,12 @@ impl FieldKind for Lattice {
     const FORM: &'static str = "lattice:PERIOD,R";
     const ABOUT: &'static str = "spheres everywhere";
     const EXAMPLE: &'static str = "lattice:2,0.8";
+    const LOOK: &'static [&'static str] = &[
+        "lookat 1 -1 1 -1 1.2 -1.5",
+        "fov 66",
+        "background sky",
+        "fog 0.15",
+    ];
     const ROUND: bool = true;
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {

@@ -1,0 +1,109 @@
+//! Every button of the page that chooses a scene, a mesh or a field: the commands succeed, and the picture shows something.
+
+use crate::alone::Files;
+use crate::browser::{Browser, Page};
+use crate::served::Served;
+use glint_core::field::KINDS;
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// Presses the button `number` of `#list`, waits until console and picture are quiet for 0.6 s, or until eight pictures have followed,
+/// and returns the button's text, the new output of the console, the number of colours of the picture, the share of the most frequent
+/// colour, and a hash of the picture.
+const PRESS: &str = "new Promise((done) => {
+  const canvas = document.getElementById('monitor'), log = document.getElementById('log');
+  const button = document.querySelectorAll(`#${list} button`)[number];
+  const [before, number0] = [log.textContent, Number(canvas.dataset.number ?? 0)];
+  let [text, shown, since] = [before, number0, performance.now()];
+  button.click();
+  const look = () => {
+    const now = performance.now();
+    if (log.textContent !== text || Number(canvas.dataset.number) !== shown) since = now;
+    [text, shown] = [log.textContent, Number(canvas.dataset.number)];
+    const isDone = text !== before && /(ok|error: .*)$/.test(text.trimEnd());
+    if (!isDone || now - since < 600 && shown < number0 + 8) return setTimeout(look, 20);
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const counts = new Map();
+    let hash = 0;
+    for (const colour of new Uint32Array(data.buffer)) {
+      counts.set(colour, (counts.get(colour) ?? 0) + 1);
+      hash = (hash * 31 + colour) | 0;
+    }
+    const share = Math.max(...counts.values()) / (canvas.width * canvas.height);
+    done([button.textContent, text.slice(before.length), counts.size, share, `${hash}`]);
+  };
+  look();
+})";
+
+/// Presses a button, and checks console and picture. Returns the button's text and a hash of the picture.
+fn press(browser: &mut Browser, page: &Page, list: &str, number: usize) -> (String, String) {
+    let call = format!("{{ const list = '{list}', number = {number}; {PRESS}; }}");
+    let found = browser.evaluate(page, &call);
+    let text = |index: usize| found[index].as_str().unwrap().to_owned();
+    let number = |index: usize| found[index].as_f64().unwrap();
+    let name = text(0);
+    println!(
+        "{list} {name}: {} colours, {:.3} of one",
+        number(2),
+        number(3)
+    );
+    assert!(!text(1).contains("error:"), "{list} {name}: {}", text(1));
+    assert!(
+        number(2) >= 2.0 && number(3) < 0.995,
+        "{list} {name}: a picture of one colour"
+    );
+    (name, text(4))
+}
+
+fn press_all(url: &str) {
+    let mut browser = Browser::start();
+    let page = browser.open(url);
+    browser.wait(&page, "document.body.dataset.holder === 'you'");
+    let count = |browser: &mut Browser, list: &str| {
+        let buttons = format!("document.querySelectorAll('#{list} button').length");
+        browser.wait(&page, &format!("{buttons} > 3"));
+        browser.evaluate(&page, &buttons).as_u64().unwrap() as usize
+    };
+    // The sensor starts later than the board, and a scene needs it.
+    browser.wait(
+        &page,
+        "/yaw -?[0-9]/.test(document.querySelector('#curve-attitude figcaption').textContent)",
+    );
+    assert_eq!(count(&mut browser, "fields"), KINDS.len());
+    let mut hashes = HashMap::new();
+    for list in ["scenes", "meshes", "fields"] {
+        for number in 0..count(&mut browser, list) {
+            let (name, hash) = press(&mut browser, &page, list, number);
+            if list != "scenes" {
+                let other = hashes.insert(hash, name.clone());
+                assert_eq!(other, None, "{name} has the picture of another button");
+            }
+        }
+    }
+
+    // A moving field moves until another choice or a command.
+    let moving = "[...document.querySelectorAll('#fields button')].find(({ textContent }) => textContent === 'moving')";
+    browser.evaluate(&page, &format!("{moving}.click()"));
+    let number = "Number(document.getElementById('monitor').dataset.number)";
+    let before = browser.evaluate(&page, number);
+    browser.wait(&page, &format!("{number} > {before} + 20"));
+    browser.evaluate(&page, "document.getElementById('line').focus()");
+    browser.type_line(&page, "echo still");
+    browser.wait(
+        &page,
+        "/^still$/m.test(document.getElementById('log').textContent)",
+    );
+    let rest = "new Promise((done) => setTimeout(() => { const before = document.getElementById('monitor').dataset.number; \
+        setTimeout(() => done(before === document.getElementById('monitor').dataset.number), 400); }, 200))";
+    assert_eq!(browser.evaluate(&page, rest), Value::Bool(true));
+}
+
+#[test]
+fn every_button_shows_a_picture() {
+    press_all(&Served::start("page-buttons").url);
+}
+
+#[test]
+fn every_button_shows_a_picture_without_a_program() {
+    press_all(&Files::start().url);
+}

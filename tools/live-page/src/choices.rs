@@ -1,0 +1,184 @@
+//! The choices that the page offers as buttons: scenes, meshes and fields, each with the console commands that show it.
+//!
+//! The names are those that the firmware lists; the examples of fields come from the table of `glint-core`.
+
+use glint_core::field::{EXAMPLES, Field, KINDS, MovingSphere, Primitive};
+use glint_core::fixed::Turns;
+use serde::{Deserialize, Serialize};
+
+/// Number of pictures of a full turn of a moving field.
+const STEPS: u32 = 72;
+
+/// The lists of choices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum List {
+    /// Scenes and lists of scenes.
+    Scenes,
+    /// Meshes.
+    Meshes,
+    /// Kinds of fields.
+    Fields,
+}
+
+/// A choice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Name on the page's button.
+    pub name: String,
+    /// The console commands that show it.
+    pub commands: Vec<String>,
+    /// The commands of the pictures that follow one another while a moving field is shown; empty for all other choices.
+    pub frames: Vec<String>,
+}
+
+impl Choice {
+    fn new(name: &str, commands: impl IntoIterator<Item = String>) -> Self {
+        Self {
+            name: name.to_owned(),
+            commands: commands.into_iter().collect(),
+            frames: Vec::new(),
+        }
+    }
+}
+
+/// All choices.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Choices {
+    scenes: Vec<Choice>,
+    meshes: Vec<Choice>,
+    fields: Vec<Choice>,
+}
+
+impl Choices {
+    /// The choices of a board, from its replies to `scene`, `models` and `help field`.
+    pub fn new(scenes: &[String], models: &[String], help: &[String]) -> Self {
+        let names = scenes
+            .iter()
+            .filter_map(|line| line.strip_prefix("scene ")?.split(' ').next());
+        let meshes = mesh_names(models);
+        let (meshes, scenes): (Vec<_>, Vec<_>) = names.partition(|name| meshes.contains(name));
+        let show = |name: &str| format!("scene {name}");
+        // The last line of the description names the argument and its forms: `FIELD: off or sphere:R or ...`.
+        let forms = help.last().and_then(|line| line.split_once(": "));
+        let forms: Vec<_> = forms
+            .into_iter()
+            .flat_map(|(_, forms)| forms.split(" or "))
+            .collect();
+        let kinds = KINDS.iter().zip(&EXAMPLES);
+        let kinds = kinds.filter(|((form, _), _)| forms.contains(form));
+        Self {
+            scenes: scenes
+                .into_iter()
+                .map(|name| Choice::new(name, [show(name)]))
+                .collect(),
+            // A mesh keeps the other settings of the scene before.
+            meshes: meshes
+                .into_iter()
+                .map(|name| Choice::new(name, [show("default"), show(name)]))
+                .collect(),
+            fields: kinds
+                .map(|(_, example)| field(example.field, example.look))
+                .collect(),
+        }
+    }
+
+    /// The choices of a list.
+    pub fn of(&self, list: List) -> &[Choice] {
+        match list {
+            List::Scenes => &self.scenes,
+            List::Meshes => &self.meshes,
+            List::Fields => &self.fields,
+        }
+    }
+
+    /// The choice with this name in a list.
+    pub fn find(&self, list: List, name: &str) -> Option<&Choice> {
+        self.of(list).iter().find(|choice| choice.name == name)
+    }
+}
+
+/// The names of meshes in a reply to `models`.
+fn mesh_names(models: &[String]) -> Vec<&str> {
+    let mut names = Vec::new();
+    for line in models {
+        let mut words = line.split(' ');
+        match words.next() {
+            Some("built-in") => names.extend(words),
+            Some("flash" | "mesh") => names.extend(words.next()),
+            _ => {}
+        }
+    }
+    names
+}
+
+/// The choice of a field.
+fn field(text: &str, look: &[&str]) -> Choice {
+    let name = text.split(':').next().unwrap_or_default();
+    let command = |field: &str| format!("field {field}");
+    let look = look.iter().map(|line| (*line).to_owned());
+    let all = ["scene default".to_owned()].into_iter().chain(look);
+    let mut choice = Choice::new(name, all.chain([command(text)]));
+    if let Ok(Field::Primitive(Primitive::Moving(sphere))) = Field::parse(text) {
+        let angle = |step| {
+            let turned = u32::MAX / STEPS * step;
+            sphere.angle.wrapping_add(Turns(turned))
+        };
+        let moved = (1..=STEPS).map(|step| MovingSphere {
+            angle: angle(step),
+            ..sphere
+        });
+        choice.frames = moved
+            .map(|sphere| command(&Field::from(sphere).to_string()))
+            .collect();
+    }
+    choice
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &str) -> Vec<String> {
+        text.lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn choices_are_those_of_the_firmware() {
+        let choices = Choices::new(
+            &lines("scene cube there\nscene hull flash\nscene cubes there\nscene default there"),
+            &lines("built-in cube\nflash hull bytes 7\nuploads 0 of 16\nfree 1 bytes"),
+            &lines("field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X"),
+        );
+        let names = |list| -> Vec<_> {
+            let names = choices.of(list).iter().map(|choice| choice.name.as_str());
+            names.collect()
+        };
+        assert_eq!(names(List::Scenes), ["cubes", "default"]);
+        assert_eq!(names(List::Meshes), ["cube", "hull"]);
+        assert_eq!(names(List::Fields), ["menger", "moving"]);
+        let hull = choices.find(List::Meshes, "hull").unwrap();
+        assert_eq!(hull.commands, ["scene default", "scene hull"]);
+        let menger = choices.find(List::Fields, "menger").unwrap();
+        assert_eq!(
+            menger.commands,
+            ["scene default", "camera 4 30 60", "field menger:4"]
+        );
+        assert!(menger.frames.is_empty());
+    }
+
+    #[test]
+    fn a_moving_field_has_frames_all_around() {
+        let help = lines("off|FIELD: off or moving:R,ORBIT[,DEGREES]");
+        let choices = Choices::new(&[], &[], &help);
+        let moving = choices.find(List::Fields, "moving").unwrap();
+        assert_eq!(moving.frames.len(), STEPS as usize);
+        let mut different = moving.frames.clone();
+        different.sort();
+        different.dedup();
+        assert_eq!(different.len(), STEPS as usize);
+        for frame in &moving.frames {
+            Field::parse(frame.strip_prefix("field ").unwrap()).unwrap();
+        }
+    }
+}
