@@ -2,6 +2,7 @@
 
 use crate::console::{self, Console, ConsoleError};
 use crate::line::{Board, BoardError};
+use glint_core::matrix::Axis;
 use glint_core::mesh::MeshHeader;
 use glint_core::wire::{
     Endpoint, Failure, MAX_FRAME, Manifest, Receiver, Role, Sender, State, Timing,
@@ -46,6 +47,8 @@ const LOOK_MS: u64 = 2;
 /// Longest time between two polls of the line that counts for the time-outs of a transfer, in milliseconds of the board's time.
 /// A longer time means that this program was stopped, and could not read the board's bytes.
 const MAX_STEP_MS: u64 = 500;
+/// Name of a mesh that is uploaded without a name.
+pub const MODEL: &str = "model";
 /// Maximum number of attempts at a transfer. A transfer is repeated only if it failed after this program had been stopped.
 const ATTEMPTS: u32 = 5;
 
@@ -80,6 +83,24 @@ pub fn upload<B: Board + ?Sized>(
         command = format!("{command} {name}");
     }
     announce(console, &command, mesh, session, progress, &mut |_| {})
+}
+
+/// Shows the mesh `name` whole, with the axis `up` up on the screen, on the default scene: nothing of the scene before hides it.
+/// Firmware without the command `fit` keeps the camera of the default scene.
+///
+/// # Errors
+/// The firmware refuses the mesh, or does not answer.
+pub fn show<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    name: &str,
+    up: Axis,
+) -> Result<(), ConsoleError> {
+    console.command("scene default")?;
+    console.command(&format!("scene {name}"))?;
+    match console.command(&format!("fit {up}")) {
+        Ok(_) | Err(ConsoleError::Refused { .. }) => Ok(()),
+        Err(error) => Err(error),
+    }
 }
 
 /// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board requests them. Calls

@@ -6,6 +6,7 @@ use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::ToPage;
 use crate::motion::Motion;
+use glint_core::matrix::Axis;
 use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
@@ -26,8 +27,19 @@ pub enum Request {
     Help(String),
     /// Downloads the picture over the console.
     Picture,
-    /// Uploads a mesh, and draws it.
-    Upload(Vec<u8>),
+    /// Uploads a mesh, and shows it.
+    Upload(Upload),
+}
+
+/// A mesh to upload.
+#[derive(Debug)]
+pub struct Upload {
+    /// The mesh in the board's memory layout.
+    pub mesh: Vec<u8>,
+    /// The axis that points up.
+    pub up: Axis,
+    /// The remarks on the file.
+    pub remarks: Vec<String>,
 }
 
 impl Request {

@@ -51,8 +51,14 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// The choices of a board, from its replies to `scene`, `models` and `help field`.
-    pub fn new(scenes: &[String], models: &[String], help: &[String]) -> Self {
+    /// The choices of a board, from its replies to `scene`, `models` and `help field`. `fit` returns the command that shows the whole
+    /// mesh with this name, if the board has it.
+    pub fn new(
+        fit: &dyn Fn(&str) -> Option<String>,
+        scenes: &[String],
+        models: &[String],
+        help: &[String],
+    ) -> Self {
         let names = scenes
             .iter()
             .filter_map(|line| line.strip_prefix("scene ")?.split(' ').next());
@@ -75,7 +81,10 @@ impl Choices {
             // A mesh keeps the other settings of the scene before.
             meshes: meshes
                 .into_iter()
-                .map(|name| Choice::new(name, [show("default"), show(name)]))
+                .map(|name| {
+                    let shown = [show("default"), show(name)];
+                    Choice::new(name, shown.into_iter().chain(fit(name)))
+                })
                 .collect(),
             fields: kinds
                 .map(|(_, example)| field(example.field, example.look))
@@ -146,6 +155,7 @@ mod tests {
     #[test]
     fn choices_are_those_of_the_firmware() {
         let choices = Choices::new(
+            &|name| Some(format!("fit {name}")),
             &lines("scene cube there\nscene hull flash\nscene cubes there\nscene default there"),
             &lines("built-in cube\nflash hull bytes 7\nuploads 0 of 16\nfree 1 bytes"),
             &lines("field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X"),
@@ -158,7 +168,7 @@ mod tests {
         assert_eq!(names(List::Meshes), ["cube", "hull"]);
         assert_eq!(names(List::Fields), ["menger", "moving"]);
         let hull = choices.find(List::Meshes, "hull").unwrap();
-        assert_eq!(hull.commands, ["scene default", "scene hull"]);
+        assert_eq!(hull.commands, ["scene default", "scene hull", "fit hull"]);
         let menger = choices.find(List::Fields, "menger").unwrap();
         assert_eq!(
             menger.commands,
@@ -170,7 +180,7 @@ mod tests {
     #[test]
     fn a_moving_field_has_frames_all_around() {
         let help = lines("off|FIELD: off or moving:R,ORBIT[,DEGREES]");
-        let choices = Choices::new(&[], &[], &help);
+        let choices = Choices::new(&|_| None, &[], &[], &help);
         let moving = choices.find(List::Fields, "moving").unwrap();
         assert_eq!(moving.frames.len(), STEPS as usize);
         let mut different = moving.frames.clone();

@@ -212,11 +212,24 @@ pub enum FromPage {
     },
     /// Downloads the picture over the console from a board without access to its monitor.
     Picture,
-    /// Announces a mesh file, which follows in binary messages.
+    /// Announces a mesh file and its auxiliary files, which follow in binary messages in this order.
     Upload {
-        /// Name of the file, which determines its format.
+        /// Name of the mesh file, which determines its format.
         name: String,
-        /// Size of the file in bytes.
+        /// Size of the mesh file in bytes.
         bytes: usize,
+        /// The auxiliary files, such as materials.
+        #[serde(default)]
+        beside: Vec<FileHead>,
     },
+}
+
+/// Name and size of a file.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct FileHead {
+    /// Name of the file.
+    pub name: String,
+    /// Size of the file in bytes.
+    pub bytes: usize,
 }

@@ -1,15 +1,16 @@
 //! Runs the board, its console and its transfers for the page.
 
-use crate::channels::{Channels, MAX_REQUESTS, Request};
+use crate::channels::{Channels, MAX_REQUESTS, Request, Upload};
 use crate::choices::{Choices, List};
 use crate::hub::Hub;
 use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::{Entry, Pins, ToPage};
 use glint_board_api::console::{self, Console, ConsoleError};
-use glint_board_api::transfer::{self, TransferError};
+use glint_board_api::transfer::{self, MODEL, TransferError};
 use glint_board_api::{Board, BoardError, Frame, Memory, read_in_steps};
 use glint_core::console::PROMPT;
+use glint_core::matrix::Axis;
 use glint_core::picture::Size;
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -119,6 +120,8 @@ pub struct Session<'a> {
     moved_ms: u64,
     /// Time of the last measurement.
     sampled: Duration,
+    /// The up axis of the last uploaded mesh.
+    up: Axis,
     /// Number of uploads, which distinguishes successive transfers.
     uploads: u8,
     /// Whether a prompt has been received: a program that does not print one gets no commands of the session's own.
@@ -154,6 +157,7 @@ impl<'a> Session<'a> {
             choices: Choices::default(),
             frames: VecDeque::new(),
             moved_ms: 0,
+            up: Axis::Z,
             uploads: 0,
             has_prompt: false,
             end: Vec::new(),
@@ -198,10 +202,11 @@ impl<'a> Session<'a> {
             Some(Request::Help(command)) => {
                 self.ask(|console, hub| send_help(console, hub, command))
             }
-            Some(Request::Upload(mesh)) => {
+            Some(Request::Upload(model)) => {
                 self.uploads = self.uploads.wrapping_add(1);
                 let session = self.uploads;
-                self.ask(|console, hub| upload(console, hub, &mesh, session))?;
+                self.up = model.up;
+                self.ask(|console, hub| upload(console, hub, &model, session))?;
                 self.update_lists()
             }
             Some(Request::Picture) => self.ask(send_picture),
@@ -334,14 +339,21 @@ impl<'a> Session<'a> {
     /// Reads the firmware's lists, and sends them to the pages.
     fn update_lists(&mut self) -> Result<(), BoardError> {
         let mut choices = Choices::default();
+        let up = self.up;
         self.ask(|console, hub| {
             let entry = |line: &String| {
                 let (name, text) = line.split_once(' ')?;
                 let (name, text) = (name.to_owned(), text.trim().to_owned());
                 (!name.starts_with('`')).then_some(Entry { name, text })
             };
-            let commands = console.command("help")?.iter().filter_map(entry).collect();
+            let commands: Vec<_> = console.command("help")?.iter().filter_map(entry).collect();
+            let fits = commands.iter().any(|entry| entry.name == "fit");
+            let fit = |name: &str| match name {
+                MODEL => format!("fit {up}"),
+                _ => "fit".to_owned(),
+            };
             choices = Choices::new(
+                &|name| fits.then(|| fit(name)),
                 &optional(console.command("scene"))?,
                 &optional(console.command("models"))?,
                 &optional(console.command("help field"))?,
@@ -454,18 +466,23 @@ fn reporter(hub: &Hub) -> impl FnMut(u64, u64) {
 fn upload(
     console: &mut Console<Watched>,
     hub: &Hub,
-    mesh: &[u8],
+    model: &Upload,
     session: u8,
 ) -> Result<(), TransferError> {
     if console.board().memory().is_some() {
-        transfer::stage(console, mesh)?;
+        transfer::stage(console, &model.mesh)?;
     }
-    transfer::upload(console, mesh, None, session, &mut reporter(hub))?;
-    let size = mesh.len() as u64;
+    transfer::upload(console, &model.mesh, None, session, &mut reporter(hub))?;
+    transfer::show(console, MODEL, model.up)?;
+    let size = model.mesh.len() as u64;
     hub.send(&ToPage::Progress {
         done: size,
         all: size,
     });
-    hub.notify(format!("the model is shown: {size} bytes"), false);
+    let mut text = format!("the model is shown: {size} bytes");
+    for remark in &model.remarks {
+        text = format!("{text}; {remark}");
+    }
+    hub.notify(text, false);
     Ok(())
 }

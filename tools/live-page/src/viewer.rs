@@ -1,14 +1,20 @@
 //! One open page, and the processing of its messages.
 
-use crate::channels::{Channels, Request};
+use crate::channels::{Channels, Request, Upload};
 use crate::hub::{Hub, Id};
-use crate::message::FromPage;
+use crate::message::{FileHead, FromPage};
 use glint_core::console::LINE_MAX;
 use glint_mesh::convert::Options;
+use glint_mesh::error::InputError;
 use glint_mesh::model;
+use std::collections::HashMap;
+use std::path::Path;
 
-/// Maximum upload size in bytes.
+/// Maximum size in bytes of the files of an upload.
 const MAX_UPLOAD: usize = 64 << 20;
+
+/// Maximum number of auxiliary files of an upload.
+const MAX_BESIDE: usize = 64;
 
 /// Maximum number of characters of a file's name.
 const MAX_NAME: usize = 100;
@@ -16,17 +22,62 @@ const MAX_NAME: usize = 100;
 /// The reason to close a page's connection.
 pub type Reason = &'static str;
 
-/// A mesh file that the page is sending.
-struct Upload {
-    name: String,
+/// A mesh file, with its auxiliary files, that the page is sending.
+struct Sent {
+    /// The files; the first one is the mesh.
+    files: Vec<FileHead>,
+    /// Size of all files.
     bytes: usize,
+    /// The received bytes of all files.
     data: Vec<u8>,
+}
+
+impl Sent {
+    /// The upload that a page announces; `None` if it is too large.
+    fn new(mesh: FileHead, beside: Vec<FileHead>) -> Option<Self> {
+        let is_short = |file: &FileHead| file.name.chars().count() <= MAX_NAME;
+        let is_mesh = mesh.bytes > 0 && beside.len() <= MAX_BESIDE;
+        let files: Vec<_> = [mesh].into_iter().chain(beside).collect();
+        let mut sizes = files.iter().map(|file| file.bytes);
+        let bytes = sizes.try_fold(0, usize::checked_add)?;
+        let is_accepted = is_mesh && bytes <= MAX_UPLOAD && files.iter().all(is_short);
+        let data = Vec::new();
+        is_accepted.then_some(Self { files, bytes, data })
+    }
+
+    /// Converts the mesh of a complete upload.
+    fn converted(self) -> Result<Upload, InputError> {
+        let mut rest = self.data;
+        let mut files = self.files.into_iter();
+        let mut next = |file: &FileHead| {
+            let after = rest.split_off(file.bytes);
+            std::mem::replace(&mut rest, after)
+        };
+        let (mut name, mut mesh) = (String::new(), Vec::new());
+        if let Some(file) = files.next() {
+            mesh = next(&file);
+            name = file.name;
+        }
+        let mut beside: HashMap<String, Vec<u8>> = files
+            .map(|file| {
+                let data = next(&file);
+                (file.name, data)
+            })
+            .collect();
+        let mut beside = |name: &str| beside.remove(Path::new(name).file_name()?.to_str()?);
+        let model = model::of_file(&name, mesh, Options::default(), &mut beside)?;
+        Ok(Upload {
+            remarks: model.remarks().to_vec(),
+            up: model.up,
+            mesh: model.mesh,
+        })
+    }
 }
 
 /// An open page.
 pub struct Viewer {
     id: Id,
-    upload: Option<Upload>,
+    upload: Option<Sent>,
 }
 
 impl Viewer {
@@ -119,14 +170,15 @@ impl Viewer {
                     .then_some(())
                     .ok_or("expected a position in the frame");
             }
-            FromPage::Upload { name, bytes } => {
-                if bytes == 0 || bytes > MAX_UPLOAD || name.chars().count() > MAX_NAME {
-                    let expected =
-                        "expected a file of 1 byte to 64 MiB with a name of at most 100 characters";
-                    return Err(expected);
-                }
-                let data = Vec::new();
-                self.upload = Some(Upload { name, bytes, data });
+            FromPage::Upload {
+                name,
+                bytes,
+                beside,
+            } => {
+                let expected =
+                    "expected a file of 1 byte to 64 MiB with a name of at most 100 characters";
+                let mesh = FileHead { name, bytes };
+                self.upload = Some(Sent::new(mesh, beside).ok_or(expected)?);
             }
         }
         Ok(())
@@ -146,8 +198,8 @@ impl Viewer {
         if file.data.len() == file.bytes
             && let Some(file) = self.upload.take()
         {
-            match model::of_file(&file.name, file.data, Options::default()) {
-                Ok(model) => channels.request(self.id, Request::Upload(model.mesh)),
+            match file.converted() {
+                Ok(upload) => channels.request(self.id, Request::Upload(upload)),
                 Err(error) => channels.hub.notify_one(self.id, error.to_string()),
             }
         }
@@ -162,6 +214,9 @@ mod tests {
     use crate::inputs::Inputs;
     use crate::message::Message;
     use crate::motion::Motion;
+    use glint_core::matrix::Axis;
+    use glint_core::mesh::Mesh;
+    use serde_json::json;
     use std::sync::Arc;
 
     fn upload(bytes: usize) -> String {
@@ -191,6 +246,9 @@ mod tests {
             r#"{"type":"hand","place":[0.5,1.5]}"#,
             &upload(0),
             &upload(MAX_UPLOAD + 1),
+            &format!(
+                r#"{{"type":"upload","name":"a.obj","bytes":1,"beside":[{{"name":"b","bytes":{MAX_UPLOAD}}}]}}"#
+            ),
         ] {
             assert!(
                 viewer.receive_text(refused, &channels).is_err(),
@@ -259,11 +317,44 @@ mod tests {
         };
         let triangle = ["v 0 0 0\nv 1 0 0\n", "v 0 1 0\nf 1 2 3\n"];
         send("a.obj", &triangle);
-        assert!(matches!(queue.try_recv(), Ok(Request::Upload(mesh)) if mesh.starts_with(b"GLM")));
+        assert!(matches!(queue.try_recv(), Ok(Request::Upload(upload)) if upload.mesh.starts_with(b"GLM")));
         send("a.ply", &triangle);
         send("../../etc/passwd", &triangle);
         assert!(queue.try_recv().is_err());
         assert!(is_told(&viewer, &channels, "a.ply: line 1: expected"));
+    }
+
+    /// The colours of an OBJ come from its material file, and remarks on the files come with the mesh.
+    #[test]
+    fn auxiliary_files_come_with_the_mesh() {
+        let obj = "mtllib sub/a.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        let mtl = "newmtl red\nKd 1 0 0\n";
+        let send = |beside: &[&str]| {
+            let (channels, queue) = Channels::to_board(Some(Arc::default()));
+            let mut viewer = Viewer::join(&channels).unwrap();
+            let head = |name: &str, text: &str| json!({ "name": name, "bytes": text.len() });
+            let mut upload = head("a.obj", obj);
+            upload["type"] = json!("upload");
+            upload["beside"] = beside.iter().map(|text| head("a.mtl", text)).collect();
+            viewer.receive_text(&upload.to_string(), &channels).unwrap();
+            let bytes = [obj, &beside.concat()].concat();
+            viewer.receive_bytes(bytes.as_bytes(), &channels).unwrap();
+            match queue.try_recv() {
+                Ok(Request::Upload(upload)) => upload,
+                other => panic!("{other:?}"),
+            }
+        };
+        let (grey, red) = (send(&[]), send(&[mtl]));
+        assert_eq!((grey.up, red.up), (Axis::Y, Axis::Y));
+        assert!(grey.remarks.iter().any(|remark| remark.contains("a.mtl")));
+        assert!(red.remarks.is_empty());
+        let colour = |upload: &Upload| {
+            let mesh = Mesh::new_checked(&upload.mesh).unwrap();
+            let mut triangles = mesh.chunks().flat_map(|chunk| chunk.triangles());
+            triangles.next().unwrap().colour
+        };
+        assert_eq!(colour(&red).0, 0xF800);
+        assert_ne!(colour(&grey).0, 0xF800);
     }
 
     #[test]

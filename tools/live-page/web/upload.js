@@ -1,23 +1,39 @@
 // Uploads of mesh files, dropped on the page or chosen.
 const CHUNK = 64 << 10;
 const MAX_BYTES = 64 << 20;
+// Auxiliary files of a mesh: materials of an OBJ, and buffers of a glTF.
+const BESIDE = [".mtl", ".bin"];
 
 export function startUpload(send, sendBytes, notify) {
   const bar = document.getElementById("progress");
   const choice = document.getElementById("file");
-  const FORMATS = choice.accept.split(",");
+  const MESHES = choice.accept.split(",").filter((name) => !BESIDE.includes(name));
 
-  async function upload(file) {
+  const extension = ({ name }) => name.slice(name.lastIndexOf(".")).toLowerCase();
+  // A name of at most 60 characters, with its end.
+  const head = ({ name }, bytes) => ({ name: [...name].slice(-60).join(""), bytes: bytes.byteLength });
+
+  // Uploads the first mesh of the files, with its materials and buffers.
+  async function upload(files) {
+    const mesh = files.find((file) => MESHES.includes(extension(file))) ?? files[0];
+    if (!mesh) return;
+    const all = [mesh, ...files.filter((file) => file !== mesh && BESIDE.includes(extension(file)))];
     if (document.body.dataset.holder !== "you") return notify("Take control to upload a model.");
-    if (file.size === 0 || file.size > MAX_BYTES) return notify(`${file.name}: expected 1 byte to 64 MiB, found ${file.size} bytes`);
-    let bytes;
-    try {
-      bytes = await file.arrayBuffer();
-    } catch (error) {
-      return notify(`${file.name}: expected a file that the browser can read: ${error.message}`);
+    const size = all.reduce((sum, file) => sum + file.size, 0);
+    if (mesh.size === 0 || size > MAX_BYTES) return notify(`${mesh.name}: expected 1 byte to 64 MiB, found ${size} bytes`);
+    const contents = [];
+    for (const file of all) {
+      try {
+        contents.push(await file.arrayBuffer());
+      } catch (error) {
+        return notify(`${file.name}: expected a file that the browser can read: ${error.message}`);
+      }
     }
-    send({ type: "upload", name: [...file.name].slice(-60).join(""), bytes: bytes.byteLength });
-    for (let start = 0; start < bytes.byteLength; start += CHUNK) sendBytes(bytes.slice(start, start + CHUNK));
+    const [own, ...beside] = all.map((file, number) => head(file, contents[number]));
+    send({ type: "upload", ...own, beside });
+    for (const bytes of contents) {
+      for (let start = 0; start < bytes.byteLength; start += CHUNK) sendBytes(bytes.slice(start, start + CHUNK));
+    }
   }
 
   const show = ({ done, all }) => {
@@ -29,12 +45,10 @@ export function startUpload(send, sendBytes, notify) {
   addEventListener("drop", (event) => {
     if (!hasFile(event)) return;
     event.preventDefault();
-    const files = [...event.dataTransfer.files];
-    const mesh = files.find(({ name }) => FORMATS.includes(name.slice(name.lastIndexOf(".")).toLowerCase()));
-    upload(mesh ?? files[0]);
+    upload([...event.dataTransfer.files]);
   });
   choice.addEventListener("change", () => {
-    if (choice.files[0]) upload(choice.files[0]);
+    upload([...choice.files]);
     choice.value = "";
   });
   return show;

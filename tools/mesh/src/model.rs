@@ -5,6 +5,8 @@ use crate::error::{FormatError, InputError};
 use crate::formats::{self, Beside, Format, STDIN, glm};
 use crate::generate::{self, NAMES};
 use crate::polygons::Polygons;
+use glint_core::framing::upright;
+use glint_core::matrix::Axis;
 use std::path::Path;
 
 /// A mesh for boards, with the report of its conversion.
@@ -13,6 +15,15 @@ pub struct Model {
     pub mesh: Vec<u8>,
     /// The report of the conversion; `None` for a `.glm` file, which needs no conversion.
     pub report: Option<Report>,
+    /// The axis that points up, by the format of the file; z for a generator.
+    pub up: Axis,
+}
+
+impl Model {
+    /// The remarks on the file.
+    pub fn remarks(&self) -> &[String] {
+        self.report.as_ref().map_or(&[], |report| &report.remarks)
+    }
 }
 
 /// Whether `name` selects a generator. A file with the name of a generator has precedence.
@@ -81,13 +92,18 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     )
 }
 
-/// Converts a mesh file in memory, without auxiliary files. The extension of its name selects the format.
+/// Converts a mesh file in memory. The extension of its name selects the format; `beside` reads auxiliary files by their names.
 ///
 /// # Errors
-/// Those of [`load`].
-pub fn of_file(name: &str, bytes: Vec<u8>, options: Options) -> Result<Model, InputError> {
+/// As [`load`].
+pub fn of_file(
+    name: &str,
+    bytes: Vec<u8>,
+    options: Options,
+    beside: &mut Beside,
+) -> Result<Model, InputError> {
     let path = Path::new(name);
-    of_bytes(path, Format::of(path)?, bytes, options, &mut |_| None)
+    of_bytes(path, Format::of(path)?, bytes, options, beside)
 }
 
 fn of_bytes(
@@ -102,10 +118,19 @@ fn of_bytes(
         return Ok(Model {
             mesh: bytes,
             report: None,
+            up: up_of(path),
         });
     }
     let polygons = formats::parse(path, format, &bytes, beside)?;
     converted(path, &polygons, options)
+}
+
+/// The axis that points up in a file, by its extension.
+fn up_of(path: &Path) -> Axis {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension
+        .and_then(upright)
+        .map_or(Axis::Z, |(up, _)| up)
 }
 
 fn converted(path: &Path, polygons: &Polygons, options: Options) -> Result<Model, InputError> {
@@ -114,5 +139,6 @@ fn converted(path: &Path, polygons: &Polygons, options: Options) -> Result<Model
     Ok(Model {
         mesh,
         report: Some(report),
+        up: up_of(path),
     })
 }

@@ -11,6 +11,7 @@ use glint_core::console::{
 };
 use glint_core::feature::{BASE, Feature};
 use glint_core::fixed::Turns;
+use glint_core::framing;
 use glint_core::imu::Follow;
 use glint_core::light::Material;
 use glint_core::matrix::Axis;
@@ -358,10 +359,7 @@ impl SceneFile {
 /// The axis that points up on the screen in models of the format of a file with this name, and the format's extension; `None` for
 /// a name of another format, or of a generator.
 pub fn upright(model: &str) -> Option<(Axis, &'static str)> {
-    let extension = Path::new(model).extension()?.to_str()?;
-    let mut known = ["obj", "gltf", "glb"].into_iter();
-    let known = known.find(|known| extension.eq_ignore_ascii_case(known))?;
-    Some((Axis::Y, known))
+    framing::upright(Path::new(model).extension()?.to_str()?)
 }
 
 /// A scene of a list of scenes: a built-in single scene.

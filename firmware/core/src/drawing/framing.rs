@@ -22,6 +22,13 @@ const AZIMUTH: Turns = Turns::from_degrees(Q32_32::lit("30"));
 /// Angle of the camera from the up axis, 60°.
 const POLAR: Turns = Turns::from_degrees(Q32_32::lit("60"));
 
+/// The axis that points up in mesh files with this extension, if it is not z, and the extension in lower case.
+pub fn upright(extension: &str) -> Option<(Axis, &'static str)> {
+    let mut known = ["obj", "gltf", "glb"].into_iter();
+    let known = known.find(|known| extension.eq_ignore_ascii_case(known))?;
+    Some((Axis::Y, known))
+}
+
 /// A sphere around all vertices of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoundingSphere {

@@ -271,8 +271,7 @@ pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
         },
     )?;
     spinner.finish();
-    let report = model.report.as_ref();
-    for remark in report.map_or(&[][..], |report| &report.remarks) {
+    for remark in model.remarks() {
         warn(format_args!("{}: {remark}", name.escape_debug()));
     }
     Ok(model)

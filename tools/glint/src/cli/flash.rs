@@ -14,6 +14,7 @@ use glint::formats::read_up_to;
 use glint::image;
 use glint::program;
 use glint::render::BoardRenderer;
+use glint::transfer;
 use glint_core::flash::FIRMWARE;
 use glint_core::mesh::{MAX_NAME, is_name};
 use std::io::{self, Write};
@@ -67,6 +68,10 @@ pub struct UploadArguments {
     /// Keep the model's coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
+    /// Keep camera, objects and all other settings of the scene. By default the model is shown whole on the default scene, with
+    /// the up axis of its format.
+    #[arg(long)]
+    keep_scene: bool,
     #[command(flatten)]
     line: LineArguments,
     /// Print the report as JSON.
@@ -197,9 +202,14 @@ impl UploadArguments {
         let name = self.name.or_else(|| default_name(&self.model));
         let start = board.now_ms();
         let bar = bar("mesh");
-        BoardRenderer::new(Console::new(&mut *board))
-            .with_progress(advance(&bar))
-            .upload(&model.mesh, name.as_deref())?;
+        let mut renderer =
+            BoardRenderer::new(Console::new(&mut *board)).with_progress(advance(&bar));
+        renderer.upload(&model.mesh, name.as_deref())?;
+        if !self.keep_scene {
+            let name = name.as_deref().unwrap_or(transfer::MODEL);
+            transfer::show(renderer.console(), name, model.up)?;
+        }
+        drop(renderer);
         bar.finish();
         let milliseconds = board.now_ms() - start;
         if self.json {

@@ -10,3 +10,4 @@ mod rates;
 mod refusals;
 mod serial;
 mod served;
+mod upload;

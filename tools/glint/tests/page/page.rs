@@ -26,7 +26,12 @@ fn wait_for_picture(browser: &mut Browser, page: &Page, board: &mut SimulatedBoa
         let [r, g, b] = [colour >> 11, colour >> 5 & 63, colour & 31];
         [r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2, 255].map(|c| c as u8)
     });
-    let text = STANDARD.encode(widened.collect::<Vec<u8>>());
+    wait_for_pixels(browser, page, &widened.collect::<Vec<u8>>());
+}
+
+/// Waits until the picture in the page has these pixels, each as red, green, blue and opacity.
+pub fn wait_for_pixels(browser: &mut Browser, page: &Page, pixels: &[u8]) {
+    let text = STANDARD.encode(pixels);
     browser.evaluate(page, &format!("globalThis.expected = '{text}'; 0"));
     browser.wait(page, &format!("{CANVAS} === expected"));
 }
@@ -232,9 +237,10 @@ fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<Em
         page,
         "(({ role, textContent }) => role === 'status' && textContent.startsWith('the model is shown'))(document.getElementById('notice'))",
     );
-    let model = glint::model::of_file(name, mesh.into(), Options::default()).unwrap();
+    let model = glint::model::of_file(name, mesh.into(), Options::default(), &mut |_| None).unwrap();
     let mut console = Console::new(board);
     glint::transfer::upload(&mut console, &model.mesh, None, 1, &mut |_, _| {}).unwrap();
+    glint::transfer::show(&mut console, glint::transfer::MODEL, model.up).unwrap();
 }
 
 /// The screenshot of the page in the documentation.
