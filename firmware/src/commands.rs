@@ -40,9 +40,10 @@ pub fn execute<'l>(
         return Ok(None);
     };
     let reply = command.execute(machine)?;
+    let changes = !matches!(command.effect(), Effect::None);
+    machine.picture.may_note |= changes;
     // An upload has no effect until it has been accepted.
-    if !matches!(command.effect(), Effect::None) && !matches!(reply, Reply::After(Job::Transfer(_)))
-    {
+    if changes && !matches!(reply, Reply::After(Job::Transfer(_))) {
         machine.demo.stop();
     }
     Ok(Some(reply))

@@ -286,6 +286,12 @@ impl MainLoop {
             return Turn::worked(renderer.is_ready());
         };
         picture.set_drawn(drawn, scene, models);
+        // During a job the line carries its reply, which states the reason itself.
+        if job.is_none()
+            && let Some(fallback) = picture.take_note()
+        {
+            terminal.notify(format_args!("note: drawn by the soft core: {fallback}"));
+        }
         if GESTURE.is_built
             && let Some(gesture) = gesture
         {

@@ -1,6 +1,7 @@
 //! The last picture: its contents, its statistics, and whether it is out of date.
 
 use core::fmt;
+use core::mem::{self, Discriminant};
 
 use glint_core::feature::CPU;
 use glint_hal::frequency::Frequency;
@@ -26,6 +27,14 @@ pub struct Drawn {
 }
 
 impl Drawn {
+    /// The reason why the CPU drew the frame in place of the gateware.
+    const fn fallback(&self) -> Option<Fallback> {
+        match self.by {
+            RenderedBy::Cpu(fallback) => fallback,
+            RenderedBy::Gateware(..) => None,
+        }
+    }
+
     /// Frame rate: the number of such frames per second.
     pub fn rate(&self, frequency: Frequency) -> u64 {
         u64::from(frequency.hertz()) / self.cycles.max(1)
@@ -76,6 +85,10 @@ pub struct Picture {
     /// The contents of the last picture; `None` if a new picture was requested.
     content: Option<Content>,
     drawn: Option<Result<Drawn, DrawError>>,
+    /// Whether a note may be printed: a command that may change the picture permits one.
+    pub may_note: bool,
+    /// The kind of the last printed note, until a frame has none.
+    noted: Option<Discriminant<Fallback>>,
     /// Whether the next frame needs depth codes in memory. The gateware only writes them on request.
     pub wants_depth: bool,
     /// The marker of the hand's position, if it is drawn.
@@ -102,6 +115,23 @@ impl Picture {
     /// Statistics of the last frame, or the error of its drawing; `None` before the first frame.
     pub const fn drawn(&self) -> Option<Result<Drawn, DrawError>> {
         self.drawn
+    }
+
+    /// The note on the last frame, if it has not been printed: at most one after a command that may change the picture.
+    pub fn take_note(&mut self) -> Option<Fallback> {
+        let note = match self.drawn {
+            Some(Ok(drawn)) => drawn.fallback(),
+            Some(Err(_)) | None => None,
+        };
+        let kind = note.as_ref().map(mem::discriminant);
+        if kind == self.noted {
+            return None;
+        }
+        if kind.is_some() && !mem::take(&mut self.may_note) {
+            return None;
+        }
+        self.noted = kind;
+        note
     }
 
     /// Stores the statistics of the current scene's frame, or the error of its drawing.

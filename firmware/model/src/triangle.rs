@@ -29,7 +29,7 @@ pub use exceptions::clip_exceptions;
 pub use mesh_light::MeshLight;
 pub use mesh_setup::MeshSetup;
 pub use object::Placement;
-pub use primitive::{Options, Placed};
+pub use primitive::{Options, Placed, light_of};
 pub use render::{
     DrawnTriangle, PreparedMesh, Stats, draw_parts, project_chunk, render, set_up_parts, trace,
     trace_frame,

@@ -28,25 +28,16 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
-    let mut fallback = |reason: &dyn Display| {
-        if !json {
-            terminal.print_entry("fallback", reason);
-        }
-    };
-    let (backend, engine) = match &drawn.by {
-        RenderedBy::Cpu(reason) => {
-            if let Some(reason) = reason {
-                fallback(reason);
-            }
-            (Backend::Cpu, None)
-        }
+    let (backend, engine, fallback): (_, _, Option<&dyn Display>) = match &drawn.by {
+        RenderedBy::Cpu(reason) => (Backend::Cpu, None, reason.as_ref().map(|reason| reason as _)),
         RenderedBy::Gateware(counters, unsupported) => {
-            if let Some(unsupported) = unsupported {
-                fallback(unsupported);
-            }
-            (Backend::Gateware, Some(counters))
+            let unsupported = unsupported.as_ref().map(|unsupported| unsupported as _);
+            (Backend::Gateware, Some(counters), unsupported)
         }
     };
+    if let (Some(reason), false) = (fallback, json) {
+        terminal.print_entry("fallback", reason);
+    }
     let soft_core = engine.map(|counters| {
         let cycles = drawn.cycles.saturating_sub(counters.cycles_busy.into());
         ("cycles_soft_core", cycles)
@@ -65,6 +56,10 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     terminal.print(format_args!("{{\"backend\":\"{backend}\""));
     for (key, value) in values {
         terminal.print(format_args!(",\"{key}\":{value}"));
+    }
+    if let Some(reason) = fallback {
+        // The text has neither quotation marks nor control characters.
+        terminal.print(format_args!(",\"fallback\":\"{reason}\""));
     }
     terminal.print(format_args!("}}\n"));
     Ok(())

@@ -31,18 +31,25 @@ pub enum Fallback {
 }
 
 impl Fallback {
+    /// The options of `cargo xtask gateware` that build the missing feature; `None` for another reason.
+    const fn build(&self) -> Option<&'static str> {
+        match self {
+            Self::NoSmoothShading => Some("--smooth"),
+            Self::Field(_) => Some("--fields all"),
+            Self::NoRaymarcher => Some("--blocks scanout triangle raymarch"),
+            Self::NoLineEngine => Some("--blocks scanout triangle line"),
+            Self::Triangle(EngineError::Status(Error::Triangles)) => {
+                Some("--blocks scanout triangle")
+            }
+            Self::NoDepths => Some("without --no-depths"),
+            Self::Descriptors(Unsupported::Geometry) => Some("without --no-geometry"),
+            Self::Triangle(_) | Self::Eye | Self::Orthographic | Self::Descriptors(_) => None,
+        }
+    }
+
     /// Whether the cause is a feature missing in this build of the gateware.
     pub const fn is_left_out(&self) -> bool {
-        matches!(
-            self,
-            Self::Field(_)
-                | Self::NoRaymarcher
-                | Self::NoLineEngine
-                | Self::NoSmoothShading
-                | Self::NoDepths
-                | Self::Descriptors(Unsupported::Geometry)
-                | Self::Triangle(EngineError::Status(Error::Triangles))
-        )
+        self.build().is_some()
     }
 }
 
@@ -77,22 +84,29 @@ impl From<RenderError> for Fallback {
     }
 }
 
+/// Writes the reason and, if a feature is missing, which build has it.
 impl fmt::Display for Fallback {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Triangle(error) => error.fmt(f),
-            Self::Field(missing) => missing.fmt(f),
+            Self::Triangle(error) => error.fmt(f)?,
+            Self::Field(missing) => missing.fmt(f)?,
             Self::NoSmoothShading => {
-                f.write_str("triangle engine: this gateware has no smooth shading")
+                f.write_str("triangle engine: this gateware has no smooth shading")?;
             }
-            Self::NoDepths => f.write_str("triangle engine: this gateware has no depths"),
-            Self::Eye => f.write_str("triangle engine: the eye is too far from the origin"),
+            Self::NoDepths => f.write_str("triangle engine: this gateware has no depths")?,
+            Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,
             Self::Orthographic => {
-                f.write_str("triangle engine: no smooth shading in orthographic projection")
+                f.write_str("triangle engine: no smooth shading in orthographic projection")?;
             }
-            Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
-            Self::Descriptors(unsupported) => unsupported.fmt(f),
-            Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),
+            Self::NoRaymarcher => {
+                f.write_str("distance fields: this gateware has no raymarcher")?
+            }
+            Self::Descriptors(unsupported) => unsupported.fmt(f)?,
+            Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine")?,
+        }
+        match self.build() {
+            Some(build) => write!(f, ", expected that of `cargo xtask gateware {build}`"),
+            None => Ok(()),
         }
     }
 }

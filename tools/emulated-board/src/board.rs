@@ -1,6 +1,7 @@
 //! The emulated board: CPU, bus, devices, and the sensors, buttons and switches at its pins.
 
 use glint_board_api::{BoardError, Frame, Simulation, Uart};
+use glint_core::colour::Shading;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::memories::MAIN_RAM;
 use litex_pac::scanout::Scanout;
@@ -81,6 +82,11 @@ impl EmulatedBoard {
     /// Sets the block enable bits of the gateware's identity, to emulate a gateware without some blocks. The blocks still work.
     pub fn state_blocks(&mut self, blocks: u32) {
         self.bus.devices.identity.blocks = blocks;
+    }
+
+    /// Sets the best shading of the triangle engine, to emulate a gateware without smooth shading. The firmware reads it at its start.
+    pub fn state_shading(&mut self, capability: Shading) {
+        self.bus.devices.triangle.set_shading(capability);
     }
 
     /// The image sensor, if any. A fault that is set takes effect with the sensor's next frame.

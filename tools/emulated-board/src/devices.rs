@@ -73,7 +73,7 @@ pub struct Devices {
     /// The scan-out.
     pub scanout: Scanout,
     /// The triangle engine with the raymarcher.
-    triangle: TriangleEngine,
+    pub triangle: TriangleEngine,
     /// The gesture engine with its image sensor.
     pub gesture: GestureEngine,
     /// The seven-segment displays.
@@ -117,7 +117,7 @@ impl Devices {
         self.buttons.reset();
         self.leds = Outputs::default();
         self.scanout.reset();
-        self.triangle = TriangleEngine::new();
+        self.triangle.reset();
         self.gesture.reset();
         self.next = [0; BLOCKS.len()];
     }

@@ -74,6 +74,13 @@ function choice(list, name) {
   return button;
 }
 
+// Shows why the soft core drew the picture, or set it up for the engine.
+function showFallback({ stats }) {
+  const by = stats?.backend === "cpu" ? "Drawn" : "Set up";
+  const text = stats?.fallback ? `${by} by the soft core, which is slow: ${stats.fallback}` : "";
+  if (element("fallback").textContent !== text) element("fallback").textContent = text;
+}
+
 const HANDLERS = {
   board: showBoard,
   lists: showLists,
@@ -81,7 +88,10 @@ const HANDLERS = {
   motion: motion.show,
   help: console_.showHelp,
   progress: showProgress,
-  sample: showSample,
+  sample(sample) {
+    showSample(sample);
+    showFallback(sample);
+  },
   pins: panel.show,
   control: ({ holder }) => setHolder(holder),
   notice: ({ text, is_error }) => notify(text, is_error),

@@ -205,7 +205,8 @@ pub fn vertex_light(
     })
 }
 
-fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
+/// The light of a vertex.
+pub fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
     let colour = options.colour.unwrap_or(vertex.colour);
     let normal = options.turned(vertex.normal);
     match options.light {

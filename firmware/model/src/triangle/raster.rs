@@ -32,31 +32,37 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
     }
 }
 
-/// Draws a triangle with smooth shading. Not inlined, so that flat triangles do not load this code
-/// into the instruction cache.
-#[inline(never)]
-fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
-    let brush = Smooth {
-        light: light.map(Accumulation::new),
-        weight: setup.weight,
-    };
-    draw_with(setup, brush, target)
-}
-
-/// Draws a triangle with flat shading as [`draw`] does. Calls `visit` with each row that has a covered pixel, and with the first and the
-/// last group of eight columns that contains a covered pixel; the engine's lanes process all groups between them.
+/// Draws a triangle as [`draw`] does. Calls `visit` with each row that has a covered pixel, and with the first and the last group of
+/// eight columns that contains a covered pixel; the engine's lanes process all groups between them.
 pub fn draw_groups(
     setup: &Setup,
     colour: Rgb565,
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
 ) -> Coverage {
-    let brush = Grouped {
-        colour,
-        row: setup.bounds.top,
-        visit,
-    };
-    draw_with(setup, brush, target)
+    let row = setup.bounds.top;
+    match &setup.light {
+        None => draw_with(
+            setup,
+            Grouped {
+                brush: colour,
+                row,
+                visit,
+            },
+            target,
+        ),
+        Some(light) => {
+            let brush = Smooth::new(setup, light);
+            draw_with(setup, Grouped { brush, row, visit }, target)
+        }
+    }
+}
+
+/// Draws a triangle with smooth shading. Not inlined, so that flat triangles do not load this code
+/// into the instruction cache.
+#[inline(never)]
+fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
+    draw_with(setup, Smooth::new(setup, light), target)
 }
 
 fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Coverage {
@@ -90,23 +96,27 @@ impl Brush for Rgb565 {
     }
 }
 
-/// Flat shading that reports the groups of columns.
-struct Grouped<'a> {
-    colour: Rgb565,
+/// A brush that reports the groups of columns.
+struct Grouped<'a, B> {
+    brush: B,
     row: i32,
     visit: &'a mut dyn FnMut(i32, [i32; 2]),
 }
 
-impl Brush for Grouped<'_> {
-    fn go_to(&mut self, _: u32, columns: [i32; 2]) {
+impl<B: Brush> Brush for Grouped<'_, B> {
+    fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
         (self.visit)(self.row, columns.map(|column| column / GROUP));
+        self.brush.go_to(offset, columns);
     }
-    fn go_right(&mut self) {}
+    fn go_right(&mut self) {
+        self.brush.go_right();
+    }
     fn go_down(&mut self) {
+        self.brush.go_down();
         self.row += 1;
     }
-    fn colour(&self, _: u32) -> Rgb565 {
-        self.colour
+    fn colour(&self, depth: u32) -> Rgb565 {
+        self.brush.colour(depth)
     }
 }
 
@@ -133,6 +143,15 @@ struct Smooth {
     light: [Accumulation; 3],
     /// The weight of all light; `None` if it is the depth of each pixel.
     weight: Option<u32>,
+}
+
+impl Smooth {
+    fn new(setup: &Setup, light: &[Plane; 3]) -> Self {
+        Self {
+            light: light.map(Accumulation::new),
+            weight: setup.weight,
+        }
+    }
 }
 
 impl Brush for Smooth {

@@ -1,4 +1,4 @@
-//! The triangle engine: geometry and raster passes of frames (docs/triangle.md), with flat shading and lines.
+//! The triangle engine: geometry and raster passes of frames (docs/triangle.md), with smooth shading and lines.
 //!
 //! A pass computes its results at its start, with the functions of `glint_model`, and ends after the estimated time of the gateware. The
 //! results in memory, the counts of triangles, groups, pixels and words, and the errors equal those of the gateware; cycle counters are
@@ -16,6 +16,8 @@ use litex_pac::register::Value;
 use litex_pac::triangle::{
     Caps, Control, Counters, Error, EvPending, Geometry, Raster, Status, Triangle, offset,
 };
+
+use glint_core::colour::Shading;
 
 use crate::engines::parameters::Parameters;
 use crate::engines::pass::{Growth, Pass, add};
@@ -83,6 +85,8 @@ fn growth(counters: &Counters) -> Growth<COUNTERS> {
 
 /// The triangle engine.
 pub struct TriangleEngine {
+    /// The best shading of the engine.
+    capability: Shading,
     parameters: Parameters,
     events: Events,
     geometry: Side,
@@ -107,10 +111,11 @@ impl Default for TriangleEngine {
 }
 
 impl TriangleEngine {
-    /// The engine after a reset.
+    /// The engine with smooth shading, after a reset.
     #[must_use]
     pub fn new() -> Self {
         Self {
+            capability: Shading::Smooth,
             parameters: Parameters::new(),
             events: Events::default(),
             geometry: Side::new(EvPending::default().with_geometry(true)),
@@ -123,6 +128,19 @@ impl TriangleEngine {
             counted: 0,
             ready: 0,
         }
+    }
+
+    /// Sets the best shading of the engine, which must be idle.
+    pub const fn set_shading(&mut self, capability: Shading) {
+        self.capability = capability;
+    }
+
+    /// Resets the engine.
+    pub fn reset(&mut self) {
+        *self = Self {
+            capability: self.capability,
+            ..Self::new()
+        };
     }
 
     fn status(&self) -> Status {
@@ -138,7 +156,9 @@ impl TriangleEngine {
             self.geometry.error = Error::Busy;
             return;
         }
-        let work = self.geometry_unit.run(flags, &self.parameters, ram);
+        let work = self
+            .geometry_unit
+            .run(flags, &self.parameters, self.capability, ram);
         let start = now.max(self.ready);
         self.geometry.begin(start, work, |counters, cycles| {
             counters.cycles_geometry = cycles;
@@ -155,7 +175,7 @@ impl TriangleEngine {
         let (parameters, raymarcher) = (&self.parameters, &mut self.raymarcher);
         let work = self
             .raster_unit
-            .run(flags, parameters, raymarcher, start, ram);
+            .run(flags, parameters, self.capability, raymarcher, start, ram);
         self.raster.begin(start, work, |counters, cycles| {
             counters.cycles_raster = cycles;
         });
@@ -236,6 +256,7 @@ impl Device for TriangleEngine {
                 .with_sizes(0b111)
                 .with_triangles(true)
                 .with_lines(true)
+                .with_gouraud(self.capability == Shading::Smooth)
                 .with_depths(true)
                 .with_geometry(true)
                 .with_count_bits(COUNT_BITS as u8)

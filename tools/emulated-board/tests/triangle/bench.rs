@@ -6,7 +6,7 @@ use glint_core::colour::Shading;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
 use glint_model::triangle::PreparedMesh;
-use glint_model::triangle::descriptor::{ListCounts, ListWriter, list_word};
+use glint_model::triangle::descriptor::{ListCounts, ListWriter, list_word, words};
 use glint_model::triangle::setup::Setup;
 use glint_model::{MeshLight, MeshSetup, Options, clip_exceptions};
 use glint_vectors::Picture;
@@ -29,6 +29,12 @@ pub const LIST_SHIFT: u32 = 11;
 const HEADER: u32 = 32;
 /// A colour that is neither a drawn colour nor the background.
 pub const UNTOUCHED: u16 = 0x7777;
+
+/// Best shading of the engine.
+pub const CAPABILITY: Shading = Shading::Smooth;
+
+/// Size of a descriptor in bytes.
+pub const DESCRIPTOR_BYTES: usize = 4 * words(CAPABILITY);
 
 /// Kind of a pass.
 #[derive(Clone, Copy)]
@@ -228,7 +234,7 @@ impl Bench {
         if clipped.is_empty() {
             return 0;
         }
-        let mut descriptors = vec![0; 12 * clipped.len()];
+        let mut descriptors = vec![0; words(CAPABILITY) * clipped.len()];
         let mut lists = vec![0; 4 * list_word(size.bands(), LIST_SHIFT) as usize];
         let mut counts = ListCounts::EMPTY;
         let mut writer = ListWriter::new(
@@ -237,7 +243,7 @@ impl Bench {
             &mut counts,
             size.width(),
             LIST_SHIFT,
-            Shading::Flat,
+            CAPABILITY,
         );
         for (setup, colour) in clipped {
             writer.put(setup, *colour);
@@ -303,6 +309,7 @@ pub fn geometry_flags(frame: &MeshSetup, options: &Options) -> Geometry {
     Geometry::default()
         .with_start(true)
         .with_cull(options.cull)
+        .with_smooth(options.shading == Shading::Smooth)
         .with_size(code(size))
         .with_mirror(frame.mirrors)
         .with_recolour(options.colour.is_some())

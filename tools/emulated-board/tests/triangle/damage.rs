@@ -12,7 +12,9 @@ use litex_pac::triangle::{Caps, Error, Geometry, Raster, Triangle, offset};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use crate::bench::{Bench, DESCRIPTORS, FRAMES, Kind, LIMIT, LISTS, MESH, UNTOUCHED, alone};
+use crate::bench::{
+    Bench, DESCRIPTOR_BYTES, DESCRIPTORS, FRAMES, Kind, LIMIT, LISTS, MESH, UNTOUCHED, alone,
+};
 
 fn sphere() -> Vec<u8> {
     Model::sphere(0.5, 10).encoded()
@@ -36,7 +38,7 @@ fn the_engine_has_an_identity() {
     assert_eq!(bench.read(offset::IDENT), Triangle::IDENT);
     let caps = Caps::from_bits(bench.read(offset::CAPS));
     assert_eq!((caps.sizes(), caps.count_bits()), (0b111, 20));
-    assert!(caps.triangles() && caps.lines() && !caps.gouraud());
+    assert!(caps.triangles() && caps.lines() && caps.gouraud());
     bench.set(offset::MESH, 7);
     assert_eq!(bench.read(offset::MESH), 0);
 }
@@ -50,7 +52,7 @@ fn a_geometry_pass_with_a_wrong_region_is_refused() {
         (offset::MESH, MESH + 8),
         (offset::MESH, 0),
         (offset::MESH_BYTES, u32::MAX),
-        (offset::GEOMETRY_DESCRIPTORS, end - 48),
+        (offset::GEOMETRY_DESCRIPTORS, end - DESCRIPTOR_BYTES as u32),
         (offset::GEOMETRY_LISTS, end - 16),
         (offset::GEOMETRY_LISTS, 4),
         (offset::LIST_SHIFT, 18),
@@ -179,11 +181,13 @@ fn frames_end_with_random_memory() {
     for seed in 0..12 {
         let mut random = Pcg64Mcg::new(seed);
         let size = Size::ALL[seed as usize % 3];
-        let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
+        let mut descriptors: Vec<u8> = (0..DESCRIPTOR_BYTES * 300)
+            .map(|_| random.random())
+            .collect();
         if seed % 4 > 0 {
             // Columns of groups within the picture; other columns are an error.
             let last = (size.width() / 8 - 1) as u8;
-            for descriptor in descriptors.as_chunks_mut::<48>().0 {
+            for descriptor in descriptors.as_chunks_mut::<DESCRIPTOR_BYTES>().0 {
                 let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));
                 groups.sort_unstable();
                 descriptor[43..46].copy_from_slice(&[groups[0], groups[2], groups[1]]);

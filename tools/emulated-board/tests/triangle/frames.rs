@@ -1,7 +1,7 @@
 //! Frames of meshes.
 
 use glint_core::camera::{Projection, View};
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Shading};
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
@@ -14,7 +14,7 @@ use glint_vectors::picture::CLEAR;
 use glint_vectors::scenes::{inside, scenes};
 use glint_vectors::{Model, Picture};
 use litex_pac::register::Value;
-use litex_pac::triangle::{Error, offset};
+use litex_pac::triangle::{Caps, Error, offset};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -96,6 +96,62 @@ fn scenes_of_all_sizes() {
     }
     println!("{pixels} pixels, {clipped} clipped");
     assert!(pixels > 1_000_000 && clipped > 100);
+}
+
+/// Flat and smooth frames alternate, also in changing light; a smooth pass takes longer.
+#[test]
+fn frames_with_smooth_shading() {
+    let mut random = Pcg64Mcg::new(22);
+    let mut bench = Bench::new();
+    let (mut pixels, mut clipped, mut cycles) = (0, 0, [0; 2]);
+    for size in [Size::W320, Size::W640] {
+        let [width, height] = size.pixels();
+        for (name, mesh, view, cull) in scenes(shape) {
+            let radius = Mesh::new_checked(&mesh).unwrap().radius();
+            let frame = MeshSetup::new(&view, width, height, radius).unwrap();
+            let mut light = some_light(&mut random, &view);
+            if !cull {
+                // The engine stores the light of one side only.
+                light.ambient = [0; 3];
+            }
+            for (kind, shading) in [Shading::Flat, Shading::Smooth].into_iter().enumerate() {
+                let mut part = alone(&mesh, frame, cull);
+                part.options.shading = shading;
+                part.options.light = random.random::<bool>().then_some(&light);
+                if let Some(light) = part.options.light {
+                    part.frame.light = light.row;
+                }
+                let name = format!("{name}, {size}, {shading}");
+                let start = bench.now;
+                let stats = check(&mut bench, &name, size, &[part]);
+                cycles[kind] += bench.now - start;
+                pixels += stats.pixels_covered;
+                clipped += stats.clipped;
+            }
+        }
+    }
+    println!("{pixels} pixels, {clipped} clipped, {cycles:?} cycles");
+    assert!(pixels > 1_000_000 && clipped > 100);
+    assert!(cycles[1] > cycles[0]);
+}
+
+/// Without smooth shading in the engine its flag has no effect, and a descriptor is half as long.
+#[test]
+fn an_engine_without_smooth_shading() {
+    let mut bench = Bench::new();
+    let caps = |bench: &mut Bench| Caps::from_bits(bench.read(offset::CAPS));
+    assert!(caps(&mut bench).gouraud());
+    bench.engine.set_shading(Shading::Flat);
+    assert!(!caps(&mut bench).gouraud());
+    let mesh = shape("icosphere:4");
+    let radius = Mesh::new_checked(&mesh).unwrap().radius();
+    let frame = MeshSetup::new(&ahead(1.0, 0.1), 320, 180, radius).unwrap();
+    let flat = alone(&mesh, frame, true);
+    let mut smooth = flat;
+    smooth.options.shading = Shading::Smooth;
+    bench.draw(Size::W320, false, &[smooth]);
+    let expected = by_model(Size::W320, &[flat]);
+    bench.compare("flat", Size::W320, false, &expected);
 }
 
 /// Objects that are rotated, scaled, mirrored, recoloured or lit.

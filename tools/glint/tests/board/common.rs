@@ -8,6 +8,7 @@ use glint::render::{
     self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Route, Stats, Subject, TriangleCounts,
 };
 use glint::{generate, view};
+use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
 use glint_core::picture::Size;
@@ -28,6 +29,13 @@ pub fn running_board() -> SimulatedBoard {
 /// An emulated board that starts with the built firmware in its memory.
 pub fn emulator() -> SimulatedBoard<EmulatedBoard> {
     board::emulated(&built_firmware(None).unwrap()).unwrap()
+}
+
+/// An emulated board as [`emulator`] makes it, whose gateware has this best shading.
+pub fn emulator_with(capability: Shading) -> SimulatedBoard<EmulatedBoard> {
+    let mut board = emulator();
+    board.inner().state_shading(capability);
+    board
 }
 
 /// The console of a newly started board.

@@ -1,7 +1,7 @@
 //! Pictures and depths of meshes are bit-identical to the model's: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
-    drawn_alike, emulator, mesh, mesh_frame, plain, renderer, running_board, timeless,
+    drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer, running_board, timeless,
 };
 use glint::board::{Board, SimulatedBoard, Simulation};
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject};
@@ -14,13 +14,20 @@ use glint_core::picture::{Backend, Size};
 use std::path::Path;
 use std::process::Command;
 
+/// The reason why the soft core draws smooth shading.
+const NO_SMOOTH: &str = "triangle engine: this gateware has no smooth shading, expected that of `cargo xtask gateware --smooth`";
+
 /// The triangle engine draws smooth shading if the gateware supports it, otherwise the CPU draws it, with a note in `stats`.
 #[test]
 fn smooth_shading_is_the_models_on_every_backend() {
-    let mut board = emulator();
-    let mut renderer = renderer(&mut board);
-    let mesh = mesh("icosphere:2");
-    for backend in [None, Some(Backend::Cpu)] {
+    for (capability, backend) in [
+        (Shading::Smooth, None),
+        (Shading::Flat, None),
+        (Shading::Smooth, Some(Backend::Cpu)),
+    ] {
+        let mut board = emulator_with(capability);
+        let mut renderer = renderer(&mut board);
+        let mesh = mesh("icosphere:2");
         let subject = Subject::Mesh(MeshSubject {
             shading: Shading::Smooth,
             ..plain(&mesh)
@@ -29,15 +36,45 @@ fn smooth_shading_is_the_models_on_every_backend() {
         renderer.set_backend(backend);
         let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "smooth");
         let notes = renderer.console().command("stats").unwrap();
-        let fallback = "fallback triangle engine: this gateware has no smooth shading";
-        let fell_back = notes.iter().any(|line| line == fallback);
-        let by_cpu = stats.backend.as_deref() == Some("cpu");
-        assert_eq!(fell_back, by_cpu && backend.is_none(), "{notes:#?}");
+        let fell_back = notes.iter().any(|line| line == &format!("fallback {NO_SMOOTH}"));
+        assert_eq!(fell_back, capability == Shading::Flat, "{notes:#?}");
+        let json = renderer.console().command("stats json").unwrap().concat();
+        assert_eq!(json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#)), fell_back);
+        let by_cpu = fell_back || backend.is_some();
+        let by = if by_cpu { "cpu" } else { "gateware" };
+        assert_eq!(stats.backend.as_deref(), Some(by));
         let info = renderer.console().command("info").unwrap();
         assert!(
             info.iter().any(|line| line == "shading smooth"),
             "{info:#?}"
         );
+    }
+}
+
+/// The reason of a fallback is printed above the prompt once, not after each command.
+#[test]
+fn the_console_notes_a_fallback_once() {
+    let mut board = emulator_with(Shading::Flat);
+    let note = format!("note: drawn by the soft core: {NO_SMOOTH}\r\n");
+    let mut said = |command: &str| {
+        board.write(format!("{command}\r").as_bytes()).unwrap();
+        let mut bytes = Vec::new();
+        for _ in 0..20 {
+            board.read(&mut bytes, 50).unwrap();
+        }
+        String::from_utf8(bytes).unwrap()
+    };
+    said("size 320 180");
+    for (command, is_noted) in [
+        ("scene sphere", false),
+        ("shading smooth", true),
+        ("camera 3 20 60", false),
+        ("shading flat", false),
+        ("shading smooth", true),
+    ] {
+        let text = said(command);
+        assert_eq!(text.matches(&note).count(), usize::from(is_noted), "{text:?}");
+        assert!(text.ends_with("glint> "), "{text:?}");
     }
 }
 

@@ -3,18 +3,15 @@
 use crate::common::{console, drawn_alike, emulator, info, renderer};
 use glint::render::{self, Parts, Rendered, size_command, view_command};
 use glint::scene::{self, Changes};
-use glint_core::colour::Shading;
 use glint_core::picture::Size;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 
-/// Every scene in the firmware equals the host's scene, drawn by the gateware, without the commands that move its camera. Shading
-/// is flat, because the soft core takes 131 million cycles to draw the smooth frame of `objects`.
+/// Every scene in the firmware equals the host's scene, drawn by the gateware, without the commands that move its camera.
 #[test]
 fn scenes_are_the_models() {
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
     let changes = Changes {
-        shading: Some(Shading::Flat),
         size: Some(Size::W320),
         ..Changes::default()
     };
@@ -27,7 +24,7 @@ fn scenes_are_the_models() {
         .unwrap();
         let show = format!("scene {name}");
         let (size, view) = (size_command(Size::W320), view_command(&view));
-        let mut commands = vec![show, "imu off".into(), "shading flat".into(), size, view];
+        let mut commands = vec![show, "imu off".into(), size, view];
         if name == "holoforge" {
             let error = renderer.console().command(&commands.remove(0)).unwrap_err();
             let error = error.to_string();

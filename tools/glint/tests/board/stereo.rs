@@ -96,8 +96,7 @@ fn two_eyes_are_the_models() {
             "case {number}"
         );
         let by = found.stats.backend.as_deref();
-        let is_smooth = subject.meshes().any(|mesh| mesh.shading == Shading::Smooth);
-        let by_cpu = backend == cpu || is_smooth;
+        let by_cpu = backend == cpu;
         assert_eq!(
             by,
             Some(if by_cpu { "cpu" } else { "gateware" }),

@@ -86,6 +86,15 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
         browser.wait(page, &format!("/{name} [0-9]/.test({caption})"));
     }
 
+    // The page states why the soft core draws.
+    let scene = ["scene sphere", "shading smooth", "orthographic 3"];
+    command(browser, page, &scene);
+    let fallback = "document.getElementById('fallback').textContent";
+    let reason = "no smooth shading in orthographic projection";
+    browser.wait(page, &format!("{fallback}.endsWith('{reason}')"));
+    command(browser, page, &["scene default"]);
+    browser.wait(page, &format!("{fallback} === ''"));
+
     // Choosing a field draws it.
     command(browser, page, &["imu off", "gesture off"]);
     let scene = ["scene cube", "quality fast", CAMERA];

@@ -73,9 +73,7 @@ fn folder() -> Result<PathBuf> {
 fn firmware(scenes: &[SceneFile], scene: Option<&SceneFile>) -> Result<Value> {
     let built = scene.map_or(scenes, slice::from_ref);
     let image = firmware::build_for(Board::Urbana, built, &[])?;
-    // The emulated board has no smooth shading.
-    let flat = scene.filter(|scene| !scene.needs().smooth);
-    let stack = flat.map(|scene| stack(scene, &image)).transpose()?;
+    let stack = scene.map(|scene| stack(scene, &image)).transpose()?;
     Ok(json!({
         "length": image.length, "code": image.code, "constants": image.constants, "variables": image.variables, "stack": stack,
     }))

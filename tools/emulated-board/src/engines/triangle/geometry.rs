@@ -1,11 +1,13 @@
 //! The geometry pass: computes descriptors, band lists and exceptions in memory from a mesh or segments in memory.
 
+use glint_core::colour::Shading;
 use glint_core::mesh::{Triangle, Vertex};
 use glint_core::picture::Size;
 use glint_model::line::Segment;
+use glint_model::triangle::shade::Light;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::triangle::vertex_cache::{SLOTS, VertexCache};
-use glint_model::triangle::{Path, Placed};
+use glint_model::triangle::{Path, Placed, light_of};
 use glint_model::{Options, Projected};
 use litex_pac::triangle::{Counters, Error, Geometry, offset};
 
@@ -57,10 +59,11 @@ impl GeometryUnit {
         &mut self,
         flags: Geometry,
         parameters: &Parameters,
+        capability: Shading,
         ram: &mut MainMemory,
     ) -> Result<Work, Error> {
         let size = picture_size(flags.size()).ok_or(Error::Size)?;
-        let room = OutputLimits::new(parameters, size);
+        let room = OutputLimits::new(parameters, size, capability);
         let mesh = parameters.word(offset::MESH);
         let words = parameters.word(offset::MESH_BYTES) / WORD;
         let mut regions = Regions::default();
@@ -77,6 +80,7 @@ impl GeometryUnit {
         let time = if flags.lines() {
             self.draw_lines(&mut walk, size, ram)
         } else {
+            let flags = flags.with_smooth(flags.smooth() && capability == Shading::Smooth);
             let setup = Setup::new(flags, parameters, size);
             self.draw_mesh(&mut walk, &setup, size, ram)
         };
@@ -109,17 +113,19 @@ impl GeometryUnit {
         size: Size,
         ram: &MainMemory,
     ) -> GeometryTime {
-        let mut time = GeometryTime::default();
+        let mut time = GeometryTime::new(setup.shading);
         let frame = &setup.frame;
         let options = Options {
             cull: setup.cull,
             light: Some(&setup.light),
             colour: setup.colour,
+            shading: setup.shading,
             ..Options::default()
         };
+
         let (mut lists, exceptions) = self.output.parts(size);
         let results = &mut self.results;
-        let mut vertices = [Projected::Behind; SLOTS];
+        let mut vertices = [(Projected::Behind, Light::default()); SLOTS];
         while let Some(chunk) = walk.chunk(ram) {
             let mut cache = VertexCache::empty();
             for number in chunk.triangles {
@@ -130,16 +136,24 @@ impl GeometryUnit {
                     if cache.misses(index) {
                         let place = chunk.vertices.wrapping_add(index.into());
                         let vertex = Vertex::from_bytes(&record(ram, place));
-                        *slot = project(frame, &transform(frame, vertex.position));
+                        *slot = (
+                            project(frame, &transform(frame, vertex.position)),
+                            match setup.shading {
+                                Shading::Flat => Light::default(),
+                                Shading::Smooth => light_of(frame, &options, &vertex),
+                            },
+                        );
                         time.vertices += 1;
                     }
                     *slot
                 });
-                match Path::of(frame, corners.each_ref()) {
+                let light =
+                    (setup.shading == Shading::Smooth).then(|| corners.map(|corner| corner.1));
+                match Path::of(frame, corners.each_ref().map(|corner| &corner.0)) {
                     Path::Unseen => results.unseen += 1,
                     Path::Exception => exceptions.put(results.triangles),
                     Path::Regular(places) => {
-                        match Placed::new(frame, &options, &triangle, places, None) {
+                        match Placed::new(frame, &options, &triangle, places, light.as_ref()) {
                             Some(placed) => {
                                 lists.put(&placed.setup(), placed.colour);
                                 time.drawn += 1;
@@ -156,7 +170,7 @@ impl GeometryUnit {
     }
 
     fn draw_lines(&mut self, walk: &mut Walk, size: Size, ram: &MainMemory) -> GeometryTime {
-        let mut time = GeometryTime::default();
+        let mut time = GeometryTime::new(Shading::Flat);
         let (mut lists, _) = self.output.parts(size);
         let mut first = None;
         while let Some(chunk) = walk.chunk(ram) {

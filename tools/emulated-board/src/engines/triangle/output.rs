@@ -11,11 +11,8 @@ use super::region::{COUNT_BITS, Regions, list_words};
 use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 
-/// Number of 32-bit words of a descriptor with flat shading.
-const DESCRIPTOR: usize = words(Shading::Flat);
-
 /// The memory regions for the output.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct OutputLimits {
     /// Addresses of descriptors, lists and exceptions.
     places: [u32; 3],
@@ -24,11 +21,13 @@ pub struct OutputLimits {
     /// Number of 16-byte words of the table of lengths and all lists.
     list_words: u64,
     exception_limit: u32,
+    /// The best shading of the engine, which determines the size of a descriptor.
+    capability: Shading,
 }
 
 impl OutputLimits {
-    /// Reads the parameters of a pass.
-    pub fn new(parameters: &Parameters, size: Size) -> Self {
+    /// Reads the parameters of a pass of an engine with this best shading.
+    pub fn new(parameters: &Parameters, size: Size, capability: Shading) -> Self {
         let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
         let count = |register| parameters.unsigned(register, COUNT_BITS);
         Self {
@@ -42,12 +41,18 @@ impl OutputLimits {
             list_shift,
             list_words: list_words(size, list_shift),
             exception_limit: count(offset::EXCEPTION_LIMIT),
+            capability,
         }
+    }
+
+    /// Number of 32-bit words of a descriptor.
+    const fn descriptor_size(&self) -> usize {
+        words(self.capability)
     }
 
     pub fn check(&self, regions: &mut Regions) {
         let [descriptors, lists, exceptions] = self.places;
-        let descriptor_words = u64::from(self.descriptor_limit) * DESCRIPTOR as u64 / 4;
+        let descriptor_words = u64::from(self.descriptor_limit) * self.descriptor_size() as u64 / 4;
         regions.check(descriptors, descriptor_words);
         regions.check(lists, self.list_words);
         regions.check(exceptions, self.exception_limit.div_ceil(4).into());
@@ -93,6 +98,7 @@ impl Output {
                 list_shift: 0,
                 list_words: 0,
                 exception_limit: 0,
+                capability: Shading::Flat,
             },
             descriptors: Vec::new(),
             lists: Vec::new(),
@@ -115,7 +121,7 @@ impl Output {
             (self.descriptors, self.lists) = (descriptors, lists);
         }
         self.room = room;
-        let descriptor_words = room.descriptor_limit as usize * DESCRIPTOR;
+        let descriptor_words = room.descriptor_limit as usize * room.descriptor_size();
         self.descriptors.resize(descriptor_words, 0);
         self.lists.resize(4 * room.list_words as usize, 0);
         self.exceptions.limit = room.exception_limit as usize;
@@ -129,7 +135,7 @@ impl Output {
             &mut self.counts,
             size.width(),
             self.room.list_shift,
-            Shading::Flat,
+            self.room.capability,
         );
         (lists, &mut self.exceptions)
     }
@@ -166,7 +172,7 @@ impl Output {
             }
         };
         let ends = [&before, &self.counts].map(|counts| counts.descriptors() as usize);
-        let [first, end] = ends.map(|number| number * DESCRIPTOR);
+        let [first, end] = ends.map(|number| number * self.room.descriptor_size());
         put(descriptors, first, self.descriptors.get(first..end));
         let mut written = (end - first).div_ceil(4);
         let lengths = before.lengths().iter().zip(self.counts.lengths());

@@ -1,9 +1,10 @@
 //! The raster pass: draws the descriptors of the band lists in memory into a frame in memory.
 
+use glint_core::colour::Shading;
 use glint_core::picture::Size;
 use glint_model::FrameBuffer;
 use glint_model::line::band_bounds;
-use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, list_word};
+use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, list_word, words};
 use glint_model::triangle::raster::draw_groups;
 use glint_model::triangle::setup::Bounds;
 use litex_pac::triangle::{Counters, Error, Raster, offset};
@@ -13,9 +14,6 @@ use super::time::{RasterTime, Work};
 use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 use crate::engines::raymarch::Raymarcher;
-
-/// Size of a descriptor in 16-byte words.
-const DESCRIPTOR: u32 = 3;
 
 /// The first and the last drawn word of a line. For an empty line, the first word is greater than the last word.
 type Extent = [i32; 2];
@@ -33,6 +31,8 @@ struct Set {
     /// Addresses of the lists and the descriptors, in 16-byte words.
     lists: u32,
     descriptors: u32,
+    /// Size of a descriptor in 16-byte words.
+    descriptor_words: u32,
     /// Number of descriptors.
     count: u32,
 }
@@ -73,10 +73,12 @@ impl RasterUnit {
         &mut self,
         flags: Raster,
         parameters: &Parameters,
+        capability: Shading,
         raymarcher: &mut Raymarcher,
         now: u64,
         ram: &mut MainMemory,
     ) -> Result<Work, Error> {
+        let descriptor_words = words(capability) as u32 / 4;
         let size = picture_size(flags.size()).ok_or(Error::Size)?;
         let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
         let frame = parameters.word(offset::FRAME);
@@ -102,10 +104,11 @@ impl RasterUnit {
                 let [lists, descriptors] = [lists, descriptors].map(|at| parameters.word(at));
                 let count = parameters.unsigned(count, COUNT_BITS);
                 regions.check(lists, list_words(size, list_shift));
-                regions.check(descriptors, u64::from(count) * u64::from(DESCRIPTOR));
+                regions.check(descriptors, u64::from(count) * u64::from(descriptor_words));
                 Set {
                     lists: lists / WORD,
                     descriptors: descriptors / WORD,
+                    descriptor_words,
                     count,
                 }
             })
@@ -261,17 +264,24 @@ impl Drawing<'_> {
             let number = entry(ram, list, place);
             self.is_damaged |= number >= set.count;
             let number = number & ((1 << COUNT_BITS) - 1);
-            let first = set.descriptors + DESCRIPTOR * number;
-            let words = [0, 1, 2].map(|word| record(ram, first.wrapping_add(word)));
-            let words = words.as_flattened().as_chunks().0.iter();
-            let descriptor = Descriptor::from_words(words.map(|word| u32::from_le_bytes(*word)));
+            let first = set.descriptors + set.descriptor_words * number;
+            let records =
+                (0..set.descriptor_words).map(|word| record(ram, first.wrapping_add(word)));
+            let words = records.flat_map(|record| {
+                let words = [0, 4, 8, 12].map(|at| record[at..].first_chunk().copied());
+                words.map(|word| word.map_or(0, u32::from_le_bytes))
+            });
             // The engine keeps a descriptor for the bands after its first band, so its words are read once.
-            self.draw(&descriptor, &bounds);
+            self.draw(
+                &Descriptor::from_words(words),
+                set.descriptor_words,
+                &bounds,
+            );
         }
     }
 
     /// Draws the part of a triangle or a line that lies in a band.
-    fn draw(&mut self, descriptor: &Descriptor, band: &Bounds) {
+    fn draw(&mut self, descriptor: &Descriptor, descriptor_words: u32, band: &Bounds) {
         let Self {
             target, extents, ..
         } = self;
@@ -282,19 +292,24 @@ impl Drawing<'_> {
                 *extent = united(*extent, columns);
             }
         };
+        let mut colours = 0;
         let [covered, drawn] = match descriptor.contents(target.width) {
             Contents::Triangle(setup, colour) => {
                 let Some(part) = setup.in_rows(band.top..band.bottom) else {
                     return;
                 };
                 if part.bounds.top == setup.bounds.top {
-                    self.counts.read += u64::from(DESCRIPTOR);
+                    self.counts.read += u64::from(descriptor_words);
                 }
                 let coverage = draw_groups(&part, colour, target, &mut visit);
+                if part.light.is_some() {
+                    // With smooth shading a pixel takes a cycle.
+                    colours = coverage.covered;
+                }
                 [coverage.covered, coverage.drawn]
             }
             Contents::Piece(piece) => {
-                self.counts.read += u64::from(DESCRIPTOR);
+                self.counts.read += u64::from(descriptor_words);
                 let mut covered = 0;
                 let drawn = piece.draw(band, target, &mut |pixel| {
                     covered += 1;
@@ -307,7 +322,7 @@ impl Drawing<'_> {
                 return;
             }
         };
-        self.time.add(groups);
+        self.time.add(groups, colours);
         self.counts.groups += u64::from(groups);
         self.counts.covered += u64::from(covered);
         self.counts.drawn += u64::from(drawn);

@@ -1,6 +1,7 @@
 //! The parameters of a geometry pass of a mesh.
 
 use glint_core::camera::Projection;
+use glint_core::colour::Shading;
 use glint_core::mesh::Rgb565;
 use glint_core::picture::Size;
 use glint_model::{DepthScale, MeshLight, MeshSetup};
@@ -14,6 +15,7 @@ pub struct Setup {
     pub frame: MeshSetup,
     pub light: MeshLight,
     pub cull: bool,
+    pub shading: Shading,
     pub colour: Option<Rgb565>,
 }
 
@@ -69,6 +71,11 @@ impl Setup {
             },
             frame,
             cull: flags.cull(),
+            shading: if flags.smooth() {
+                Shading::Smooth
+            } else {
+                Shading::Flat
+            },
             colour: flags
                 .recolour()
                 .then(|| Rgb565(parameters.unsigned(offset::COLOUR, 16) as u16)),

@@ -4,6 +4,7 @@
 //! the parts and the time of memory accesses are estimates. For a sphere similar to the sphere in docs/triangle.md, the estimates are 3,675
 //! cycles for geometry and 7,151 cycles for raster; the gateware (the engine alone with a memory) takes 4,200 and 7,517 cycles.
 
+use glint_core::colour::Shading;
 use glint_core::picture::Size;
 use glint_model::line::{Line, Segment};
 use litex_pac::triangle::{Counters, Error};
@@ -33,7 +34,6 @@ pub struct Work {
 }
 
 /// Quantities that determine the time of a geometry pass.
-#[derive(Default)]
 pub struct GeometryTime {
     /// Number of triangles of the mesh.
     pub triangles: u32,
@@ -41,11 +41,24 @@ pub struct GeometryTime {
     pub drawn: u32,
     /// Number of fetched vertices.
     pub vertices: u32,
+    /// Shading of the triangles.
+    pub shading: Shading,
     /// Number of cycles of the line set-up.
     lines: u64,
 }
 
 impl GeometryTime {
+    /// The time of a pass without work.
+    pub const fn new(shading: Shading) -> Self {
+        Self {
+            triangles: 0,
+            drawn: 0,
+            vertices: 0,
+            shading,
+            lines: 0,
+        }
+    }
+
     /// Adds the cycles of a segment whose line is cut into `pieces` pieces, one per band: 31 cycles for each segment, 28 more if the depth
     /// changes along the line, 1 for each pixel, and 1 for each piece.
     pub fn add_line(&mut self, segment: &Segment, pieces: u64) {
@@ -56,10 +69,13 @@ impl GeometryTime {
     }
 
     /// Returns the estimated number of cycles: the cycles of the slowest part, plus an eighth of the cycles of the other parts, which do
-    /// not overlap completely with the slowest part. A drawn triangle takes 11 cycles, every triangle 3 cycles, a vertex 6 cycles.
+    /// not overlap completely with the slowest part. A drawn triangle takes 11 cycles, or 33 with smooth shading, every triangle 3 cycles, a vertex 6 cycles.
     pub fn cycles(&self) -> u64 {
         let parts = [
-            11 * u64::from(self.drawn),
+            match self.shading {
+                Shading::Flat => 11,
+                Shading::Smooth => 33,
+            } * u64::from(self.drawn),
             3 * u64::from(self.triangles),
             6 * u64::from(self.vertices),
         ];
@@ -82,10 +98,10 @@ pub struct RasterTime {
 }
 
 impl RasterTime {
-    /// Adds a triangle or a piece of a line that has `groups` groups in the current band.
-    pub fn add(&mut self, groups: u32) {
+    /// Adds a triangle or a piece of a line that has `groups` groups in the current band, whose colours take `colours` cycles.
+    pub fn add(&mut self, groups: u32, colours: u32) {
         self.walking += u64::from(groups);
-        self.band += u64::from(groups).max(ENTRY);
+        self.band += u64::from(groups.max(colours)).max(ENTRY);
     }
 
     /// Ends a band; its flush writes `words` words in one cycle each, and takes at least one cycle per line.
