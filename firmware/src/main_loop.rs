@@ -288,9 +288,9 @@ impl MainLoop {
         picture.set_drawn(drawn, scene, models);
         // During a job the line carries its reply, which states the reason itself.
         if job.is_none()
-            && let Some(fallback) = picture.take_note()
+            && let Some(note) = picture.take_note()
         {
-            terminal.notify(format_args!("note: drawn by the soft core: {fallback}"));
+            terminal.notify(format_args!("note: {note}"));
         }
         if GESTURE.is_built
             && let Some(gesture) = gesture

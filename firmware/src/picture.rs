@@ -3,6 +3,7 @@
 use core::fmt;
 use core::mem::{self, Discriminant};
 
+use glint_core::colour::Winding;
 use glint_core::feature::CPU;
 use glint_hal::frequency::Frequency;
 use glint_hal::triangle::Counters;
@@ -50,6 +51,53 @@ pub enum RenderedBy {
     Gateware(Counters, Option<Unsupported>),
 }
 
+/// A hint that most triangles of the meshes are not drawn.
+#[derive(Clone, Copy)]
+pub struct Hint {
+    drawn: u32,
+    all: u32,
+}
+
+impl Hint {
+    /// The hint for a frame of which less than one in 64 triangles is drawn, although the triangles are not too small for its pixels.
+    fn of(drawn: &Drawn, scene: &Scene) -> Option<Self> {
+        let mesh = drawn.stats.mesh.as_ref()?;
+        let culls = scene.options.cull && scene.options.winding == Winding::Mesh;
+        let (drawn, all) = (mesh.drawn, mesh.triangles_in);
+        let is_fine = all as usize > scene.size.pixel_count() / 4;
+        (culls && !is_fine && drawn < all.div_ceil(64)).then_some(Self { drawn, all })
+    }
+}
+
+impl fmt::Display for Hint {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { drawn, all } = self;
+        write!(
+            f,
+            "{drawn} of {all} triangles are drawn, the others face away or lie outside of the picture: `cull off` draws back faces, \
+             `fit` shows the whole mesh"
+        )
+    }
+}
+
+/// A note on a frame, for the user.
+#[derive(Clone, Copy)]
+pub enum Note {
+    /// The CPU drew the frame in place of the gateware, for this reason.
+    Fallback(Fallback),
+    /// Most triangles are not drawn.
+    Hint(Hint),
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Fallback(reason) => write!(f, "drawn by the soft core: {reason}"),
+            Self::Hint(hint) => hint.fmt(f),
+        }
+    }
+}
+
 /// Reason why a frame is not drawn.
 #[derive(Clone, Copy, Debug)]
 pub enum DrawError {
@@ -85,10 +133,11 @@ pub struct Picture {
     /// The contents of the last picture; `None` if a new picture was requested.
     content: Option<Content>,
     drawn: Option<Result<Drawn, DrawError>>,
+    hint: Option<Hint>,
     /// Whether a note may be printed: a command that may change the picture permits one.
     pub may_note: bool,
     /// The kind of the last printed note, until a frame has none.
-    noted: Option<Discriminant<Fallback>>,
+    noted: Option<Discriminant<Note>>,
     /// Whether the next frame needs depth codes in memory. The gateware only writes them on request.
     pub wants_depth: bool,
     /// The marker of the hand's position, if it is drawn.
@@ -117,12 +166,18 @@ impl Picture {
         self.drawn
     }
 
+    /// The hint about the last frame, if most of its triangles are not drawn.
+    pub const fn hint(&self) -> Option<Hint> {
+        self.hint
+    }
+
     /// The note on the last frame, if it has not been printed: at most one after a command that may change the picture.
-    pub fn take_note(&mut self) -> Option<Fallback> {
+    pub fn take_note(&mut self) -> Option<Note> {
         let note = match self.drawn {
-            Some(Ok(drawn)) => drawn.fallback(),
+            Some(Ok(drawn)) => drawn.fallback().map(Note::Fallback),
             Some(Err(_)) | None => None,
         };
+        let note = note.or(self.hint.map(Note::Hint));
         let kind = note.as_ref().map(mem::discriminant);
         if kind == self.noted {
             return None;
@@ -137,6 +192,7 @@ impl Picture {
     /// Stores the statistics of the current scene's frame, or the error of its drawing.
     #[inline(never)]
     pub fn set_drawn(&mut self, drawn: Result<Drawn, DrawError>, scene: &Scene, models: &Models) {
+        self.hint = drawn.as_ref().ok().and_then(|drawn| Hint::of(drawn, scene));
         self.drawn = Some(drawn);
         self.content = Some(Content {
             scene: scene.clone(),

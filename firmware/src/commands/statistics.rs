@@ -29,14 +29,26 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
     let (backend, engine, fallback): (_, _, Option<&dyn Display>) = match &drawn.by {
-        RenderedBy::Cpu(reason) => (Backend::Cpu, None, reason.as_ref().map(|reason| reason as _)),
+        RenderedBy::Cpu(reason) => (
+            Backend::Cpu,
+            None,
+            reason.as_ref().map(|reason| reason as _),
+        ),
         RenderedBy::Gateware(counters, unsupported) => {
             let unsupported = unsupported.as_ref().map(|unsupported| unsupported as _);
             (Backend::Gateware, Some(counters), unsupported)
         }
     };
-    if let (Some(reason), false) = (fallback, json) {
-        terminal.print_entry("fallback", reason);
+    let hint = picture.hint();
+    let texts = [
+        ("fallback", fallback),
+        ("hint", hint.as_ref().map(|hint| hint as _)),
+    ];
+    let texts = texts.iter().filter_map(|(key, text)| Some((key, (*text)?)));
+    if !json {
+        for (key, text) in texts.clone() {
+            terminal.print_entry(key, text);
+        }
     }
     let soft_core = engine.map(|counters| {
         let cycles = drawn.cycles.saturating_sub(counters.cycles_busy.into());
@@ -57,9 +69,9 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     for (key, value) in values {
         terminal.print(format_args!(",\"{key}\":{value}"));
     }
-    if let Some(reason) = fallback {
-        // The text has neither quotation marks nor control characters.
-        terminal.print(format_args!(",\"fallback\":\"{reason}\""));
+    for (key, text) in texts {
+        // The texts have neither quotation marks nor control characters.
+        terminal.print(format_args!(",\"{key}\":\"{text}\""));
     }
     terminal.print(format_args!("}}\n"));
     Ok(())

@@ -66,8 +66,9 @@ impl Sent {
             .collect();
         let mut beside = |name: &str| beside.remove(Path::new(name).file_name()?.to_str()?);
         let model = model::of_file(&name, mesh, Options::default(), &mut beside)?;
+        let inside_out = model.inside_out().map(str::to_owned);
         Ok(Upload {
-            remarks: model.remarks().to_vec(),
+            remarks: model.remarks().iter().cloned().chain(inside_out).collect(),
             up: model.up,
             mesh: model.mesh,
         })

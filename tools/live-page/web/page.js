@@ -74,11 +74,13 @@ function choice(list, name) {
   return button;
 }
 
-// Shows why the soft core drew the picture, or set it up for the engine.
-function showFallback({ stats }) {
+// Shows why the soft core drew the picture, or set it up for the engine, and why most triangles are not drawn.
+function showRemarks({ stats }) {
   const by = stats?.backend === "cpu" ? "Drawn" : "Set up";
-  const text = stats?.fallback ? `${by} by the soft core, which is slow: ${stats.fallback}` : "";
-  if (element("fallback").textContent !== text) element("fallback").textContent = text;
+  const fallback = stats?.fallback && `${by} by the soft core, which is slow: ${stats.fallback}.`;
+  const hint = stats?.hint && `${stats.hint}.`;
+  const text = [fallback, hint].filter(Boolean).join(" ");
+  if (element("remarks").textContent !== text) element("remarks").textContent = text;
 }
 
 const HANDLERS = {
@@ -90,7 +92,7 @@ const HANDLERS = {
   progress: showProgress,
   sample(sample) {
     showSample(sample);
-    showFallback(sample);
+    showRemarks(sample);
   },
   pins: panel.show,
   control: ({ holder }) => setHolder(holder),

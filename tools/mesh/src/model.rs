@@ -7,6 +7,7 @@ use crate::generate::{self, NAMES};
 use crate::polygons::Polygons;
 use glint_core::framing::upright;
 use glint_core::matrix::Axis;
+use glint_core::mesh::Mesh;
 use std::path::Path;
 
 /// A mesh for boards, with the report of its conversion.
@@ -24,6 +25,40 @@ impl Model {
     pub fn remarks(&self) -> &[String] {
         self.report.as_ref().map_or(&[], |report| &report.remarks)
     }
+
+    /// A remark on a mesh that is closed and inside out: from outside, only its far side is drawn.
+    pub fn inside_out(&self) -> Option<&'static str> {
+        let mesh = Mesh::new_checked(&self.mesh).ok()?;
+        is_inside_out(&mesh).then_some(
+            "the mesh is inside out, and back faces are not drawn: `cull off` on the console draws them, \
+             `glint convert --fix-winding` reverses the faces",
+        )
+    }
+}
+
+/// Whether a mesh is closed, and its faces look inwards: the sum of the areas as vectors, which is exact, is 0, and the volume is
+/// negative.
+fn is_inside_out(mesh: &Mesh) -> bool {
+    let mut area = [0_i128; 3];
+    let mut volume = 0_i128;
+    for chunk in mesh.chunks() {
+        for triangle in chunk.triangles() {
+            let corners = triangle
+                .indices
+                .map(|index| chunk.vertex(usize::from(index)));
+            let [Some(a), Some(b), Some(c)] = corners else {
+                return false;
+            };
+            let [a, b, c] = [a, b, c].map(|vertex| vertex.position.map(i128::from));
+            let [p, q] = [b, c].map(|corner| [0, 1, 2].map(|i| corner[i] - a[i]));
+            let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| p[i] * q[j] - p[j] * q[i]);
+            for axis in 0..3 {
+                area[axis] += normal[axis];
+                volume += a[axis] * normal[axis];
+            }
+        }
+    }
+    area == [0; 3] && volume < 0
 }
 
 /// Whether `name` selects a generator. A file with the name of a generator has precedence.
@@ -95,7 +130,7 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
 /// Converts a mesh file in memory. The extension of its name selects the format; `beside` reads auxiliary files by their names.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn of_file(
     name: &str,
     bytes: Vec<u8>,
@@ -128,9 +163,7 @@ fn of_bytes(
 /// The axis that points up in a file, by its extension.
 fn up_of(path: &Path) -> Axis {
     let extension = path.extension().and_then(|extension| extension.to_str());
-    extension
-        .and_then(upright)
-        .map_or(Axis::Z, |(up, _)| up)
+    extension.and_then(upright).map_or(Axis::Z, |(up, _)| up)
 }
 
 fn converted(path: &Path, polygons: &Polygons, options: Options) -> Result<Model, InputError> {
@@ -141,4 +174,49 @@ fn converted(path: &Path, polygons: &Polygons, options: Options) -> Result<Model
         report: Some(report),
         up: up_of(path),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The remark on an OBJ of a cube after a change of its lines.
+    fn remark(change: impl Fn(&str) -> String) -> Option<&'static str> {
+        let mut obj = Vec::new();
+        let mut cube = generate::named("cube").unwrap();
+        convert::place(&mut cube, Options::default()).unwrap();
+        formats::write::obj(&cube, &mut obj).unwrap();
+        let text = String::from_utf8(obj).unwrap();
+        let text: String = text.lines().map(|line| change(line) + "\n").collect();
+        let model = of_file("a.obj", text.into(), Options::default(), &mut |_| None).unwrap();
+        model.inside_out()
+    }
+
+    /// The line of a face with its corners in reverse order.
+    fn reversed(line: &str) -> String {
+        let Some(corners) = line.strip_prefix("f ") else {
+            return line.to_owned();
+        };
+        let corners: Vec<_> = corners.split(' ').rev().collect();
+        format!("f {}", corners.join(" "))
+    }
+
+    #[test]
+    fn closed_meshes_that_are_inside_out_have_a_remark() {
+        assert_eq!(remark(str::to_owned), None);
+        assert!(remark(reversed).unwrap().contains("inside out"));
+        // An open box has no inside.
+        let mut faces = std::cell::Cell::new(0);
+        let open = |line: &str| {
+            if line.starts_with("f ") {
+                faces.set(faces.get() + 1);
+                if faces.get() == 1 {
+                    return String::new();
+                }
+            }
+            reversed(line)
+        };
+        assert_eq!(remark(open), None);
+        assert!(*faces.get_mut() > 1);
+    }
 }

@@ -3,7 +3,7 @@
 use super::common::{Baud, LineArguments};
 use super::config::BoardChoice;
 use super::convert::load;
-use super::messages::{note, print_json, say};
+use super::messages::{note, print_json, say, warn};
 use super::progress::{advance, bar, show_simulation, spinner};
 use anyhow::Context;
 use clap::Args;
@@ -192,6 +192,9 @@ fn write_flash(path: &Path) -> anyhow::Result<()> {
 impl UploadArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let model = load(&self.model, self.keep_scale)?;
+        if let Some(remark) = model.inside_out() {
+            warn(format_args!("{}: {remark}", self.model.escape_debug()));
+        }
         let board = self.board.name()?;
         if board.is_simulated() {
             note(

@@ -1,7 +1,8 @@
 //! Pictures and depths of meshes are bit-identical to the model's: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
-    drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer, running_board, timeless,
+    drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer, running_board,
+    timeless,
 };
 use glint::board::{Board, SimulatedBoard, Simulation};
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject};
@@ -36,10 +37,15 @@ fn smooth_shading_is_the_models_on_every_backend() {
         renderer.set_backend(backend);
         let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "smooth");
         let notes = renderer.console().command("stats").unwrap();
-        let fell_back = notes.iter().any(|line| line == &format!("fallback {NO_SMOOTH}"));
+        let fell_back = notes
+            .iter()
+            .any(|line| line == &format!("fallback {NO_SMOOTH}"));
         assert_eq!(fell_back, capability == Shading::Flat, "{notes:#?}");
         let json = renderer.console().command("stats json").unwrap().concat();
-        assert_eq!(json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#)), fell_back);
+        assert_eq!(
+            json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#)),
+            fell_back
+        );
         let by_cpu = fell_back || backend.is_some();
         let by = if by_cpu { "cpu" } else { "gateware" };
         assert_eq!(stats.backend.as_deref(), Some(by));
@@ -59,7 +65,7 @@ fn the_console_notes_a_fallback_once() {
     let mut said = |command: &str| {
         board.write(format!("{command}\r").as_bytes()).unwrap();
         let mut bytes = Vec::new();
-        for _ in 0..20 {
+        for _ in 0..100 {
             board.read(&mut bytes, 50).unwrap();
         }
         String::from_utf8(bytes).unwrap()
@@ -73,9 +79,61 @@ fn the_console_notes_a_fallback_once() {
         ("shading smooth", true),
     ] {
         let text = said(command);
-        assert_eq!(text.matches(&note).count(), usize::from(is_noted), "{text:?}");
+        assert_eq!(
+            text.matches(&note).count(),
+            usize::from(is_noted),
+            "{text:?}"
+        );
         assert!(text.ends_with("glint> "), "{text:?}");
     }
+}
+
+/// A patch that is seen from behind has a hint, on the console and in the statistics; with `cull off` or from the front it has none.
+#[test]
+fn a_mesh_seen_from_behind_has_a_hint() {
+    const SIDE: usize = 40;
+    let line = |i: usize| (0..=SIDE).map(move |j| format!("v {i} {j} 0\n"));
+    let mut obj: String = (0..=SIDE).flat_map(line).collect();
+    for i in 0..SIDE {
+        for j in 0..SIDE {
+            let first = i * (SIDE + 1) + j + 1;
+            let next = first + SIDE + 1;
+            obj += &format!("f {first} {} {} {next}\n", first + 1, next + 1);
+        }
+    }
+    let options = glint::convert::Options::default();
+    let patch = glint::model::of_file("a.obj", obj.into(), options, &mut |_| None).unwrap();
+    let mut board = emulator();
+    let mut renderer = renderer(&mut board);
+    renderer.upload(&patch.mesh, Some("patch")).unwrap();
+    let console = renderer.console();
+    for (command, is_hinted) in [
+        ("camera 3 20 30", true),
+        ("cull off", false),
+        ("cull on", true),
+        ("camera 3 20 150", false),
+        ("scene sphere", false),
+        ("camera 3 20 30", false),
+    ] {
+        console.command(command).unwrap();
+        let hint = "hint 0 of 3200 triangles are drawn";
+        let lines = console.command("render").unwrap();
+        let found = lines.iter().any(|line| line.starts_with(hint));
+        assert_eq!(found, is_hinted, "{command}: {lines:#?}");
+        let json = console.command("stats json").unwrap().concat();
+        assert_eq!(json.contains(r#","hint":"0 of 3200 "#), is_hinted, "{json}");
+    }
+    console.command("scene patch").unwrap();
+    drop(renderer);
+    let mut bytes = Vec::new();
+    for _ in 0..10 {
+        board.read(&mut bytes, 50).unwrap();
+    }
+    let text = String::from_utf8(bytes).unwrap();
+    assert!(
+        text.contains("note: 0 of 3200 triangles are drawn"),
+        "{text:?}"
+    );
 }
 
 /// After a change of the camera, drawing a mesh takes few cycles of the soft core in addition to the engine's passes.

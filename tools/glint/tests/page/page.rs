@@ -89,8 +89,8 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
     // The page states why the soft core draws.
     let scene = ["scene sphere", "shading smooth", "orthographic 3"];
     command(browser, page, &scene);
-    let fallback = "document.getElementById('fallback').textContent";
-    let reason = "no smooth shading in orthographic projection";
+    let fallback = "document.getElementById('remarks').textContent";
+    let reason = "no smooth shading in orthographic projection.";
     browser.wait(page, &format!("{fallback}.endsWith('{reason}')"));
     command(browser, page, &["scene default"]);
     browser.wait(page, &format!("{fallback} === ''"));
@@ -246,7 +246,8 @@ fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<Em
         page,
         "(({ role, textContent }) => role === 'status' && textContent.startsWith('the model is shown'))(document.getElementById('notice'))",
     );
-    let model = glint::model::of_file(name, mesh.into(), Options::default(), &mut |_| None).unwrap();
+    let model =
+        glint::model::of_file(name, mesh.into(), Options::default(), &mut |_| None).unwrap();
     let mut console = Console::new(board);
     glint::transfer::upload(&mut console, &model.mesh, None, 1, &mut |_, _| {}).unwrap();
     glint::transfer::show(&mut console, glint::transfer::MODEL, model.up).unwrap();
