@@ -42,6 +42,7 @@ mod marker;
 mod memory;
 #[allow(unsafe_code)] // Keeps meshes and programs beyond the borrow of their memory.
 mod models;
+mod names;
 #[allow(unsafe_code)] // Keeps copies of meshes beyond the borrow of their memory.
 mod objects;
 mod overlay;

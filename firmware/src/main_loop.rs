@@ -47,7 +47,7 @@ const TASKS: [fn(&mut MainLoop) -> Turn; 12] = [
     MainLoop::poll_panel,
     // Again, because a pass of the loop is long compared with a pass of the gateware.
     MainLoop::draw,
-    |all| all.machine.terminal.listen(),
+    MainLoop::listen,
     |all| sensor::deliver(&mut all.machine.imu),
     MainLoop::follow_hand,
     MainLoop::answer,
@@ -146,6 +146,15 @@ impl MainLoop {
             }
         }
         Turn::Again
+    }
+
+    /// Receives input.
+    fn listen(&mut self) -> Turn {
+        let Machine {
+            terminal, models, ..
+        } = &mut self.machine;
+        terminal.names.update(models);
+        terminal.listen()
     }
 
     /// Executes the line that the terminal has received, if it is complete and can be executed now: the gateware has drawn its frame, and

@@ -56,6 +56,7 @@ pub fn built_in_list() -> List {
 }
 
 /// The contents of the flash, which have priority over built-in scenes, lists and meshes of equal names.
+#[derive(Clone, Copy, Default)]
 pub struct Library {
     contents: Option<Contents<'static>>,
     error: Option<FlashError>,

@@ -30,6 +30,7 @@ use crate::interrupts::{self, Present, UART};
 use crate::machine::{Devices, Identity, Machine};
 use crate::memory::{self, Memory};
 use crate::models::Models;
+use crate::names::MachineNames;
 use crate::renderer::Renderer;
 use crate::scenes::Library;
 use crate::transfer::Downloads;
@@ -208,6 +209,7 @@ pub fn machine() -> Result<Machine, StartError> {
     );
     machine.flash = flash;
     machine.library = Library::new(flash.and_then(|flash| flash.get(CONTENTS..)));
+    machine.terminal.names = MachineNames::new(machine.library);
     machine.downloads = Downloads::new(memory.copy);
     machine.gesture = gesture.map(|engine| Gesture::new(engine, clock));
     Ok(machine)

@@ -10,6 +10,8 @@ use glint_hal::timer::Clock;
 use glint_hal::uart::{Uart, Writer};
 use heapless::String;
 
+use crate::names::MachineNames;
+
 /// Capacity of the receive queue in bytes: enough for more than a second of input at 115,200 baud, and for several windows
 /// of an upload.
 const RECEIVE_QUEUE: usize = 16 << 10;
@@ -42,6 +44,8 @@ pub struct Terminal {
     editor: LineEditor,
     output: Output,
     waiting: Option<Input>,
+    /// The names for completion.
+    pub names: MachineNames,
     /// Whether the serial line is lent to a transfer.
     is_lent: bool,
 }
@@ -57,6 +61,7 @@ impl Terminal {
             editor: LineEditor::new(),
             output,
             waiting: None,
+            names: MachineNames::default(),
             is_lent: false,
         }
     }
@@ -77,7 +82,7 @@ impl Terminal {
         let mut has_worked = false;
         while !self.is_lent && self.waiting.is_none() && self.uart.receive(&mut byte) > 0 {
             has_worked = true;
-            self.waiting = match self.editor.on_byte(byte[0], &mut self.output) {
+            self.waiting = match self.editor.on_byte(byte[0], &self.names, &mut self.output) {
                 Event::None => None,
                 // The editor limits lines to the string's capacity, so the conversion does not fail.
                 Event::Line(line) => Some(Input::Line(String::try_from(line).unwrap_or_default())),

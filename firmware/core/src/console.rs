@@ -21,9 +21,11 @@ pub use command::{
     Command, DemoCommands, Executor, FORMS, FrameCommands, GestureCommands, ImuCommands,
     MachineCommands, OptionName, OrbitCommands, SceneCommands, Setting, accepted_words, write_help,
 };
+pub use completion::complete;
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use effect::Effect;
 pub use error::ParseError;
 pub use forms::{FIELD, Forms, HostOption, MESHES, Order, Row};
 pub use object::ObjectAction;
+pub use syntax::{NameList, Names, NoNames};
 pub use values::{DemoAction, GestureAction, ImuAction};

@@ -1,15 +1,16 @@
 //! The channel for messages between the pages and the session.
 
-use crate::choices::List;
+use crate::choices::{Choices, List};
 use crate::hub::{Hub, Id};
 use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::ToPage;
 use crate::motion::Motion;
+use crate::orbit::Drag;
 use glint_core::matrix::Axis;
 use std::mem::{Discriminant, discriminant};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Maximum number of requests that are queued for the board.
 pub const MAX_REQUESTS: usize = 64;
@@ -62,6 +63,10 @@ pub struct Channels {
     pub inputs: Inputs,
     /// The motion sensor and the hand, if the page moves them.
     pub motion: Option<Arc<Motion>>,
+    /// The choices of the firmware.
+    choices: Mutex<Arc<Choices>>,
+    /// The motion of the camera that the session has not made yet.
+    drag: Mutex<Option<Drag>>,
     /// The sender of requests to the session.
     requests: SyncSender<Request>,
 }
@@ -86,9 +91,40 @@ impl Channels {
             hub: Hub::default(),
             inputs: Inputs::default(),
             motion,
+            choices: Mutex::default(),
+            drag: Mutex::default(),
             requests,
         };
         (channels, queue)
+    }
+
+    fn lock_drag(&self) -> MutexGuard<'_, Option<Drag>> {
+        self.drag.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Moves the camera.
+    pub fn drag(&self, drag: Drag) {
+        let mut waiting = self.lock_drag();
+        *waiting = Some(waiting.unwrap_or(Drag::NONE).then(&drag));
+    }
+
+    /// Takes the motion of the camera since the last call.
+    pub fn take_drag(&self) -> Option<Drag> {
+        self.lock_drag().take()
+    }
+
+    fn lock_choices(&self) -> MutexGuard<'_, Arc<Choices>> {
+        self.choices.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The choices of the firmware.
+    pub fn choices(&self) -> Arc<Choices> {
+        Arc::clone(&self.lock_choices())
+    }
+
+    /// Sets the choices of the firmware.
+    pub fn set_choices(&self, choices: Choices) {
+        *self.lock_choices() = Arc::new(choices);
     }
 
     /// Passes a request of a viewer to the session; drops it with a notice if the queue is full.

@@ -2,6 +2,7 @@
 //!
 //! The names are those that the firmware lists; the examples of fields come from the table of `glint-core`.
 
+use glint_core::console::{NameList, Names};
 use glint_core::field::{EXAMPLES, Field, KINDS, MovingSphere, Primitive};
 use glint_core::fixed::Turns;
 use serde::{Deserialize, Serialize};
@@ -107,6 +108,18 @@ impl Choices {
     }
 }
 
+/// The names for completion.
+impl Names for Choices {
+    fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
+        let lists = match list {
+            NameList::Scenes => &[List::Meshes, List::Scenes][..],
+            NameList::Meshes | NameList::Uploads => &[List::Meshes],
+        };
+        let choices = lists.iter().flat_map(|list| self.of(*list));
+        choices.for_each(|choice| visit(&choice.name));
+    }
+}
+
 /// The names of meshes in a reply to `models`.
 fn mesh_names(models: &[String]) -> Vec<&str> {
     let mut names = Vec::new();
@@ -158,7 +171,9 @@ mod tests {
             &|name| Some(format!("fit {name}")),
             &lines("scene cube there\nscene hull flash\nscene cubes there\nscene default there"),
             &lines("built-in cube\nflash hull bytes 7\nuploads 0 of 16\nfree 1 bytes"),
-            &lines("field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X"),
+            &lines(
+                "field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X",
+            ),
         );
         let names = |list| -> Vec<_> {
             let names = choices.of(list).iter().map(|choice| choice.name.as_str());

@@ -19,12 +19,13 @@ pub struct File {
 }
 
 /// The files, starting with the HTML page.
-pub const FILES: [File; 9] = [
+pub const FILES: [File; 10] = [
     file("index.html", HTML, include_str!("../web/index.html")),
     file("page.css", CSS, include_str!("../web/page.css")),
     file("page.js", SCRIPT, include_str!("../web/page.js")),
     file("monitor.js", SCRIPT, include_str!("../web/monitor.js")),
     file("console.js", SCRIPT, include_str!("../web/console.js")),
+    file("orbit.js", SCRIPT, include_str!("../web/orbit.js")),
     file("panel.js", SCRIPT, include_str!("../web/panel.js")),
     file("motion.js", SCRIPT, include_str!("../web/motion.js")),
     file("upload.js", SCRIPT, include_str!("../web/upload.js")),

@@ -168,7 +168,7 @@ impl Hub {
             ToPage::Lists { .. } => state.lists = Some(encoded.clone()),
             ToPage::Pins(_) => state.pins = Some(encoded.clone()),
             ToPage::Console { .. } | ToPage::Control { .. } | ToPage::Sample { .. } => {}
-            ToPage::Motion { .. } | ToPage::Help { .. } => {}
+            ToPage::Motion { .. } | ToPage::Help { .. } | ToPage::Completions { .. } => {}
             ToPage::Progress { .. } | ToPage::Notice { .. } => {}
         }
         state.send(&encoded);

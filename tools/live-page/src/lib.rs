@@ -11,6 +11,7 @@
 //! | [`inputs`] | the levels that the page sets |
 //! | [`motion`] | the motion sensor that the page turns, and the hand that it moves |
 //! | [`live`] | boards in real time, with their monitor and pins |
+//! | [`orbit`] | the camera that the page moves by dragging on the picture |
 //! | [`session`] | runs the board, its console and its transfers |
 //!
 //! A program passes the messages over sockets (`glint board --web`), or the board runs in the browser itself (`cargo xtask web`).
@@ -25,6 +26,7 @@ pub mod inputs;
 pub mod live;
 pub mod message;
 pub mod motion;
+pub mod orbit;
 pub mod session;
 pub mod viewer;
 

@@ -112,6 +112,13 @@ pub enum ToPage {
         /// Lines of the reply.
         lines: Vec<String>,
     },
+    /// Words that complete a line.
+    Completions {
+        /// The line.
+        line: String,
+        /// The words that may stand in place of its last word.
+        words: Vec<String>,
+    },
     /// Progress of a transfer in bytes.
     Progress {
         /// Bytes transferred so far.
@@ -163,7 +170,7 @@ pub fn picture(frame: &Frame, number: u32) -> Message {
     Message::Binary(bytes.into())
 }
 
-/// A message from the page. All messages except `take`, `release` and `help` require control.
+/// A message from the page. All messages except `take`, `release`, `help` and `complete` require control.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FromPage {
@@ -189,6 +196,18 @@ pub enum FromPage {
     Help {
         /// The command.
         command: String,
+    },
+    /// Requests the words that complete a line.
+    Complete {
+        /// The line.
+        line: String,
+    },
+    /// Moves the camera around the subject.
+    Orbit {
+        /// As in [`Drag::turn`](crate::orbit::Drag::turn).
+        turn: [f64; 2],
+        /// As in [`Drag::zoom`](crate::orbit::Drag::zoom).
+        zoom: f64,
     },
     /// Sets the buttons.
     Buttons {

@@ -6,10 +6,12 @@ use crate::hub::Hub;
 use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::{Entry, Pins, ToPage};
+use crate::orbit::{self, Drag};
 use glint_board_api::console::{self, Console, ConsoleError};
 use glint_board_api::transfer::{self, MODEL, TransferError};
 use glint_board_api::{Board, BoardError, Frame, Memory, read_in_steps};
-use glint_core::console::PROMPT;
+use glint_core::camera::View;
+use glint_core::console::{Command, PROMPT, Setting};
 use glint_core::matrix::Axis;
 use glint_core::picture::Size;
 use serde_json::Value;
@@ -32,7 +34,7 @@ const FIRST_PATIENCE_MS: u64 = 1_000;
 /// Interval in ms of the board's time between two pictures of a moving field.
 const FRAME_MS: u64 = 40;
 
-/// Number of progress reports of a transfer.
+/// Maximum number of progress reports of a transfer.
 const REPORTS: u64 = 100;
 
 /// A board that sends its picture and its pins to the page while its line is read.
@@ -112,12 +114,14 @@ pub struct Session<'a> {
     requests: Receiver<Request>,
     /// Requests that are queued until the end of a command.
     waiting: VecDeque<Request>,
-    /// The choices of the firmware.
-    choices: Choices,
+    /// The channel to the pages, with the choices of the firmware.
+    channels: &'a Channels,
     /// The commands of the pictures of a moving field; the first one is next.
     frames: VecDeque<String>,
     /// Time of the last picture of a moving field, in ms of the board's time.
     moved_ms: u64,
+    /// The camera that the page has moved last, and its up direction, until another request.
+    orbit: Option<(View, [f64; 3])>,
     /// Time of the last measurement.
     sampled: Duration,
     /// The up axis of the last uploaded mesh.
@@ -154,9 +158,10 @@ impl<'a> Session<'a> {
             hub: &channels.hub,
             requests,
             waiting: VecDeque::new(),
-            choices: Choices::default(),
+            channels,
             frames: VecDeque::new(),
             moved_ms: 0,
+            orbit: None,
             up: Axis::Z,
             uploads: 0,
             has_prompt: false,
@@ -211,13 +216,21 @@ impl<'a> Session<'a> {
             }
             Some(Request::Picture) => self.ask(send_picture),
             Some(Request::Interrupt) => Ok(()),
-            None if self.is_sample_due() => {
-                self.ask(send_sample)?;
-                self.sampled = self.board.board.clock();
-                Ok(())
-            }
-            None => self.move_field(),
+            None => self.use_rest(),
         }
+    }
+
+    /// Does what waits for a time without requests: moves the camera, measures, or moves a field.
+    fn use_rest(&mut self) -> Result<(), BoardError> {
+        if let Some(drag) = self.channels.take_drag() {
+            return self.move_camera(&drag);
+        }
+        if self.is_sample_due() {
+            self.ask(send_sample)?;
+            self.sampled = self.board.board.clock();
+            return Ok(());
+        }
+        self.move_field()
     }
 
     /// The next request of a page. A request that may change the picture ends the motion of a field.
@@ -225,6 +238,7 @@ impl<'a> Session<'a> {
         let request = self.requests.try_recv().ok()?;
         if !matches!(request, Request::Help(_) | Request::Picture) {
             self.frames.clear();
+            self.orbit = None;
         }
         Some(request)
     }
@@ -233,7 +247,7 @@ impl<'a> Session<'a> {
     fn choose(&mut self, list: List, name: &str) -> Result<(), BoardError> {
         self.waiting
             .retain(|earlier| !matches!(earlier, Request::Command(_)));
-        let Some(choice) = self.choices.find(list, name).cloned() else {
+        let Some(choice) = self.channels.choices().find(list, name).cloned() else {
             return Ok(());
         };
         let mut commands = choice.commands.into_iter();
@@ -241,6 +255,34 @@ impl<'a> Session<'a> {
         self.type_line(&first)?;
         self.waiting.extend(commands.map(Request::Command));
         self.frames = choice.frames.into();
+        Ok(())
+    }
+
+    /// Moves the camera around the subject. Before the first motion, sensor and hand no longer steer the camera.
+    fn move_camera(&mut self, drag: &Drag) -> Result<(), BoardError> {
+        let mut orbit = self.orbit;
+        self.ask(|console, _| {
+            if orbit.is_none() {
+                for command in ["imu off", "gesture off"] {
+                    optional(console.command(command))?;
+                }
+            }
+            let lines = console.command("view")?;
+            let line = lines.first().map(String::as_str).unwrap_or_default();
+            let Ok(Some(Command::Set(Setting::View { view }))) = Command::parse(line) else {
+                return Ok(());
+            };
+            let up = match orbit {
+                Some((last, up)) if last == view => up,
+                _ => orbit::up(&view),
+            };
+            if let Some(moved) = orbit::moved(&view, drag, up) {
+                console.command(&format!("view {moved}"))?;
+                orbit = Some((moved, up));
+            }
+            Ok(())
+        })?;
+        self.orbit = orbit;
         Ok(())
     }
 
@@ -262,7 +304,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Queues a request until the console waits for a command. A newer model or picture request replaces the queued one.
+    /// Queues a request until the console waits for a command. A request replaces a queued one with the same [`Request::key`].
     /// Requests for descriptions above the limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting
@@ -370,7 +412,7 @@ impl<'a> Session<'a> {
             });
             Ok(())
         })?;
-        self.choices = choices;
+        self.channels.set_choices(choices);
         Ok(())
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::channels::{Channels, Request, Upload};
 use crate::hub::{Hub, Id};
-use crate::message::{FileHead, FromPage};
-use glint_core::console::LINE_MAX;
+use crate::message::{FileHead, FromPage, ToPage};
+use crate::orbit::Drag;
+use glint_core::console::{LINE_MAX, complete};
 use glint_mesh::convert::Options;
 use glint_mesh::error::InputError;
 use glint_mesh::model;
@@ -145,6 +146,14 @@ impl Viewer {
                     channels.request(self.id, Request::Help(command));
                 }
             }
+            FromPage::Complete { line } => {
+                if self.is_line(&line, channels) {
+                    let mut words = Vec::new();
+                    let mut offer = |word: &str, _: &str| words.push(word.to_owned());
+                    complete(&line, &*channels.choices(), &mut offer);
+                    hub.send_one(self.id, &ToPage::Completions { line, words });
+                }
+            }
             // Messages of a page that has just lost control may still arrive.
             _ if !hub.has_control(self.id) => {}
             FromPage::Command { line } => {
@@ -159,6 +168,13 @@ impl Viewer {
             FromPage::Picture => channels.request(self.id, Request::Picture),
             FromPage::Buttons { pressed } => channels.inputs.press(pressed),
             FromPage::Switches { on } => channels.inputs.switch(on),
+            FromPage::Orbit { turn, zoom } => {
+                let drag = Drag { turn, zoom };
+                if !drag.is_valid() {
+                    return Err("expected a motion of the camera");
+                }
+                channels.drag(drag);
+            }
             FromPage::Turn { attitude } => {
                 let motion = channels.motion.as_ref();
                 let is_set = motion.is_none_or(|motion| motion.turn(attitude));
@@ -245,6 +261,7 @@ mod tests {
             r#"{"type":"turn","attitude":[0,0,0,0]}"#,
             r#"{"type":"turn","attitude":[1,0,0]}"#,
             r#"{"type":"hand","place":[0.5,1.5]}"#,
+            r#"{"type":"orbit","turn":[99,0],"zoom":1}"#,
             &upload(0),
             &upload(MAX_UPLOAD + 1),
             &format!(
@@ -318,7 +335,9 @@ mod tests {
         };
         let triangle = ["v 0 0 0\nv 1 0 0\n", "v 0 1 0\nf 1 2 3\n"];
         send("a.obj", &triangle);
-        assert!(matches!(queue.try_recv(), Ok(Request::Upload(upload)) if upload.mesh.starts_with(b"GLM")));
+        assert!(
+            matches!(queue.try_recv(), Ok(Request::Upload(upload)) if upload.mesh.starts_with(b"GLM"))
+        );
         send("a.ply", &triangle);
         send("../../etc/passwd", &triangle);
         assert!(queue.try_recv().is_err());
@@ -370,6 +389,7 @@ mod tests {
             r#"{"type":"buttons","pressed":1}"#,
             r#"{"type":"switches","on":1}"#,
             r#"{"type":"picture"}"#,
+            r#"{"type":"orbit","turn":[1,0],"zoom":1}"#,
         ] {
             second.receive_text(ignored, &channels).unwrap();
         }
@@ -377,6 +397,7 @@ mod tests {
         assert!(second.receive_bytes(&[1], &channels).is_err());
         assert!(queue.try_recv().is_err());
         assert_eq!(channels.inputs.take(), Inputs::default().take());
+        assert_eq!(channels.take_drag(), None);
         let help = r#"{"type":"help","command":"field"}"#;
         second.receive_text(help, &channels).unwrap();
         assert!(matches!(queue.try_recv(), Ok(Request::Help(command)) if command == "field"));

@@ -11,12 +11,6 @@ function common(words) {
   return start;
 }
 
-// The fixed words for an argument in a line of help such as `ACTION: list or show or X,Y,Z`: those without capital letters.
-function alternatives(line) {
-  const words = line.slice(line.indexOf(":") + 1).split(" or ");
-  return words.map((word) => word.trim().split(/[\[ ]/)[0]).filter((word) => word && !/[A-Z]/.test(word.split(":")[0]));
-}
-
 export function startConsole(send) {
   const log = document.getElementById("log");
   const input = document.getElementById("line");
@@ -27,6 +21,11 @@ export function startConsole(send) {
   let commands = [];
   let place = 0;
   let raw = "";
+  // The words that complete a line, whether Tab waits for them, and whether it has found none.
+  let found = { line: "", words: [] };
+  let [waits, isVain] = [false, false];
+  // Whether the hint lists completions.
+  let isListed = false;
 
   function show(text) {
     raw = (raw + text).slice(-MAX_LOG);
@@ -51,21 +50,21 @@ export function startConsole(send) {
     send({ type: "command", line });
   }
 
-  // The words that may follow in the line, and the start of the word at its end.
-  function candidates() {
-    const words = input.value.trimStart().split(/ +/);
-    const start = words.at(-1);
-    if (words.length === 1) return [start, commands.map(({ name }) => name)];
-    const lines = helps.get(words[0]) ?? [];
-    return [start, lines.slice(2).flatMap(alternatives)];
+  // Whether `found` are the words for the line.
+  const isKnown = () => found.line === input.value;
+  const last = () => input.value.split(" ").at(-1);
+
+  // Requests the words that complete the line.
+  function ask() {
+    if (!isKnown()) send({ type: "complete", line: input.value });
   }
 
   function showHint() {
+    if (isListed) return;
     const name = input.value.trimStart().split(" ")[0];
     const command = commands.find((command) => command.name === name);
     if (!command) {
-      const [start, words] = candidates();
-      hint.textContent = start === "" ? "" : words.filter((word) => word.startsWith(start)).join("  ");
+      hint.textContent = input.value.trim() && isKnown() ? found.words.join("  ") : "";
       return;
     }
     hint.textContent = helps.get(name)?.join("\n") ?? command.text;
@@ -80,22 +79,45 @@ export function startConsole(send) {
     showHint();
   }
 
-  // Completes the word at the end of the line. Returns whether there was something to complete.
-  function complete() {
-    const [start, words] = candidates();
-    const found = words.filter((word) => word.startsWith(start));
-    if (found.length === 0 || input.value.trim() === "") return false;
-    const end = found.length === 1 ? `${found[0]} ` : common(found);
-    const isNew = end !== start;
-    input.value = input.value.slice(0, input.value.length - start.length) + end;
-    showHint();
-    if (!isNew) hint.textContent = found.join("  ");
-    return true;
+  // Shows the words for the line, and completes it if Tab has waited for them.
+  function showCompletions({ line, words }) {
+    if (line !== input.value || isKnown()) return;
+    found = { line, words };
+    if (waits) complete();
+    else showHint();
   }
 
+  // Completes the word at the end of the line, or lists the words.
+  function complete() {
+    waits = false;
+    const { words } = found;
+    isVain = words.length === 0;
+    if (isVain) return list("No completion; Tab leaves the line.");
+    const start = last();
+    // Numbers follow a colon.
+    const end = words.length > 1 || words[0].endsWith(":") ? common(words) : `${words[0]} `;
+    const isNew = end !== start;
+    input.value = input.value.slice(0, input.value.length - start.length) + end;
+    isListed = false;
+    ask();
+    showHint();
+    if (!isNew) list(words.join("  "));
+  }
+
+  function list(text) {
+    isListed = true;
+    hint.textContent = text;
+  }
+
+  // Tab completes, and leaves an empty line, a line without a completion at its second press, and any line after Escape.
   let leaves = false;
   input.addEventListener("keydown", (event) => {
-    if (event.key === "Tab" && !event.shiftKey && !leaves && complete()) event.preventDefault();
+    if (event.key === "Tab" && !event.shiftKey && !leaves && !isVain && input.value.trim() !== "") {
+      event.preventDefault();
+      waits = true;
+      if (isKnown()) complete();
+      else ask();
+    }
     leaves = event.key === "Escape";
     if (event.key === "c" && event.ctrlKey && input.selectionStart === input.selectionEnd) send({ type: "interrupt" });
     const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
@@ -103,22 +125,29 @@ export function startConsole(send) {
       event.preventDefault();
       place = Math.min(Math.max(place + step, 0), history.length);
       input.value = history[place] ?? "";
-      showHint();
+      change();
     }
   });
-  input.addEventListener("input", showHint);
+  function change() {
+    [isVain, isListed, waits] = [false, false, false];
+    ask();
+    showHint();
+  }
+  input.addEventListener("input", change);
   document.getElementById("interrupt").addEventListener("click", () => send({ type: "interrupt" }));
   document.getElementById("command").addEventListener("submit", (event) => {
     event.preventDefault();
     run(input.value);
     input.value = "";
-    showHint();
+    change();
   });
 
   function setCommands(list) {
     commands = list;
     asked = new Set(helps.keys());
+    // The names may have changed.
+    found = { line: null, words: [] };
   }
 
-  return { show, clear, showHelp, setCommands };
+  return { show, clear, showHelp, showCompletions, setCommands };
 }

@@ -1,10 +1,11 @@
 // Curves over time: duration of a frame, cycles of the engine, attitude.
 const SHOWN_MS = 60_000;
 const COLOURS = ["#3a9bff", "#ff8a3c", "#3fbf7f"];
+// `least` is the range that a curve shows at least, so that noise does not fill it.
 const CURVES = [
-  { id: "time", unit: "ms", names: ["frame"], values: ({ stats }) => [stats && (stats.cycles / stats.clock) * 1000] },
-  { id: "engine", unit: "kcycles", names: ["busy", "stalled"], values: ({ stats }) => [stats?.cycles_busy, stats?.cycles_stalled].map((c) => c / 1000) },
-  { id: "attitude", unit: "°", names: ["yaw", "pitch", "roll"], values: ({ attitude }) => (attitude ? angles(attitude) : []) },
+  { id: "time", unit: "ms", least: [0, 1], names: ["frame"], values: ({ stats }) => [stats && (stats.cycles / stats.clock) * 1000] },
+  { id: "engine", unit: "kcycles", least: [0, 1], names: ["busy", "stalled"], values: ({ stats }) => [stats?.cycles_busy, stats?.cycles_stalled].map((c) => c / 1000) },
+  { id: "attitude", unit: "°", least: [-10, 10], names: ["yaw", "pitch", "roll"], values: ({ attitude }) => (attitude ? angles(attitude) : []) },
 ];
 
 function angles([w, x, y, z]) {
@@ -15,11 +16,11 @@ function angles([w, x, y, z]) {
 }
 
 // Draws the values of samples over the time before `now`.
-function draw(canvas, samples, now, count) {
+function draw(canvas, samples, now, count, least) {
   const context = canvas.getContext("2d");
   const { width, height } = canvas;
   const all = samples.flatMap(({ found }) => found).filter(Number.isFinite);
-  const [low, high] = [Math.min(0, ...all), Math.max(1e-6, ...all)];
+  const [low, high] = [Math.min(least[0], ...all), Math.max(least[1], ...all)];
   context.clearRect(0, 0, width, height);
   for (let number = 0; number < count; number++) {
     context.strokeStyle = COLOURS[number];
@@ -33,19 +34,22 @@ function draw(canvas, samples, now, count) {
   }
 }
 
+// A number with one decimal, without the sign of a rounded zero.
+const decimal = (value) => (Number.isFinite(value) ? (Math.round(value * 10) / 10 || 0).toFixed(1) : "–");
+
 export function startCurves() {
   const curves = CURVES.map((curve) => ({ ...curve, samples: [], figure: document.getElementById(`curve-${curve.id}`) }));
   return (sample) => {
     const now = performance.now();
-    for (const { figure, names, unit, values, samples } of curves) {
+    for (const { figure, names, unit, least, values, samples } of curves) {
       const found = values(sample);
       samples.push({ at: now, found });
       while (now - samples[0].at > SHOWN_MS) samples.shift();
-      draw(figure.querySelector("canvas"), samples, now, names.length);
+      draw(figure.querySelector("canvas"), samples, now, names.length, least);
       const texts = names.map((name, number) => {
         const text = document.createElement("span");
         text.style.borderColor = COLOURS[number];
-        text.textContent = `${name} ${Number.isFinite(found[number]) ? found[number].toFixed(1) : "–"} ${unit}`;
+        text.textContent = `${name} ${decimal(found[number])} ${unit}`;
         return text;
       });
       figure.querySelector("figcaption").replaceChildren(...texts);

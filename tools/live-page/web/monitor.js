@@ -31,7 +31,7 @@ export function showPicture(data) {
 function showRate() {
   const start = performance.now() - 1000;
   times = times.filter((time) => time > start);
-  rate.textContent = times.length;
+  rate.textContent = times.length > 0 ? `${times.length} pictures/s` : "still";
 }
 
 setInterval(showRate, 500);

@@ -6,6 +6,7 @@ import { startPanel } from "./panel.js";
 import { startMotion } from "./motion.js";
 import { startUpload } from "./upload.js";
 import { startCurves } from "./curves.js";
+import { startOrbit } from "./orbit.js";
 
 const element = (id) => document.getElementById(id);
 let holder = "nobody";
@@ -32,6 +33,7 @@ const panel = startPanel(send);
 const showProgress = startUpload(send, (bytes) => sendData(bytes), notify);
 const showSample = startCurves();
 const motion = startMotion(send, notify);
+startOrbit(send);
 
 const HOLDERS = { you: "You have control.", other: "Another page has control; this one only watches.", nobody: "No page has control." };
 
@@ -89,6 +91,7 @@ const HANDLERS = {
   console: ({ text }) => console_.show(text),
   motion: motion.show,
   help: console_.showHelp,
+  completions: console_.showCompletions,
   progress: showProgress,
   sample(sample) {
     showSample(sample);

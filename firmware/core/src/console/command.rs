@@ -10,7 +10,7 @@ use super::syntax::{Parameter, Shape, Syntax, WordKind};
 use super::table::{commands, part, shows};
 use super::values::{
     Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName,
-    Mounting, Name, Sensitivity, Size, Upload, View, Whole,
+    Mounting, Name, SceneName, Sensitivity, Size, Upload, UploadName, View, Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
@@ -53,11 +53,11 @@ commands! {
 
     /// Commands of scenes, meshes and wireframe programs.
     SceneCommands {
-        scene Scene(name: Option<Name>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
+        scene Scene(name: Option<SceneName>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
             => key(Order::Subject, "teapot").named("model").without(&["object", "program"]);
         load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh (binary) under a name (default model) and show it";
         models Models() in UPLOAD: "list the meshes and the memory for uploads";
-        unload Unload(name: MeshName) in UPLOAD: "remove an uploaded mesh";
+        unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh";
         program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; alone: show the last one"
             => key(Order::Subject, "cube");
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
@@ -279,7 +279,13 @@ pub fn accepted_words(command: &str) -> Option<&'static [&'static str]> {
         Shape::Word(WordKind::Words(words) | WordKind::Either(_, WordKind::Words(words))) => {
             Some(words)
         }
-        Shape::Word(WordKind::Either(..) | WordKind::Text(_) | WordKind::Command)
+        Shape::Word(
+            WordKind::Either(..)
+            | WordKind::Text(_)
+            | WordKind::Command
+            | WordKind::Name(..)
+            | WordKind::Forms(_),
+        )
         | Shape::Flag
         | Shape::Group(_) => None,
     }

@@ -1,19 +1,19 @@
-//! Completion of command names and of words of arguments.
+//! Completion of command names, of words of arguments, and of the machine's names.
 
 use super::command::{find, syntaxes};
-use super::syntax::{Parameter, Shape, WordKind};
+use super::syntax::{Names, Parameter, Shape, WordKind};
 use crate::words::{Word, Words};
 
-/// Calls `offer` for each candidate for the last word of `line`. The arguments of `offer` are the whole candidate and its part
-/// that the line does not yet contain.
-pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
+/// Calls `offer` for each candidate for the last word of `line`; `names` are the machine's names. The arguments of `offer` are the whole
+/// candidate and its part that the line does not yet contain.
+pub fn complete(line: &str, names: &dyn Names, offer: &mut dyn FnMut(&str, &str)) {
     let words = Words::new(line);
     // After a blank at the end of the line, the word to complete is a new, empty word.
     let ends = line.is_empty() || line.ends_with(' ');
     let count = words.clone().count() + usize::from(ends);
     let begun = words.clone().last().filter(|_| !ends);
     let begun = begun.map_or("", |word: Word| word.text);
-    let mut offer = |word: &'static str| {
+    let mut offer = |word: &str| {
         if let Some(rest) = word.strip_prefix(begun) {
             offer(word, rest);
         }
@@ -24,17 +24,28 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     let Some(parameter) = parameter(command.text, count - 2) else {
         return;
     };
-    match &parameter.shape {
+    match parameter.shape {
         Shape::Flag => offer(parameter.name),
-        Shape::Word(WordKind::Words(words)) => words.iter().for_each(|word| offer(word)),
-        &Shape::Word(mut kind @ WordKind::Either(..)) => {
-            while let WordKind::Either(keyword, other) = kind {
-                offer(keyword);
-                kind = other;
-            }
+        Shape::Word(kind) => offer_words(kind, names, &mut offer),
+        Shape::Group(_) => {}
+    }
+}
+
+/// Calls `offer` with each word of a kind.
+fn offer_words(kind: &WordKind, names: &dyn Names, offer: &mut dyn FnMut(&str)) {
+    match kind {
+        WordKind::Words(words) => words.iter().for_each(|word| offer(word)),
+        WordKind::Either(keyword, other) => {
+            offer(keyword);
+            offer_words(other, names, offer);
         }
-        Shape::Word(WordKind::Command) => syntaxes().for_each(|syntax| offer(syntax.name)),
-        Shape::Word(WordKind::Text(_)) | Shape::Group(_) => {}
+        WordKind::Command => syntaxes().for_each(|syntax| offer(syntax.name)),
+        WordKind::Name(list, _) => names.visit(*list, offer),
+        WordKind::Forms(forms) => forms.iter().for_each(|(form, _)| {
+            // The name with the colon, if numbers follow.
+            offer(form.split_inclusive(':').next().unwrap_or_default());
+        }),
+        WordKind::Text(_) => {}
     }
 }
 

@@ -5,6 +5,7 @@ use core::fmt::{self, Write};
 use heapless::{Deque, Vec};
 
 use super::completion::complete;
+use super::syntax::Names;
 
 /// The prompt.
 pub const PROMPT: &str = "glint> ";
@@ -37,7 +38,7 @@ pub enum Event<'a> {
 /// | ←, →, Home, End, Ctrl-B, -F, -A, -E | move the cursor |
 /// | ↑, ↓, Ctrl-P, Ctrl-N | bring back an earlier or later line |
 /// | Ctrl-U, Ctrl-K, Ctrl-W | delete to the start, to the end, or the word before the cursor |
-/// | Tab | completes a command or a word of its arguments, or lists the candidates |
+/// | Tab | completes a command, a word of its arguments or a name, or lists the candidates |
 /// | Ctrl-L | redraws prompt and line |
 /// | Ctrl-C | cancels the line |
 ///
@@ -112,9 +113,9 @@ impl LineEditor {
         }
     }
 
-    /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed.
-    /// Errors of `echo` are ignored, because they only mean that no terminal is connected.
-    pub fn on_byte(&mut self, byte: u8, echo: &mut dyn Write) -> Event<'_> {
+    /// Takes a byte and writes the echo for the terminal to `echo`, which must send a carriage return with every line feed. `names` are
+    /// the machine's names, for completion. Errors of `echo` are ignored, because they only mean that no terminal is connected.
+    pub fn on_byte(&mut self, byte: u8, names: &dyn Names, echo: &mut dyn Write) -> Event<'_> {
         if self.ended {
             self.clear();
         }
@@ -133,7 +134,7 @@ impl LineEditor {
                 let _ = match self.decode(byte) {
                     Input::Nothing => Ok(()),
                     Input::Character(byte) => self.insert(byte, echo),
-                    Input::Key(key) => self.press(key, echo),
+                    Input::Key(key) => self.press(key, names, echo),
                 };
             }
         }
@@ -236,7 +237,7 @@ impl LineEditor {
         self.write_tail(echo)
     }
 
-    fn press(&mut self, key: Key, echo: &mut dyn Write) -> fmt::Result {
+    fn press(&mut self, key: Key, names: &dyn Names, echo: &mut dyn Write) -> fmt::Result {
         let length = self.line.len();
         match key {
             Key::Left => self.move_to(self.cursor.saturating_sub(1), echo),
@@ -261,7 +262,7 @@ impl LineEditor {
                     .map_or(0, |blank| blank + 1);
                 self.delete(start, self.cursor, echo)
             }
-            Key::Complete => self.complete(echo),
+            Key::Complete => self.complete(names, echo),
             Key::Redraw => self.redraw(echo),
         }
     }
@@ -271,42 +272,45 @@ impl LineEditor {
         text(self.line.get(..self.cursor).unwrap_or_default())
     }
 
-    /// Clears the terminal's line, and writes prompt and line again.
+    /// Clears the terminal's line, and writes prompt and line again. A line that has ended is not part of the new line.
     ///
     /// # Errors
     /// The errors of `echo`.
     pub fn redraw(&self, echo: &mut dyn Write) -> fmt::Result {
-        write!(echo, "\r\x1B[K{PROMPT}{}", self.before())?;
+        write!(echo, "\r\x1B[K{PROMPT}")?;
+        if self.ended {
+            return Ok(());
+        }
+        echo.write_str(self.before())?;
         self.write_tail(echo)
     }
 
     /// Completes the word at the cursor: inserts the text that all candidates have in common, or lists the candidates.
-    fn complete(&mut self, echo: &mut dyn Write) -> fmt::Result {
-        let (mut count, mut common) = (0, "");
-        complete(self.before(), &mut |_, rest| {
-            let length = rest
-                .bytes()
-                .zip(common.bytes())
-                .take_while(|(a, b)| a == b)
-                .count();
-            common = if count == 0 {
-                rest
-            } else {
-                common.get(..length).unwrap_or_default()
-            };
+    fn complete(&mut self, names: &dyn Names, echo: &mut dyn Write) -> fmt::Result {
+        let (mut count, mut common) = (0, Line::new());
+        complete(self.before(), names, &mut |_, rest| {
+            if count == 0 {
+                // Longer candidates than a line are completed in part.
+                common.extend(rest.bytes().take(LINE_MAX));
+            }
+            let pairs = rest.bytes().zip(&common);
+            let length = pairs.take_while(|(a, b)| a == *b).count();
+            common.truncate(length);
             count += 1;
         });
         if self.line.capacity() - self.line.len() <= common.len() {
             return Ok(());
         }
-        for byte in common.bytes() {
-            self.insert(byte, echo)?;
+        for byte in &common {
+            self.insert(*byte, echo)?;
         }
         match count {
+            // Numbers follow a colon.
+            1 if self.before().ends_with(':') => Ok(()),
             1 => self.insert(b' ', echo),
             2.. if common.is_empty() => {
                 let mut result = echo.write_str("\n");
-                complete(self.before(), &mut |word, _| {
+                complete(self.before(), names, &mut |word, _| {
                     result = result.and_then(|()| write!(echo, "{word} "));
                 });
                 result?;

@@ -2,7 +2,7 @@
 
 use super::argument::{Argument, Keyword, Or, Reader};
 use super::error::ValueError;
-use super::syntax::{Parameter, Shape, WordKind};
+use super::syntax::{NameList, Parameter, Shape, WordKind};
 use super::values::{MeshName, Whole};
 use crate::choice::choices;
 use crate::object::{MAX_OBJECTS, Operation, Place, PlaceError};
@@ -91,7 +91,8 @@ impl Argument for Object {
                                 Parameter {
                                     name: "object",
                                     optional: false,
-                                    shape: Shape::Word(&WordKind::Text(
+                                    shape: Shape::Word(&WordKind::Name(
+                                        NameList::Meshes,
                                         &"a mesh after add, and the number of an object after other actions",
                                     )),
                                 },

@@ -58,6 +58,35 @@ pub enum WordKind {
     Either(&'static str, &'static WordKind),
     /// The name of a command.
     Command,
+    /// A name, usually one of a list that the machine has, with the description of the names.
+    Name(NameList, &'static (dyn Display + Sync)),
+    /// A name from this table, a colon and numbers. An entry is the form, with names in place of the numbers, and its description.
+    Forms(&'static [(&'static str, &'static str)]),
+}
+
+/// Lists of names that the machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameList {
+    /// Scenes, lists of scenes, and meshes.
+    Scenes,
+    /// Meshes.
+    Meshes,
+    /// Uploaded meshes.
+    Uploads,
+}
+
+/// The machine's names, for completion.
+pub trait Names {
+    /// Calls `visit` with each name of a list.
+    fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str));
+}
+
+/// A machine without names.
+#[derive(Clone, Copy, Debug)]
+pub struct NoNames;
+
+impl Names for NoNames {
+    fn visit(&self, _: NameList, _: &mut dyn FnMut(&str)) {}
 }
 
 /// Largest number of accepted words that a usage line lists for a parameter. A parameter with more accepted words is shown by its
@@ -194,6 +223,11 @@ impl Display for WordKind {
             Self::Text(text) => text.fmt(f),
             Self::Either(keyword, kind) => write!(f, "{keyword} or {kind}"),
             Self::Command => f.write_str("a command, `help` lists them"),
+            Self::Name(_, text) => text.fmt(f),
+            Self::Forms(forms) => forms.iter().enumerate().try_for_each(|(i, (form, _))| {
+                f.write_str(if i == 0 { "" } else { " or " })?;
+                f.write_str(form)
+            }),
         }
     }
 }

@@ -6,7 +6,7 @@ use core::fmt::{self, Display};
 
 use super::argument::{Argument, Reader, WordArgument, group};
 use super::error::ValueError;
-use super::syntax::{Parameter, Shape, WordKind};
+use super::syntax::{NameList, Parameter, Shape, WordKind};
 use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera::{self, Projection};
 use crate::choice::choices;
@@ -38,10 +38,36 @@ pub struct MeshName;
 
 impl WordArgument for MeshName {
     type Value<'a> = &'a str;
-    const KIND: WordKind = WordKind::Text(&"a name of at most 24 visible characters of ASCII");
+    const KIND: WordKind = WordKind::Name(NameList::Meshes, &MESH_NAME);
 
     fn parse(text: &str) -> Option<&str> {
         Some(text).filter(|text| mesh::is_name(text))
+    }
+}
+
+const MESH_NAME: &str = "a name of at most 24 visible characters of ASCII";
+
+/// The name of an uploaded mesh.
+pub struct UploadName;
+
+impl WordArgument for UploadName {
+    type Value<'a> = &'a str;
+    const KIND: WordKind = WordKind::Name(NameList::Uploads, &MESH_NAME);
+
+    fn parse(text: &str) -> Option<&str> {
+        MeshName::parse(text)
+    }
+}
+
+/// The name of a scene or a mesh.
+pub struct SceneName;
+
+impl WordArgument for SceneName {
+    type Value<'a> = &'a str;
+    const KIND: WordKind = WordKind::Name(NameList::Scenes, &"a name");
+
+    fn parse(text: &str) -> Option<&str> {
+        Some(text)
     }
 }
 
@@ -196,7 +222,7 @@ impl WordArgument for Background {
 /// The text form of a distance field.
 impl WordArgument for field::Field {
     type Value<'a> = Self;
-    const KIND: WordKind = WordKind::Text(&FieldForms);
+    const KIND: WordKind = WordKind::Forms(&KINDS);
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
@@ -205,17 +231,6 @@ impl WordArgument for field::Field {
 
     fn error(text: &str) -> Option<ValueError<'_>> {
         Self::parse(text).err().map(ValueError::Field)
-    }
-}
-
-struct FieldForms;
-
-impl Display for FieldForms {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        KINDS.iter().enumerate().try_for_each(|(i, (form, _))| {
-            f.write_str(if i == 0 { "" } else { " or " })?;
-            f.write_str(form)
-        })
     }
 }
 

@@ -9,7 +9,7 @@ use crate::render::{self, Frame, Subject};
 use crate::view;
 use crate::wireframe::{self, Form};
 use clap::ValueEnum;
-use glint_core::console::{Command, Event, LineEditor, write_help};
+use glint_core::console::{Command, Event, LineEditor, NoNames, write_help};
 use glint_core::mesh;
 use glint_core::orientation::Units;
 use glint_core::orientation::log as image;
@@ -304,7 +304,7 @@ fn run_console(input: &[u8]) -> bool {
     let (mut echo, mut text) = (String::new(), String::new());
     let mut accepted = false;
     for &byte in input {
-        if let Event::Line(line) = editor.on_byte(byte, &mut echo) {
+        if let Event::Line(line) = editor.on_byte(byte, &NoNames, &mut echo) {
             use std::fmt::Write;
             match Command::parse(line) {
                 Ok(Some(Command::Help { command })) => {

@@ -5,6 +5,7 @@ mod alone;
 mod browser;
 mod busy;
 mod buttons;
+mod controls;
 mod page;
 mod rates;
 mod refusals;

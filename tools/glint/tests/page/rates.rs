@@ -27,7 +27,7 @@ fn rate(browser: &mut Browser, page: &Page, element: &str, event: &str) -> Strin
              const step = () => {{ const box = element.getBoundingClientRect(); {event}; steps += 1; \
              if (steps === 150) [first, start] = [shown(), performance.now()]; \
              if (steps === 450) done([(shown() - first) * 1000 / (performance.now() - start), \
-             Number(document.getElementById('rate').textContent)]); else setTimeout(step, 20); }}; step(); }})"
+             parseInt(document.getElementById('rate').textContent) || 0]); else setTimeout(step, 20); }}; step(); }})"
         ),
     );
     let made = rate[0].as_f64().unwrap();

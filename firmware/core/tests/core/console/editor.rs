@@ -1,7 +1,26 @@
 //! Tests of the line editor: keys, history, completion and echo.
 
-use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor};
+use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor, NameList, Names};
 use proptest::prelude::*;
+
+/// The names of a machine with two uploads.
+struct Known;
+
+impl Names for Known {
+    fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
+        let [uploads, built_in, scenes] = [
+            &["hull", "hull-2"][..],
+            &["cube", "torus"],
+            &["cubes", "menger"],
+        ];
+        let names = match list {
+            NameList::Scenes => [built_in, uploads, scenes].concat(),
+            NameList::Meshes => [built_in, uploads].concat(),
+            NameList::Uploads => uploads.to_vec(),
+        };
+        names.into_iter().for_each(visit);
+    }
+}
 
 /// A terminal that interprets the echo and keeps the text that it shows.
 #[derive(Default)]
@@ -62,7 +81,7 @@ impl Screen {
 fn type_in(bytes: &[u8]) -> (Vec<String>, Screen) {
     let (mut editor, mut screen, mut events) = (LineEditor::new(), Screen::default(), Vec::new());
     for &byte in bytes {
-        match editor.on_byte(byte, &mut screen) {
+        match editor.on_byte(byte, &Known, &mut screen) {
             Event::None => {}
             Event::Line(line) => {
                 assert!(
@@ -173,6 +192,47 @@ fn tab_completes_commands_and_the_words_of_their_arguments() {
     );
 }
 
+/// Names of scenes, meshes and fields, and the words after a keyword such as `off`.
+#[test]
+fn tab_completes_names() {
+    assert_lines(b"scene me\t\r", &["scene menger "]);
+    assert_lines(b"scene cu\ts\r", &["scene cubes"]);
+    assert_lines(b"scene cubes\t\r", &["scene cubes "]);
+    assert_lines(b"object a\tto\t\r", &["object add torus "]);
+    assert_lines(b"unload \t\t\r", &["unload hull"]);
+    assert_lines(b"load 1 0 t\t\r", &["load 1 0 torus "]);
+    assert_lines(b"field men\t4\r", &["field menger:4"]);
+    assert_lines(b"field of\t\r", &["field off "]);
+    assert_lines(b"edges h\t\r", &["edges hidden "]);
+    assert_lines(b"edges o\tv\t\r", &["edges over "]);
+    let listed = |line: &[u8]| type_in(line).1.lines[1].clone();
+    assert_eq!(listed(b"edges \t\r"), "off hidden over ");
+    assert_eq!(
+        listed(b"scene \t\r"),
+        "cube torus hull hull-2 cubes menger "
+    );
+    let fields = listed(b"field \t\r");
+    assert!(fields.starts_with("off menger: box: "), "{fields}");
+}
+
+/// A line that is printed above the prompt keeps a line that is being typed, but does not repeat one that has ended.
+#[test]
+fn a_redrawn_line_is_the_one_being_typed() {
+    let mut editor = LineEditor::new();
+    let mut typed = |text: &str| {
+        for byte in text.bytes() {
+            editor.on_byte(byte, &Known, &mut String::new());
+        }
+        let mut screen = Screen::default();
+        editor.redraw(&mut screen).unwrap();
+        screen.line.into_iter().collect::<String>()
+    };
+    assert_eq!(typed("inf"), "glint> inf");
+    assert_eq!(typed("o\x1B[D"), "glint> info");
+    assert_eq!(typed("\r"), "glint> ");
+    assert_eq!(typed("l"), "glint> l");
+}
+
 #[test]
 fn tab_lists_candidates_that_have_nothing_more_in_common() {
     let (_, screen) = type_in(b"help re\t\r");
@@ -210,14 +270,14 @@ proptest! {
     fn noise_is_harmless(noise in proptest::collection::vec(any::<u8>(), 0..2_000)) {
         let (mut editor, mut echo) = (LineEditor::new(), String::new());
         for byte in noise {
-            if let Event::Line(line) = editor.on_byte(byte, &mut echo) {
+            if let Event::Line(line) = editor.on_byte(byte, &Known, &mut echo) {
                 let _ = Command::parse(line).map_err(|error| error.to_string());
             }
         }
-        editor.on_byte(3, &mut echo);
+        editor.on_byte(3, &Known, &mut echo);
         for byte in *b"info" {
-            editor.on_byte(byte, &mut echo);
+            editor.on_byte(byte, &Known, &mut echo);
         }
-        prop_assert_eq!(editor.on_byte(b'\r', &mut echo), Event::Line("info"));
+        prop_assert_eq!(editor.on_byte(b'\r', &Known, &mut echo), Event::Line("info"));
     }
 }

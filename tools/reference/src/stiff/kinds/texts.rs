@@ -1,6 +1,6 @@
 //! Texts of the console and of scene files: typed lines, commands, fields, lights and stereo parameters.
 
-use glint_core::console::{Command, Event, LineEditor};
+use glint_core::console::{Command, Event, LineEditor, NoNames};
 use glint_core::field::Field;
 use glint_core::light::Light;
 use glint_core::stereo::Stereo;
@@ -52,7 +52,7 @@ impl Typed {
         let bytes = [&self.text, &self.repeated.repeat(self.times), &self.end];
         let mut events = Vec::new();
         for byte in bytes.into_iter().flat_map(|text| text.bytes()) {
-            match editor.on_byte(byte, &mut echo) {
+            match editor.on_byte(byte, &NoNames, &mut echo) {
                 Event::None => {}
                 Event::Line(line) if line.len() > 40 => {
                     events.push(format!("a line of {} characters", line.len()));

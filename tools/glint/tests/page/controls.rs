@@ -1,0 +1,237 @@
+//! The page in the hand: completion of names, the camera under the mouse, sizes of controls, a telephone, and a picture at rest.
+
+use crate::browser::{Browser, Page};
+use crate::served::Served;
+use serde_json::json;
+
+/// Opens the page of a board, and waits until its buttons and the sensor's attitude are there.
+fn open(browser: &mut Browser, url: &str) -> Page {
+    let page = browser.open(url);
+    browser.wait(&page, "document.body.dataset.holder === 'you'");
+    browser.wait(
+        &page,
+        "document.querySelectorAll('#scenes button').length > 3",
+    );
+    browser.wait(
+        &page,
+        "/yaw -?[0-9]/.test(document.querySelector('#curve-attitude figcaption').textContent)",
+    );
+    page
+}
+
+/// Shows the page on a display of this size.
+fn resize(browser: &mut Browser, page: &Page, width: u32, height: u32, is_mobile: bool) {
+    let size =
+        json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_mobile });
+    browser.call(Some(page), "Emulation.setDeviceMetricsOverride", size);
+    browser.wait(page, &format!("innerWidth === {width}"));
+}
+
+/// Types a text, presses Tab, and waits for the line and a part of the hint.
+fn complete(browser: &mut Browser, page: &Page, text: &str, line: &str, hint: &str) {
+    browser.evaluate(page, "{ const line = document.getElementById('line'); line.focus(); line.value = ''; line.dispatchEvent(new Event('input')); }");
+    browser.call(Some(page), "Input.insertText", json!({ "text": text }));
+    browser.press(page, "Tab", "");
+    browser.wait(
+        page,
+        &format!(
+            "document.getElementById('line').value === '{line}' && document.getElementById('hint').textContent.includes('{hint}')"
+        ),
+    );
+    let focus = browser.evaluate(page, "document.activeElement.id");
+    assert_eq!(focus, "line", "{text}");
+}
+
+#[test]
+fn names_are_completed_and_tab_stays_while_there_are_some() {
+    let served = Served::start("page-completion");
+    let mut browser = Browser::start();
+    let page = open(&mut browser, &served.url);
+    for (text, line, hint) in [
+        ("scene pol", "scene polygons ", "scene"),
+        ("scene m", "scene me", ""),
+        ("scene me", "scene me", "menger  mesh-in-field"),
+        ("object add cy", "object add cylinder ", "object"),
+        ("field oct", "field octahedron:", "field"),
+        ("edges ", "edges ", "off  hidden  over"),
+    ] {
+        complete(&mut browser, &page, text, line, hint);
+        // A second Tab stays too.
+        browser.press(&page, "Tab", "");
+        let focus = browser.evaluate(&page, "document.activeElement.id");
+        assert_eq!(focus, "line", "{text}");
+    }
+    complete(&mut browser, &page, "scene x", "scene x", "No completion");
+    browser.press(&page, "Tab", "");
+    browser.wait(&page, "document.activeElement.id === 'interrupt'");
+}
+
+#[test]
+fn the_mouse_moves_the_camera() {
+    let served = Served::start("page-orbit");
+    let mut browser = Browser::start();
+    let page = open(&mut browser, &served.url);
+    let number = "Number(document.getElementById('monitor').dataset.number)";
+    let log = "document.getElementById('log').textContent";
+    // The camera of the board, by the distance of its eye, which is `view EX EY EZ ...`.
+    let view = |browser: &mut Browser, mark: &str| -> [f64; 3] {
+        browser.evaluate(&page, "document.getElementById('line').focus()");
+        browser.type_line(&page, "view");
+        browser.type_line(&page, &format!("echo {mark}"));
+        browser.wait(&page, &format!("/^{mark}$/m.test({log})"));
+        let eye = browser.evaluate(
+            &page,
+            &format!(
+                "[...{log}.matchAll(/^view (.*)$/gm)].at(-1)[1].split(' ').slice(0, 3).map(Number)"
+            ),
+        );
+        [0, 1, 2].map(|axis| eye[axis].as_f64().unwrap())
+    };
+    let length = |eye: [f64; 3]| eye.iter().map(|c| c * c).sum::<f64>().sqrt();
+    // A sensor that steers does not take the camera back.
+    browser.evaluate(&page, "document.getElementById('line').focus()");
+    browser.type_line(&page, "scene default");
+    browser.type_line(&page, "imu orbit");
+    let first = view(&mut browser, "first");
+
+    let middle = browser.middle(&page, "#monitor");
+    let before = browser.evaluate(&page, number);
+    browser.mouse(&page, "mousePressed", middle);
+    for step in 1..=5 {
+        let place = [middle[0] + 20.0 * f64::from(step), middle[1]];
+        browser.mouse(&page, "mouseMoved", place);
+    }
+    browser.mouse(&page, "mouseReleased", [middle[0] + 100.0, middle[1]]);
+    browser.wait(&page, &format!("{number} > {before}"));
+    let turned = view(&mut browser, "turned");
+    assert!((length(turned) - length(first)).abs() < 0.01);
+    assert!((turned[2] - first[2]).abs() < 0.01, "{first:?} {turned:?}");
+    let azimuth = |eye: [f64; 3]| eye[1].atan2(eye[0]);
+    let angle = (azimuth(first) - azimuth(turned)).rem_euclid(std::f64::consts::TAU);
+    assert!((0.2..1.0).contains(&angle), "{first:?} {turned:?}");
+
+    let before = browser.evaluate(&page, number);
+    let wheel =
+        json!({ "type": "mouseWheel", "x": middle[0], "y": middle[1], "deltaX": 0, "deltaY": 200 });
+    browser.call(Some(&page), "Input.dispatchMouseEvent", wheel);
+    browser.wait(&page, &format!("{number} > {before}"));
+    let away = view(&mut browser, "away");
+    assert!(length(away) > 1.15 * length(turned), "{turned:?} {away:?}");
+
+    // Two fingers that come together zoom out, and one finger turns.
+    let touch = |browser: &mut Browser, kind: &str, places: &[[f64; 2]]| {
+        let points: Vec<_> = places
+            .iter()
+            .enumerate()
+            .map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id }))
+            .collect();
+        let event = json!({ "type": kind, "touchPoints": points });
+        browser.call(Some(&page), "Input.dispatchTouchEvent", event);
+    };
+    let at = |x: f64| [middle[0] + x, middle[1]];
+    let before = browser.evaluate(&page, number);
+    touch(&mut browser, "touchStart", &[at(-50.0), at(50.0)]);
+    touch(&mut browser, "touchMove", &[at(-80.0), at(80.0)]);
+    touch(&mut browser, "touchEnd", &[]);
+    browser.wait(&page, &format!("{number} > {before}"));
+    let near = view(&mut browser, "near");
+    assert!(length(near) < 0.8 * length(away), "{away:?} {near:?}");
+
+    // The steps of keys are undone by their opposites.
+    browser.evaluate(&page, "document.getElementById('monitor').focus()");
+    for key in ["ArrowLeft", "+", "-", "ArrowRight"] {
+        browser.press(&page, key, "");
+    }
+    let same = view(&mut browser, "same");
+    assert!(
+        (0..3).all(|i| (same[i] - near[i]).abs() < 0.01),
+        "{near:?} {same:?}"
+    );
+}
+
+/// On a telephone the picture is in view wherever the page is scrolled, and every control has at least 24 pixels on each side.
+#[test]
+fn a_telephone_shows_picture_and_controls() {
+    let served = Served::start("page-telephone");
+    let mut browser = Browser::start();
+    let page = open(&mut browser, &served.url);
+    let controls = "[...document.querySelectorAll('button, input, [tabindex]')].filter((control) => control.checkVisibility())";
+    for (width, height, is_mobile) in [
+        (1280, 900, false),
+        (390, 844, true),
+        (320, 640, true),
+        (844, 390, true),
+    ] {
+        resize(&mut browser, &page, width, height, is_mobile);
+        browser.wait(
+            &page,
+            &format!("document.documentElement.scrollWidth <= {width}"),
+        );
+        let small = browser.evaluate(
+            &page,
+            &format!(
+                "{controls}.map((control) => [control.ariaLabel ?? control.id ?? control.textContent, control.getBoundingClientRect()]) \
+                 .filter(([, {{ width, height }}]) => width < 24 || height < 24).map(([name, {{ width, height }}]) => `${{name}} ${{width}}×${{height}}`)"
+            ),
+        );
+        assert_eq!(small, json!([]), "{width}×{height}");
+        if !is_mobile {
+            continue;
+        }
+        for target in [
+            "#fields button:last-of-type",
+            "#meshes button",
+            "#model input",
+        ] {
+            browser.middle(&page, target);
+            let seen = browser.evaluate(
+                &page,
+                "(() => { const { top, bottom, height } = document.getElementById('monitor').getBoundingClientRect(); \
+                 return height > 100 && top >= 0 && bottom <= 0.6 * innerHeight; })()",
+            );
+            assert_eq!(seen, json!(true), "{target} at {width}×{height}");
+            // The chosen control is not below the picture.
+            let is_free = browser.evaluate(
+                &page,
+                &format!(
+                    "(() => {{ const control = document.querySelector('{target}'); const box = control.getBoundingClientRect(); \
+                     return document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2) === control; }})()"
+                ),
+            );
+            assert_eq!(is_free, json!(true), "{target} at {width}×{height}");
+        }
+    }
+}
+
+/// A picture at rest is `still`, and the curves of a sensor at rest are flat.
+#[test]
+fn rest_looks_like_rest() {
+    let served = Served::start("page-rest");
+    let mut browser = Browser::start();
+    let page = open(&mut browser, &served.url);
+    let rate = "document.getElementById('rate').textContent";
+    browser.wait(&page, &format!("{rate} === 'still'"));
+    // For a second of samples the angles are small and have no negative zero.
+    let caption = "document.querySelector('#curve-attitude figcaption').textContent";
+    for _ in 0..20 {
+        let text = browser.evaluate(
+            &page,
+            &format!("new Promise((done) => setTimeout(() => done({caption}), 100))"),
+        );
+        let text = text.as_str().unwrap();
+        assert!(!text.contains("-0.0"), "{text}");
+    }
+    // The range of rows that the curves use.
+    let rows = browser.evaluate(
+        &page,
+        "(() => { const canvas = document.querySelector('#curve-attitude canvas'); const { width, height } = canvas; \
+         const { data } = canvas.getContext('2d').getImageData(0, 0, width, height); \
+         const rows = [...Array(height).keys()].filter((row) => data.subarray(4 * width * row, 4 * width * (row + 1)).some((part) => part > 0)); \
+         return rows.at(-1) - rows[0]; })()",
+    );
+    assert!(rows.as_f64().unwrap() < 20.0, "{rows} of 60 rows");
+    browser.evaluate(&page, "document.getElementById('line').focus()");
+    browser.type_line(&page, "orbit 200");
+    browser.wait(&page, &format!("/^[0-9]+ pictures\\/s$/.test({rate})"));
+    browser.wait(&page, &format!("{rate} === 'still'"));
+}
