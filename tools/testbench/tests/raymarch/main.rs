@@ -1,5 +1,6 @@
 //! Tests that compare the raymarcher's modules with the model.
 
+mod exits;
 mod frames;
 mod generator;
 mod lane;

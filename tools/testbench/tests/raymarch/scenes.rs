@@ -109,13 +109,7 @@ pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool
         prepass,
         ..FieldOptions::of(&field)
     };
-    if random.coin() {
-        options.stereo = Some(Stereo {
-            half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
-            zero_parallax: Q32_32::from_num(random.real(1.0, 5.0)),
-            tint: Tint::RedBlue,
-        });
-    }
+    options.stereo = random.coin().then(|| stereo(random));
     if random.coin() {
         let tuning = &mut options.tuning;
         tuning.threshold = random.logarithmic(1.0, 65536.0) as u32;
@@ -123,8 +117,22 @@ pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool
         tuning.cap = random.logarithmic(1.0, 256.0) as u32;
         tuning.far = random.logarithmic(1.0, 8_388_608.0) as u32;
     }
-    let size = SIZES[random.bits() as usize % SIZES.len()];
-    FieldSetup::new(&field, &camera(random), size, &options).unwrap()
+    let camera = camera(random);
+    FieldSetup::new(&field, &camera, size(random), &options).unwrap()
+}
+
+/// Makes a random size of a picture.
+pub fn size(random: &mut Random) -> (u32, u32) {
+    SIZES[random.bits() as usize % SIZES.len()]
+}
+
+/// Makes random parameters of two eyes.
+pub fn stereo(random: &mut Random) -> Stereo {
+    Stereo {
+        half_separation: Q32_32::from_num(random.real(0.0, 1.0)),
+        zero_parallax: Q32_32::from_num(random.real(1.0, 5.0)),
+        tint: Tint::RedBlue,
+    }
 }
 
 /// Makes random lights and materials.

@@ -1,0 +1,80 @@
+// Types of rays that leave empty prisms (docs/raymarch-exits.md).
+
+`default_nettype none
+
+package exit_pkg;
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
+    /* verilator lint_off UNUSEDPARAM */
+    // Widths of: the parameter T of a ray, u14.14; a coordinate of the eye, s12.12; a coordinate of a point, s15.12; the side of a solid,
+    // u12.12; the magnitude of a direction's component, u0.23, which stands for the middle of its interval.
+    localparam int unsigned T_BITS      = 28;
+    localparam int unsigned CORNER_BITS = 25;
+    localparam int unsigned POINT_BITS  = 28;
+    localparam int unsigned SIDE_BITS   = 24;
+    localparam int unsigned SPEED_BITS  = 23;
+    // Width of a raymarch_pkg::place_t. Yosys accepts no name of another package here.
+    localparam int unsigned PLACE_BITS  = 19;
+
+    // The solids. BOX is the inside of a box, PLANES the outside of the slab between two planes perpendicular to z, SPONGE the Menger
+    // sponge, and CUBES are cubes repeated every 64 units.
+    typedef enum logic [1:0] {BOX = 2'd0, PLANES = 2'd1, SPONGE = 2'd2, CUBES = 2'd3} rule_t;
+
+    // A solid: its rule, the number of levels of a sponge, and its side along each axis, for cubes that of a cube.
+    typedef struct packed {
+        rule_t                     rule;
+        logic [2:0]                levels;
+        logic [2:0][SIDE_BITS-1:0] side;
+    } solid_t;
+
+    // The interval of a coordinate between the planes of a solid, as a number that increases with the coordinate. The highest bit is 0
+    // below the solid. The digits, the other bits, are
+    // - for a sponge, the ternary digits of the smallest cell in two bits each, the first digit 3 above the sponge;
+    // - for a box and for planes, 0 inside, and ABOVE above;
+    // - for cubes, the number of the cell in six bits, whether the coordinate is in the gap above the cube, and a 0. Cell -1 is all ones
+    //   after a highest bit of 0, and cell 32 is beyond the far limit.
+    localparam int unsigned DIGIT_BITS    = 8;
+    localparam int unsigned INTERVAL_BITS = 1 + DIGIT_BITS;
+    localparam logic [DIGIT_BITS-1:0] ABOVE = 8'hC0;
+
+    // Returns whether an interval, of which `first` has the three highest bits, is above the solid.
+    function automatic logic is_above(input logic [2:0] first, input logic is_cubes);
+        is_above = first[2] && first[1] && (is_cubes || first[0]);
+    endfunction
+
+    // The reciprocal of the magnitude of a direction's component: (1 + rest·2^-22)·2^exponent, with `rest` from -2^20 to below 2^21, in
+    // the order {exponent, rest}.
+    localparam int unsigned REST_BITS     = 22;
+    localparam int unsigned EXPONENT_BITS = 5;
+    localparam int unsigned INVERSE_BITS  = EXPONENT_BITS + REST_BITS;
+
+    // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start` is its T, `limit` the largest T of a
+    // hit, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that it has reached, 0 where it has
+    // crossed no plane. A ray with `over` misses without an evaluation.
+    typedef struct packed {
+        logic                                  over;
+        logic [PLACE_BITS-1:0]   place;
+        logic [T_BITS-1:0]             start;
+        logic [T_BITS-1:0]             limit;
+        logic [1:0]                    axis;
+        logic [2:0][INTERVAL_BITS-1:0] reached;
+        logic [2:0]                    down;
+        logic [2:0][SPEED_BITS-1:0]    speed;
+        logic [2:0][INVERSE_BITS-1:0]  inverse;
+    } ray_t;
+
+    // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit), the axis and the sign of the face's outward
+    // normal, and the number of evaluations.
+    typedef struct packed {
+        logic [PLACE_BITS-1:0] place;
+        logic                 hit;
+        logic [T_BITS-1:0]    t;
+        logic [1:0]           axis;
+        logic                 positive;
+        logic [7:0]           steps;
+    } end_t;
+
+    localparam int unsigned END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8;
+    /* verilator lint_on UNUSEDPARAM */
+endpackage
+
+`default_nettype wire

@@ -1,0 +1,212 @@
+//! Tests of a lane for rays that leave empty prisms: every ray ends once, with the model's result, under any back-pressure.
+
+use std::collections::HashMap;
+
+use glint_core::field::{Field, Surface};
+use glint_model::raymarch::State;
+use glint_model::raymarch::exits::{Beam, Exits, Eye, Rule, Solid, Words};
+use glint_testbench::{Bits, Layout, Module, Pipe};
+use glint_vectors::Random;
+
+use crate::scenes::{camera, size, stereo};
+
+/// Number of rays in a frame.
+const RAYS: usize = 2_000;
+
+/// Fields of the lane.
+const FIELDS: [&str; 12] = [
+    "menger:4",
+    "menger:3",
+    "menger:2",
+    "menger:1",
+    "box:1,0.5,0.25",
+    "box:0.01,12,3",
+    "cubes:2,0.5",
+    "cubes:0.25,0.1",
+    "cubes:16,7.9",
+    "planes:0.5",
+    "planes:12",
+    "planes:0.01",
+];
+
+/// End of a ray. A miss has the ray's limit as its parameter, and no face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct End {
+    is_hit: bool,
+    t: u64,
+    face: Option<(u64, bool)>,
+    steps: u64,
+}
+
+/// The code of an interval (`exit_pkg`).
+fn interval(solid: &Solid, number: i32) -> u64 {
+    let there = |digits: u64| 1 << 8 | digits;
+    match (solid.rule, number) {
+        (_, i32::MIN) => 0,
+        (Rule::Repeated { .. }, -2) => 0b1111_1100,
+        (Rule::Repeated { .. }, -1) => 0b1111_1110,
+        (Rule::Repeated { .. }, 0..) => there((number as u64) << 1),
+        (_, ..0) => 0,
+        (Rule::Sponge { .. }, 0..=80) => {
+            let digit = |divisor: i32| (number / divisor % 3) as u64;
+            there(digit(27) << 6 | digit(9) << 4 | digit(3) << 2 | digit(1))
+        }
+        (_, 0) => there(0),
+        _ => there(0b1100_0000),
+    }
+}
+
+/// Drives the constants of a frame.
+fn set_lane(module: &mut Module, exits: &Exits) {
+    let solid = exits.solid.expect("a solid");
+    let (rule, levels) = match solid.rule {
+        Rule::Box => ("BOX", 0),
+        Rule::Planes => ("PLANES", 0),
+        Rule::Sponge { cells, last, .. } => ("SPONGE", (cells / last).ilog(3)),
+        Rule::Repeated { .. } => ("CUBES", 0),
+        Rule::Octahedron => unreachable!("a field of another lane"),
+    };
+    let mut record = module.record("solid").with("levels", levels);
+    record.set_name("rule", rule);
+    record.set_all("side", solid.side[..3].iter().copied());
+    module.drive_bits("solid", record.bits());
+    for (eye, Eye { corners, .. }) in exits.eyes.iter().enumerate() {
+        for (down, corner) in corners.iter().enumerate() {
+            module.drive_all(
+                &format!("corners[{eye}][{down}]"),
+                corner[..3].iter().copied(),
+            );
+        }
+    }
+}
+
+/// Packs a ray as a `ray_t`.
+fn pack(layout: &Layout, exits: &Exits, place: u32, beam: &Beam) -> Bits {
+    let solid = exits.solid.expect("a solid");
+    let mut record = layout.record();
+    record.set("place", place);
+    let start = &beam.start;
+    record.set("over", exits.misses_at_start(beam));
+    record.set("start", start.t.min(exits.far));
+    record.set("limit", exits.far);
+    record.set("axis", start.face as u64);
+    let down = (0..3).filter(|&axis| beam.down[axis]);
+    record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
+    for axis in 0..3 {
+        record.set(
+            &format!("reached[{axis}]"),
+            interval(&solid, start.reached[axis]),
+        );
+        let inverse = beam.inverse[axis];
+        let rest = (i64::from(inverse.mantissa) - (1 << 22)) & 0x3F_FFFF;
+        record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 2);
+        record.set(
+            &format!("inverse[{axis}]"),
+            (i64::from(inverse.exponent) << 22) | rest,
+        );
+    }
+    record.bits()
+}
+
+/// A sent ray and its expected end.
+struct Sent {
+    item: Bits,
+    end: End,
+}
+
+/// Makes random rays of a frame, with their expected ends, by place.
+fn some_rays(
+    random: &mut Random,
+    layout: &Layout,
+    exits: &Exits,
+    eyes: usize,
+) -> HashMap<u32, Sent> {
+    let mut all = HashMap::new();
+    while all.len() < RAYS {
+        let x = random.integer(0, i64::from(exits.width) - 1) as u32;
+        let y = random.integer(0, i64::from(exits.height) - 1) as u32;
+        let eye = random.bits() as usize % eyes;
+        // The bits of a `place_t`, here with the lowest bit of the band's number.
+        let place = (y / 64 % 2) << 18 | (eye as u32) << 17 | (y % 64) << 11 | x;
+        let beam = exits.ray(eye, x, y);
+        let found = exits.follow(&beam);
+        let face = match found.state {
+            State::Hit(Surface::Face { axis, positive }) => Some((axis.into(), positive)),
+            _ => None,
+        };
+        let end = End {
+            is_hit: face.is_some(),
+            t: if face.is_some() { found.t } else { exits.far } as u64,
+            face,
+            steps: found.steps.into(),
+        };
+        let item = pack(layout, exits, place, &beam);
+        all.insert(place, Sent { item, end });
+    }
+    all
+}
+
+struct Bench(Pipe);
+
+impl Bench {
+    fn new(seed: u32, stalls: [f64; 2]) -> Self {
+        let (rays, ends) = (("in", &["ray"][..]), ("out", &["end"][..]));
+        Self(Pipe::new("exit_lane", seed, rays, ends, stalls))
+    }
+
+    /// Sends rays of a frame through the lane, and compares their ends with the expected ends.
+    fn check(&mut self, exits: &Exits, mut expected: HashMap<u32, Sent>) {
+        let Self(pipe) = self;
+        set_lane(&mut pipe.module, exits);
+        let layout = pipe.module.packed_type("exit_pkg::end_t").clone();
+        let count = expected.len();
+        let evaluations: u64 = expected.values().map(|sent| sent.end.steps).sum();
+        for sent in expected.values() {
+            pipe.source.push(vec![sent.item]);
+        }
+        pipe.run(100_000 + 100 * evaluations, |pipe| {
+            pipe.sink.items().len() == count
+        });
+        pipe.module.clock();
+        for item in pipe.sink.take() {
+            let record = layout.record_of(item[0]);
+            let place = record.get("place") as u32;
+            let is_hit = record.is_set("hit");
+            let found = End {
+                is_hit,
+                t: record.get("t"),
+                face: is_hit.then(|| (record.get("axis"), record.is_set("positive"))),
+                steps: record.get("steps"),
+            };
+            let sent = expected
+                .remove(&place)
+                .unwrap_or_else(|| panic!("{place:?} ended twice, or was never sent: {exits:?}"));
+            assert_eq!(found, sent.end, "{place:?}, {:?} in {exits:?}", sent.item);
+        }
+    }
+}
+
+/// Number of frames: the environment variable `GLINT_RTL_RAYS` counts their rays, by default 150,000.
+fn frames() -> usize {
+    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap()) / RAYS
+}
+
+#[test]
+fn random_rays_in_flat_solids() {
+    let mut random = Random(7);
+    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
+    let mut benches: Vec<Bench> = (1..)
+        .zip(shares)
+        .map(|(seed, stalls)| Bench::new(seed, stalls))
+        .collect();
+    let layout = benches[0].0.module.packed_type("exit_pkg::ray_t").clone();
+    for frame in 0..frames() {
+        let field = Field::parse(FIELDS[frame % FIELDS.len()]).expect("a field");
+        let stereo = random.coin().then(|| stereo(&mut random));
+        let (view, size) = (camera(&mut random), size(&mut random));
+        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
+        let eyes = if stereo.is_some() { 2 } else { 1 };
+        let rays = some_rays(&mut random, &layout, &exits, eyes);
+        benches[frame / FIELDS.len() % 4].check(&exits, rays);
+    }
+}
