@@ -1,10 +1,13 @@
 //! Uploads of meshes over a faulty line, and uploads of invalid meshes.
 
-use crate::common::{address, console, emulator, info, mesh, read, renderer, running_board};
+use crate::common::{
+    address, console, emulator, emulator_with, info, mesh, read, renderer, running_board,
+};
 use glint::board::{Board, BoardError};
 use glint::console::{Console, ConsoleError};
 use glint::fuzz::Random;
 use glint::transfer::{self, TransferError};
+use glint_core::colour::Shading;
 use glint_core::mesh::{IndexedTriangle, Vertex, encode};
 use glint_core::wire::{Failure, Manifest, Reason};
 
@@ -110,21 +113,26 @@ fn many(count: u32) -> Vec<u8> {
 }
 
 /// A board accepts a mesh if a frame has room for the half of its triangles; the host refuses a larger one before it sends a byte.
+/// Descriptors for smooth shading are twice as long.
 #[test]
 fn a_mesh_has_at_most_the_triangles_that_the_board_can_draw() {
-    let mut board = emulator();
+    most_triangles(Shading::Flat, 131_072);
+    most_triangles(Shading::Smooth, 65_536);
+}
+
+fn most_triangles(capability: Shading, most: u32) {
+    let mut board = emulator_with(capability);
     let mut renderer = renderer(&mut board);
-    renderer.upload(&many(131_072), None).unwrap();
+    renderer.upload(&many(most), None).unwrap();
     let stats = renderer.console().command("render").unwrap();
     assert!(stats.contains(&"backend gateware".to_owned()), "{stats:?}");
-    assert!(
-        stats.contains(&"triangles_in 131072".to_owned()),
-        "{stats:?}"
-    );
+    assert!(stats.contains(&format!("triangles_in {most}")), "{stats:?}");
 
-    let large = many(131_073);
+    let large = many(most + 1);
     let refused = renderer.upload(&large, None).unwrap_err();
-    let expected = "mesh of 131073 triangles: expected at most 131072, which this board can draw";
+    let found = most + 1;
+    let expected =
+        format!("mesh of {found} triangles: expected at most {most}, which this board can draw");
     assert_eq!(refused.to_string(), expected);
     // Another host does not ask before.
     let console = renderer.console();
@@ -133,9 +141,10 @@ fn a_mesh_has_at_most_the_triangles_that_the_board_can_draw() {
     let refused = console
         .command(&format!("load {length} {crc32:08x}"))
         .unwrap_err();
-    let expected = "expected at most 131072 triangles, which this board can draw, found 131073";
-    assert!(refused.to_string().contains(expected), "{refused}");
-    assert_eq!(info::<u32>(console, "triangles"), 131_072);
+    let expected =
+        format!("expected at most {most} triangles, which this board can draw, found {found}");
+    assert!(refused.to_string().contains(&expected), "{refused}");
+    assert_eq!(info::<u32>(console, "triangles"), most);
 }
 
 /// Draws the scene, and reads the colours of its frame of 320×180 pixels from memory.
