@@ -2,11 +2,12 @@
 
 use glint_core::field::Surface;
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{Beam, End, Exits};
+use glint_model::raymarch::exits::{Beam, End, Exits, Rule};
 
 use super::Face;
 use super::metrics::RayOutcome;
 use super::raymarched::RenderedRay;
+use crate::camera::Vector;
 
 /// Draws the picture of one eye, row by row. With each ray, returns the number of tested spheres.
 pub fn picture(exits: &Exits, eye: usize) -> Vec<(RenderedRay, u32)> {
@@ -58,4 +59,19 @@ pub fn outcome(exits: &Exits, beam: &Beam, end: &End) -> RayOutcome {
 pub fn depth(exits: &Exits, t: i64) -> f64 {
     let units = t as f64 * (-f64::from(exits.words.parameter + exits.exponent)).exp2();
     units / exits.scale.to_num::<f64>()
+}
+
+/// Whether a point of an eye's ray is beyond the end of a repeated solid, 2^11 field units from the lower corner of the eye's cell along
+/// some axis. `t` is the point's parameter. A surface at the end is beyond.
+pub fn is_beyond(exits: &Exits, eye: usize, direction: Vector, t: f64) -> bool {
+    let is_repeated = exits
+        .solid
+        .is_some_and(|solid| matches!(solid.rule, Rule::Repeated { .. }));
+    let scale = exits.scale.to_num::<f64>();
+    is_repeated
+        && (0..3).any(|axis| {
+            let corner = exits.eyes[eye].corners[usize::from(direction[axis] < 0.0)][axis];
+            let place = corner as f64 / 4096.0 + direction[axis].abs() * t * scale;
+            place > 2048.0 - 1e-3
+        })
 }

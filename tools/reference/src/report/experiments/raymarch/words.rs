@@ -178,7 +178,7 @@ fn scenes(size: (u32, u32)) -> Result<Vec<Subject>> {
     Ok(subjects)
 }
 
-/// Extends the reference picture of an endless field to the far limit of rays by exits.
+/// Extends the reference picture of an endless field to the far limit of rays by exits, and to the end of a repeated solid.
 fn to_the_far_limit(mut subject: Subject) -> Subject {
     if subject.parsed.is_endless() {
         let exits = exits(&subject, WIDE);
@@ -188,6 +188,13 @@ fn to_the_far_limit(mut subject: Subject) -> Subject {
         subject.expected = metrics::expected(&subject.field, size, limits, |pixel| {
             subject.camera.ray(pixel, size)
         });
+        for (pixel, i) in subject.expected.iter_mut().zip(0..) {
+            let place = [i % width, i / width].map(f64::from);
+            let direction = subject.camera.ray(place, size).direction;
+            pixel.hit = pixel
+                .hit
+                .filter(|hit| !exited::is_beyond(&exits, 0, direction, hit.t));
+        }
     }
     subject
 }
