@@ -380,7 +380,7 @@ fn each_stiff_ray_has_its_outcome() {
             "sphere:1",
             [-4 * HALF, HALF - 1, 0],
             [ONE, 0, 0],
-            "sphere 0 at 662997",
+            "sphere 0 at 662996",
             "inside of the tangent by a unit; exactly 662976",
         ),
         (

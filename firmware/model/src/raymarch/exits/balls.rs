@@ -2,11 +2,16 @@
 //!
 //! With q from a sphere's centre to the eye and a ray's direction D, both q×D and q·D are linear in the pixel's column and row.
 
+use glint_core::field::FRACTION;
+
 use super::narrow::nearest;
 use super::rectangle::Rectangle;
 
 /// Bits of a coefficient's magnitude.
 const COEFFICIENT: u32 = 24;
+
+/// Fraction bits of a half chord in radii, times |D|².
+pub(super) const ROOT: u32 = 18;
 
 /// A sphere of a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +58,11 @@ impl Ball {
         let excess = |bits: u32| bits.saturating_sub(COEFFICIENT) as i32;
         let cut = excess(cross.map(|part| part.bits()).into_iter().fold(0, u32::max));
         let along_cut = excess(along.bits()).max(12);
+        // No component of D exceeds 1, so q·D is at most the sum of q's components.
+        let most = q.map(i64::abs).iter().sum::<i64>() + 2 * radius;
+        let spare = (COEFFICIENT - 1)
+            .saturating_sub(most.max(1).ilog2())
+            .min(ROOT - FRACTION);
         Sight {
             rectangle,
             is_inside: q.map(|x| x * x).iter().sum::<i64>() < radius * radius,
@@ -60,6 +70,7 @@ impl Ball {
             cross_fraction: 30 - cut,
             along: along.narrowed(along_cut),
             along_fraction: 42 - along_cut,
+            fraction: FRACTION + spare,
         }
     }
 }
@@ -77,6 +88,8 @@ pub struct Sight {
     /// q·D, with `along_fraction` fraction bits.
     pub(super) along: Linear,
     pub(super) along_fraction: i32,
+    /// Fraction bits of q·D and of a half chord: the longest with which a ray's distance to the sphere has 24 bits and a sign.
+    pub(super) fraction: u32,
 }
 
 /// A number that is linear in the column and the row of a pixel.

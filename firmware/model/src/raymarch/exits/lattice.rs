@@ -41,7 +41,7 @@ pub(super) fn meet(
     if along >= 0 || rest <= 0 {
         return None;
     }
-    // Both terms have 15 fraction bits; the distance is narrowed to 12 by rounding down.
-    let distance = (-floor(along, words.along as i32 - 15) - root(rest)) >> 3;
-    Some(t + words.divided(distance.max(0), beam.inverse_square))
+    // Both terms have 15 fraction bits.
+    let distance = -floor(along, words.along as i32 - 15) - root(rest);
+    Some(t + words.divided(distance.max(0), 15, beam.inverse_square))
 }

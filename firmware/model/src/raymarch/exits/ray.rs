@@ -1,6 +1,6 @@
 //! The ray of a pixel, its points and its exits.
 
-use glint_core::field::magnitude;
+use glint_core::field::{FRACTION, magnitude};
 
 use super::intervals::{AXES, Prism, Solid};
 use super::narrow::{floor, squared};
@@ -110,7 +110,7 @@ impl Exits {
         let corner = self.eyes[beam.eye].corner(&beam.down);
         let exits = [0, 1, 2, 3].map(|axis: usize| {
             let distance = prism.borders[axis]?.at - corner[axis];
-            Some(self.words.divided(distance, beam.inverse[axis]))
+            Some(self.words.divided(distance, FRACTION, beam.inverse[axis]))
         });
         let (face, crossed) = prism.leaving(&exits);
         let exit = exits[face].unwrap_or_default();

@@ -6,13 +6,10 @@
 
 use glint_core::field::FRACTION;
 
-use super::balls::Ball;
+use super::balls::{Ball, ROOT};
 use super::narrow::{nearest, root, saturated, shifted, squared};
 use super::ray::Beam;
 use super::setup::Exits;
-
-/// Fraction bits of a half chord in radii, times |D|².
-const ROOT: i32 = 18;
 
 /// A sphere that a ray meets.
 #[derive(Clone, Copy)]
@@ -60,14 +57,15 @@ impl Exits {
         if rest <= 0 && !sight.is_inside {
             return None;
         }
-        // The half chord times |D|², 12 fraction bits: the root is narrowed by rounding to nearest, the product by rounding down.
-        let root = nearest(root(rest.max(0)), fraction - ROOT);
-        let chord = (i64::from(ball.radius) * root) >> ROOT;
+        // The half chord times |D|²: the root is narrowed by rounding to nearest, the product by rounding down.
+        let root = nearest(root(rest.max(0)), fraction - ROOT as i32);
+        let bits = sight.fraction;
+        let chord = (i64::from(ball.radius) * root) >> (ROOT + FRACTION - bits);
         let along = nearest(
             sight.along.at(beam.column, beam.row),
-            sight.along_fraction - FRACTION as i32,
+            sight.along_fraction - bits as i32,
         );
-        let at = |distance| self.words.divided(distance, beam.inverse_square);
+        let at = |distance| self.words.divided(distance, bits, beam.inverse_square);
         let (enters, leaves) = (-along - chord, at(-along + chord));
         if leaves < self.near || !sight.is_inside && enters < 0 {
             return None;

@@ -1,7 +1,5 @@
 //! Word lengths, and reciprocals of a direction's components.
 
-use glint_core::field::FRACTION;
-
 use super::narrow::{nearest, shifted};
 
 /// Integer bits of the parameter T: depths up to 2^11 field units, times 2^e with e at most 3.
@@ -32,11 +30,10 @@ impl Words {
         along: 14,
     };
 
-    /// The parameter of a ray at a distance along an axis: the distance, s13.12, divided by the direction's component. Rounded down,
-    /// saturated.
-    pub(super) const fn divided(&self, distance: i64, inverse: Inverse) -> i64 {
+    /// The parameter of a ray at a distance, with 25 bits and these `fraction` bits, times a reciprocal. Rounded down, saturated.
+    pub(super) const fn divided(&self, distance: i64, fraction: u32, inverse: Inverse) -> i64 {
         let Inverse { mantissa, exponent } = inverse;
-        let bits = exponent + self.parameter as i32 - FRACTION as i32 - self.inverse as i32;
+        let bits = exponent + self.parameter as i32 - fraction as i32 - self.inverse as i32;
         shifted(
             distance * mantissa as i64,
             bits,
