@@ -105,6 +105,33 @@ def kernels(all_kernels, family):
     return members.assign(group=group, short=names[2].where(names[1] != "", members.config))
 
 
+def words(pictures):
+    """The worst errors of each set of word lengths, by kind of field."""
+    lengths = ["direction", "inverse", "parameter", "cross", "along"]
+    kinds = np.select([pictures.scene.str.startswith("menger"), pictures.scene.str.contains("sphere|moving|lattice")],
+                      ["sponge", "round"], "flat")
+    pictures = pictures.assign(kind=kinds, pixels=pictures.false_hits + pictures.false_misses)
+    for (family, *bits), members in pictures.groupby(["family", *lengths], sort=False):
+        worst = members.groupby("kind")[["wrong_faces", "depth_median", "depth_p99", "normal_p99"]].max()
+
+        def errors(text, *places):
+            found = [worst[column].get(kind, np.nan) for column, kind in places]
+            return ", ".join(text(error) for error in found if not pd.isna(error))
+
+        def depths(kind):
+            return errors(lambda error: sci(error, 1), ("depth_median", kind), ("depth_p99", kind))
+
+        yield {
+            "family": family,
+            "bits": dict(zip(lengths, bits)).get(family, ", ".join(map(str, bits))),
+            "pictures": len(members),
+            "pixels": members.pixels.sum(),
+            "faces": errors(lambda error: f"{100 * error:.4f} %", ("wrong_faces", "sponge"), ("wrong_faces", "flat")),
+            "depths": [depths(kind) for kind in ("sponge", "flat", "round")],
+            "normals": errors(lambda error: f"{error:.3f}°", ("normal_p99", "round")),
+        }
+
+
 def cases(rates):
     """The measured cases of the raymarcher, with the slowest pose of each view, the only pose drawn back to back."""
     found = []

@@ -3,6 +3,7 @@
 //! All tests are in one program, because linking further programs takes time.
 
 mod cones;
+mod exits;
 mod field;
 mod gesture;
 mod imu;
