@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::{firmware, paths, run};
 
 /// Debian packages and their purposes.
-const PACKAGES: [(&str, &str); 8] = [
+const PACKAGES: [(&str, &str); 9] = [
     (
         "ccache",
         "caches the objects of the C library for the BIOS of each board",
@@ -22,6 +22,7 @@ const PACKAGES: [(&str, &str); 8] = [
     ),
     ("llvm-19", "merges the branch counts for the compiler"),
     ("make", "builds the LiteX BIOS"),
+    ("python3-tk", "interprets the script for Vivado in tests"),
     (
         "python3-venv",
         "creates the environment of the Python packages",
@@ -114,6 +115,7 @@ fn is_present(package: &str) -> bool {
         }
         // The program has no `--version` option.
         "llvm-19" => run::succeeds(Command::new("llvm-profdata-19").args(["merge", "--version"])),
+        "python3-tk" => run::succeeds(Command::new("python3").args(["-c", "import tkinter"])),
         "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),
         program => run::succeeds(Command::new(program).arg("--version")),
     }
