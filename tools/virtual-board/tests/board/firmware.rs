@@ -108,9 +108,18 @@ pub fn started(image: &[u8]) -> (VirtualBoard, String) {
     (board, said)
 }
 
-/// Sends a line and returns the output up to the next prompt, echo first.
+/// Sends a line and returns the output up to the next prompt, echo first. A note on the last frame, which may come before the echo, is left
+/// out.
 pub fn command(board: &mut impl Console, line: &str) -> String {
     board.send(line.as_bytes());
     board.send(b"\r");
-    board.expect(PROMPT, line)
+    loop {
+        let answer = board.expect(PROMPT, line);
+        if !answer
+            .trim_start_matches(['\r', '\x1b', '[', 'K'])
+            .starts_with("note: ")
+        {
+            return answer;
+        }
+    }
 }
