@@ -81,6 +81,7 @@ MODULES = [
     Module(top="round_light", measured=("round_light",)),
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="exit_lane"),
+    Module(top="exit_reciprocal"),
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},
            measured=("raymarcher_round", "raymarcher_faces")),

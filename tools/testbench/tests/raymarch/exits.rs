@@ -1,10 +1,11 @@
-//! Tests of a lane for rays that leave empty prisms: every ray ends once, with the model's result, under any back-pressure.
+//! Tests of the parts for rays that leave empty prisms: reciprocals, and a lane in which every ray ends once, with the model's result,
+//! under any back-pressure.
 
 use std::collections::HashMap;
 
 use glint_core::field::{Field, Surface};
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{Beam, Exits, Eye, Rule, Solid, Words};
+use glint_model::raymarch::exits::{Beam, Exits, Eye, Inverse, Rule, Solid, Words};
 use glint_testbench::{Bits, Layout, Module, Pipe};
 use glint_vectors::Random;
 
@@ -56,6 +57,12 @@ fn interval(solid: &Solid, number: i32) -> u64 {
     }
 }
 
+/// The bits of a reciprocal: its exponent, and its mantissa less one.
+fn packed(inverse: Inverse) -> i64 {
+    let rest = (i64::from(inverse.mantissa) - (1 << 22)) & 0x3F_FFFF;
+    (i64::from(inverse.exponent) << 22) | rest
+}
+
 /// Drives the constants of a frame.
 fn set_lane(module: &mut Module, exits: &Exits) {
     let solid = exits.solid.expect("a solid");
@@ -97,13 +104,8 @@ fn pack(layout: &Layout, exits: &Exits, place: u32, beam: &Beam) -> Bits {
             &format!("reached[{axis}]"),
             interval(&solid, start.reached[axis]),
         );
-        let inverse = beam.inverse[axis];
-        let rest = (i64::from(inverse.mantissa) - (1 << 22)) & 0x3F_FFFF;
         record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 2);
-        record.set(
-            &format!("inverse[{axis}]"),
-            (i64::from(inverse.exponent) << 22) | rest,
-        );
+        record.set(&format!("inverse[{axis}]"), packed(beam.inverse[axis]));
     }
     record.bits()
 }
@@ -189,6 +191,33 @@ impl Bench {
 /// Number of frames: the environment variable `GLINT_RTL_RAYS` counts their rays, by default 150,000.
 fn frames() -> usize {
     std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap()) / RAYS
+}
+
+#[test]
+fn reciprocals() {
+    const LATENCY: usize = 10;
+    let mut random = Random(5);
+    // The ends of the ranges, powers of two and their neighbours, and numbers of all lengths.
+    let powers = (0..24).map(|i| 1_u32 << i);
+    let near = powers.flat_map(|power| [power - 1, power, power + 1]);
+    let thirds = (11_184_700..11_184_900).chain([(1 << 24) - 1]);
+    let drawn = (0..200_000).map(|_| (random.bits() as u32 & 0xFF_FFFF) >> (random.bits() % 24));
+    let numbers: Vec<u32> = near.chain(thirds).chain(drawn).collect();
+    let mut module = Module::load("exit_reciprocal", 1);
+    let [clk, magnitude, inverse] = ["clk", "magnitude", "inverse"].map(|name| module.port(name));
+    module.settle();
+    for clock in 0..numbers.len() + LATENCY {
+        if let Some(&number) = clock.checked_sub(LATENCY).and_then(|i| numbers.get(i)) {
+            let expected = packed(Inverse::of(2 * number + 1, &Words::CHOSEN));
+            assert_eq!(module.value(inverse), expected as u64, "of {number:#x}");
+        }
+        let number = numbers.get(clock).copied().unwrap_or_default();
+        module.set(magnitude, u64::from(number));
+        for level in [1_u64, 0] {
+            module.set(clk, level);
+            module.settle();
+        }
+    }
 }
 
 #[test]
