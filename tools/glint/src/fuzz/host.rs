@@ -206,6 +206,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let [sent, _] = exchange(&upload_data(LENGTH), SESSION);
     let [mask, _] = exchange(&[0x5A; 16], SESSION);
     let stats = b"render\r\nbackend gateware\r\ncycles 29373\r\ntriangles_in 12\r\ntriangles_culled 6\r\ntriangles_clipped 0\r\ntriangles_drawn 6\r\npixels_covered 8744\r\npixels_drawn 8744\r\nrays 57600\r\nevaluations 90000\r\nhits 9\r\nmisses 8\r\nundecided 0\r\nclock 81250000\r\ncycles_busy 7\r\nok\r\n";
+    let limit = b"mesh_triangles 4294967295\r\nok\r\n\x1e\n";
     let again = stats.strip_prefix(b"render\r\n").unwrap_or_default();
     let mut seeds = vec![
         seed(0, &[b"BIOS\r\n", flash::REQUEST, WAIT, b"KKKKKLiftoff!\r\n"]),
@@ -214,8 +215,8 @@ pub fn seeds() -> Vec<Vec<u8>> {
             &[b"Glint 0.1.0\r\n\r\nglint> info\r\nversion 1\r\ntriangles 12\r\nok\r\nglint> \x1b[2Kinfo staging\r\nstaging 0x42000000 67108864\r\nok\r\n"],
         ),
         seed(1, &[again, b"\x1e\nok\r\n\x1e\n", again]),
-                seed(2, &[b"ready\r\n", &acknowledged, b"triangles 12\r\nok\r\nglint> "]),
-        seed(2, &[b"present\r\nok\r\nglint> "]),
+        seed(2, &[limit, b"ready\r\n", &acknowledged, b"triangles 12\r\nok\r\nglint> "]),
+        seed(2, &[limit, b"present\r\nok\r\nglint> "]),
         seed(3, &[b"ready\r\n", &sent, b"ok\r\nglint> "]),
         seed(
             4,

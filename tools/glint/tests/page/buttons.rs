@@ -7,21 +7,17 @@ use glint_core::field::KINDS;
 use serde_json::Value;
 use std::collections::HashMap;
 
-/// Presses the button `number` of `#list`, waits until console and picture are quiet for 0.6 s, or until eight pictures have followed,
-/// and returns the button's text, the new output of the console, the number of colours of the picture, the share of the most frequent
-/// colour, and a hash of the picture.
-const PRESS: &str = "new Promise((done) => {
-  const canvas = document.getElementById('monitor'), log = document.getElementById('log');
-  const button = document.querySelectorAll(`#${list} button`)[number];
-  const [before, number0] = [log.textContent, Number(canvas.dataset.number ?? 0)];
-  let [text, shown, since] = [before, number0, performance.now()];
-  button.click();
+/// Waits until the picture is quiet for 0.6 s, or until eight pictures have followed, and returns the number of colours of the picture, the
+/// share of the most frequent colour, and a hash of the picture.
+const LOOK: &str = "new Promise((done) => {
+  const canvas = document.getElementById('monitor');
+  const number0 = Number(canvas.dataset.number ?? 0);
+  let [shown, since] = [number0, performance.now()];
   const look = () => {
     const now = performance.now();
-    if (log.textContent !== text || Number(canvas.dataset.number) !== shown) since = now;
-    [text, shown] = [log.textContent, Number(canvas.dataset.number)];
-    const isDone = text !== before && /(ok|error: .*)$/.test(text.trimEnd());
-    if (!isDone || now - since < 600 && shown < number0 + 8) return setTimeout(look, 20);
+    if (Number(canvas.dataset.number) !== shown) since = now;
+    shown = Number(canvas.dataset.number);
+    if (now - since < 600 && shown < number0 + 8) return setTimeout(look, 20);
     const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
     const counts = new Map();
     let hash = 0;
@@ -30,29 +26,40 @@ const PRESS: &str = "new Promise((done) => {
       hash = (hash * 31 + colour) | 0;
     }
     const share = Math.max(...counts.values()) / (canvas.width * canvas.height);
-    done([button.textContent, text.slice(before.length), counts.size, share, `${hash}`]);
+    done([counts.size, share, `${hash}`]);
   };
   look();
 })";
 
-/// Presses a button, and checks console and picture. Returns the button's text and a hash of the picture.
+/// Presses the button `number` of a list, waits for its frame, and checks console and picture. Returns the button's text and a hash of the
+/// picture.
 fn press(browser: &mut Browser, page: &Page, list: &str, number: usize) -> (String, String) {
-    let call = format!("{{ const list = '{list}', number = {number}; {PRESS}; }}");
-    let found = browser.evaluate(page, &call);
-    let text = |index: usize| found[index].as_str().unwrap().to_owned();
-    let number = |index: usize| found[index].as_f64().unwrap();
-    let name = text(0);
-    println!(
-        "{list} {name}: {} colours, {:.3} of one",
-        number(2),
-        number(3)
+    let log = "document.getElementById('log').textContent";
+    let before = browser.evaluate(page, &format!("{log}.length"));
+    let button = format!("document.querySelectorAll('#{list} button')[{number}]");
+    let name = browser.evaluate(page, &format!("{button}.textContent"));
+    let name = name.as_str().unwrap().to_owned();
+    browser.evaluate(page, &format!("{button}.click()"));
+    browser.wait(
+        page,
+        &format!("{log}.length > {before} && /(ok|error: .*)$/.test({log}.trimEnd())"),
     );
-    assert!(!text(1).contains("error:"), "{list} {name}: {}", text(1));
+    // These lines follow all commands of the button; the reply to `render` follows its frame.
+    browser.evaluate(page, "document.getElementById('line').focus()");
+    browser.type_line(page, "render");
+    browser.type_line(page, &format!("echo {list}-{number}"));
+    browser.wait(page, &format!("/^{list}-{number}$/m.test({log})"));
+    let found = browser.evaluate(page, LOOK);
+    let text = browser.evaluate(page, &format!("{log}.slice({before})"));
+    let text = text.as_str().unwrap();
+    let [colours, share] = [0, 1].map(|index: usize| found[index].as_f64().unwrap());
+    println!("{list} {name}: {colours} colours, {share:.3} of one");
+    assert!(!text.contains("error:"), "{list} {name}: {text}");
     assert!(
-        number(2) >= 2.0 && number(3) < 0.995,
+        colours >= 2.0 && share < 0.995,
         "{list} {name}: a picture of one colour"
     );
-    (name, text(4))
+    (name, found[2].as_str().unwrap().to_owned())
 }
 
 fn press_all(url: &str) {
