@@ -241,7 +241,7 @@ fn firmware_of_devices_and_pipes() {
             .unwrap();
         std::thread::sleep(Duration::from_millis(500));
         assert!(child.try_wait().unwrap().is_none());
-        end_by("INT", &mut child);
+        end_by("TERM", &mut child);
     }
 }
 
@@ -323,7 +323,7 @@ fn a_board_that_waits_for_a_program_can_always_be_flashed() {
     // The request comes after two seconds.
     std::thread::sleep(Duration::from_secs(5));
     assert!(killed.try_wait().unwrap().is_none());
-    end_by("INT", &mut killed);
+    end_by("TERM", &mut killed);
     stay.succeed("flash small.bin --board port", "");
 }
 
