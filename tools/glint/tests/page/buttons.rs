@@ -44,11 +44,14 @@ fn press(browser: &mut Browser, page: &Page, list: &str, number: usize) -> (Stri
         page,
         &format!("{log}.length > {before} && /(ok|error: .*)$/.test({log}.trimEnd())"),
     );
-    // These lines follow all commands of the button; the reply to `render` follows its frame.
+    // The command follows those of the button, and its reply follows the frame.
+    let before_render = browser.evaluate(page, &format!("{log}.length"));
     browser.evaluate(page, "document.getElementById('line').focus()");
     browser.type_line(page, "render");
-    browser.type_line(page, &format!("echo {list}-{number}"));
-    browser.wait(page, &format!("/^{list}-{number}$/m.test({log})"));
+    browser.wait(
+        page,
+        &format!("/^clock [0-9]+$[^]*^ok$/m.test({log}.slice({before_render}))"),
+    );
     let found = browser.evaluate(page, LOOK);
     let text = browser.evaluate(page, &format!("{log}.slice({before})"));
     let text = text.as_str().unwrap();
