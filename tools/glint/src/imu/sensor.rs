@@ -53,7 +53,7 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
 }
 
 /// Streams `samples` samples from the board to `on_sample`. The time of a sample is in µs of the board's time since the first
-/// sample.
+/// sample, and 0 for an earlier time.
 ///
 /// # Errors
 /// The sensor or the board fails.
