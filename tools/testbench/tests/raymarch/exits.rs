@@ -9,26 +9,17 @@ use glint_model::raymarch::exits::{Beam, Exits, Eye, Inverse, Rule, Solid, Words
 use glint_testbench::{Bits, Layout, Module, Pipe};
 use glint_vectors::Random;
 
-use crate::scenes::{camera, size, stereo};
+use crate::scenes::{FIELDS, SPONGES, camera, size, stereo};
 
 /// Number of rays in a frame.
 const RAYS: usize = 2_000;
 
-/// Fields of the lane.
-const FIELDS: [&str; 12] = [
-    "menger:4",
-    "menger:3",
-    "menger:2",
-    "menger:1",
-    "box:1,0.5,0.25",
-    "box:0.01,12,3",
-    "cubes:2,0.5",
-    "cubes:0.25,0.1",
-    "cubes:16,7.9",
-    "planes:0.5",
-    "planes:12",
-    "planes:0.01",
-];
+/// Fields of the lane, which draws sponges up to depth 4.
+fn fields() -> Vec<&'static str> {
+    let is_sponge = |field: &&str| field.starts_with("menger:");
+    let others = FIELDS.into_iter().filter(|field| !is_sponge(field));
+    SPONGES.into_iter().chain(others).collect()
+}
 
 /// End of a ray. A miss has the ray's limit as its parameter, and no face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,13 +220,14 @@ fn random_rays_in_flat_solids() {
         .map(|(seed, stalls)| Bench::new(seed, stalls))
         .collect();
     let layout = benches[0].0.module.packed_type("exit_pkg::ray_t").clone();
+    let fields = fields();
     for frame in 0..frames() {
-        let field = Field::parse(FIELDS[frame % FIELDS.len()]).expect("a field");
+        let field = Field::parse(fields[frame % fields.len()]).expect("a field");
         let stereo = random.coin().then(|| stereo(&mut random));
         let (view, size) = (camera(&mut random), size(&mut random));
         let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
         let eyes = if stereo.is_some() { 2 } else { 1 };
         let rays = some_rays(&mut random, &layout, &exits, eyes);
-        benches[frame / FIELDS.len() % 4].check(&exits, rays);
+        benches[frame / fields.len() % 4].check(&exits, rays);
     }
 }
