@@ -47,7 +47,6 @@ module exit_lane #(
     localparam int unsigned SLOTS      = LAST + 1;
     localparam int unsigned SLOT_BITS  = $clog2(SLOTS);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
-    localparam int unsigned LEFT       = exit_pkg::INTERVAL_BITS;
 
     logic [LAST:0]         occupied;
     logic [COUNT_BITS-1:0] places;
@@ -176,7 +175,7 @@ module exit_lane #(
     logic [2:0][exit_pkg::CORNER_BITS-1:0] distance_13;
     logic [2:0][exit_pkg::T_BITS-1:0]      exit_20, exit_21;
 
-    delay #(.WIDTH(3 * LEFT), .CLOCKS(7)) reached_waits (.clk, .enable(1'b1), .in(reached_0), .out(reached_7));
+    delay #(.WIDTH(3 * exit_pkg::INTERVAL_BITS), .CLOCKS(7)) reached_waits (.clk, .enable(1'b1), .in(reached_0), .out(reached_7));
 
     exit_borders #(.LEVELS(LEVELS), .BOXES(BOXES)) borders (
         .clk, .solid, .point(point_5), .reached_2(reached_7), .interval(interval_11), .next(next_11), .there(there_11), .choice(choice_11),
@@ -184,7 +183,9 @@ module exit_lane #(
     );
 
     delay #(.WIDTH(5), .CLOCKS(10)) choice_waits (.clk, .enable(1'b1), .in({there_11, choice_11}), .out({there_21, choice_21}));
-    delay #(.WIDTH(6 * LEFT), .CLOCKS(11)) intervals (.clk, .enable(1'b1), .in({interval_11, next_11}), .out({interval_22, next_22}));
+    delay #(.WIDTH(6 * exit_pkg::INTERVAL_BITS), .CLOCKS(11)) intervals (
+        .clk, .enable(1'b1), .in({interval_11, next_11}), .out({interval_22, next_22})
+    );
     delay #(.WIDTH(2), .CLOCKS(12)) ends_wait (.clk, .enable(1'b1), .in({hit_11, gone_11}), .out({hit_23, gone_23}));
 
     for (genvar i = 0; i < 3; i++) begin : exits
