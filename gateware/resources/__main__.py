@@ -49,8 +49,8 @@ def measured_rates(names):
 
 
 def check(budget):
-    """Measures the own blocks, and with one seed the clock rates of the blocks that have a least ratio. The SoC and the soft core take
-    too long to be measured in every test. Returns what is beyond the limits."""
+    """Measures the own blocks, and with one seed the clock rates of the blocks with a minimum ratio. The SoC and the soft core are left
+    out, because they take too long for every test. Returns the exceeded limits."""
     sizes = measured("size", size.measure, OWN)
     return budget.problems(sizes, measured("clock rate", partial(route.measure, seeds=route.SEEDS[:1]), budget.routed()))
 

@@ -98,7 +98,8 @@ pub fn resembled<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Op
     nearest.map(|(_, known)| known)
 }
 
-/// The message for an unknown name: what is expected, and the name that it resembles or the known names.
+/// Returns the message for an unknown name. It states the expected kind of name, and the known name that resembles it, or all known
+/// names.
 pub fn unknown<'n>(
     name: &str,
     expected: &str,

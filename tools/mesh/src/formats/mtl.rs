@@ -16,7 +16,7 @@ pub struct Ignored {
     pub has_light: bool,
 }
 
-/// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped. Returns what is ignored.
+/// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped. Returns the ignored properties, for a remark.
 ///
 /// # Errors
 /// A line is too long, or a `Kd` comes before the first `newmtl` or has no numbers.
