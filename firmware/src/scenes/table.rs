@@ -10,7 +10,7 @@ pub static SCENES: [BuiltIn; 10] = [
     // Unbounded repeated cubes in fog
     BuiltIn::picture(
         "cubes",
-        &[feature::FIELD, feature::FOG],
+        &[feature::FIELD, feature::FOG, feature::VIEW],
         "\
 quality balanced
 lookat 1 -1 1 -1 1.2 -1.5
@@ -23,13 +23,13 @@ field cubes:2,0.4
     // The scenes of a board that runs alone
     BuiltIn::list(
         "demo",
-        &[feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::STEREO, feature::WIREFRAME],
+        &[feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::STEREO, feature::VIEW, feature::WIREFRAME],
         &["holoforge", "wireframe", "simplegpu", "poor-mans-vr", "cubes"],
     ),
     // HoloForge: a mesh that a hand turns
     BuiltIn::picture(
         "holoforge",
-        &[feature::GESTURE, feature::MESH],
+        &[feature::GESTURE, feature::MESH, feature::VIEW],
         "\
 quality fast
 camera 2.5 40 65
@@ -40,7 +40,7 @@ gesture on
     // A Menger sponge of depth 4
     BuiltIn::picture(
         "menger",
-        &[feature::FIELD, feature::PREPASS],
+        &[feature::FIELD, feature::PREPASS, feature::VIEW],
         "\
 quality balanced
 camera 4 30 60
@@ -51,7 +51,7 @@ field menger:4
     // A ring in a box
     BuiltIn::picture(
         "mesh-in-field",
-        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD],
+        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::VIEW],
         "\
 quality balanced
 camera 2 30 60
@@ -66,7 +66,7 @@ field box:0.35,0.35,0.35
     // The 3D accelerator: five objects with interpolated colours and one light
     BuiltIn::picture(
         "objects",
-        &[feature::LIGHT, feature::MESH, feature::OBJECT],
+        &[feature::LIGHT, feature::MESH, feature::OBJECT, feature::VIEW],
         "\
 quality balanced
 camera 2.2 20 70
@@ -83,7 +83,7 @@ object add torus scale 0.45,-0.45,0.7 rotate y 75 rotate z 40 move 0.5,0.65,-0.1
     // Poor Man's VR: a Menger sponge for two eyes, seen in the direction of the motion sensor
     BuiltIn::picture(
         "poor-mans-vr",
-        &[feature::FIELD, feature::IMU, feature::STEREO],
+        &[feature::FIELD, feature::IMU, feature::STEREO, feature::VIEW],
         "\
 quality balanced
 lookat 0.9 -1.6 0.9 -0.47 0.75 -0.47
@@ -97,7 +97,7 @@ imu look
     // SimpleGPU: six polygons, clipped to the view volume, without light
     BuiltIn::picture(
         "simplegpu",
-        &[feature::CPU, feature::LIGHT, feature::MESH],
+        &[feature::CPU, feature::LIGHT, feature::MESH, feature::VIEW],
         "\
 quality balanced
 lookat 0 -1.2 0.3 0.1 1 -0.1
@@ -112,7 +112,7 @@ scene polygons
     // Eight spheres of different colours
     BuiltIn::picture(
         "spheres",
-        &[feature::FIELD, feature::SPHERES],
+        &[feature::FIELD, feature::SPHERES, feature::VIEW],
         "\
 quality balanced
 camera 2.6 40 62
