@@ -1,9 +1,9 @@
 // Lane of the raymarcher for solids with flat faces: a ring-shaped pipeline in which rays circulate, one evaluation in each round. An
 // evaluation moves a ray to the end of the empty prism around its point (docs/raymarch-exits.md).
 //
-//   rays ──▶ slot ─▶ O + T·D ─▶ exit_borders ─▶ exit_quotient for each axis ─▶ first, second or last ─▶ hit? miss? ─┐
-//             ▲                                                                                                     ├─▶ fifo ─▶ ends
-//             └──────────────────────────── largest of T and the exit ◀─────────────────────────────────────────────┘
+//   rays ──▶ slot ─▶ O + T·D ─▶ exit_borders ─▶ exit_quotient for each axis ─▶ exit_choice ─▶ hit? miss? ─┐
+//             ▲                                                                                            ├─▶ fifo ─▶ ends
+//             └──────────────────────── largest of T and the exit ◀────────────────────────────────────────┘
 //
 // The ring has SLOTS slots and never stalls. In the diagram, O is the eye from the solid's lower corner along the ray's mirrored axes, D the
 // magnitude of the ray's direction, and T its parameter. The point is computed again in each round, so errors do not accumulate. Intervals
@@ -168,12 +168,12 @@ module exit_lane #(
 
     // The planes around the point, and the exits at them.
     logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_7, interval_11, next_11, interval_22, next_22;
-    logic [2:0] there_11, there_21;
-    logic [1:0] choice_11, choice_21;
+    logic [2:0] there_11, there_20;
+    logic [1:0] choice_11, choice_20;
     logic       hit_11, gone_11, hit_23, gone_23;
     logic [2:0][exit_pkg::SIDE_BITS-1:0]   at_12;
     logic [2:0][exit_pkg::CORNER_BITS-1:0] distance_13;
-    logic [2:0][exit_pkg::T_BITS-1:0]      exit_20, exit_21;
+    logic [2:0][exit_pkg::T_BITS-1:0]      exit_20;
 
     delay #(.WIDTH(3 * exit_pkg::INTERVAL_BITS), .CLOCKS(7)) reached_waits (.clk, .enable(1'b1), .in(reached_0), .out(reached_7));
 
@@ -182,7 +182,7 @@ module exit_lane #(
         .hit(hit_11), .gone(gone_11), .at(at_12)
     );
 
-    delay #(.WIDTH(5), .CLOCKS(10)) choice_waits (.clk, .enable(1'b1), .in({there_11, choice_11}), .out({there_21, choice_21}));
+    delay #(.WIDTH(5), .CLOCKS(9)) choice_waits (.clk, .enable(1'b1), .in({there_11, choice_11}), .out({there_20, choice_20}));
     delay #(.WIDTH(6 * exit_pkg::INTERVAL_BITS), .CLOCKS(11)) intervals (
         .clk, .enable(1'b1), .in({interval_11, next_11}), .out({interval_22, next_22})
     );
@@ -200,35 +200,13 @@ module exit_lane #(
         exit_quotient quotient (.clk, .distance(distance_13[i]), .inverse(inverse_13[i]), .t(exit_20[i]));
     end
 
-    // The order of the exits; of equal ones the axis with the smaller number is first.
-    logic x_y_21, x_z_21, y_z_21;
-    logic [2:0] first, last, chosen;
     logic [exit_pkg::T_BITS-1:0] exit_22;
     logic [1:0] axis_22;
     logic [2:0] crossed_22;
 
-    always_comb begin
-        first[0] = (x_y_21 || !there_21[1]) && (x_z_21 || !there_21[2]);
-        first[1] = (!x_y_21 || !there_21[0]) && (y_z_21 || !there_21[2]);
-        first[2] = (!x_z_21 || !there_21[0]) && (!y_z_21 || !there_21[1]);
-        last[0]  = (!x_y_21 || !there_21[1]) && (!x_z_21 || !there_21[2]);
-        last[1]  = (x_y_21 || !there_21[0]) && (!y_z_21 || !there_21[2]);
-        last[2]  = (x_z_21 || !there_21[0]) && (y_z_21 || !there_21[1]);
-        for (int i = 0; i < 3; i++)
-            chosen[i] = there_21[i] && (choice_21[0] ? first[i] : choice_21[1] ? last[i] : !first[i] && !last[i]);
-    end
-
-    always_ff @(posedge clk) begin
-        exit_21 <= exit_20;
-        x_y_21  <= exit_20[0] <= exit_20[1];
-        x_z_21  <= exit_20[0] <= exit_20[2];
-        y_z_21  <= exit_20[1] <= exit_20[2];
-
-        exit_22 <= chosen[0] ? exit_21[0] : chosen[1] ? exit_21[1] : exit_21[2];
-        axis_22 <= {chosen[2], chosen[1]};
-        // The planes before the chosen one have been crossed too.
-        for (int i = 0; i < 3; i++) crossed_22[i] <= there_21[i] && (choice_21[0] ? first[i] : choice_21[1] || !last[i]);
-    end
+    exit_choice leaving (
+        .clk, .exits(exit_20), .there(there_20), .choice(choice_20), .t(exit_22), .axis(axis_22), .crossed(crossed_22)
+    );
 
     delay #(.WIDTH(exit_pkg::T_BITS), .CLOCKS(22)) t_waits (.clk, .enable(1'b1), .in(t_0), .out(t_22));
     delay #(.WIDTH(2), .CLOCKS(23)) axis_waits (.clk, .enable(1'b1), .in(axis_0), .out(from_axis_23));
