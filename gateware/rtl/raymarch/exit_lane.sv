@@ -43,7 +43,7 @@ module exit_lane #(
     output logic                                                 waits
 );
     // Stages of the ring; the suffix of a name is the stage in which it is valid. LAST is the last stage.
-    localparam int unsigned LAST       = 24;
+    localparam int unsigned LAST       = 23;
     localparam int unsigned SLOTS      = LAST + 1;
     localparam int unsigned SLOT_BITS  = $clog2(SLOTS);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
@@ -53,16 +53,16 @@ module exit_lane #(
     logic                  enter, finished, again, ended, end_ready, gone_out;
 
     // State of the rays in the first and in the last stage.
-    logic                       over_0, over_24;
-    logic [exit_pkg::T_BITS-1:0] t_0, t_22, t_23, t_24;
-    logic [1:0]                 axis_0, axis_23, axis_24;
-    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_0, reached_23, reached_24;
-    logic [7:0]                 steps_0, steps_23, steps_24;
-    logic                       hit_24;
+    logic                       over_0, over_23;
+    logic [exit_pkg::T_BITS-1:0] t_0, t_21, t_22, t_23;
+    logic [1:0]                 axis_0, axis_22, axis_23;
+    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_0, reached_22, reached_23;
+    logic [7:0]                 steps_0, steps_22, steps_23;
+    logic                       hit_23;
 
     // At a hit, the ray ends at the plane that it had crossed before this evaluation.
-    logic [exit_pkg::T_BITS-1:0] from_23, from_24;
-    logic [1:0]                  from_axis_23, from_axis_24;
+    logic [exit_pkg::T_BITS-1:0] from_22, from_23;
+    logic [1:0]                  from_axis_22, from_axis_23;
 
     assign again    = occupied[LAST] && !finished;
     assign ended    = occupied[LAST] && finished;
@@ -73,10 +73,10 @@ module exit_lane #(
     always_ff @(posedge clk) begin
         occupied  <= {occupied[LAST-1:0], again || enter};
         over_0    <= !again && in_ray.over;
-        t_0       <= again ? t_24 : in_ray.start;
-        axis_0    <= again ? axis_24 : in_ray.axis;
-        reached_0 <= again ? reached_24 : in_ray.reached;
-        steps_0   <= again ? steps_24 : '0;
+        t_0       <= again ? t_23 : in_ray.start;
+        axis_0    <= again ? axis_23 : in_ray.axis;
+        reached_0 <= again ? reached_23 : in_ray.reached;
+        steps_0   <= again ? steps_23 : '0;
         if (enter != gone_out) places <= enter ? places - 1'b1 : places + 1'b1;
 
         evaluates <= occupied[0] && !over_0;
@@ -90,7 +90,7 @@ module exit_lane #(
 
     // Constants of the rays in the ring, in a word of LUT memory per slot, written when a ray enters. Each stage that reads constants has
     // a memory of its own, and the number of the slot in this stage. Writes to an empty slot are allowed.
-    logic [SLOT_BITS-1:0] slot_0, slot_13, slot_23, slot_24;
+    logic [SLOT_BITS-1:0] slot_0, slot_13, slot_22, slot_23;
 
     function automatic logic [SLOT_BITS-1:0] following(input logic [SLOT_BITS-1:0] slot);
         following = slot == SLOT_BITS'(SLOTS - 1) ? '0 : slot + 1'b1;
@@ -98,11 +98,11 @@ module exit_lane #(
 
     // A ray that is in the last stage enters the first stage with the next clock.
     always_ff @(posedge clk) begin
-        slot_0  <= slot_24;
+        slot_0  <= slot_23;
         slot_13 <= following(slot_13);
-        slot_23 <= following(slot_23);
-        slot_24 <= slot_23;
-        if (rst) {slot_0, slot_13, slot_23, slot_24} <= {SLOT_BITS'(0), SLOT_BITS'(SLOTS - 13), SLOT_BITS'(SLOTS - 23), SLOT_BITS'(SLOTS - 24)};
+        slot_22 <= following(slot_22);
+        slot_23 <= slot_22;
+        if (rst) {slot_0, slot_13, slot_22, slot_23} <= {SLOT_BITS'(0), SLOT_BITS'(SLOTS - 13), SLOT_BITS'(SLOTS - 22), SLOT_BITS'(SLOTS - 23)};
     end
 
     localparam int unsigned AIM_BITS   = 4 + 3 * exit_pkg::SPEED_BITS;
@@ -114,24 +114,24 @@ module exit_lane #(
     (* ram_style = "distributed" *) logic [CARGO_BITS-1:0]                 cargos   [0:2**SLOT_BITS-1];
 
     logic                                 eye_0, eye_4, eye_12;
-    logic [2:0]                           down_0, down_4, down_12, down_24;
+    logic [2:0]                           down_0, down_4, down_12, down_23;
     logic [2:0][exit_pkg::SPEED_BITS-1:0] speed_0, speed_1;
     logic [2:0][exit_pkg::INVERSE_BITS-1:0] inverse_13;
-    logic [exit_pkg::T_BITS-1:0]          limit_23, limit_24;
-    logic [raymarch_pkg::PLACE_BITS-1:0]  place_24;
+    logic [exit_pkg::T_BITS-1:0]          limit_22, limit_23;
+    logic [raymarch_pkg::PLACE_BITS-1:0]  place_23;
 
     assign {eye_0, down_0, speed_0} = aims[slot_0];
     assign inverse_13               = inverses[slot_13];
-    assign limit_23                 = limits[slot_23];
-    assign {place_24, down_24}      = cargos[slot_24];
+    assign limit_22                 = limits[slot_22];
+    assign {place_23, down_23}      = cargos[slot_23];
 
     always_ff @(posedge clk) begin
-        limit_24 <= limit_23;
+        limit_23 <= limit_22;
         if (!again) begin
-            aims[slot_24]     <= {in_ray.place[17], in_ray.down, in_ray.speed};
-            inverses[slot_24] <= in_ray.inverse;
-            limits[slot_24]   <= in_ray.limit;
-            cargos[slot_24]   <= {in_ray.place, in_ray.down};
+            aims[slot_23]     <= {in_ray.place[17], in_ray.down, in_ray.speed};
+            inverses[slot_23] <= in_ray.inverse;
+            limits[slot_23]   <= in_ray.limit;
+            cargos[slot_23]   <= {in_ray.place, in_ray.down};
         end
     end
 
@@ -167,13 +167,13 @@ module exit_lane #(
     end
 
     // The planes around the point, and the exits at them.
-    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_7, interval_11, next_11, interval_22, next_22;
-    logic [2:0] there_11, there_20;
-    logic [1:0] choice_11, choice_20;
-    logic       hit_11, gone_11, hit_23, gone_23;
+    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_7, interval_11, next_11, interval_21, next_21;
+    logic [2:0] there_11, there_19;
+    logic [1:0] choice_11, choice_19;
+    logic       hit_11, gone_11, hit_22, gone_22;
     logic [2:0][exit_pkg::SIDE_BITS-1:0]   at_12;
     logic [2:0][exit_pkg::CORNER_BITS-1:0] distance_13;
-    logic [2:0][exit_pkg::T_BITS-1:0]      exit_20;
+    logic [2:0][exit_pkg::T_BITS-1:0]      exit_19;
 
     delay #(.WIDTH(3 * exit_pkg::INTERVAL_BITS), .CLOCKS(7)) reached_waits (.clk, .enable(1'b1), .in(reached_0), .out(reached_7));
 
@@ -182,11 +182,11 @@ module exit_lane #(
         .hit(hit_11), .gone(gone_11), .at(at_12)
     );
 
-    delay #(.WIDTH(5), .CLOCKS(9)) choice_waits (.clk, .enable(1'b1), .in({there_11, choice_11}), .out({there_20, choice_20}));
-    delay #(.WIDTH(6 * exit_pkg::INTERVAL_BITS), .CLOCKS(11)) intervals (
-        .clk, .enable(1'b1), .in({interval_11, next_11}), .out({interval_22, next_22})
+    delay #(.WIDTH(5), .CLOCKS(8)) choice_waits (.clk, .enable(1'b1), .in({there_11, choice_11}), .out({there_19, choice_19}));
+    delay #(.WIDTH(6 * exit_pkg::INTERVAL_BITS), .CLOCKS(10)) intervals (
+        .clk, .enable(1'b1), .in({interval_11, next_11}), .out({interval_21, next_21})
     );
-    delay #(.WIDTH(2), .CLOCKS(12)) ends_wait (.clk, .enable(1'b1), .in({hit_11, gone_11}), .out({hit_23, gone_23}));
+    delay #(.WIDTH(2), .CLOCKS(11)) ends_wait (.clk, .enable(1'b1), .in({hit_11, gone_11}), .out({hit_22, gone_22}));
 
     for (genvar i = 0; i < 3; i++) begin : exits
         logic [exit_pkg::CORNER_BITS-1:0] corner_12;
@@ -197,59 +197,59 @@ module exit_lane #(
         always_ff @(posedge clk)
             distance_13[i] <= exit_pkg::CORNER_BITS'(at_12[i]) - corner_12;
 
-        exit_quotient quotient (.clk, .distance(distance_13[i]), .inverse(inverse_13[i]), .t(exit_20[i]));
+        exit_quotient quotient (.clk, .distance(distance_13[i]), .inverse(inverse_13[i]), .t(exit_19[i]));
     end
 
-    logic [exit_pkg::T_BITS-1:0] exit_22;
-    logic [1:0] axis_22;
-    logic [2:0] crossed_22;
+    logic [exit_pkg::T_BITS-1:0] exit_21;
+    logic [1:0] axis_21;
+    logic [2:0] crossed_21;
 
     exit_choice leaving (
-        .clk, .exits(exit_20), .there(there_20), .choice(choice_20), .t(exit_22), .axis(axis_22), .crossed(crossed_22)
+        .clk, .exits(exit_19), .there(there_19), .choice(choice_19), .t(exit_21), .axis(axis_21), .crossed(crossed_21)
     );
 
-    delay #(.WIDTH(exit_pkg::T_BITS), .CLOCKS(22)) t_waits (.clk, .enable(1'b1), .in(t_0), .out(t_22));
-    delay #(.WIDTH(2), .CLOCKS(23)) axis_waits (.clk, .enable(1'b1), .in(axis_0), .out(from_axis_23));
-    delay #(.WIDTH(8), .CLOCKS(23)) steps_wait (.clk, .enable(1'b1), .in(steps_0), .out(steps_23));
-    delay #(.WIDTH(1), .CLOCKS(24)) over_waits (.clk, .enable(1'b1), .in(over_0), .out(over_24));
+    delay #(.WIDTH(exit_pkg::T_BITS), .CLOCKS(21)) t_waits (.clk, .enable(1'b1), .in(t_0), .out(t_21));
+    delay #(.WIDTH(2), .CLOCKS(22)) axis_waits (.clk, .enable(1'b1), .in(axis_0), .out(from_axis_22));
+    delay #(.WIDTH(8), .CLOCKS(22)) steps_wait (.clk, .enable(1'b1), .in(steps_0), .out(steps_22));
+    delay #(.WIDTH(1), .CLOCKS(23)) over_waits (.clk, .enable(1'b1), .in(over_0), .out(over_23));
 
     // A ray that has left the solid does not come back, and the limit ends it too.
     logic       is_cubes, is_planes;
-    logic [2:0] above_23;
-    logic       left_24;
+    logic [2:0] above_22;
+    logic       left_23;
 
     assign is_cubes  = BOXES && solid.rule == exit_pkg::CUBES;
     assign is_planes = BOXES && solid.rule == exit_pkg::PLANES;
 
     always_comb
-        for (int i = 0; i < 3; i++) above_23[i] = !is_planes && exit_pkg::is_above(reached_23[i][8:6], is_cubes);
+        for (int i = 0; i < 3; i++) above_22[i] = !is_planes && exit_pkg::is_above(reached_22[i][8:6], is_cubes);
 
     always_ff @(posedge clk) begin
-        t_23    <= exit_22 > t_22 ? exit_22 : t_22;
-        from_23 <= t_22;
-        axis_23 <= axis_22;
-        for (int i = 0; i < 3; i++) reached_23[i] <= crossed_22[i] ? next_22[i] : interval_22[i];
+        t_22    <= exit_21 > t_21 ? exit_21 : t_21;
+        from_22 <= t_21;
+        axis_22 <= axis_21;
+        for (int i = 0; i < 3; i++) reached_22[i] <= crossed_21[i] ? next_21[i] : interval_21[i];
 
-        t_24         <= t_23;
-        from_24      <= from_23;
-        axis_24      <= axis_23;
-        from_axis_24 <= from_axis_23;
-        reached_24   <= reached_23;
-        steps_24     <= steps_23 + 8'd1;
-        hit_24       <= hit_23;
-        left_24      <= gone_23 || t_23 > limit_23 || above_23 != '0;
+        t_23         <= t_22;
+        from_23      <= from_22;
+        axis_23      <= axis_22;
+        from_axis_23 <= from_axis_22;
+        reached_23   <= reached_22;
+        steps_23     <= steps_22 + 8'd1;
+        hit_23       <= hit_22;
+        left_23      <= gone_22 || t_22 > limit_22 || above_22 != '0;
     end
 
-    assign finished = over_24 || hit_24 || left_24;
+    assign finished = over_23 || hit_23 || left_23;
 
     exit_pkg::end_t end_in;
 
-    assign end_in.place    = place_24;
-    assign end_in.hit      = hit_24 && !over_24;
-    assign end_in.t        = hit_24 && !over_24 ? from_24 : limit_24;
-    assign end_in.axis     = from_axis_24;
-    assign end_in.positive = down_24[from_axis_24];
-    assign end_in.steps    = over_24 ? '0 : steps_24;
+    assign end_in.place    = place_23;
+    assign end_in.hit      = hit_23 && !over_23;
+    assign end_in.t        = hit_23 && !over_23 ? from_23 : limit_23;
+    assign end_in.axis     = from_axis_23;
+    assign end_in.positive = down_23[from_axis_23];
+    assign end_in.steps    = over_23 ? '0 : steps_23;
 
     // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
     fifo #(.WIDTH(exit_pkg::END_BITS), .DEPTH(PLACES)) ends (

@@ -41,11 +41,12 @@ package exit_pkg;
         is_above = first[2] && first[1] && (is_cubes || first[0]);
     endfunction
 
-    // The reciprocal of the magnitude of a direction's component: (1 + rest·2^-22)·2^exponent, with `rest` from -2^20 to below 2^21, in
-    // the order {exponent, rest}.
-    localparam int unsigned REST_BITS     = 22;
-    localparam int unsigned EXPONENT_BITS = 5;
-    localparam int unsigned INVERSE_BITS  = EXPONENT_BITS + REST_BITS;
+    // The reciprocal of the magnitude of a direction's component: factor·2^(12·scale - 22), in the order {scale, factor}. Of its 34 bits,
+    // 23 are those of a mantissa. The shift within the factor is done once for a ray, so that a quotient needs none but that by `scale`.
+    localparam int unsigned FACTOR_BITS  = 34;
+    localparam int unsigned SCALE_BITS   = 2;
+    localparam int unsigned SCALE_SHIFT  = 12;
+    localparam int unsigned INVERSE_BITS = SCALE_BITS + FACTOR_BITS;
 
     // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start` is its T, `limit` the largest T of a
     // hit, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that it has reached, 0 where it has
