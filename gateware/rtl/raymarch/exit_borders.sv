@@ -2,15 +2,18 @@
 //
 //   point ─▶ interval of each axis ─▶ largest of it and `reached` ─▶ rule ─▶ next interval above each plane, the plane's coordinate
 //
-// Coordinates are those of mirrored axes from the solid's lower corner, so that every ray leads up. `there[i]` is high if a plane
-// perpendicular to axis i bounds the prism; `next[i]` is the interval above this plane, and `at[i]` its coordinate. The ray leaves
-// by the last of the planes if `choice[1]` is high, by the first if `choice[0]` is high, and otherwise by the second of three. Without any plane the point is in the solid (`hit`), or the ray has left the solid for good (`gone`).
+// Coordinates are those of mirrored axes, so that every ray leads up: of the point from the solid's lower corner, of planes from its
+// centre. `there[i]` is high if a plane perpendicular to axis i bounds the prism; `next[i]` is the interval above this plane, `above[i]` is
+// high if this interval is above the solid, and `at[i]` is the plane's coordinate. The ray leaves by the last of the planes if `choice[1]`
+// is high, by the first if `choice[0]` is high, and otherwise by the second of three. Without any plane the point is in the solid (`hit`),
+// or the ray has left the solid for good (`gone`).
 //
 // A sponge is what three extruded carpets have in common: a point is outside if at some level two of its digits are 1. It is then in a
-// prism between the planes of these two cells, which goes through the whole sponge.
+// prism between the planes of these two cells, which goes through the whole sponge. The interval of a cube's cell ends with a digit that
+// is 1 in the gap, so that the same rule gives the next interval.
 //
-// Latency 6 clocks from `point` to `next`, `there`, `choice`, `hit`, `gone` and `interval`, and 7 clocks to `at`; `reached` is an input of
-// clock 2. Throughput one point per clock, no handshake. `solid` must hold.
+// Latency 7 clocks from `point` to `next`, `there`, `choice`, `above`, `hit` and `gone`, and 8 clocks to `at`; `reached_3` is an input of
+// clock 3. Throughput one point per clock, no handshake. `solid` must hold.
 
 `default_nettype none
 
@@ -19,151 +22,221 @@ module exit_borders #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1
 ) (
-    input  wire                                        clk,
-    input  wire exit_pkg::solid_t                      solid,
-    input  wire  [2:0][exit_pkg::POINT_BITS-1:0]       point,
-    input  wire  [2:0][exit_pkg::INTERVAL_BITS-1:0]  reached_2,
-    output logic [2:0][exit_pkg::INTERVAL_BITS-1:0]  interval,
+    input  wire                                      clk,
+    input  wire exit_pkg::solid_t                    solid,
+    input  wire  [2:0][exit_pkg::POINT_BITS-1:0]     point,
+    input  wire  [2:0][exit_pkg::INTERVAL_BITS-1:0]  reached_3,
     output logic [2:0][exit_pkg::INTERVAL_BITS-1:0]  next,
-    output logic [2:0]                                 there,
-    output logic [1:0]                                 choice,
-    output logic                                       hit,
-    output logic                                       gone,
-    output logic [2:0][exit_pkg::SIDE_BITS-1:0]        at
+    output logic [2:0]                               there,
+    output logic [1:0]                               choice,
+    output logic [2:0]                               above,
+    output logic                                     hit,
+    output logic                                     gone,
+    output logic [2:0][exit_pkg::PLANE_BITS-1:0]     at
 );
-    logic is_sponge, is_cubes, is_planes;
+    // The digits of an interval that a build uses, and the widths of an interval with them and of the number of a cell. LAST is the digit
+    // of a cube's gap.
+    localparam bit          DEEP      = LEVELS > 4;
+    localparam int unsigned DIGITS    = DEEP ? 6 : 4;
+    localparam int unsigned LAST      = 3;
+    localparam int unsigned BITS      = 1 + 2 * DIGITS;
+    localparam int unsigned UNUSED    = exit_pkg::INTERVAL_BITS - BITS;
+    localparam int unsigned CELL_BITS = DEEP ? 10 : 7;
+
+    logic is_sponge, is_cubes, is_planes, is_deep;
+    logic [DIGITS-1:0] levels;
 
     assign is_sponge = LEVELS != 0 && (!BOXES || solid.rule == exit_pkg::SPONGE);
     assign is_cubes  = BOXES && solid.rule == exit_pkg::CUBES;
     assign is_planes = BOXES && solid.rule == exit_pkg::PLANES;
+    assign is_deep   = DEEP && solid.levels > 3'd4;
 
-    // Returns the ternary digits of the number of a cell, 0 to 80.
-    function automatic logic [7:0] ternary(input logic [6:0] cell_number);
-        ternary = {2'(cell_number / 7'd27), 2'(cell_number / 7'd9 % 7'd3), 2'(cell_number / 7'd3 % 7'd3), 2'(cell_number % 7'd3)};
+    always_comb for (int level = 0; level < DIGITS; level++) levels[level] = is_sponge && 3'(level) < solid.levels;
+
+    // Returns the ternary digits of a number below 243, in two bits each.
+    function automatic logic [9:0] ternary(input logic [7:0] number);
+        ternary = {2'(number / 8'd81), 2'(number / 8'd27 % 8'd3), 2'(number / 8'd9 % 8'd3), 2'(number / 8'd3 % 8'd3), 2'(number % 8'd3)};
     endfunction
 
     // The suffix of a name is the number of clocks after the point.
-    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] interval_3, interval_4;
-    logic [2:0]       below_4, above_4;
+    logic [2:0][BITS-1:0]      interval_4, interval_5, interval_6;
+    logic [2:0]                below_5, above_5;
     // For each level: bit i is set if the digit of axis i is 1; and whether two or three of these bits are set.
-    logic [3:0][2:0]  middle_4;
-    logic [3:0]       two_4, three_4;
+    logic [DIGITS-1:0][2:0]    middle_5;
+    logic [DIGITS-1:0]         two_5, three_5;
 
     for (genvar i = 0; i < 3; i++) begin : axes
-        logic                                below_1, over_1, far_1;
-        logic [6:0]                          cell_1;
-        logic [4:0]                          number_1;
-        logic signed [exit_pkg::POINT_BITS-1:0] local_0;
-        logic [exit_pkg::INTERVAL_BITS-1:0]  interval_2;
+        logic                    below_1, below_2, over_1, over_2;
+        logic [5:0]              cube_1, cube_2;
+        logic [CELL_BITS-1:0]    cell_1;
+        logic [2*DIGITS-1:0]     digits_2;
+        logic [BITS-1:0]         interval_3, reached;
+        logic [exit_pkg::POINT_BITS-2:0] local_0;
 
         // Cubes are repeated: only the coordinate within the cell is compared with the side.
-        assign local_0 = is_cubes ? {10'd0, point[i][17:0]} : point[i];
+        assign local_0 = {is_cubes ? 9'd0 : point[i][26:18], point[i][17:0]};
+        assign reached = reached_3[i][exit_pkg::INTERVAL_BITS-1:UNUSED];
 
         always_ff @(posedge clk) begin
-            below_1  <= point[i][exit_pkg::POINT_BITS-1];
-            over_1   <= local_0 >= $signed({4'd0, solid.side[i]});
-            far_1    <= point[i][exit_pkg::POINT_BITS-2:23] != '0 && !point[i][exit_pkg::POINT_BITS-1];
-            cell_1   <= point[i][18:12];
-            number_1 <= point[i][22:18];
+            below_1 <= point[i][exit_pkg::POINT_BITS-1];
+            over_1  <= local_0 >= 27'({solid.half[i], 1'b0});
+            cube_1  <= {point[i][exit_pkg::POINT_BITS-1:23] != '0, point[i][22:18]};
 
-            interval_2[8] <= !below_1;
-            if (is_cubes)                 interval_2[7:0] <= far_1 ? {2'd2, 6'd0} : {below_1, number_1, over_1, 1'b0};
-            else if (below_1)             interval_2[7:0] <= '0;
-            else if (over_1)              interval_2[7:0] <= exit_pkg::ABOVE;
-            else                          interval_2[7:0] <= is_sponge ? ternary(cell_1) : '0;
+            below_2 <= below_1;
+            over_2  <= over_1;
+            cube_2  <= cube_1;
 
-            interval_3[i] <= interval_2 > reached_2[i] ? interval_2 : reached_2[i];
+            interval_3[BITS-1] <= !below_2;
+            if (is_cubes)     interval_3[BITS-2:0] <= (2*DIGITS)'({cube_2, 1'b0, over_2}) << 2*DIGITS-8;
+            else if (below_2) interval_3[BITS-2:0] <= '0;
+            else if (over_2)  interval_3[BITS-2:0] <= exit_pkg::ABOVE[exit_pkg::DIGIT_BITS-1:UNUSED];
+            else              interval_3[BITS-2:0] <= is_sponge ? digits_2 : '0;
 
-            interval_4[i] <= interval_3[i];
-            below_4[i]    <= !interval_3[i][8];
-            above_4[i]    <= exit_pkg::is_above(interval_3[i][8:6], is_cubes);
-            for (int level = 0; level < 4; level++)
-                middle_4[level][i] <= interval_3[i][6 - 2 * level +: 2] == 2'd1;
+            interval_4[i] <= interval_3 > reached ? interval_3 : reached;
+
+            interval_5[i] <= interval_4[i];
+            below_5[i]    <= !interval_4[i][BITS-1];
+            above_5[i]    <= interval_4[i][BITS-1:BITS-2] == '1 && (is_cubes || interval_4[i][BITS-3]);
+            for (int level = 0; level < DIGITS; level++)
+                middle_5[level][i] <= interval_4[i][BITS-3-2*level +: 2] == 2'd1;
+        end
+
+        // The digits of the cell. A cell of a sponge of up to four levels counts as nine cells of 2^9 units.
+        if (DEEP) begin : deep
+            logic [1:0] first_1, first_2;
+            logic [7:0] rest_2;
+
+            // A multiple of 243 is subtracted modulo 256.
+            assign first_1  = {cell_1 >= 10'd486, cell_1 >= 10'd243 && cell_1 < 10'd486};
+            assign digits_2 = {first_2, ternary(rest_2)};
+
+            always_ff @(posedge clk) begin
+                cell_1  <= {point[i][18:12], is_deep ? point[i][11:9] : 3'd0} + (is_deep ? 10'd0 : 10'(point[i][18:12]));
+                first_2 <= first_1;
+                rest_2  <= cell_1[7:0] + (first_1[1] ? 8'd26 : first_1[0] ? 8'd13 : 8'd0);
+            end
+        end else begin : plain
+            always_ff @(posedge clk) begin
+                cell_1   <= point[i][18:12];
+                digits_2 <= (2*DIGITS)'(ternary({1'b0, cell_1}));
+            end
         end
     end
 
     always_ff @(posedge clk)
-        for (int level = 0; level < 4; level++) begin
+        for (int level = 0; level < DIGITS; level++) begin
             logic [2:0] ones;
-            for (int i = 0; i < 3; i++) ones[i] = interval_3[i][6 - 2 * level +: 2] == 2'd1;
-            two_4[level]   <= 3'(level) < solid.levels && (ones[0] && ones[1] || ones[0] && ones[2] || ones[1] && ones[2]);
-            three_4[level] <= ones == '1;
+            for (int i = 0; i < 3; i++) ones[i] = interval_4[i][BITS-3-2*level +: 2] == 2'd1;
+            two_5[level]   <= ones[0] && ones[1] || ones[0] && ones[2] || ones[1] && ones[2];
+            three_5[level] <= ones == '1;
         end
 
     // The first level at which two digits are 1, as a bit and as those of the levels before it, and the axes whose digit is 1 there.
-    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] interval_5;
-    logic [3:0] first_4, first_5, before_5;
-    logic [2:0] middle_5, gap_4;
-    logic       outside_4, in_hole_4;
+    logic [DIGITS-1:0] holes_5, first_5, first_6, before_6;
+    logic [2:0] middle_6;
+    logic       outside_5, in_hole_5;
 
-    assign first_4   = two_4 & ~(two_4 - 4'd1);
-    assign outside_4 = !is_cubes && !is_planes && below_4 != '0;
-    assign in_hole_4 = is_sponge && two_4 != '0 && !outside_4;
+    assign holes_5   = two_5 & levels;
+    assign first_5   = holes_5 & ~(holes_5 - 1'b1);
+    assign outside_5 = !is_cubes && !is_planes && below_5 != '0;
+    assign in_hole_5 = holes_5 != '0 && !outside_5;
 
-    always_comb for (int i = 0; i < 3; i++) gap_4[i] = interval_4[i][1];
-
-    logic [1:0] choice_5;
-    logic [2:0] there_5;
-    logic       outside_5, gone_5, hit_5;
+    logic [1:0] choice_6;
+    logic [2:0] there_6;
+    logic       gone_6, hit_6;
 
     always_ff @(posedge clk) begin
-        interval_5 <= interval_4;
-        first_5    <= first_4;
-        before_5   <= first_4 - 4'd1 & {4{in_hole_4}};
-        for (int i = 0; i < 3; i++)
-            middle_5[i] <= in_hole_4 && (first_4 & {middle_4[3][i], middle_4[2][i], middle_4[1][i], middle_4[0][i]}) != '0;
-        outside_5  <= outside_4;
-        choice_5   <= {is_cubes || outside_4, !is_cubes && !outside_4 && !(is_sponge && (three_4 & first_4) != '0)};
-        there_5    <= is_cubes ? gap_4 : outside_4 ? below_4 : is_planes ? 3'b100 : 3'b111;
-        gone_5     <= !is_planes && above_4 != '0;
-        hit_5      <= is_planes ? below_4[2] || above_4[2] : above_4 == '0 && !outside_4 && !in_hole_4 && !(is_cubes && gap_4 != '0);
+        interval_6 <= interval_5;
+        first_6    <= is_cubes ? DIGITS'(1 << LAST) : first_5;
+        before_6   <= is_cubes ? DIGITS'((1 << LAST) - 1) : first_5 - 1'b1;
+        for (int i = 0; i < 3; i++) begin
+            logic [DIGITS-1:0] middles;
+            for (int level = 0; level < DIGITS; level++) middles[level] = middle_5[level][i];
+            middle_6[i] <= is_cubes ? middles[LAST] && !below_5[i] : !outside_5 && (first_5 & middles) != '0;
+        end
+        choice_6 <= {is_cubes || outside_5, !is_cubes && !outside_5 && (three_5 & first_5) == '0};
+        there_6  <= is_cubes ? middle_5[LAST] : outside_5 ? below_5 : is_planes ? 3'b100 : 3'b111;
+        gone_6   <= !is_planes && above_5 != '0;
+        hit_6    <= is_planes ? below_5[2] || above_5[2]
+                              : above_5 == '0 && !outside_5 && !in_hole_5 && !(is_cubes && middle_5[LAST] != '0);
     end
 
+    // The next interval has the digits before the first middle digit, this digit plus one, and zeros. Below the solid it is the lowest one,
+    // and without a middle digit the plane is the upper one of the solid.
+    logic [2:0] below_7;
+
     always_ff @(posedge clk) begin
-        interval <= interval_5;
-        choice   <= choice_5;
-        there    <= there_5;
-        gone     <= gone_5;
-        hit      <= hit_5;
+        choice <= choice_6;
+        there  <= there_6;
+        gone   <= gone_6;
+        hit    <= hit_6;
+        next   <= '0;
         for (int i = 0; i < 3; i++) begin
-            next[i][8] <= 1'b1;
-            // The next cell has the digits before the first middle digit, this digit plus one, and zeros.
-            for (int level = 0; level < 4; level++) begin
-                next[i][7 - 2 * level] <= middle_5[i] ? before_5[level] && interval_5[i][7 - 2 * level] || first_5[level]
-                                                      : level == 0 && !outside_5;
-                next[i][6 - 2 * level] <= middle_5[i] ? before_5[level] && interval_5[i][6 - 2 * level] : level == 0 && !outside_5;
+            next[i][exit_pkg::INTERVAL_BITS-1] <= 1'b1;
+            for (int level = 0; level < DIGITS; level++) begin
+                next[i][exit_pkg::INTERVAL_BITS-2-2*level] <=
+                    middle_6[i] ? before_6[level] && interval_6[i][BITS-2-2*level] || first_6[level]
+                                : level == 0 && interval_6[i][BITS-1];
+                next[i][exit_pkg::INTERVAL_BITS-3-2*level] <=
+                    middle_6[i] ? before_6[level] && interval_6[i][BITS-3-2*level] : level == 0 && interval_6[i][BITS-1];
             end
-            if (is_cubes) next[i] <= {1'b1, interval_5[i][8] ? interval_5[i][7:2] + 6'd1 : 6'd0, 2'd0};
+            above[i]   <= !is_planes && interval_6[i][BITS-1] && (is_cubes ? interval_6[i][BITS-3 -: 5] == '1 : !middle_6[i]);
+            below_7[i] <= !interval_6[i][BITS-1];
         end
     end
 
-    // Returns the number of two ternary digits. A table: a sum would be a chain of carries.
-    function automatic logic [3:0] pair(input logic [3:0] digits);
+    // Coordinates of planes, in units of 2^UNIT: a cell of a sponge has two, or of up to four levels in a build for more, sixteen. The first
+    // digit is 3 at the upper plane.
+    localparam int unsigned UNIT    = DEEP ? 8 : 11;
+    localparam int unsigned AT_BITS = exit_pkg::PLANE_BITS - UNIT;
+
+    // Returns the coordinate of two ternary digits: `unit` times their number, without `centre`. A table: a sum would be a chain of carries.
+    function automatic logic [AT_BITS-1:0] pair(input logic [3:0] digits, input logic [AT_BITS-1:0] unit, input logic [AT_BITS-1:0] centre);
         case (digits)
-            4'b0001: pair = 4'd1;
-            4'b0010: pair = 4'd2;
-            4'b0100: pair = 4'd3;
-            4'b0101: pair = 4'd4;
-            4'b0110: pair = 4'd5;
-            4'b1000: pair = 4'd6;
-            4'b1001: pair = 4'd7;
-            4'b1010: pair = 4'd8;
-            4'b1100: pair = 4'd9;
-            default: pair = 4'd0;
+            4'b0001: pair = unit - centre;
+            4'b0010: pair = unit * 2 - centre;
+            4'b0100: pair = unit * 3 - centre;
+            4'b0101: pair = unit * 4 - centre;
+            4'b0110: pair = unit * 5 - centre;
+            4'b1000: pair = unit * 6 - centre;
+            4'b1001: pair = unit * 7 - centre;
+            4'b1010: pair = unit * 8 - centre;
+            4'b1100: pair = unit * 9 - centre;
+            default: pair = -centre;
         endcase
     endfunction
 
-    // The coordinate of a plane. The first digit is 3 at the side of a sponge. Only the plane perpendicular to z bounds a slab.
     for (genvar i = 0; i < 3; i++) begin : planes
-        logic [6:0] high, cell_number;
+        logic [exit_pkg::DIGIT_BITS-1:0] digits;
+        logic signed [exit_pkg::BORDER_BITS-1:0] border;
+        logic [AT_BITS-1:0] high, middle, low;
 
-        assign high        = 7'(pair(next[i][7:4])) * 7'd9;
-        assign cell_number = high + 7'(pair(next[i][3:0]));
+        assign digits = next[i][exit_pkg::DIGIT_BITS-1:0];
+        assign border = solid.border[i];
 
-        always_ff @(posedge clk)
-            if (is_cubes)                 at[i] <= {next[i][7:2], 18'd0};
-            else if (i == 2 && is_planes) at[i] <= solid.side[i];
-            else                          at[i] <= is_sponge ? {5'd0, cell_number, 12'd0} : '0;
+        // A sponge has two or three terms, cubes and other solids have `border`, and cubes also the number of the cell.
+        always_comb begin
+            low = '0;
+            if (DEEP && is_deep) begin
+                high   = pair(digits[11:8], AT_BITS'(162), AT_BITS'(729));
+                middle = pair(digits[7:4], AT_BITS'(18), '0);
+                low    = pair(digits[3:0], AT_BITS'(2), '0);
+            end else if (DEEP) begin
+                high   = pair(digits[11:8], AT_BITS'(144), AT_BITS'(648));
+                middle = pair(digits[7:4], AT_BITS'(16), '0);
+            end else begin
+                high   = pair(digits[11:8], AT_BITS'(18), AT_BITS'(81));
+                middle = pair(digits[7:4], AT_BITS'(2), '0);
+            end
+            if (!is_sponge) begin
+                high   = AT_BITS'(border >>> UNIT);
+                middle = '0;
+                low    = '0;
+            end
+            if (is_cubes) middle[AT_BITS-1:18-UNIT] = below_7[i] ? '1 : 7'(digits[11:6]);
+        end
+
+        always_ff @(posedge clk) at[i] <= {high + middle + low, border[UNIT-1:0]};
     end
 endmodule
 

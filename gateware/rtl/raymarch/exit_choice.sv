@@ -2,23 +2,24 @@
 //
 // `there[i]` is high if a plane perpendicular to axis i bounds the prism. The ray leaves by the last exit if `choice[1]` is high, by the
 // first if `choice[0]` is high, and otherwise by the second of three. Of equal exits the axis with the smaller number is first. The
-// results are the parameter of the chosen exit, its axis, and for each axis whether the ray has crossed the plane by then.
+// results are the chosen exit, its axis, and for each axis whether the ray has crossed the plane by then; without meaning if the exit exceeds
+// the range of T.
 //
 // Latency 2 clocks, throughput one per clock, no handshake.
 
 `default_nettype none
 
 module exit_choice (
-    input  wire                               clk,
-    input  wire  [2:0][exit_pkg::T_BITS-1:0]  exits,
-    input  wire  [2:0]                        there,
-    input  wire  [1:0]                        choice,
-    output logic [exit_pkg::T_BITS-1:0]       t,
-    output logic [1:0]                        axis,
-    output logic [2:0]                        crossed
+    input  wire                                  clk,
+    input  wire  [2:0][exit_pkg::EXIT_BITS-1:0]  exits,
+    input  wire  [2:0]                           there,
+    input  wire  [1:0]                           choice,
+    output logic [exit_pkg::EXIT_BITS-1:0]       t,
+    output logic [1:0]                           axis,
+    output logic [2:0]                           crossed
 );
     // The suffix of a name is the number of clocks after the inputs.
-    logic [2:0][exit_pkg::T_BITS-1:0] exits_1;
+    logic [2:0][exit_pkg::EXIT_BITS-1:0] exits_1;
     logic [2:0] there_1;
     logic [1:0] choice_1;
     logic       x_y_1, x_z_1, y_z_1;

@@ -5,55 +5,58 @@
 package exit_pkg;
     // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // Widths of: the parameter T of a ray, u14.14; a coordinate of the eye, s12.12; a coordinate of a point, s15.12; the side of a solid,
-    // u12.12; the magnitude of a direction's component, u0.23, which stands for the middle of its interval.
+    // Widths of: the parameter T of a ray, u14.14; a coordinate from the solid's centre, s12.12; a coordinate of a point from the solid's
+    // lower corner, s15.12; half the side of a solid, u9.12; the coordinate of a plane of the solid from its centre, s9.12; the magnitude
+    // of a direction's component, u0.23, which stands for the middle of its interval.
     localparam int unsigned T_BITS      = 28;
-    localparam int unsigned CORNER_BITS = 25;
+    localparam int unsigned PLANE_BITS  = 25;
     localparam int unsigned POINT_BITS  = 28;
-    localparam int unsigned SIDE_BITS   = 24;
+    localparam int unsigned HALF_BITS   = 21;
+    localparam int unsigned BORDER_BITS = 22;
     localparam int unsigned SPEED_BITS  = 23;
     // Width of a raymarch_pkg::place_t. Yosys accepts no name of another package here.
     localparam int unsigned PLACE_BITS  = 19;
+
+    // Width of an exit: T, and a bit before it that is set if the exit exceeds the range of T. Its other bits are then arbitrary.
+    localparam int unsigned EXIT_BITS = T_BITS + 1;
 
     // The solids. BOX is the inside of a box, PLANES the outside of the slab between two planes perpendicular to z, SPONGE the Menger
     // sponge, and CUBES are cubes repeated every 64 units.
     typedef enum logic [1:0] {BOX = 2'd0, PLANES = 2'd1, SPONGE = 2'd2, CUBES = 2'd3} rule_t;
 
-    // A solid: its rule, the number of levels of a sponge, and its side along each axis, for cubes that of a cube.
+    // A solid: its rule, the number of levels of a sponge, half its side along each axis, for cubes that of a cube, and the coordinate of a
+    // plane perpendicular to each axis: of a box and of a sponge the lower plane, of PLANES the upper one, and of cubes the lower plane of
+    // the cube after the middle one, all below 2^21 - 2^15.
     typedef struct packed {
-        rule_t                     rule;
-        logic [2:0]                levels;
-        logic [2:0][SIDE_BITS-1:0] side;
+        rule_t                              rule;
+        logic [2:0]                         levels;
+        logic [2:0][HALF_BITS-1:0]          half;
+        logic [2:0][BORDER_BITS-1:0]        border;
     } solid_t;
 
     // The interval of a coordinate between the planes of a solid, as a number that increases with the coordinate. The highest bit is 0
     // below the solid. The digits, the other bits, are
-    // - for a sponge, the ternary digits of the smallest cell in two bits each, the first digit 3 above the sponge;
+    // - for a sponge, the ternary digits of the smallest cell in two bits each, the first digit 3 above the sponge. A sponge of up to four
+    //   levels has cells of 2^12 units of 2^-12 and four digits, one of five or six levels cells of 2^9 units and six digits;
     // - for a box and for planes, 0 inside, and ABOVE above;
-    // - for cubes, the number of the cell in six bits, whether the coordinate is in the gap above the cube, and a 0. Cell -1 is all ones
-    //   after a highest bit of 0, and cell 32 is beyond the far limit.
-    localparam int unsigned DIGIT_BITS    = 8;
+    // - for cubes, the number of the cell in six bits, and a digit of two bits: 0 in the cube, 1 in the gap above the cube, and 2 after the
+    //   gap. Cell -1 is all ones after a highest bit of 0, and cell 32 is beyond the far limit.
+    // All other bits are 0.
+    localparam int unsigned DIGIT_BITS    = 12;
     localparam int unsigned INTERVAL_BITS = 1 + DIGIT_BITS;
-    localparam logic [DIGIT_BITS-1:0] ABOVE = 8'hC0;
+    localparam logic [DIGIT_BITS-1:0] ABOVE = 12'hC00;
 
-    // Returns whether an interval, of which `first` has the three highest bits, is above the solid.
-    function automatic logic is_above(input logic [2:0] first, input logic is_cubes);
-        is_above = first[2] && first[1] && (is_cubes || first[0]);
-    endfunction
-
-    // The reciprocal of the magnitude of a direction's component: factor·2^(12·scale - 22), in the order {scale, factor}. Of its 34 bits,
-    // 23 are those of a mantissa. The shift within the factor is done once for a ray, so that a quotient needs none but that by `scale`.
-    localparam int unsigned FACTOR_BITS  = 34;
+    // The reciprocal of the magnitude of a direction's component: factor·2^-22·2^(8·scale), in the order {scale, factor}.
+    localparam int unsigned FACTOR_BITS  = 30;
     localparam int unsigned SCALE_BITS   = 2;
-    localparam int unsigned SCALE_SHIFT  = 12;
     localparam int unsigned INVERSE_BITS = SCALE_BITS + FACTOR_BITS;
 
-    // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start` is its T, `limit` the largest T of a
-    // hit, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that it has reached, 0 where it has
-    // crossed no plane. A ray with `over` misses without an evaluation.
+    // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start`
+    // is its T, `limit` the largest T of a hit, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that
+    // it has reached, 0 where it has crossed no plane. A ray with `over` misses without an evaluation.
     typedef struct packed {
-        logic                                  over;
-        logic [PLACE_BITS-1:0]   place;
+        logic                          over;
+        logic [PLACE_BITS-1:0]         place;
         logic [T_BITS-1:0]             start;
         logic [T_BITS-1:0]             limit;
         logic [1:0]                    axis;
@@ -67,11 +70,11 @@ package exit_pkg;
     // normal, and the number of evaluations.
     typedef struct packed {
         logic [PLACE_BITS-1:0] place;
-        logic                 hit;
-        logic [T_BITS-1:0]    t;
-        logic [1:0]           axis;
-        logic                 positive;
-        logic [7:0]           steps;
+        logic                  hit;
+        logic [T_BITS-1:0]     t;
+        logic [1:0]            axis;
+        logic                  positive;
+        logic [7:0]            steps;
     } end_t;
 
     localparam int unsigned END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8;

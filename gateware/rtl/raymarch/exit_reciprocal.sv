@@ -1,6 +1,7 @@
 // Computes the reciprocal of the magnitude of a direction's component (docs/raymarch-exits.md, "Formats").
 //
-//   magnitude ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to 3/2 ─▶ {scale, factor}
+//   magnitude ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to 3/2
+//   ─▶ shift by the exponent modulo 8 ─▶ {scale, factor}
 //
 // `magnitude` is u0.24 and stands for the middle of its interval, so it is never 0. Rounded to nearest. An entry of the table has the
 // value at the end of its interval and the decrease over the interval. Latency 12 clocks, throughput one per clock, no handshake.
@@ -77,29 +78,22 @@ module exit_reciprocal (
 
     delay #(.WIDTH(5), .CLOCKS(6)) lead_waits (.clk, .enable(1'b1), .in(lead_3), .out(lead_9));
 
-    // A value below 3/4 is doubled. The mantissa has 22 fraction bits. The factor is the mantissa, shifted in two clocks by the exponent
-    // modulo 12: by a multiple of 4, and by up to 3 bits.
+    // A value below 3/4 is doubled. The mantissa has 22 fraction bits and is below 3/2.
     logic [22:0] mantissa_10;
     logic [4:0]  exponent_10;
-    logic [30:0] factor_11;
-    logic [3:0]  shift_10;
-    logic [1:0]  scale_10, scale_11, shift_11;
-
-    always_comb begin
-        if (exponent_10 >= 5'd24)      {scale_10, shift_10} = {2'd2, 4'(exponent_10 - 5'd24)};
-        else if (exponent_10 >= 5'd12) {scale_10, shift_10} = {2'd1, 4'(exponent_10 - 5'd12)};
-        else                           {scale_10, shift_10} = {2'd0, exponent_10[3:0]};
-    end
+    logic [28:0] coarse_11;
+    logic [1:0]  scale_11;
+    logic        odd_11;
 
     always_ff @(posedge clk) begin
         low_9       <= low_8;
         half_9      <= (low_8 ? value_8 : {1'b0, value_8[24:1]}) + 25'd1;
         mantissa_10 <= half_9[23] && half_9[22] ? 23'h5FFFFF : half_9[23:1];
         exponent_10 <= lead_9 + 5'(!low_9);
-        factor_11   <= {8'd0, mantissa_10} << {shift_10[3:2], 2'd0};
-        shift_11    <= shift_10[1:0];
-        scale_11    <= scale_10;
-        inverse     <= {scale_11, {3'd0, factor_11} << shift_11};
+
+        coarse_11          <= {6'd0, mantissa_10} << {exponent_10[2:1], 1'b0};
+        {scale_11, odd_11} <= {exponent_10[4:3], exponent_10[0]};
+        inverse            <= {scale_11, odd_11 ? {coarse_11, 1'b0} : {1'b0, coarse_11}};
     end
 
     wire _unused = &{1'b0, sum_8[39], sum_8[13:0], half_9[24], half_9[0], whole_3[24]};

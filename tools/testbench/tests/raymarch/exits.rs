@@ -14,11 +14,16 @@ use crate::scenes::{FIELDS, SPONGES, camera, size, stereo};
 /// Number of rays in a frame.
 const RAYS: usize = 2_000;
 
-/// Fields of the lane, which draws sponges up to depth 4.
+/// Fields of a lane that draws sponges up to depth 4.
 fn fields() -> Vec<&'static str> {
     let is_sponge = |field: &&str| field.starts_with("menger:");
     let others = FIELDS.into_iter().filter(|field| !is_sponge(field));
     SPONGES.into_iter().chain(others).collect()
+}
+
+/// Fields of a lane that draws sponges up to depth 6.
+fn deep_fields() -> Vec<&'static str> {
+    [&SPONGES[..], &FIELDS].concat()
 }
 
 /// End of a ray. A miss has the ray's limit as its parameter, and no face.
@@ -32,26 +37,32 @@ struct End {
 
 /// The code of an interval (`exit_pkg`).
 fn interval(solid: &Solid, number: i32) -> u64 {
-    let there = |digits: u64| 1 << 8 | digits;
+    let there = |digits: u64| 1 << 12 | digits;
     match (solid.rule, number) {
         (_, i32::MIN) => 0,
-        (Rule::Repeated { .. }, -2) => 0b1111_1100,
-        (Rule::Repeated { .. }, -1) => 0b1111_1110,
-        (Rule::Repeated { .. }, 0..) => there((number as u64) << 1),
+        // The cell and the digit of its gap: the cell -1 is all ones.
+        (Rule::Repeated { .. }, -2..) => {
+            let (cell, gap) = ((number >> 1) as u64 & 0x3F, (number & 1) as u64);
+            let digits = cell << 6 | gap << 4;
+            if number < 0 { digits } else { there(digits) }
+        }
         (_, ..0) => 0,
-        (Rule::Sponge { .. }, 0..=80) => {
-            let digit = |divisor: i32| (number / divisor % 3) as u64;
-            there(digit(27) << 6 | digit(9) << 4 | digit(3) << 2 | digit(1))
+        (Rule::Sponge { cells, .. }, _) if number < cells => {
+            // A cell of a sponge of up to four levels counts as nine.
+            let number = number * (729 / cells);
+            let digit = |level: u32| (number / 3_i32.pow(level) % 3) as u64;
+            there((0..6).map(|level| digit(level) << (2 * level)).sum())
         }
         (_, 0) => there(0),
-        _ => there(0b1100_0000),
+        _ => there(0b11 << 10),
     }
 }
 
-/// The bits of a reciprocal: its scale, a multiple of 12 of its exponent, and its mantissa times the rest of the power of two.
+/// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
 fn packed(inverse: Inverse) -> u64 {
-    let exponent = inverse.exponent as u64;
-    exponent / 12 << 34 | u64::from(inverse.mantissa) << (exponent % 12)
+    let Inverse { mantissa, exponent } = inverse;
+    let scale = (exponent / 8) as u64;
+    scale << 30 | u64::from(mantissa) << (exponent % 8)
 }
 
 /// Drives the constants of a frame.
@@ -66,15 +77,17 @@ fn set_lane(module: &mut Module, exits: &Exits) {
     };
     let mut record = module.record("solid").with("levels", levels);
     record.set_name("rule", rule);
-    record.set_all("side", solid.side[..3].iter().copied());
+    let half = || solid.side[..3].iter().map(|side| side / 2);
+    record.set_all("half", half());
+    let border = |half: i64| match solid.rule {
+        Rule::Planes => half,
+        Rule::Repeated { .. } => (1 << 18) - half,
+        _ => -half,
+    };
+    record.set_all("border", half().map(border));
     module.drive_bits("solid", record.bits());
-    for (eye, Eye { corners, .. }) in exits.eyes.iter().enumerate() {
-        for (down, corner) in corners.iter().enumerate() {
-            module.drive_all(
-                &format!("corners[{eye}][{down}]"),
-                corner[..3].iter().copied(),
-            );
-        }
+    for (eye, Eye { origin, .. }) in exits.eyes.iter().enumerate() {
+        module.drive_all(&format!("origins[{eye}]"), origin.iter().copied());
     }
 }
 
@@ -142,9 +155,9 @@ fn some_rays(
 struct Bench(Pipe);
 
 impl Bench {
-    fn new(seed: u32, stalls: [f64; 2]) -> Self {
+    fn new(name: &str, seed: u32, stalls: [f64; 2]) -> Self {
         let (rays, ends) = (("in", &["ray"][..]), ("out", &["end"][..]));
-        Self(Pipe::new("exit_lane", seed, rays, ends, stalls))
+        Self(Pipe::new(name, seed, rays, ends, stalls))
     }
 
     /// Sends rays of a frame through the lane, and compares their ends with the expected ends.
@@ -211,16 +224,14 @@ fn reciprocals() {
     }
 }
 
-#[test]
-fn random_rays_in_flat_solids() {
+fn random_rays(name: &str, fields: &[&str]) {
     let mut random = Random(7);
     let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
     let mut benches: Vec<Bench> = (1..)
         .zip(shares)
-        .map(|(seed, stalls)| Bench::new(seed, stalls))
+        .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
     let layout = benches[0].0.module.packed_type("exit_pkg::ray_t").clone();
-    let fields = fields();
     for frame in 0..frames() {
         let field = Field::parse(fields[frame % fields.len()]).expect("a field");
         let stereo = random.coin().then(|| stereo(&mut random));
@@ -230,4 +241,14 @@ fn random_rays_in_flat_solids() {
         let rays = some_rays(&mut random, &layout, &exits, eyes);
         benches[frame / fields.len() % 4].check(&exits, rays);
     }
+}
+
+#[test]
+fn random_rays_in_flat_solids() {
+    random_rays("exit_lane", &fields());
+}
+
+#[test]
+fn random_rays_in_deep_sponges() {
+    random_rays("exit_lane_deep", &deep_fields());
 }
