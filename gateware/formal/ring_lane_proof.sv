@@ -33,7 +33,7 @@ module ring_lane_proof (
     end
 
     ring_lane #(.LEVELS(0), .FIELDS(2), .STEREO(1'b0), .PLACES(PLACES)) dut (
-        .clk, .rst, .origins('0), .bounds('0), .solid('0), .tuning({16'd1, 4'd7, 8'd2, 23'd1000}), .cones(1'b0),
+        .clk, .rst, .origins('0), .bounds('0), .solid('0), .tuning({16'd1, 4'd7, 8'd2, 23'd1000}),
         .sphere_write(1'b0), .sphere_number('0), .sphere('0), .in_valid, .in_ready, .in_ray(ray), .out_valid, .out_ready, .out_end, .evaluates, .waits
     );
 

@@ -57,9 +57,6 @@ LIST_TABLE_WORDS = LISTS // 4
 LIST_GAP_WORDS = 128
 """Number of 128-bit words between two band lists: a row of a DDR3 bank, so that neighbouring lists lie in different banks."""
 
-CONES = (160, 90)
-"""Largest number of cones across and down, for one eye at a size above the first; half of each for two eyes or the first size."""
-
 FLASH_BYTES = 16 << 20
 """Size in bytes of the address window of the SPI flash."""
 
@@ -82,12 +79,6 @@ def files():
             "\n".join([number("WIDTH", SIZES[0].width), number("HEIGHT", SIZES[0].height)]),
             number("FRAME_WORDS", SIZES[0].width * SIZES[0].height // GROUP,
                    "Number of 128-bit words of an RGB565 frame of the first size."),
-            "\n".join([
-                number("CONES_ACROSS", CONES[0],
-                       "Largest numbers of cones across and down, for one eye at a size above the first size. All other frames have half of "
-                       "these numbers."),
-                number("CONES_DOWN", CONES[1]),
-            ]),
         ]),
         ("band", "band_pkg"): (
             f"Bands of a picture. A band has at most {BAND_PIXELS:,} pixels; a row of the band buffer holds eight pixels.", [

@@ -22,14 +22,13 @@ _ERRORS = [
     ("0", "none", "all requested features are built"),
     ("1", "field", "the flat field, the depth of the sponge, spheres or fillets are not built"),
     ("2", "stereo", "two eyes are not built"),
-    ("3", "prepass", "the prepass is not built"),
 ]
 
 
 @dataclass(frozen=True)
 class Fields:
     """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
-    include the sponge if it has levels), spheres, fillets, two eyes, prepass."""
+    include the sponge if it has levels), spheres, fillets, two eyes."""
 
     lanes: int = 2
     levels: int = 6
@@ -37,7 +36,6 @@ class Fields:
     round: bool = True
     blend: bool = True
     stereo: bool = True
-    prepass: bool = True
 
     def parameters(self):
         """Returns the parameters of the module by name."""
@@ -47,20 +45,20 @@ class Fields:
 
 BUILDS = {
     "all": Fields(),
-    "round": Fields(levels=4, flat=("menger", "box"), blend=False, prepass=False),
-    "faces": Fields(levels=4, flat=("menger", "box"), round=False, blend=False, prepass=False),
+    "round": Fields(levels=4, flat=("menger", "box"), blend=False),
+    "faces": Fields(levels=4, flat=("menger", "box"), round=False, blend=False),
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, blend=False),
 }
 """Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
 
-_FEATURES = {"spheres": "round", "fillets": "blend", "stereo": "stereo", "prepass": "prepass"}
+_FEATURES = {"spheres": "round", "fillets": "blend", "stereo": "stereo"}
 
 
 def build(text, lanes=None):
     """Returns the build options that `text` names, with the number of `lanes` if it is given.
 
     `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
-    fields, `spheres`, `fillets`, `stereo`, `prepass`.
+    fields, `spheres`, `fillets`, `stereo`.
     """
     if text in BUILDS:
         fields = BUILDS[text]
@@ -92,7 +90,6 @@ class Raymarcher(LiteXModule):
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
             CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and in unions."),
             CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between spheres and flat fields."),
-            CSRField("prepass", offset=12, reset=int(fields.prepass), description="Prepass: cones before the rays."),
             CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if the flat field of kind k in "
                                                            "`solid` is built."),
         ], description="What this block can do.")
@@ -102,8 +99,6 @@ class Raymarcher(LiteXModule):
                 ("0", "mono", "one eye"), ("1", "red_blue", "the left eye red, the right one blue, green the smaller of both"),
                 ("2", "red_cyan", "the left eye red, the right one green and blue")],
                 description="Number of eyes, and their colours."),
-            CSRField("prepass", offset=3, description="Marches a cone for each block of pixels first: the rays of the block start "
-                     "at the end of their cone."),
         ], description="Operation. All registers of this block must hold during a raster pass.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("busy", offset=0, description="A field is being drawn."),
@@ -152,10 +147,6 @@ class Raymarcher(LiteXModule):
                   for axis in "xyz"]
         across = [self._register(f"across_{axis}", 32, f"Change of D per column, {axis}, s2.30.") for axis in "xyz"]
         down = [self._register(f"down_{axis}", 32, f"Change of D per line, {axis}, s2.30.") for axis in "xyz"]
-        offset = [self._register(f"cone_offset_{axis}", 32, f"Change of D from a block's first pixel to its middle, {axis}, s2.30.")
-                  for axis in "xyz"]
-        self._cone_spread = Parameter(14, name="cone_spread", description="Largest difference of D between the middle and any "
-                                       "pixel of a block, u0.18.")
         self._depth_scale = Parameter(name="depth_scale", fields=[
             CSRField("mantissa", size=17, offset=0, description="Mantissa, 2^16 to 2^17 - 1."),
             CSRField("exponent", size=6, offset=17, description="Exponent, two's complement."),
@@ -195,7 +186,7 @@ class Raymarcher(LiteXModule):
 
         # # #
 
-        enable, stereo, prepass = (getattr(self._control.fields, name) for name in ("enable", "stereo", "prepass"))
+        enable, stereo = (getattr(self._control.fields, name) for name in ("enable", "stereo"))
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
         solid, tuning = self._solid.fields, self._tuning.fields
@@ -224,15 +215,12 @@ class Raymarcher(LiteXModule):
         eyes = 2 if fields.stereo else 1
         registers = [self._cube_half, *box_half, self._tuning, self._far, self._near, *origins[:3*eyes], *outside[:3*eyes],
                      *first[:3*eyes], *bounds, *across, *down, self._depth_scale, *palette, self._horizon, self._fog_shift]
-        if fields.prepass:
-            registers += [*offset, self._cone_spread]
         self.parameters = PassParameters(registers)
         # Parameters are also copied while the block is disabled.
         self.clock_control = ClockControl(
             engine.raster_load | self.parameters.loading | (enable & engine.clock_control.enable))
         self.comb += [
-            If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
-                prepass & int(not fields.prepass), error.eq(3)),
+            If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)),
             self.parameters.load.eq(engine.raster_load),
             engine.field_loading.eq(self.parameters.loading),
             engine.field.enable.eq(enable & (error == 0)),
@@ -264,9 +252,6 @@ class Raymarcher(LiteXModule):
             i_sphere         = sphere.value,
             i_lights         = lights.value,
             i_tuning         = limits.value,
-            i_prepass        = prepass,
-            i_cone_offset    = Cat(*_contents(offset)),
-            i_cone_spread    = self._cone_spread.storage,
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,
             i_fog_shift      = self._fog_shift.storage,

@@ -37,9 +37,8 @@ _NO_DEPTHS = _FIELDS_ALONE | {"DEPTHS": 0}
 _LINES_ALONE = {"TRIANGLES": 0, "LINES": 1}
 _NO_GEOMETRY = {"GEOMETRY": 0}
 # Parameters of builds with every field: of a lane (ring_lane), and of the module that computes the colours of rays (ray_paint).
-_ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
+_ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
-_PREPASS = {"PREPASS": 1}
 
 MODULES = [
     Module(
@@ -76,7 +75,7 @@ MODULES = [
     Module(top="line_raster"),
     *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),
     Module(top="field_sphere", measured=("field_sphere",)),
-    Module(top="ray_generator", variants={"ray_generator_all": {"ROUND": 1, **_PREPASS}}, measured=("ray_generator",)),
+    Module(top="ray_generator", variants={"ray_generator_all": {"ROUND": 1}}, measured=("ray_generator",)),
     Module(top="ray_paint", variants={"ray_paint_all": _ALL_PAINT}),
     Module(top="round_light", measured=("round_light",)),
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),

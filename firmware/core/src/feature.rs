@@ -65,8 +65,6 @@ features! {
     FIELD = "field";
     /// Spheres in a field, alone and in unions.
     SPHERES = "spheres";
-    /// Cone prepass of a field.
-    PREPASS = "prepass";
     /// Fog of a field.
     FOG = "fog";
     /// A mesh in a field.

@@ -23,8 +23,6 @@ pub enum Missing {
     Blend,
     /// Two eyes.
     Stereo,
-    /// Prepass.
-    Prepass,
 }
 
 impl fmt::Display for Missing {
@@ -36,7 +34,6 @@ impl fmt::Display for Missing {
             Self::Round => f.write_str("no spheres"),
             Self::Blend => f.write_str("no smooth unions"),
             Self::Stereo => f.write_str("no stereo"),
-            Self::Prepass => f.write_str("no prepass"),
         }
     }
 }
@@ -67,9 +64,6 @@ impl Missing {
         }
         if setup.stereo.is_some() && !capabilities.stereo {
             return Err(Self::Stereo);
-        }
-        if setup.cones.is_some() && !capabilities.prepass {
-            return Err(Self::Prepass);
         }
         Ok(())
     }
@@ -137,15 +131,8 @@ pub fn set_field(
         Some(Tint::RedBlue) => Stereo::RedBlue,
         Some(Tint::RedCyan) => Stereo::RedCyan,
     };
-    let (offset, spread) = setup
-        .cones
-        .as_ref()
-        .map_or((&[0; 3], 0), |cones| (&cones.offset, cones.spread));
-    let [across, down] = &setup.steps;
     raymarcher.set_field(&Field {
-        control: Control::default()
-            .with_stereo(stereo)
-            .with_prepass(setup.cones.is_some()),
+        control: Control::default().with_stereo(stereo),
         solid,
         cube_half: flat.cube_half,
         half: flat.half,
@@ -160,8 +147,7 @@ pub fn set_field(
             first: &eye.first,
         }),
         bounds: &setup.bounds,
-        steps: [across, down, offset],
-        cone_spread: spread as u16,
+        steps: setup.steps.each_ref(),
         depth_scale: DepthScale::default()
             .with_mantissa(setup.depth.mantissa)
             .with_exponent(setup.depth.exponent as u8 & 0x3F),

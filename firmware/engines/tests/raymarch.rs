@@ -29,10 +29,6 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         stereo: Some(Stereo::parse("0.05,3").unwrap()),
         ..plain
     };
-    let cones = FieldOptions {
-        prepass: true,
-        ..plain
-    };
     for (field, options, expected) in [
         ("menger:5", plain, Err(Missing::Levels(4))),
         ("box:1,1,1", plain, Err(Missing::Flat(Kind::Box))),
@@ -40,7 +36,6 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         ("planes:1", plain, Err(Missing::Flat(Kind::Box))),
         ("sphere:1", plain, Err(Missing::Round)),
         ("menger:4", stereo, Err(Missing::Stereo)),
-        ("menger:4", cones, Err(Missing::Prepass)),
         ("menger:4", plain, Ok(())),
     ] {
         block.borrow_mut().writes.clear();

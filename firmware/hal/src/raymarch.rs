@@ -25,8 +25,6 @@ pub struct Capabilities {
     pub round: bool,
     /// Whether this build draws fillets between spheres and flat fields.
     pub blend: bool,
-    /// Whether this build has the prepass, which marches one cone for each block of pixels before the rays.
-    pub prepass: bool,
 }
 
 /// The constants of an eye in the registers `origin`, `outside` and `first` (docs/registers.md).
@@ -66,10 +64,8 @@ pub struct Field<'a> {
     pub eyes: [Eye<'a>; 2],
     /// Half the sides of the solid's bounding box.
     pub bounds: &'a [u32; 3],
-    /// Change of the direction per pixel to the right, per pixel down, and from the first pixel of a cone's block to its middle.
-    pub steps: [&'a [i32; 3]; 3],
-    /// Growth of a cone's radius.
-    pub cone_spread: u16,
+    /// Change of the direction per pixel to the right and per pixel down.
+    pub steps: [&'a [i32; 3]; 2],
     /// The scale of depth codes.
     pub depth_scale: DepthScale,
     /// The colours of the faces.
@@ -105,7 +101,6 @@ impl Raymarcher {
             stereo: caps.stereo(),
             round: caps.round(),
             blend: caps.blend(),
-            prepass: caps.prepass(),
         };
         Ok(Self {
             registers,
@@ -131,7 +126,7 @@ impl Raymarcher {
         registers.half_z().write(field.half[2]);
         registers.tuning().write(field.tuning);
         let [left, right] = field.eyes;
-        let [across, down, offset] = field.steps;
+        let [across, down] = field.steps;
         // The registers are written one by one, because a loop would need a table of their addresses.
         let [far, near] = field.limits;
         registers.far().write(far);
@@ -163,9 +158,6 @@ impl Raymarcher {
         registers.down_x().write(down[0] as u32);
         registers.down_y().write(down[1] as u32);
         registers.down_z().write(down[2] as u32);
-        registers.cone_offset_x().write(offset[0] as u32);
-        registers.cone_offset_y().write(offset[1] as u32);
-        registers.cone_offset_z().write(offset[2] as u32);
         let [undecided, zenith, horizon] = field.sky;
         registers.colour_0().write(colour(field.faces[0]));
         registers.colour_1().write(colour(field.faces[1]));
@@ -179,7 +171,6 @@ impl Raymarcher {
         // The colours of faces 6 and 7 are entries of the register `sphere`.
         self.set_constant(32, colour(field.faces[6]));
         self.set_constant(33, colour(field.faces[7]));
-        registers.cone_spread().write(field.cone_spread);
         registers.fog_shift().write(field.fog_shift);
         registers.depth_scale().write(field.depth_scale);
         registers.control().write(field.control.with_enable(true));

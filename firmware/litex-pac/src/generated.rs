@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xfe49_dc36;
+pub const BUILD_ID: u32 = 0xd5e0_0f5b;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4923,7 +4923,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5804) }
         }
 
-        /// `control`, 4 bits: Operation. All registers of this block must hold during a raster pass.
+        /// `control`, 3 bits: Operation. All registers of this block must hold during a raster pass.
         #[inline]
         #[must_use]
         pub const fn control(&self) -> Register<Control, ReadWrite> {
@@ -5243,44 +5243,12 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a4) }
         }
 
-        /// `cone_offset_x`, 32 bits: Change of D from a block's first pixel to its middle, x, s2.30. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn cone_offset_x(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a8) }
-        }
-
-        /// `cone_offset_y`, 32 bits: Change of D from a block's first pixel to its middle, y, s2.30. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn cone_offset_y(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ac) }
-        }
-
-        /// `cone_offset_z`, 32 bits: Change of D from a block's first pixel to its middle, z, s2.30. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn cone_offset_z(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b0) }
-        }
-
-        /// `cone_spread`, 14 bits: Largest difference of D between the middle and any pixel of a block, u0.18. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn cone_spread(&self) -> Register<u16, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b4) }
-        }
-
         /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b8) }
+            unsafe { Register::at(0xf000_58a8) }
         }
 
         /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5288,7 +5256,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58bc) }
+            unsafe { Register::at(0xf000_58ac) }
         }
 
         /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5296,7 +5264,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c0) }
+            unsafe { Register::at(0xf000_58b0) }
         }
 
         /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5304,7 +5272,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c4) }
+            unsafe { Register::at(0xf000_58b4) }
         }
 
         /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5312,7 +5280,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c8) }
+            unsafe { Register::at(0xf000_58b8) }
         }
 
         /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5320,7 +5288,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58cc) }
+            unsafe { Register::at(0xf000_58bc) }
         }
 
         /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5328,7 +5296,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d0) }
+            unsafe { Register::at(0xf000_58c0) }
         }
 
         /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5336,7 +5304,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d4) }
+            unsafe { Register::at(0xf000_58c4) }
         }
 
         /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5344,7 +5312,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d8) }
+            unsafe { Register::at(0xf000_58c8) }
         }
 
         /// `horizon`, 24 bits: Colour of the horizon, and of the fog. Reads as 0.
@@ -5352,7 +5320,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn horizon(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58dc) }
+            unsafe { Register::at(0xf000_58cc) }
         }
 
         /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e. Reads as 0.
@@ -5360,7 +5328,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e0) }
+            unsafe { Register::at(0xf000_58d0) }
         }
 
         /// `table`, 17 bits: Writing sets an entry of the tables of fog and light. Reads as 0.
@@ -5368,7 +5336,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e4) }
+            unsafe { Register::at(0xf000_58d4) }
         }
 
         /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces. Reads as 0.
@@ -5376,7 +5344,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e8) }
+            unsafe { Register::at(0xf000_58d8) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
@@ -5384,7 +5352,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ec) }
+            unsafe { Register::at(0xf000_58dc) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
@@ -5392,7 +5360,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f0) }
+            unsafe { Register::at(0xf000_58e0) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -5400,7 +5368,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f4) }
+            unsafe { Register::at(0xf000_58e4) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, counted for each eye, modulo 2^32.
@@ -5408,7 +5376,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f8) }
+            unsafe { Register::at(0xf000_58e8) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
@@ -5416,7 +5384,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58fc) }
+            unsafe { Register::at(0xf000_58ec) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: occupied slots of the lanes, modulo 2^32.
@@ -5424,7 +5392,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5900) }
+            unsafe { Register::at(0xf000_58f0) }
         }
 
         /// `hits`, 32 bits: Rays that hit, modulo 2^32.
@@ -5432,7 +5400,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5904) }
+            unsafe { Register::at(0xf000_58f4) }
         }
 
         /// `misses`, 32 bits: Rays that missed, modulo 2^32.
@@ -5440,7 +5408,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5908) }
+            unsafe { Register::at(0xf000_58f8) }
         }
 
         /// `undecided`, 32 bits: Undecided rays, modulo 2^32.
@@ -5448,7 +5416,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_590c) }
+            unsafe { Register::at(0xf000_58fc) }
         }
     }
 
@@ -5538,58 +5506,50 @@ pub mod raymarch {
         pub const DOWN_Y: u32 = 0xa0;
         /// `down_z`.
         pub const DOWN_Z: u32 = 0xa4;
-        /// `cone_offset_x`.
-        pub const CONE_OFFSET_X: u32 = 0xa8;
-        /// `cone_offset_y`.
-        pub const CONE_OFFSET_Y: u32 = 0xac;
-        /// `cone_offset_z`.
-        pub const CONE_OFFSET_Z: u32 = 0xb0;
-        /// `cone_spread`.
-        pub const CONE_SPREAD: u32 = 0xb4;
         /// `depth_scale`.
-        pub const DEPTH_SCALE: u32 = 0xb8;
+        pub const DEPTH_SCALE: u32 = 0xa8;
         /// `colour_0`.
-        pub const COLOUR_0: u32 = 0xbc;
+        pub const COLOUR_0: u32 = 0xac;
         /// `colour_1`.
-        pub const COLOUR_1: u32 = 0xc0;
+        pub const COLOUR_1: u32 = 0xb0;
         /// `colour_2`.
-        pub const COLOUR_2: u32 = 0xc4;
+        pub const COLOUR_2: u32 = 0xb4;
         /// `colour_3`.
-        pub const COLOUR_3: u32 = 0xc8;
+        pub const COLOUR_3: u32 = 0xb8;
         /// `colour_4`.
-        pub const COLOUR_4: u32 = 0xcc;
+        pub const COLOUR_4: u32 = 0xbc;
         /// `colour_5`.
-        pub const COLOUR_5: u32 = 0xd0;
+        pub const COLOUR_5: u32 = 0xc0;
         /// `colour_6`.
-        pub const COLOUR_6: u32 = 0xd4;
+        pub const COLOUR_6: u32 = 0xc4;
         /// `colour_7`.
-        pub const COLOUR_7: u32 = 0xd8;
+        pub const COLOUR_7: u32 = 0xc8;
         /// `horizon`.
-        pub const HORIZON: u32 = 0xdc;
+        pub const HORIZON: u32 = 0xcc;
         /// `fog_shift`.
-        pub const FOG_SHIFT: u32 = 0xe0;
+        pub const FOG_SHIFT: u32 = 0xd0;
         /// `table`.
-        pub const TABLE: u32 = 0xe4;
+        pub const TABLE: u32 = 0xd4;
         /// `sphere`.
-        pub const SPHERE: u32 = 0xe8;
+        pub const SPHERE: u32 = 0xd8;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0xec;
+        pub const CYCLES_BUSY: u32 = 0xdc;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0xf0;
+        pub const CYCLES_STALLED: u32 = 0xe0;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0xf4;
+        pub const ITEMS_IN: u32 = 0xe4;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0xf8;
+        pub const ITEMS_OUT: u32 = 0xe8;
         /// `cycles_idle`.
-        pub const CYCLES_IDLE: u32 = 0xfc;
+        pub const CYCLES_IDLE: u32 = 0xec;
         /// `evaluations`.
-        pub const EVALUATIONS: u32 = 0x100;
+        pub const EVALUATIONS: u32 = 0xf0;
         /// `hits`.
-        pub const HITS: u32 = 0x104;
+        pub const HITS: u32 = 0xf4;
         /// `misses`.
-        pub const MISSES: u32 = 0x108;
+        pub const MISSES: u32 = 0xf8;
         /// `undecided`.
-        pub const UNDECIDED: u32 = 0x10c;
+        pub const UNDECIDED: u32 = 0xfc;
     }
 
     /// A value of `caps`.
@@ -5677,20 +5637,6 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
         }
 
-        /// `prepass`, bit 12: Prepass: cones before the rays.
-        #[inline]
-        #[must_use]
-        pub const fn prepass(self) -> bool {
-            (self.0 >> 12) & 1 != 0
-        }
-
-        /// This value with another `prepass`.
-        #[inline]
-        #[must_use]
-        pub const fn with_prepass(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
-        }
-
         /// `flat`, bits 23 to 16: Bit k is set if the flat field of kind k in `solid` is built.
         #[inline]
         #[must_use]
@@ -5748,20 +5694,6 @@ pub mod raymarch {
         pub const fn with_stereo(self, value: Stereo) -> Self {
             Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
         }
-
-        /// `prepass`, bit 3: Marches a cone for each block of pixels first: the rays of the block start at the end of their cone.
-        #[inline]
-        #[must_use]
-        pub const fn prepass(self) -> bool {
-            (self.0 >> 3) & 1 != 0
-        }
-
-        /// This value with another `prepass`.
-        #[inline]
-        #[must_use]
-        pub const fn with_prepass(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
-        }
     }
 
     /// A value of `status`.
@@ -5796,7 +5728,7 @@ pub mod raymarch {
         /// `error`, bits 5 to 4: Feature that the registers request and this build lacks. Frames are then drawn without the field.
         #[inline]
         #[must_use]
-        pub const fn error(self) -> Error {
+        pub const fn error(self) -> Option<Error> {
             Error::from_bits(((self.0 >> 4) & 0x3) as u8)
         }
 
@@ -6303,24 +6235,22 @@ pub mod raymarch {
         Field = 1,
         /// Two eyes are not built.
         Stereo = 2,
-        /// The prepass is not built.
-        Prepass = 3,
     }
 
     impl Error {
         /// Every value, in the order of the gateware's description.
-        pub const ALL: [Self; 4] = [Self::None, Self::Field, Self::Stereo, Self::Prepass];
+        pub const ALL: [Self; 3] = [Self::None, Self::Field, Self::Stereo];
 
-        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
+        /// The value of a field's `bits`; `None` where the gateware has no name for them.
         #[inline]
         #[must_use]
-        pub const fn from_bits(bits: u8) -> Self {
-            match bits & 0x3 {
+        pub const fn from_bits(bits: u8) -> Option<Self> {
+            Some(match bits {
                 0 => Self::None,
                 1 => Self::Field,
                 2 => Self::Stereo,
-                _ => Self::Prepass,
-            }
+                _ => return None,
+            })
         }
 
         /// Its name in the gateware's description.
@@ -6330,7 +6260,6 @@ pub mod raymarch {
                 Self::None => "none",
                 Self::Field => "field",
                 Self::Stereo => "stereo",
-                Self::Prepass => "prepass",
             }
         }
 
@@ -6341,7 +6270,6 @@ pub mod raymarch {
                 Self::None => "all requested features are built",
                 Self::Field => "the flat field, the depth of the sponge, spheres or fillets are not built",
                 Self::Stereo => "two eyes are not built",
-                Self::Prepass => "the prepass is not built",
             }
         }
     }

@@ -7,12 +7,9 @@
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
 //! [`FieldSetup`] has the constants of a frame, [`Ray`] is a pixel's ray before its first step,
-//! [`FieldSetup::march`] finds the end of the ray, and [`paint()`] computes the colour for this end. In a
-//! prepass one [`Cone`] for each block of pixels is marched first; the [`Rays`] of the block then start nearer to the
-//! surface.
+//! [`FieldSetup::march`] finds the end of the ray, and [`paint()`] computes the colour for this end.
 
 mod blend;
-mod cone;
 mod directions;
 pub mod exits;
 mod fog;
@@ -20,19 +17,16 @@ mod lights;
 mod options;
 mod paint;
 mod palette;
-mod prepass;
 mod ray;
 mod render;
 mod setup;
 
 pub use blend::{Beside, Blend};
-pub use cone::{Cone, Rays};
 pub use glint_core::stereo::{Stereo, Tint};
 pub use lights::{Light, Lights};
 pub use options::{DEFAULT_TUNING, FieldOptions, ROUND_TUNING, Tuning};
 pub use paint::paint;
 pub use palette::Palette;
-pub use prepass::{Cones, block_for};
 pub use ray::{ROUND_INVERSE, Ray, RayResult, State};
 pub use render::{FieldStats, render_field, render_rows, rgb565};
 pub use setup::{Eye, FieldSetup};

@@ -126,7 +126,6 @@ impl TestPicture {
                 field: &field,
                 appearance: &Appearance::default(),
                 quality: Quality::default(),
-                prepass: false,
             }));
         }
         Ok(())

@@ -206,8 +206,6 @@ pub struct Scene {
     pub appearance: Appearance,
     /// The last set quality. The picture size may differ from the quality's size.
     pub quality: Quality,
-    /// Whether a prepass marches cones before the rays of a field.
-    pub prepass: bool,
     /// The camera.
     pub view: View,
     /// The last set camera on a sphere.
@@ -239,7 +237,6 @@ impl Scene {
             stereo: None,
             appearance: Appearance::default(),
             quality: Quality::default(),
-            prepass: false,
             view: sphere.view()?,
             sphere,
             size: Size::default(),
@@ -352,7 +349,8 @@ impl Scene {
                 self.edges = edges;
             }
             Setting::Overlay { on } => self.overlay = on,
-            Setting::Prepass { on } => self.prepass = on,
+            // [`Setting::note`] states that it has no effect.
+            Setting::Prepass { .. } => {}
         }
         Ok(())
     }
@@ -524,7 +522,6 @@ impl Scene {
             field,
             appearance: &self.appearance,
             quality: self.quality,
-            prepass: self.prepass,
         };
         let subject = match (self.subject(), mesh) {
             (SceneSubject::Mesh(_), Some(mesh)) => Subject::Mesh(mesh),

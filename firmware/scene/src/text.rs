@@ -194,7 +194,8 @@ impl Scene {
             OptionName::Winding => self.put(name, from, out, |scene| scene.options.winding),
             OptionName::Edges => self.put(name, from, out, |scene| OrOff(scene.edges)),
             OptionName::Overlay => self.put(name, from, out, |scene| switch_name(scene.overlay)),
-            OptionName::Prepass => self.put(name, from, out, |scene| switch_name(scene.prepass)),
+            // The option has no effect, and the scene does not hold it.
+            OptionName::Prepass => Ok(()),
         }
     }
 

@@ -61,6 +61,9 @@ impl<'l> Executor<'l> for Machine {
             ..
         } = self;
         scene.apply(&setting, &mut board(renderer, models))?;
+        if let Some(note) = setting.note() {
+            self.terminal.print(format_args!("note: {note}\n"));
+        }
         Ok(Reply::Done)
     }
 

@@ -40,11 +40,10 @@ gesture on
     // A Menger sponge of depth 4
     BuiltIn::picture(
         "menger",
-        &[feature::FIELD, feature::PREPASS, feature::VIEW],
+        &[feature::FIELD, feature::VIEW],
         "\
 quality balanced
 camera 4 30 60
-prepass on
 field menger:4
 ",
     ),

@@ -11,11 +11,6 @@ package picture_pkg;
 
     // Number of 128-bit words of an RGB565 frame of the first size.
     localparam int unsigned FRAME_WORDS = 7200;
-
-    // Largest numbers of cones across and down, for one eye at a size above the first size. All other frames have half of
-    // these numbers.
-    localparam int unsigned CONES_ACROSS = 160;
-    localparam int unsigned CONES_DOWN = 90;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

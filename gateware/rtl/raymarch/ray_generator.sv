@@ -13,12 +13,6 @@
 // With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces the
 // largest component of D, and a table of 1/sqrt replaces the table of reciprocals.
 //
-// While `cones` is high, the module generates cones instead of rays: one cone through the middle of each block of 2^`block` by 2^`block`
-// pixels, in the same order as rays, with the cone's number. Columns and lines are then columns and lines of blocks; `offset` and `spread`
-// are the middle and the radius of a block in units of D; and cones start at the near plane. While `prepass` is high and `cones` is low, a
-// ray starts at the depth that its block's cone has cleared, if this depth exceeds the depth of the near plane: `number` requests this
-// depth, and `cleared` returns it 2 clocks later. While `fine` is high, a line has 160 blocks instead of 80.
-//
 // The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end limits the number of rays inside. Without a
 // credit, only D and the position counters stop.
 //
@@ -29,9 +23,8 @@
 `default_nettype none
 
 module ray_generator #(
-    parameter bit ROUND   = 1'b0,
-    parameter bit STEREO  = 1'b1,
-    parameter bit PREPASS = 1'b0,
+    parameter bit ROUND  = 1'b0,
+    parameter bit STEREO = 1'b1,
     // Depth of the FIFO of rays after the pipeline.
     parameter int unsigned PLACES = 32
 ) (
@@ -52,15 +45,6 @@ module ray_generator #(
     // For both eyes: the position, and the distance outside of the box about the field along each axis.
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
-    // Cones.
-    input  wire                       prepass,
-    input  wire                       cones,
-    input  wire                       fine,
-    input  wire  [2:0]                block,
-    input  wire  [2:0][31:0]          offset,
-    input  wire  [13:0]               spread,
-    output logic [13:0]               number,
-    input  wire  [22:0]               cleared,
     // Rays.
     output logic                      out_valid,
     input  wire                       out_ready,
@@ -75,19 +59,7 @@ module ray_generator #(
     logic [LAST:0] valid;
     raymarch_pkg::place_t place, place_0;
     logic [5:0]    band;
-    logic [2:0][31:0] d, inverted_row, inverted_start, step_across, step_down;
-
-    // Increments of D from one column to the next and from one line to the next, constant from the clock after `start`.
-    if (PREPASS) begin : steps_of_blocks
-        always_ff @(posedge clk)
-            for (int i = 0; i < 3; i++) begin
-                step_across[i] <= cones ? across[i] << block : across[i];
-                step_down[i]   <= cones ? down[i] << block : down[i];
-            end
-    end else begin : steps_of_pixels
-        assign step_across = across;
-        assign step_down   = down;
-    end
+    logic [2:0][31:0] d, inverted_row, inverted_start;
 
     assign ends_line = place.column == last_column;
     assign ends_eye  = ends_line && (!STEREO || !stereo || place.eye);
@@ -111,12 +83,12 @@ module ray_generator #(
         starts <= start;
         begins <= starts;
         fresh  <= loads;
-        if (start)                   inverted_row <= PREPASS && cones ? ~offset : '1;
-        else if (fresh && !next_eye) for (int i = 0; i < 3; i++) inverted_row[i] <= inverted_row[i] - step_down[i];
+        if (start)                   inverted_row <= '1;
+        else if (fresh && !next_eye) for (int i = 0; i < 3; i++) inverted_row[i] <= inverted_row[i] - down[i];
         for (int i = 0; i < 3; i++) begin
             inverted_start[i] <= inverted_row[i] - first[next_eye][i];
             if (loads)       d[i] <= ~inverted_start[i];
-            else if (enters) d[i] <= d[i] + step_across[i];
+            else if (enters) d[i] <= d[i] + across[i];
         end
         if (start) begin
             place <= '0;
@@ -144,9 +116,8 @@ module ray_generator #(
     end
 
     // The suffix of a name is the signal's clock: 0 for the high bits of D; 1 for the first ten bits of the magnitude of each component; 2
-    // for the largest of these magnitudes, increased for a cone; 4 for the reciprocal of this magnitude.
-    raymarch_pkg::place_t place_now;
-    logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10;
+    // for the largest of these magnitudes; 4 for the reciprocal of this magnitude.
+    logic [9:0]  part_x, part_y, part_z, largest_2, length_10;
     logic [16:0] largest_inverse_4, inverse_4;
     logic [2:0][24:0] d_now, d_0, d_4;
 
@@ -155,10 +126,10 @@ module ray_generator #(
 
     if (ROUND) begin : wait_for_sum
         delay #(.WIDTH(75), .CLOCKS(SUM)) d_waits (.clk, .enable(1'b1), .in(d_now), .out(d_0));
-        delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable(1'b1), .in(place_now), .out(place_0));
+        delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable(1'b1), .in(place), .out(place_0));
     end else begin : at_once
         assign d_0     = d_now;
-        assign place_0 = place_now;
+        assign place_0 = place;
     end
 
     always_ff @(posedge clk) begin
@@ -169,17 +140,6 @@ module ray_generator #(
         else if (part_x > part_y)               largest_2 <= part_x;
         else                                    largest_2 <= part_y;
     end
-
-    // The length of a cone is the length of its middle ray plus `margin`.
-    logic [7:0] margin;
-
-    function automatic logic [9:0] longer(input logic [9:0] length, input logic [7:0] more);
-        logic [10:0] sum;
-        sum    = {1'b0, length} + {3'b0, more};
-        longer = sum[10] ? '1 : sum[9:0];
-    endfunction
-
-    assign longest_2 = longer(largest_2, margin);
 
     wide_delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .in(d_0), .out(d_4));
 
@@ -212,8 +172,8 @@ module ray_generator #(
 
         round_inverse length_by_square (.clk, .index(squared_2), .inverse(round_inverse_4));
 
-        assign squared_2 = longer(square_2[33:24], margin);
-        always_ff @(posedge clk) length_3 <= round ? squared_2 : longest_2;
+        assign squared_2 = square_2[33:24];
+        always_ff @(posedge clk) length_3 <= round ? squared_2 : largest_2;
 
         assign inverse_4 = round ? round_inverse_4 : largest_inverse_4;
 
@@ -232,7 +192,7 @@ module ray_generator #(
     end else begin : by_largest
         assign inverse_4 = largest_inverse_4;
         assign part_10   = {1'b0, length_10} + 11'd1;
-        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable(1'b1), .in(longest_2), .out(length_10));
+        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable(1'b1), .in(largest_2), .out(length_10));
 
         wire _unused = round;
     end
@@ -243,7 +203,7 @@ module ray_generator #(
     logic [2:0][16:0] inverse_9;
 
     inverse_table length_and_x (
-        .clk, .index_a(longest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
+        .clk, .index_a(largest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
     );
     inverse_table y_and_z (
         .clk, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
@@ -311,7 +271,7 @@ module ray_generator #(
         always_ff @(posedge clk) begin
             t_13[i] <= product_12[31:9] | {23{product_12[41:32] != '0}};
             left_17 <= {1'b0, outside_16[i]} + {1'b1, ~gone_16[40:17]};
-            entry_21[i] <= !comes_20 || PREPASS && cones ? '0 : sum_20[31:9] | {23{sum_20[41:32] != '0}};
+            entry_21[i] <= !comes_20 ? '0 : sum_20[31:9] | {23{sum_20[41:32] != '0}};
         end
 
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], sum_20[42], sum_20[8:0]};
@@ -319,7 +279,7 @@ module ray_generator #(
 
     // In clock 21 the values of t for the near plane and for the entries into the box are valid.
     multiply_add #(.BITS(34)) at_near (
-        .clk, .enable(1'b1), .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
+        .clk, .enable(1'b1), .a({2'b0, near_limit}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 
@@ -333,64 +293,6 @@ module ray_generator #(
         start_23   <= farther_22 > later_22 ? farther_22 : later_22;
     end
 
-    // `near_18` is the near plane of a ray, or the depth that its cone has cleared if that is farther. `spread_23` is the
-    // spread of a cone.
-    logic [22:0] near_18;
-    logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
-
-    if (PREPASS) begin : with_prepass
-        localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
-
-        // Number of the current line within its row of blocks, and number of the first block of that row.
-        logic [3:0]         line;
-        logic [13:0]        row_number, number_1, counted;
-        logic signed [42:0] spread_7;
-
-        always_ff @(posedge clk) begin
-            if (start) {line, row_number, counted} <= '0;
-            else if (enters) begin
-                counted <= counted + 1'b1;
-                if (ends_eye) begin
-                    line <= line + 1'b1;
-                    if ((line | ~4'b0 << block) == '1) begin
-                        line       <= '0;
-                        row_number <= row_number + (fine || STEREO && stereo ? 14'(CONES_ACROSS) : 14'(CONES_ACROSS / 2));
-                    end
-                end
-            end
-            number_1 <= row_number + (STEREO && place.eye ? 14'(CONES_ACROSS / 2) : 14'd0) + 14'(place.column >> block);
-            near_18  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
-        end
-        delay #(.WIDTH(14), .CLOCKS(SUM + 14)) number_waits (.clk, .enable(1'b1), .in(number_1), .out(number));
-
-        always_comb begin
-            place_now = place;
-            if (cones) {place_now.odd, place_now.line, place_now.column} = {1'b0, 3'b0, counted};
-        end
-        // While `round` is high, the margin is added to the square of the length: (|D| + s)^2 - |D|^2 is at most 2·s + s^2, where s is
-        // `spread`, at most 2^-4.
-        always_ff @(posedge clk) begin
-            if (!cones)     margin <= '0;
-            else if (round) margin <= {1'b0, spread[13:7]} + {6'b0, spread[13:12]} + 8'd2;
-            else            margin <= {2'b0, spread[13:8]} + 8'd1;
-        end
-
-        multiply_add #(.BITS(43)) widening (
-            .clk, .enable(1'b1), .a({11'b0, spread}), .b({1'b0, inverse_4}), .c(43'd2 << 11), .p(spread_7)
-        );
-        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(16)) spread_goes (
-            .clk, .enable(1'b1), .in(spread_7[26:11] & {16{cones}}), .out(spread_23)
-        );
-        wire _unused = &{1'b0, spread_7[42:27], spread_7[10:0]};
-    end else begin : rays_alone
-        assign place_now = place;
-        assign margin    = '0;
-        assign near_18   = near_limit;
-        assign spread_23 = '0;
-        assign number    = '0;
-        wire _unused = &{1'b0, prepass, cones, fine, block, offset, spread, cleared};
-    end
-
     raymarch_pkg::place_t place_23;
     logic [9:0]        length_23;
     logic [2:0][17:0]  direction_23;
@@ -399,17 +301,11 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(13)) length_goes (.clk, .enable(1'b1), .in(length_10), .out(length_23));
     wide_delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .in(direction_7), .out(direction_23));
 
-    localparam int unsigned KEPT_BITS = raymarch_pkg::ray_bits(PREPASS);
-
-    logic [KEPT_BITS-1:0] kept;
-
-    credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) leaving (
+    credit_fifo #(.WIDTH(raymarch_pkg::RAY_BITS), .DEPTH(PLACES)) leaving (
         .clk, .rst, .idle(empty), .credit, .sent(running),
-        .in_valid(valid[LAST]), .in_data(KEPT_BITS'({spread_23, place_23, length_23, start_23, direction_23})),
-        .out_valid, .out_ready, .out_data(kept)
+        .in_valid(valid[LAST]), .in_data({place_23, length_23, start_23, direction_23}),
+        .out_valid, .out_ready, .out_data(out_ray)
     );
-
-    assign out_ray = $bits(out_ray)'(kept);
 
     // Only the signs of the origins are used here.
     wire _unused = &{1'b0, origins, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};

@@ -11,10 +11,6 @@ package raymarch_pkg;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
     localparam int unsigned DIRECTION_BITS = 18;
-    // Width of a cone's spread, the growth of its radius per unit of t, u0.16.
-    localparam int unsigned SPREAD_BITS    = 16;
-    // Largest number of evaluations of the field for one cone.
-    localparam int unsigned CONE_STEPS     = 192;
 
     // Position of a pixel: parity of its band's number, eye (0 for the left or only eye), line in the band, and column.
     typedef struct packed {
@@ -26,22 +22,16 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray before its first step, or a cone of the prepass. `length` is the index of the length of D in the table of reciprocals
-    // (docs/formats/raymarch.md, "Rays"), `start` the first t. In a cone the low bits of `place` are the number of the cone, and
-    // `spread` is not 0; in a ray `spread` is 0.
+    // A ray before its first step. `length` is the index of the length of D in the table of reciprocals (docs/formats/raymarch.md, "Rays"),
+    // `start` the first t.
     typedef struct packed {
-        logic [SPREAD_BITS-1:0]    spread;
         place_t                    place;
         logic [9:0]                length;
         logic [T_BITS-1:0]         start;
         logic [2:0][DIRECTION_BITS-1:0] direction;
     } ray_t;
 
-    // Returns the number of low bits of a ray_t that a build uses. A build without the prepass does not use the highest field, the spread
-    // of a cone.
-    function automatic int unsigned ray_bits(input bit prepass);
-        ray_bits = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS + (prepass ? SPREAD_BITS : 0);
-    endfunction
+    localparam int unsigned RAY_BITS = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 

@@ -22,9 +22,6 @@
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. round_light then precedes ray_paint,
 // and takes one clock per light for a pixel on a sphere or fillet.
 //
-// With `prepass` the cones of the whole picture are marched before the rays, and cone_table stores the depth up to which each cone hits no
-// surface. There are 160×90 cones for one eye and a picture wider than 320, and 80×45 cones for each eye otherwise.
-//
 // Each lane makes one evaluation of the field per clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
 // whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
 
@@ -37,7 +34,6 @@ module raymarcher #(
     parameter bit          ROUND   = 1'b1,
     parameter bit          BLEND   = 1'b1,
     parameter bit          STEREO  = 1'b1,
-    parameter bit          PREPASS = 1'b1,
     parameter int unsigned EARLY   = ROUND ? 1024 : 512
 ) (
     input  wire                       clk,
@@ -63,11 +59,6 @@ module raymarcher #(
     input  wire  [2:0]                sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire raymarch_registers_pkg::lights_t lights,
-    // Whether the frame has a prepass with cones, and the offset and the spread of their blocks in units of the ray direction
-    // D (docs/formats/raymarch.md, "Cones").
-    input  wire                       prepass,
-    input  wire  [2:0][31:0]          cone_offset,
-    input  wire  [13:0]               cone_spread,
     // Scale of the depth codes, fog and colours of the pixels: inputs of ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
@@ -121,35 +112,23 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     raymarch_pkg::ray_t       ray;
 
-    // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone represents a block of 2^`block` by 2^`block`
-    // pixels. While `fine` is high, a line has CONES_ACROSS blocks, otherwise half as many. `cleared` is the depth at which the rays of the
-    // block with the number `number` start.
-    logic        cones, fine, generate_rays;
-    logic [2:0]  block;
-    logic [13:0] cones_left, number;
-    logic [22:0] cleared;
-
-    // Numbers of the last column, of the last line of a band, and of the last band, counted from 0. Columns and lines are those of pixels
-    // for rays, and those of blocks for cones; a band of cones has CONES_DOWN / 2 lines of blocks.
-    localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
-    localparam int unsigned CONE_LINES   = picture_pkg::CONES_DOWN / 2;
+    // Numbers of the last column, of the last line of a band, and of the last band, counted from 0.
     logic [10:0] column_ends;
     logic [5:0]  line_ends, band_ends;
 
     always_ff @(posedge clk) begin
-        column_ends <= cones ? fine ? 11'(CONES_ACROSS - 1) : 11'(CONES_ACROSS / 2 - 1) : {stride, 3'd0} - 11'd1;
-        line_ends   <= cones ? 6'(CONE_LINES - 1) : lines - 6'd1;
-        band_ends   <= cones ? {5'd0, fine} : last_band;
+        column_ends <= {stride, 3'd0} - 11'd1;
+        line_ends   <= lines - 6'd1;
+        band_ends   <= last_band;
     end
 
-    ray_generator #(.ROUND(ROUND), .STEREO(STEREO), .PREPASS(PREPASS)) generator (
-        .clk, .rst(reset), .start(generate_rays), .busy(generating),
-        .last_column(column_ends), .last_line(line_ends), .last_band(band_ends), .stereo, .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
-        .prepass, .cones, .fine, .block, .offset(cone_offset), .spread(cone_spread), .number, .cleared,
+    ray_generator #(.ROUND(ROUND), .STEREO(STEREO)) generator (
+        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band(band_ends),
+        .stereo, .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
-    assign is_early    = ray.place.odd != odd && !cones;
+    assign is_early    = ray.place.odd != odd;
     assign may_enter   = !is_early || early != EARLY_BITS'(EARLY);
     assign ray_moves   = ray_valid && ray_ready;
     assign group_moves = group_valid && group_ready;
@@ -188,27 +167,26 @@ module raymarcher #(
     assign ray_ready = may_enter && lane_ready != '0;
 
     // Depth of the queue before a lane; 0 for no queue.
-    localparam int unsigned QUEUE    = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 0;
-    localparam int unsigned RAY_BITS = raymarch_pkg::ray_bits(PREPASS);
+    localparam int unsigned QUEUE = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 0;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        logic                entry_valid, entry_ready;
-        logic [RAY_BITS-1:0] entry;
+        logic               entry_valid, entry_ready;
+        raymarch_pkg::ray_t entry;
 
         if (QUEUE != 0) begin : queued
-            fifo #(.WIDTH(RAY_BITS), .DEPTH(QUEUE)) queue (
-                .clk, .rst(reset), .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_data(ray[RAY_BITS-1:0]),
+            fifo #(.WIDTH(raymarch_pkg::RAY_BITS), .DEPTH(QUEUE)) queue (
+                .clk, .rst(reset), .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_data(ray),
                 .out_valid(entry_valid), .out_ready(entry_ready), .out_data(entry)
             );
         end else begin : at_once
-            assign {entry_valid, lane_ready[i], entry} = {lane_valid[i], entry_ready, ray[RAY_BITS-1:0]};
+            assign {entry_valid, lane_ready[i], entry} = {lane_valid[i], entry_ready, ray};
         end
 
         assign idles[i] = entry_ready && !entry_valid;
 
-        ring_lane #(.LEVELS(LEVELS), .FIELDS(FIELDS), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO), .PREPASS(PREPASS)) lane (
-            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .cones, .sphere_write, .sphere_number, .sphere,
-            .in_valid(entry_valid), .in_ready(entry_ready), .in_ray($bits(ray)'(entry)),
+        ring_lane #(.LEVELS(LEVELS), .FIELDS(FIELDS), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO)) lane (
+            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write, .sphere_number, .sphere,
+            .in_valid(entry_valid), .in_ready(entry_ready), .in_ray(entry),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
             .evaluates(evaluates[i]), .waits(waits[i])
         );
@@ -229,11 +207,11 @@ module raymarcher #(
 
     // Ends that have waited in the FIFO are painted first. An end of the next band is stored in the FIFO, which is never full, because at
     // most EARLY rays of the next band enter the lanes.
-    assign next_now      = next_valid && next_end.place.odd == odd && !cones;
+    assign next_now      = next_valid && next_end.place.odd == odd;
     assign waiting_end   = raymarch_pkg::END_BITS'(kept);
     assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;
     assign waiting_ready = waiting_now && band_open && paint_ready;
-    assign next_taken    = next_now ? band_open && paint_ready && !waiting_now : room || cones;
+    assign next_taken    = next_now ? band_open && paint_ready && !waiting_now : room;
     assign paint_valid   = band_open && (waiting_now || next_now);
     assign paint_end     = waiting_now ? waiting_end : next_end;
 
@@ -243,7 +221,7 @@ module raymarcher #(
     end
 
     fifo #(.WIDTH(KEPT_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
-        .clk, .rst(reset), .in_valid(next_valid && !next_now && !cones), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
+        .clk, .rst(reset), .in_valid(next_valid && !next_now), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
         .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(kept)
     );
 
@@ -274,38 +252,6 @@ module raymarcher #(
         .out_column(group_column), .out_mask(group_mask), .out_code(group_code), .out_colour(group_colour)
     );
 
-    if (PREPASS) begin : with_prepass
-        localparam int unsigned CONES = picture_pkg::CONES_ACROSS * picture_pkg::CONES_DOWN;
-
-        logic cone_ends;
-
-        assign fine      = size != 2'd0 && !(STEREO && stereo);
-        assign block     = {1'b0, size} + 3'd2 - {2'b0, fine};
-        assign cone_ends = cones && next_valid;
-
-        always_ff @(posedge clk) begin
-            generate_rays <= start || cone_ends && cones_left == '0;
-            if (cone_ends) begin
-                cones_left <= cones_left - 1'b1;
-                if (cones_left == '0) cones <= 1'b0;
-            end
-            if (start) begin
-                cones      <= prepass;
-                cones_left <= fine ? 14'(CONES - 1) : STEREO && stereo ? 14'(CONES / 2 - 1) : 14'(CONES / 4 - 1);
-            end
-            if (reset) {cones, generate_rays} <= '0;
-        end
-
-        cone_table #(.ROUND(ROUND)) table_of_cones (
-            .clk, .round(solid.is_round), .in_valid(cone_ends), .in_number({next_end.place.line[2:0], next_end.place.column}),
-            .in_length(next_end.length), .in_t(next_end.t), .number, .cleared
-        );
-    end else begin : rays_alone
-        assign {cones, fine, block, cones_left, cleared} = '0;
-        assign generate_rays = start;
-        wire _unused = &{1'b0, prepass, number, cones_left};
-    end
-
     logic ended;
 
     function automatic logic [2:0] ones(input logic [LANES-1:0] which);
@@ -319,7 +265,7 @@ module raymarcher #(
         events = '0;
         events.cycles_busy    = busy;
         events.cycles_stalled = waits != '0;
-        events.items_in       = ray_moves && !cones;
+        events.items_in       = ray_moves;
         events.items_out      = group_moves;
         events.cycles_idle    = busy ? ones(idles) : '0;
         events.evaluations    = ones(evaluates);
@@ -328,7 +274,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, ray};
+    wire _unused = &{1'b0, generating};
 endmodule
 
 `default_nettype wire

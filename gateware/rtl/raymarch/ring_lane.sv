@@ -15,9 +15,6 @@
 // rounds. The slot of the ray also stores the nearest of the spheres evaluated so far. The end of the ray includes its direction, and the
 // limit of its evaluations is four times the limit in `tuning`.
 //
-// While `cones` is high, the rays in the ring are cones, and `cones` must not change while rays are in the ring. The t of a cone increases
-// by the distance minus the cone's radius, which is t times its spread. A cone ends where the distance is close to this radius.
-//
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
 // registers. Parameters hold while rays are in the ring. `rst` discards all rays.
 
@@ -29,7 +26,6 @@ module ring_lane #(
     parameter bit          ROUND  = 1'b0,
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
-    parameter bit          PREPASS = 1'b0,
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 64
 ) (
@@ -44,7 +40,6 @@ module ring_lane #(
     input  wire                      sphere_write,
     input  wire  [2:0]               sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
-    input  wire                      cones,
     // Rays.
     input  wire                      in_valid,
     output logic                     in_ready,
@@ -81,7 +76,6 @@ module ring_lane #(
     // The first stage of the ring, which receives new rays.
     logic              eye;
     logic [2:0][raymarch_pkg::DIRECTION_BITS-1:0] direction;
-    logic [raymarch_pkg::SPREAD_BITS-1:0]         spread;
     logic [raymarch_pkg::T_BITS-1:0] t;
     logic [STEP_BITS-1:0] steps;
 
@@ -126,16 +120,16 @@ module ring_lane #(
 
     // Each stage that reads data of a slot has its own memory for these data. Writes to an empty slot are allowed.
     (* ram_style = "distributed" *) logic [CARGO_BITS-1:0] cargos [0:2**SLOT_BITS-1];
-    (* ram_style = "distributed" *) logic [1+raymarch_pkg::SPREAD_BITS+3*raymarch_pkg::DIRECTION_BITS-1:0] aims [0:2**SLOT_BITS-1];
+    (* ram_style = "distributed" *) logic [1+3*raymarch_pkg::DIRECTION_BITS-1:0] aims [0:2**SLOT_BITS-1];
 
-    assign early_cargo              = cargos[early_slot];
-    assign {eye, spread, direction} = aims[first_slot];
+    assign early_cargo      = cargos[early_slot];
+    assign {eye, direction} = aims[first_slot];
 
     always_ff @(posedge clk) begin
         last_cargo <= early_cargo;
         if (!again) begin
             cargos[last_slot] <= {in_ray.place, in_ray.length, in_ray.direction};
-            aims[last_slot]   <= {in_ray.place.eye, in_ray.spread, in_ray.direction};
+            aims[last_slot]   <= {in_ray.place.eye, in_ray.direction};
         end
     end
 
@@ -186,7 +180,7 @@ module ring_lane #(
 
     // The number of the sphere in the current pass, and the nearest sphere of the earlier passes. The suffix of a name is the number of
     // clocks after the first stage. `nearest` and `is_last` (high in the last pass) are valid in the clock of the distance.
-    logic                round, is_last_early, is_last, is_last_2;
+    logic                round, is_last, is_last_2;
     logic [2:0]          pass_2;
     raymarch_pkg::nearest_t so_far_3, nearest;
 
@@ -196,6 +190,7 @@ module ring_lane #(
     );
 
     if (ROUND) begin : passes
+        logic                is_last_early;
         logic [2:0]          pass, last_pass, pass_early, pass_1;
         raymarch_pkg::nearest_t so_far, last_nearest;
 
@@ -225,50 +220,25 @@ module ring_lane #(
     end else begin : one_pass
         assign pass_2   = '0;
         assign so_far_3 = '0;
-        assign {is_last_early, is_last, is_last_2} = '1;
+        assign {is_last, is_last_2} = '1;
     end
 
-    // Values in the clock of the distance: t of this evaluation (`t_1`), t minus the radius of a cone (`from_1`), the distance below which
-    // a ray hits (`threshold`), and the number of earlier evaluations (`steps_1`).
+    // Values in the clock of the distance: t of this evaluation (`t_1`), the distance below which a ray hits (`threshold`), and the number
+    // of earlier evaluations (`steps_1`).
     logic [raymarch_pkg::T_BITS-1:0] t_early, t_1;
-    logic [raymarch_pkg::T_BITS:0]   from_early, from_1;
     logic [15:0]       footprint;
-    logic              wide, wide_1;
     logic [16:0]       threshold;
     logic [STEP_BITS-1:0] steps_1, steps_2;
 
     delay #(.WIDTH(raymarch_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
 
-    if (PREPASS) begin : prepass
-        logic [raymarch_pkg::SPREAD_BITS-1:0] widens;
-        logic signed [42:0]                product;
-
-        assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
-
-        // Each coordinate of a point is truncated by less than 2^-12. This changes a Euclidean distance by less than 2·2^-12,
-        // so the width of a cone is increased by 2^-12 in a field with spheres.
-        multiply_add #(.BITS(43)) widening (
-            .clk, .enable(1'b1), .a({2'b0, t}), .b({2'b0, widens}), .c({26'b0, ROUND && cones && solid.is_round, 16'b0}), .p(product)
-        );
-        delay #(.WIDTH(17), .CLOCKS(DISTANCE - 4)) width (
-            .clk, .enable(1'b1), .in({product[42:32] != '0, product[31:16]}), .out({wide, footprint})
-        );
-        assign from_early = {1'b0, t_early} + ({24{cones && is_last_early}} & ~{8'b0, footprint});
-        wire _unused = &{1'b0, product[15:0]};
-    end else begin : rays_alone
-        // The footprint is t, shifted right by `tuning.footprint` bits. `tuning.footprint` is 7 to 15, so the shift is by 7 bits if bit 3
-        // of `tuning.footprint` is 0.
-        assign footprint  = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
-        assign wide       = 1'b0;
-        assign from_early = {1'b0, t_early};
-        wire _unused = &{1'b0, cones, spread, is_last_early};
-    end
+    // The footprint is t, shifted right by `tuning.footprint` bits. `tuning.footprint` is 7 to 15, so the shift is by 7 bits if bit 3 of
+    // `tuning.footprint` is 0.
+    assign footprint = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
 
     always_ff @(posedge clk) begin
         t_1       <= t_early;
-        from_1    <= from_early;
-        wide_1    <= wide;
         threshold <= {1'b0, tuning.threshold} + {1'b0, footprint};
     end
 
@@ -299,9 +269,9 @@ module ring_lane #(
     end
 
     always_ff @(posedge clk) begin
-        near_2    <= wide_1 || distance < $signed({2'b0, 20'(threshold) << (PREPASS && cones ? 2'd0 : patience)});
-        late_2    <= late_1 || PREPASS && cones && steps_1 >= STEP_BITS'(raymarch_pkg::CONE_STEPS - 1);
-        next_2    <= from_1 + 24'(distance[20:0] & {21{!distance[21] && is_last}});
+        near_2    <= distance < $signed({2'b0, 20'(threshold) << patience});
+        late_2    <= late_1;
+        next_2    <= {1'b0, t_1} + 24'(distance[20:0] & {21{!distance[21] && is_last}});
         t_2       <= t_1;
         gap_2     <= distance[20:12] != '0 && !distance[21] ? '1 : distance[11:0] & {12{!distance[21]}};
         gone_2    <= gone_late;
@@ -371,10 +341,9 @@ module ring_lane #(
     assign height = last_cargo.direction[2][17] ? '0 : last_cargo.direction[2][16:9];
 
     always_comb begin
-        if (PREPASS && cones)                    end_t = taken_t;
-        else if (last_state == raymarch_pkg::MISS)  end_t = {15'b0, height};
-        else if (last_round)                     end_t = last_t;
-        else                                     end_t = taken_t;
+        if (last_state == raymarch_pkg::MISS) end_t = {15'b0, height};
+        else if (last_round)                  end_t = last_t;
+        else                                  end_t = taken_t;
     end
 
     assign end_in = {

@@ -134,7 +134,7 @@ fn view() -> View {
 
 /// Draws a field by the engine and by the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size: Size) {
-    let name = format!("{} {size} {stereo:?} {}", subject.field, subject.prepass);
+    let name = format!("{} {size} {stereo:?}", subject.field);
     let frame = Frame {
         stereo,
         ..Frame::new(Subject::Field(subject), view(), size)
@@ -172,15 +172,12 @@ fn every_kind_of_field() {
             occlusion: number % 3 == 0,
             ..Appearance::default()
         };
-        for prepass in [false, true] {
-            let subject = FieldSubject {
-                field: &field,
-                appearance: &appearance,
-                quality: Quality::default(),
-                prepass,
-            };
-            check(&mut bench, subject, None, Size::W320);
-        }
+        let subject = FieldSubject {
+            field: &field,
+            appearance: &appearance,
+            quality: Quality::default(),
+        };
+        check(&mut bench, subject, None, Size::W320);
     }
 }
 
@@ -198,7 +195,6 @@ fn two_eyes_and_large_pictures() {
             field: &field,
             appearance: &appearance,
             quality: Quality::default(),
-            prepass: stereo.is_some(),
         };
         let stereo = stereo.map(|text| Stereo::parse(text).unwrap());
         check(&mut bench, subject, stereo, size);
@@ -220,7 +216,6 @@ fn random_fields() {
             field: &field,
             appearance: &Appearance::default(),
             quality: Quality::default(),
-            prepass: state & 1 == 1,
         };
         check(&mut bench, subject, None, Size::W320);
     }

@@ -135,7 +135,7 @@ def words(pictures):
 def cases(rates):
     """The measured cases of the raymarcher, with the slowest pose of each view, the only pose drawn back to back."""
     found = []
-    columns = ["field", "stereo", "prepass", "width", "height", "lanes", "clock", "at_least", "aim"]
+    columns = ["field", "stereo", "width", "height", "lanes", "clock", "at_least", "aim"]
     for key, poses in rates.groupby(columns, sort=False, dropna=False):
         case = rows(pd.DataFrame([key], columns=columns))[0]
         views = poses[poses.cycles_frame.notna()].assign(
@@ -143,7 +143,7 @@ def cases(rates):
             mean_alone=poses.groupby("view").cycles_alone.transform("mean"),
         )
         size = f"{case['width']}×{case['height']}"
-        name = [case["field"], 2 if case["stereo"] else 1, size, "yes" if case["prepass"] else "", case["lanes"]]
+        name = [case["field"], 2 if case["stereo"] else 1, size, case["lanes"]]
         rate = 1e6 * case["clock"] / views.cycles_frame.max()
         found.append(case | {"name": " | ".join(map(str, name)), "rate": rate, "views": rows(views)})
     return found
@@ -274,7 +274,6 @@ def index(read, blocks):
         ("threshold", "ray: threshold of a hit", "depth_p99.fillna(0)", "world units, p99 of depths", "cycles", "cycles a picture"),
         ("cap", "ray: step limit", "1 - iou", "of the masks", "cycles", "cycles a picture"),
         ("fraction", "ray: fraction bits", "depth_median.fillna(0)", "world units, median of depths", "evaluations", "evaluations a ray"),
-        ("prepass", "ray: cones before the rays", "wrong_faces", "wrong faces", "cycles", "cycles a picture"),
     ]:
         trials = read(f"raymarch-{study}")
         trials["config"] = trials.family + ": " + trials.config

@@ -32,8 +32,6 @@ pub struct Fields {
     pub fillets: bool,
     /// Two eyes.
     pub stereo: bool,
-    /// The prepass.
-    pub prepass: bool,
 }
 
 /// Gateware and firmware that scenes require.
@@ -79,7 +77,6 @@ impl SceneFile {
             lanes: self.lanes.unwrap_or(LANES),
             // A mesh in a field is drawn for one eye after the other.
             stereo: scene.stereo.is_some() && !has_triangles,
-            prepass: scene.prepass,
             ..Fields::of(&field)
         });
         Needs {
@@ -182,7 +179,7 @@ impl Needs {
 }
 
 impl Fields {
-    /// The features that a field requires, for one eye and without the prepass.
+    /// The features that a field requires, for one eye.
     fn of(field: &Field) -> Self {
         let none = Self {
             lanes: LANES,
@@ -191,7 +188,6 @@ impl Fields {
             spheres: false,
             fillets: false,
             stereo: false,
-            prepass: false,
         };
         match field {
             Field::Primitive(primitive) => none.and(primitive),
@@ -235,7 +231,6 @@ impl Fields {
             spheres: self.spheres || other.spheres,
             fillets: self.fillets || other.fillets,
             stereo: self.stereo || other.stereo,
-            prepass: self.prepass || other.prepass,
         }
     }
 
@@ -250,7 +245,6 @@ impl Fields {
             ("spheres", self.spheres),
             ("fillets", self.fillets),
             ("stereo", self.stereo),
-            ("prepass", self.prepass),
         ];
         let built = features.into_iter().filter(|(_, is_built)| *is_built);
         names.extend(built.map(|(name, _)| name.to_owned()));

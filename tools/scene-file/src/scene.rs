@@ -281,6 +281,17 @@ impl SceneFile {
         self.scenes.first().map_or(&self.settings, Self::settings)
     }
 
+    /// Notes on settings without effect ([`Setting::note`]), of all scenes of a list.
+    pub fn notes(&self) -> Vec<&'static str> {
+        let of_scenes = self.scenes.iter().flat_map(Self::notes);
+        let of_settings = self.settings.iter();
+        let of_settings = of_settings.filter_map(|line| match Line::parse(line) {
+            Ok(Line::Option(setting)) => setting.note(),
+            _ => None,
+        });
+        of_scenes.chain(of_settings).collect()
+    }
+
     /// The control of the camera; for a list of scenes, that of the first scene.
     pub fn steer(&self) -> &Steer {
         self.scenes.first().map_or(&self.steer, Self::steer)

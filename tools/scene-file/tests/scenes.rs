@@ -350,7 +350,7 @@ fn needs_follow_from_the_keys() {
         field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
         field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres --lanes 1
         field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
-        field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box,prepass --lanes 2
+        field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box --lanes 2
         field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2
         model = "cube"; stereo = "0.1,4" → --blocks scanout triangle
         model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --fields octahedron --lanes 2
@@ -389,7 +389,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         field = "menger:3"; steer = "imu orbit" → field imu view
         field = "menger:2"; model = "torus" → field mesh mesh-in-field view
         field = "menger:2"; stereo = "0.1,4" → field stereo view
-        field = "union:box:1,1,1+sphere:1"; fog = 0.1; prepass = true → field fog prepass spheres view
+        field = "union:box:1,1,1+sphere:1"; fog = 0.1; prepass = true → field fog spheres view
     "#;
     for (text, expected) in rows(table) {
         assert_eq!(features(&text), expected, "{text}");
@@ -406,7 +406,7 @@ fn several_scenes_need_what_each_needs() {
     let fields = needs.fields.unwrap();
     assert_eq!(
         (fields.names().as_str(), fields.lanes),
-        ("menger:4,spheres,prepass", 2)
+        ("menger:4,spheres", 2)
     );
     assert_eq!(built_in("menger").unwrap().needs().fields.unwrap().lanes, 4);
     let demo = built_in("demo").unwrap().needs();

@@ -2,9 +2,7 @@
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
-use glint_model::raymarch::{
-    Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
-};
+use glint_model::raymarch::{FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565};
 
 /// Position of a pixel, as in the member `place` of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,16 +18,6 @@ pub struct RayPlace {
 }
 
 impl RayPlace {
-    /// Returns the place of a cone: its line and column hold the cone's number.
-    pub fn of_cone(eye: usize, number: u32) -> Self {
-        Self {
-            odd: false,
-            line: number >> 11,
-            column: number & 0x7FF,
-            eye,
-        }
-    }
-
     fn set(&self, record: &mut Record) {
         record.set("place.odd", self.odd);
         record.set("place.eye", self.eye as u64);
@@ -49,22 +37,12 @@ impl RayPlace {
 
 /// Packs a ray, before its first step, as a `ray_t`.
 pub fn ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
-    ray_record(layout, place, ray).bits()
-}
-
-/// Packs a cone, before its first step, as a `ray_t`.
-pub fn cone(layout: &Layout, place: RayPlace, cone: &Cone) -> Bits {
-    let record = ray_record(layout, place, &cone.ray);
-    record.with("spread", cone.spread).bits()
-}
-
-fn ray_record(layout: &Layout, place: RayPlace, ray: &Ray) -> Record {
     let mut record = layout.record();
     record.set_all("direction", ray.direction);
     record.set("start", ray.start);
     record.set("length", ray.length);
     place.set(&mut record);
-    record
+    record.bits()
 }
 
 /// Final state of a ray. `NAMES` has the states' names in the SystemVerilog type `state_t`.
@@ -98,7 +76,7 @@ impl Kind {
     }
 }
 
-/// End of a ray or cone: the result from a lane. Unused members are 0: `surface` and `slope` without a hit, `t` of an undecided
+/// End of a ray: the result from a lane. Unused members are 0: `surface` and `slope` without a hit, `t` of an undecided
 /// ray, `face` at a hit on a pure sphere, `direction` without a hit on a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
@@ -154,29 +132,6 @@ impl End {
             slope: outcome.slope.into(),
             direction: number.map_or([0; 3], |_| ray.direction),
         }
-    }
-
-    /// Converts the model's result of a cone, distance `t` and number of evaluations, to the expected end. All other members
-    /// except the length are 0.
-    pub fn expected_of_cone(cone: &Cone, (t, steps): (u32, u32)) -> Self {
-        Self {
-            t: t.into(),
-            steps: steps.min(255).into(),
-            length: cone.ray.length.into(),
-            ..Self::default()
-        }
-    }
-
-    /// Unpacks the place and the end of a cone from an `end_t`.
-    #[must_use]
-    pub fn of_cone(record: &Record) -> (RayPlace, Self) {
-        let end = Self {
-            t: record.get("t"),
-            steps: record.get("steps"),
-            length: record.get("length"),
-            ..Self::default()
-        };
-        (RayPlace::of(record), end)
     }
 
     /// Unpacks the place and the end of a ray from an `end_t`; sets unused members to 0.
@@ -320,15 +275,6 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     module.drive_all("down", setup.steps[1]);
     drive_eyes(module, "outside", eyes.map(|eye| eye.outside));
     drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
-}
-
-/// Drives the constants of cones, one cone per block of pixels. Port `offset`: change of the ray direction from a block's first
-/// pixel to its middle; port `spread`: largest change of the direction from the middle to a pixel.
-pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
-    let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
-    let (middle, widest) = cones.unwrap_or_default();
-    module.drive_all(offset, middle);
-    module.drive(spread, widest);
 }
 
 /// Packs the `end_t` of a ray from the model's result.

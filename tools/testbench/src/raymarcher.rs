@@ -2,13 +2,11 @@
 
 use std::collections::HashMap;
 
-use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays};
+use glint_model::raymarch::{FieldSetup, FieldStats, Palette};
 use glint_model::triangle::descriptor::band_rows;
 use glint_vectors::Random;
 
-use crate::raymarch::{
-    Pixel, RayPlace, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays,
-};
+use crate::raymarch::{Pixel, RayPlace, pixel, set_lane, set_lights, set_paint, set_rays};
 use crate::{Bits, Counters, Module, Sink, Stalls};
 
 const COUNTERS: [&str; 8] = [
@@ -83,8 +81,6 @@ impl Raymarcher {
         set_rays(&mut self.module, setup);
         set_paint(&mut self.module, setup, palette);
         set_lights(&mut self.module, setup, &palette.lights);
-        set_blocks(&mut self.module, setup, "cone_offset", "cone_spread");
-        self.module.drive("prepass", setup.cones.is_some());
         self.module.drive("size", setup.width / 640);
     }
 
@@ -109,7 +105,6 @@ impl Raymarcher {
         let mut sink = Sink::new(&self.module, "group", &Pixel::PAYLOAD, stalls);
         let done = self.module.port("band_done");
         let mut stats = FieldStats::default();
-        let mut rays = Rays::new(setup);
         self.pulse("start");
         for band in 0..setup.height / lines {
             let mut expected = HashMap::new();
@@ -121,7 +116,7 @@ impl Raymarcher {
                         column: x,
                         eye: eye as usize,
                     };
-                    let ray = rays.ray(place.eye, x, band * lines + y);
+                    let ray = setup.ray(place.eye, x, band * lines + y);
                     let outcome = setup.march(&ray);
                     stats.count(setup, &outcome);
                     expected.insert((eye.into(), y.into(), x.into()), {
@@ -161,7 +156,6 @@ impl Raymarcher {
             self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
-        stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
         // Counters count up to four clocks after the last pixel, and then stop.

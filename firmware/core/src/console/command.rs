@@ -174,9 +174,9 @@ commands! {
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
         overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";
-        prepass Prepass(on: bool) in PREPASS: "turn the cone prepass of a field on or off"
+        prepass Prepass(on: bool) in FIELD: "no effect: rays need no prepass any more, and the next release rejects the command"
             => key(Order::Option, "on").with(FIELD)
-                .host(switch("prepass", "on", "Before the rays, march a cone around the rays of each block of pixels; the block's rays start where its cone ends. This saves evaluations of the field"));
+                .host(switch("prepass", "on", "No effect: rays need no prepass any more, and the next release rejects the option"));
     }
 
     /// Commands for drawing frames.
@@ -228,6 +228,19 @@ impl WordArgument for CommandName {
 
     fn parse(text: &str) -> Option<&str> {
         find(text).map(|_| text)
+    }
+}
+
+impl Setting<'_> {
+    /// A note for the user on a setting that this release accepts, without effect, for the last time. The console and `glint` print it.
+    /// `None` for a setting with an effect.
+    pub const fn note(&self) -> Option<&'static str> {
+        match self {
+            Self::Prepass { .. } => Some(
+                "prepass has no effect: rays need no prepass any more, and the next release rejects it",
+            ),
+            _ => None,
+        }
     }
 }
 

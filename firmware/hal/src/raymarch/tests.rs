@@ -14,11 +14,11 @@ fn registers() -> raymarch::Raymarch {
     unsafe { Peripherals::steal() }.raymarch
 }
 
-/// Probes a block with the given value of the register `ident`. The block's build has two lanes and the prepass, and draws
-/// sponges of up to six levels, boxes, spheres, fillets and stereo pictures. Returns the result, and the block's registers.
+/// Probes a block with the given value of the register `ident`. The block's build has two lanes, and draws sponges of up to six levels,
+/// boxes, spheres, fillets and stereo pictures. Returns the result, and the block's registers.
 fn probe(ident: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
     let r = registers();
-    let caps = 2 | 6 << 4 | 0b1111 << 9 | 0b11 << 16;
+    let caps = 2 | 6 << 4 | 0b111 << 9 | 0b11 << 16;
     let block = recording::connect([(r.ident().address(), ident), (r.caps().address(), caps)]);
     (Raymarcher::probe(registers()), block)
 }
@@ -40,7 +40,6 @@ fn something_else_is_not_taken_for_the_raymarcher() {
         stereo: true,
         round: true,
         blend: true,
-        prepass: true,
     };
     assert_eq!(raymarcher.unwrap().capabilities(), capabilities);
     let silent = (registers().ev_enable().address(), 0);
@@ -52,9 +51,7 @@ fn a_field_is_described_before_it_is_enabled() {
     let (raymarcher, block) = probe(IDENT);
     let mut raymarcher = raymarcher.unwrap();
     let field = Field {
-        control: Control::default()
-            .with_stereo(Stereo::RedCyan)
-            .with_prepass(true),
+        control: Control::default().with_stereo(Stereo::RedCyan),
         solid: Solid::default().with_levels(0b111),
         cube_half: 3 << 11,
         half: [40, 41, 42],
@@ -73,8 +70,7 @@ fn a_field_is_described_before_it_is_enabled() {
             },
         ],
         bounds: &[19, 20, 21],
-        steps: [&[22, -23, 24], &[-25, 26, -27], &[28, -29, 30]],
-        cone_spread: 46,
+        steps: [&[22, -23, 24], &[-25, 26, -27]],
         depth_scale: DepthScale::default().with_mantissa(47),
         faces: &[0, 1, 2, 3, 4, 5, 6, 7].map(|face| [230, 130, face]),
         sky: [[1; 3], [2; 3], [3; 3]],
@@ -116,11 +112,9 @@ fn a_field_is_described_before_it_is_enabled() {
     let steps = [
         [r.across_x(), r.across_y(), r.across_z()],
         [r.down_x(), r.down_y(), r.down_z()],
-        [r.cone_offset_x(), r.cone_offset_y(), r.cone_offset_z()],
     ];
     let steps = steps.map(|step| step.map(|x| x.read().cast_signed()));
     assert_eq!(steps.each_ref(), field.steps);
-    assert_eq!(r.cone_spread().read(), field.cone_spread);
     assert_eq!(r.depth_scale().read(), field.depth_scale);
     assert_eq!(r.colour_1().read(), 230 | 130 << 8 | 1 << 16, "red first");
     let sky = [r.colour_6(), r.colour_7(), r.horizon()];

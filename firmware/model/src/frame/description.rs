@@ -88,8 +88,6 @@ pub struct FieldSubject<'a> {
     pub appearance: &'a Appearance,
     /// Quality, which determines the precision of the rays. The size of the picture is in [`Frame`].
     pub quality: Quality,
-    /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats/raymarch.md, "Cones").
-    pub prepass: bool,
 }
 
 impl<'a> MeshSubject<'a> {
@@ -241,10 +239,7 @@ impl<'a> Subject<'a> {
 
 impl FieldSubject<'_> {
     pub(super) fn options(&self, view: &View, stereo: Option<Stereo>) -> FieldOptions {
-        FieldOptions {
-            prepass: self.prepass,
-            ..FieldOptions::new(self.field, self.appearance, self.quality, stereo, view)
-        }
+        FieldOptions::new(self.field, self.appearance, self.quality, stereo, view)
     }
 }
 

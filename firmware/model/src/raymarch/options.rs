@@ -1,4 +1,4 @@
-//! Options of drawing a field: colours, fog, one eye or two, precision of the march, and prepass.
+//! Options of drawing a field: colours, fog, one eye or two, and precision of the march.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -75,8 +75,6 @@ pub struct FieldOptions {
     pub palette: Palette,
     /// Density of the fog per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog.
     pub fog: U4_28,
-    /// Whether a prepass marches one cone for each block of pixels before the rays.
-    pub prepass: bool,
 }
 
 impl FieldOptions {
@@ -117,7 +115,6 @@ impl FieldOptions {
             palette,
             fog,
             tuning: Tuning::of(field, quality),
-            ..Self::default()
         }
     }
 }
@@ -129,7 +126,6 @@ impl Default for FieldOptions {
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
             fog: U4_28::ZERO,
-            prepass: false,
         }
     }
 }

@@ -91,11 +91,6 @@ impl RayResult {
 impl FieldSetup {
     /// The ray of pixel (x, y) for an eye.
     pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
-        self.ray_from(eye, x, y, self.near)
-    }
-
-    /// The ray of pixel (x, y) for an eye. It starts at the depth `near`, or farther away where it enters the bounding box.
-    pub(super) fn ray_from(&self, eye: usize, x: u32, y: u32, near: u32) -> Ray {
         // The unscaled direction D with 24 fraction bits, s1.24.
         let direction = [0, 1, 2].map(|i: usize| {
             let across = self.steps[0][i].wrapping_mul(x as i32);
@@ -107,7 +102,7 @@ impl FieldSetup {
         });
         let length = self.length(direction.map(magnitude));
         let direction = self.scaled(direction, length);
-        let near = self.at_depth(near, length);
+        let near = self.at_depth(self.near, length);
         let entry = self.entry(eye, &direction).min(u64::from(u32::MAX)) as u32;
         Ray {
             eye,
@@ -119,7 +114,7 @@ impl FieldSetup {
 
     /// Length index of an unscaled direction D whose components have the magnitudes `parts`, with 24 fraction bits: the
     /// first ten fraction bits of the largest magnitude, or of |D|² rounded up for scenes with spheres.
-    pub(super) fn length(&self, parts: [u32; 3]) -> u32 {
+    fn length(&self, parts: [u32; 3]) -> u32 {
         if self.is_round() {
             // Squares 17 bits of each component. The truncated bits change the sum by less than 2^−15; this bound is added.
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
@@ -140,7 +135,7 @@ impl FieldSetup {
     }
 
     /// Scales an unscaled direction D with length index `length` to a direction of length 1 at most.
-    pub(super) fn scaled(&self, direction: [i32; 3], length: u32) -> [i32; 3] {
+    fn scaled(&self, direction: [i32; 3], length: u32) -> [i32; 3] {
         let inverse = i64::from(self.inverse(length));
         // Rounds a product with 24 + 9 fraction bits to 17.
         direction.map(|d| ((i64::from(d) * inverse + (1 << 15)) >> 16) as i32)
@@ -148,7 +143,7 @@ impl FieldSetup {
 
     /// Parameter t at the given depth along the camera's forward axis n, or slightly less, of a ray with length index
     /// `length`.
-    pub(super) fn at_depth(&self, depth: u32, length: u32) -> u32 {
+    fn at_depth(&self, depth: u32, length: u32) -> u32 {
         // A lower bound of the reciprocal of `inverse`, with 10 fraction bits.
         let part = if self.is_round() {
             (self.inverse(length) * (length + 1)) >> 9

@@ -1,6 +1,5 @@
 //! Drawing of all pixels of a frame with a distance field.
 
-use super::cone::Rays;
 use super::paint::paint;
 use super::palette::Palette;
 use super::ray::{Ray, RayResult, State};
@@ -14,7 +13,7 @@ use crate::triangle::reciprocal::Reciprocal;
 pub struct FieldStats {
     /// Rays: one per pixel and eye.
     pub rays: u32,
-    /// Evaluations of the field by rays and cones. In a scene with several spheres, a step counts as one evaluation per sphere.
+    /// Evaluations of the field. In a scene with several spheres, a step counts as one evaluation per sphere.
     pub evaluations: u64,
     /// Number of rays that hit a surface.
     pub hits: u32,
@@ -67,8 +66,7 @@ pub fn render_field(
     Ok(render_rows(setup, palette, 0, colour, depth, show))
 }
 
-/// Draws the rows of a field from `first` on, as many as `colour` and `depth` have, as [`render_field`] does. `first` is a multiple of
-/// 16, so that the rows begin at a row of prepass blocks.
+/// Draws the rows of a field from `first` on, as many as `colour` and `depth` have, as [`render_field`] does.
 #[inline(always)]
 pub fn render_rows(
     setup: &FieldSetup,
@@ -80,9 +78,8 @@ pub fn render_rows(
 ) -> FieldStats {
     let width = setup.width;
     let mut stats = FieldStats::default();
-    let mut rays = Rays::new(setup);
     let mut look = |eye, x, y| {
-        let ray = rays.ray(eye, x, y);
+        let ray = setup.ray(eye, x, y);
         let outcome = setup.march(&ray);
         stats.count(setup, &outcome);
         show(x, y, &ray, &outcome);
@@ -108,7 +105,6 @@ pub fn render_rows(
             }
         }
     }
-    stats.evaluations += rays.evaluations();
     stats
 }
 

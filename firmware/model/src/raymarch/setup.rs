@@ -1,7 +1,7 @@
 //! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
 use glint_core::camera::{Projection, View};
-use glint_core::feature::{PREPASS, SPHERES, STEREO};
+use glint_core::feature::{SPHERES, STEREO};
 use glint_core::field::{
     FRACTION, Field, FieldSample, FixedSpheres, Placed, Primitive, Solid, cropped, units,
 };
@@ -11,7 +11,6 @@ use glint_core::stereo::Tint;
 use super::blend::{Beside, Blend};
 use super::directions::Directions;
 use super::options::{FARTHEST, FieldOptions, Tuning};
-use super::prepass::{Cones, block_for};
 use crate::depth::DepthScale;
 use crate::error::{FIELD_HALF_WIDTH, RenderError, SIZES};
 
@@ -53,8 +52,6 @@ pub struct FieldSetup {
     /// Depth of the near plane, or of the nearest corner of the bounding box if larger, in field
     /// units times 2^e, u11.12.
     pub near: u32,
-    /// The cones of the prepass, if any.
-    pub cones: Option<Cones>,
     /// Scale K of depth codes (a code is K/depth), for depths in field units times 2^e.
     pub depth: DepthScale,
     /// Scale K of depth codes (a code is K/depth), for depths in world units, for the host.
@@ -133,9 +130,6 @@ impl FieldSetup {
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
         let steps = [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x)));
-        let eyes = if stereo.is_some() { 2 } else { 1 };
-        let cones = (PREPASS.is_built && options.prepass)
-            .then(|| Cones::new(block_for((width, height), eyes), round, &steps));
         Ok(Self {
             width,
             height,
@@ -147,7 +141,6 @@ impl FieldSetup {
             steps,
             exponent: rays.exponent,
             near: near_units.clamp(0, FARTHEST.into()) as u32,
-            cones,
             depth: world_depth.times(scale, rays.exponent),
             world_depth,
             tuning: options.tuning,

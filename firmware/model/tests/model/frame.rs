@@ -41,7 +41,6 @@ fn a_frame_is_drawn_from_constants_that_served_another_one() {
         field: &Field::parse("box:0.25,2,0.25").unwrap(),
         appearance: &Appearance::default(),
         quality: Quality::default(),
-        prepass: true,
     };
     let mut constants = FrameConstants::default();
     assert_eq!(constants.depth_scale(), None);

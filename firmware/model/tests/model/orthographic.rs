@@ -309,7 +309,6 @@ fn refused_frames() {
         field: &field,
         appearance: &appearance,
         quality: Quality::default(),
-        prepass: false,
     };
     let view = along_y(4.0, 3.2);
     for subject in [

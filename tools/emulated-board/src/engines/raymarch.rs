@@ -159,7 +159,6 @@ impl Device for Raymarcher {
                 .with_stereo(true)
                 .with_round(true)
                 .with_blend(true)
-                .with_prepass(true)
                 .with_flat((1 << Kind::ALL.len()) - 1)
                 .bits(),
             offset::CONTROL => self.control.bits(),

@@ -228,7 +228,6 @@ impl DemoArguments {
             field: &SPONGE,
             appearance: &Appearance::default(),
             quality: Quality::default(),
-            prepass: false,
         };
         let mut film = Film::default();
         for number in 0..self.sponge {
@@ -312,7 +311,7 @@ fn show_scene<B: Board>(
     name: &str,
     path: &Path,
 ) -> anyhow::Result<(String, u64)> {
-    let scene = glint_scene_file::read(name)?;
+    let scene = super::scene::read(name)?;
     let show = format!("scene {name}");
     let commands = [show, "shading flat".into(), size_command(SIZE)];
     let Rendered { image, stats } = renderer.render_after(&commands, SIZE, Parts::COLOUR)?;

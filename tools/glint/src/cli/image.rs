@@ -97,7 +97,7 @@ impl MakeArguments {
             }
             None => Vec::new(),
         };
-        let scenes = self.scene.iter().map(|name| glint_scene_file::read(name));
+        let scenes = self.scene.iter().map(|name| super::scene::read(name));
         let pieces = image::pieces(&scenes.collect::<Result<Vec<_>, _>>()?)?;
         let made = image::make(&bitstream, &firmware, &pieces);
         let made = made.map_err(|error| error.in_path(&self.out))?;

@@ -2,6 +2,7 @@
 
 use super::common::bad_value;
 use super::heading;
+use super::messages::note;
 use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use glint::error::{InputError, quote};
@@ -163,6 +164,9 @@ impl Given {
             let setting = self.setting(&line, value)?;
             let set = scene.apply(&setting, &mut AnyBoard);
             set.map_err(|error| self.refuse(error.to_string()))?;
+            if let Some(text) = setting.note() {
+                note(text);
+            }
         }
         Ok(())
     }

@@ -1,10 +1,10 @@
 //! `glint scene`.
 
-use super::messages::{print_json, say};
+use super::messages::{note, print_json, say};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::scene::{self, Changes};
-use glint_scene_file::{NAMES, SceneFile, Steer, built_in, read};
+use glint_scene_file::{NAMES, SceneError, SceneFile, Steer, built_in};
 use serde::Serialize;
 
 /// Check, list or show scenes: their contents, and the gateware and firmware that they require (docs/scenes.md).
@@ -125,6 +125,18 @@ impl ListArguments {
         }
         Ok(())
     }
+}
+
+/// Reads a scene by its name or path, and prints its notes.
+///
+/// # Errors
+/// As [`glint_scene_file::read`].
+pub fn read(name: &str) -> Result<SceneFile, SceneError> {
+    let scene = glint_scene_file::read(name)?;
+    for text in scene.notes() {
+        note(format_args!("{}: {text}", name.escape_debug()));
+    }
+    Ok(scene)
 }
 
 /// Checks that a board can draw a scene.

@@ -47,7 +47,7 @@ impl SubjectArguments {
     ) -> anyhow::Result<T> {
         let model = self.model.as_deref();
         if let Some(name) = &self.scene {
-            let file = glint_scene_file::read(name)?;
+            let file = super::scene::read(name)?;
             let scene = Some(&file);
             return scene::draw(&file, &self.size.changes()?, |frame| {
                 draw(&CameraSubject {

@@ -61,7 +61,6 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
         scene.field = Some(*field.field);
         scene.appearance = field.appearance.clone();
         scene.quality = field.quality;
-        scene.prepass = field.prepass;
         scene.with_mesh = frame.subject.mesh_part().is_some();
     }
     if frame.subject.mesh_part().is_some() {

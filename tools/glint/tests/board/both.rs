@@ -38,7 +38,6 @@ fn both_boards_draw_the_same() {
         field: &Field::parse("box:0.3,1,0.3").unwrap(),
         appearance: &Appearance::default(),
         quality: Quality::default(),
-        prepass: false,
     };
     let both = Subject::MeshInField(plain(&sphere), field);
     let frames = [

@@ -37,7 +37,6 @@ fn the_cpu_draws_a_mesh_in_a_field() {
             ..Appearance::default()
         },
         quality: Quality::default(),
-        prepass: false,
     };
     let frame = Frame::new(
         Subject::MeshInField(plain(&mesh), field),
@@ -107,7 +106,6 @@ fn a_field_by(backend: Backend, name: &str) {
         field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
         appearance: &Appearance::default(),
         quality: Quality::default(),
-        prepass: false,
     };
     let view = view::parse(eye.as_bytes()).unwrap();
     let frame = Frame::new(Subject::Field(subject), view, Size::W320);

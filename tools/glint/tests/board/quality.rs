@@ -24,7 +24,6 @@ fn frame<'a>(field: &'a Field, appearance: &'a Appearance, quality: Quality) -> 
         field,
         appearance,
         quality,
-        prepass: false,
     });
     let view = view::spherical("3,25,70").unwrap();
     Frame::new(subject, view, quality.size())

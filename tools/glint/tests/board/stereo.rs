@@ -40,7 +40,6 @@ fn two_eyes_are_the_models() {
         field: &field,
         appearance: &appearance,
         quality: Quality::default(),
-        prepass: true,
     };
     let smooth = MeshSubject {
         shading: Shading::Smooth,

@@ -34,7 +34,7 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     );
     assert_eq!(
         text(Kind::Scene, "menger"),
-        "quality balanced\ncamera 4 30 60\nprepass on\nfield menger:4\n"
+        "quality balanced\ncamera 4 30 60\nfield menger:4\n"
     );
     let kinds: Vec<Kind> = image.contents.items().map(|item| item.kind).collect();
     assert_eq!(kinds.iter().filter(|kind| **kind == Kind::Mesh).count(), 1);

@@ -1,6 +1,8 @@
 //! Scenes with options, and scenes that cannot be drawn.
 
-use crate::common::{drawn, files_refused, folder, glint, glint_within, picture, refused, succeed};
+use crate::common::{
+    drawn, files_refused, folder, glint, glint_within, picture, refused, said, succeed,
+};
 
 const LAMP: &str =
     "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 30 70\"\n";
@@ -257,4 +259,41 @@ fn quality_of_a_scene() {
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{error}");
     assert!(error.contains("fast, balanced, exact"), "{error}");
+}
+
+/// The key and the option `prepass` are accepted without effect, and a note says so.
+#[test]
+fn a_prepass_has_no_effect() {
+    const NOTE: &str =
+        "prepass has no effect: rays need no prepass any more, and the next release rejects it\n";
+    let folder = folder("prepass");
+    let scene = "title = \"a box\"\nfield = \"box:1,1,1\"\nsize = \"320 180\"\n";
+    for (name, scene) in [
+        ("without.toml", scene.to_owned()),
+        ("with.toml", format!("{scene}prepass = true\n")),
+    ] {
+        std::fs::write(folder.join(name), scene).unwrap();
+    }
+    for (without, with, note) in [
+        (
+            "--scene without.toml",
+            "--scene with.toml",
+            format!("note: with.toml: {NOTE}"),
+        ),
+        (
+            "--field box:1,1,1",
+            "--field box:1,1,1 --prepass",
+            format!("note: {NOTE}"),
+        ),
+    ] {
+        let render = |options: &str| {
+            let [_, notes] = said(&folder, &format!("render --force --out a.png {options}"));
+            (picture(&folder.join("a.png")), notes)
+        };
+        let (expected, silence) = render(without);
+        assert_eq!(silence, "");
+        assert!(render(with) == (expected, note), "{with}");
+    }
+    let [_, note] = said(&folder, "scene check with.toml");
+    assert_eq!(note, format!("note: with.toml: {NOTE}"));
 }

@@ -59,7 +59,7 @@ enum Page {
         /// Measure only the errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
-        /// Measure only one table: pictures, rates, words, or a study: fraction, cap, threshold, norm, end, prepass, block or normal
+        /// Measure only one table: pictures, rates, words, or a study: fraction, cap, threshold, norm, end or normal
         #[arg(long, value_name = "NAME", conflicts_with = "quick")]
         study: Option<String>,
     },

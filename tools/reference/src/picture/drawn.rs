@@ -5,7 +5,7 @@ use glint_core::colour::Shading;
 use glint_core::field::Surface;
 use glint_core::light::MeshLighting;
 use glint_core::mesh::Rgb565;
-use glint_model::raymarch::{FieldSetup, Rays, State};
+use glint_model::raymarch::{FieldSetup, State};
 use glint_model::triangle::raster;
 use glint_model::{Frame, MeshSubject, Object, Projected, Subject};
 use glint_vectors::Picture;
@@ -55,11 +55,10 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
     if let Some(field) = constants.field() {
         let setup = &field.setup;
         let eyes = 1 + usize::from(setup.stereo.is_some());
-        let mut rays = Rays::new(setup);
         let places = (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (x, y)));
         for (place, (x, y)) in places.enumerate() {
             for (eye, seen) in seen[place].iter_mut().enumerate().take(eyes) {
-                let (surface, code) = surface(setup, &mut rays, eye, x, y);
+                let (surface, code) = surface(setup, eye, x, y);
                 // At equal depths, the field is in front of the triangle.
                 if code >= buffer.depth[place] && surface != Seen::Background {
                     *seen = surface;
@@ -74,8 +73,8 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
 }
 
 /// End of a ray of a field, and its depth code.
-fn surface(setup: &FieldSetup, rays: &mut Rays, eye: usize, x: u32, y: u32) -> (Seen, u32) {
-    let ray = rays.ray(eye, x, y);
+fn surface(setup: &FieldSetup, eye: usize, x: u32, y: u32) -> (Seen, u32) {
+    let ray = setup.ray(eye, x, y);
     let end = setup.march(&ray);
     let State::Hit(surface) = end.state else {
         return (Seen::Background, 0);

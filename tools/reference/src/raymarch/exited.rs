@@ -19,7 +19,6 @@ pub fn picture(exits: &Exits, eye: usize) -> Vec<(RenderedRay, u32)> {
                 outcome: outcome(exits, &beam, &end),
                 coded: None,
                 steps: end.steps,
-                cones: 0,
             };
             (ray, end.tests)
         })

@@ -22,8 +22,6 @@ pub struct RenderedRay {
     pub coded: Option<f64>,
     /// Number of evaluations of the field by the ray.
     pub steps: u32,
-    /// Number of evaluations by the cones marched just before the ray. The prepass marches one cone for each block of pixels.
-    pub cones: u64,
 }
 
 impl RenderedRay {
@@ -37,24 +35,16 @@ impl RenderedRay {
 }
 
 /// Draws the picture of one eye with the model, row by row. Eye 0 is the left or only eye.
-///
-/// A prepass marches a cone for each block of pixels. The evaluations of the cones of a row of blocks are added to the first ray of the
-/// row.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
-    let mut rays = raymarch::Rays::new(setup);
-    let mut cones = 0;
     pixels(setup)
         .map(|(x, y)| {
-            let ray = rays.ray(eye, x, y);
-            let mut end = rendered_ray(setup, &ray, &setup.march(&ray));
-            end.cones = rays.evaluations() - cones;
-            cones = rays.evaluations();
-            end
+            let ray = setup.ray(eye, x, y);
+            rendered_ray(setup, &ray, &setup.march(&ray))
         })
         .collect()
 }
 
-/// Converts `end`, the model's result of a ray, to the form of the comparison. `cones` of the result is 0.
+/// Converts `end`, the model's result of a ray, to the form of the comparison.
 pub fn rendered_ray(
     setup: &FieldSetup,
     ray: &raymarch::Ray,
@@ -111,7 +101,6 @@ pub fn rendered_ray(
         outcome,
         coded,
         steps: end.steps * setup.passes(),
-        cones: 0,
     }
 }
 
@@ -338,10 +327,8 @@ pub struct Measured {
     pub accuracy: Accuracy,
     /// Errors of the depths from depth codes, over the pixels that hit in both picture and reference.
     pub coded: Option<Quantiles>,
-    /// Number of evaluations of the field by all rays and cones.
+    /// Number of evaluations of the field by all rays.
     pub evaluations: u64,
-    /// Number of evaluations by the cones of the prepass alone (one cone for each block of pixels).
-    pub cones: u64,
     /// Largest number of evaluations by a single ray.
     pub most: u32,
 }
@@ -354,16 +341,12 @@ impl Measured {
         Self {
             accuracy: accuracy(expected, &outcomes(|ray| ray.outcome)),
             coded: accuracy(expected, &outcomes(RenderedRay::by_code)).depth,
-            evaluations: found
-                .iter()
-                .map(|ray| u64::from(ray.steps) + ray.cones)
-                .sum(),
-            cones: found.iter().map(|ray| ray.cones).sum(),
+            evaluations: found.iter().map(|ray| u64::from(ray.steps)).sum(),
             most: found.iter().map(|ray| ray.steps).max().unwrap_or(0),
         }
     }
 
-    /// Returns the mean number of evaluations per ray, including the evaluations by the cones of the prepass.
+    /// Returns the mean number of evaluations per ray.
     pub fn cost(&self) -> f64 {
         self.evaluations as f64 / self.accuracy.rays.max(1) as f64
     }

@@ -93,7 +93,6 @@ impl Method {
             outcome,
             coded: None,
             steps,
-            cones: 0,
         }
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! All tests are in one program, because linking further programs takes time.
 
-mod cones;
 mod exits;
 mod field;
 mod gesture;

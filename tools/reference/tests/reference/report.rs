@@ -330,7 +330,6 @@ fn the_committed_frames_a_second_are_of_these_frames() {
             field: &field,
             appearance: &Appearance::default(),
             quality: Quality::default(),
-            prepass: row.prepass,
         };
         let size = Size::of(row.width, row.height).expect("a size");
         let stereo = row.stereo.as_deref();
@@ -351,7 +350,7 @@ fn the_committed_frames_a_second_are_of_these_frames() {
         );
         counted += 1;
     }
-    assert_eq!(counted, 2 * 4 * views::path().len());
+    assert_eq!(counted, 4 * views::path().len());
     for case in &rates::CASES {
         let mut of_case = rows.iter().filter(|row| case.contains(row)).peekable();
         assert!(of_case.peek().is_some(), "{}: no row", case.field);
@@ -407,8 +406,8 @@ const BOUNDS: [(&str, [f64; 7]); 8] = [
     ("", [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY]),
 ];
 
-/// Draws the small pictures of raymarch.csv again, compares their errors with the committed errors, and checks the bounds of the pictures
-/// without a prepass.
+/// Draws the small pictures of raymarch.csv again, compares their errors with the committed errors, and checks the bounds of the
+/// pictures.
 #[test]
 fn the_committed_pictures_of_fields_hold() {
     let rows: Vec<pictures::Row> = committed("raymarch.csv");
@@ -417,45 +416,35 @@ fn the_committed_pictures_of_fields_hold() {
         .into_iter()
         .flatten()
         .collect();
-    for (prepass, subject) in [false, true]
-        .into_iter()
-        .flat_map(|prepass| subjects.iter().map(move |subject| (prepass, subject)))
-    {
+    for subject in &subjects {
         let row = rows.iter().find(|row| {
-            (&row.scene, &row.view) == (&subject.scene, &subject.name)
-                && row.width == 320
-                && (row.prepass != 0) == prepass
+            (&row.scene, &row.view) == (&subject.scene, &subject.name) && row.width == 320
         });
         let row = row.expect("pictures were added or removed: run `cargo xtask report raymarch`");
-        let picture = subject.picture(&FieldOptions {
-            prepass,
-            ..FieldOptions::of(&subject.parsed)
-        });
+        let picture = subject.picture(&FieldOptions::of(&subject.parsed));
         let measured = Measured::new(&subject.expected, &picture);
         let accuracy = measured.accuracy;
         let depth = accuracy.depth.expect("a visible field");
         let coded = measured.coded.expect("a visible field");
-        if !prepass {
-            let mut bounds = BOUNDS.into_iter();
-            let bounds = bounds.find(|(start, _)| subject.scene.starts_with(start));
-            let (_, bounds) = bounds.expect("every text starts with nothing");
-            let found = [
-                (accuracy.false_hit + accuracy.false_miss) as f64,
-                accuracy.undecided as f64,
-                depth.median,
-                depth.p99,
-                accuracy.wrong_faces,
-                // Some views show only flat faces, without normals of round surfaces to compare.
-                accuracy.normal.map_or(0.0, |normal| normal.p99),
-                measured.cost(),
-            ];
-            assert!(
-                found.iter().zip(bounds).all(|(&found, most)| found <= most),
-                "{}, {}: {measured:?}, at most {bounds:?}",
-                subject.scene,
-                subject.name
-            );
-        }
+        let mut bounds = BOUNDS.into_iter();
+        let bounds = bounds.find(|(start, _)| subject.scene.starts_with(start));
+        let (_, bounds) = bounds.expect("every text starts with nothing");
+        let found = [
+            (accuracy.false_hit + accuracy.false_miss) as f64,
+            accuracy.undecided as f64,
+            depth.median,
+            depth.p99,
+            accuracy.wrong_faces,
+            // Some views show only flat faces, without normals of round surfaces to compare.
+            accuracy.normal.map_or(0.0, |normal| normal.p99),
+            measured.cost(),
+        ];
+        assert!(
+            found.iter().zip(bounds).all(|(&found, most)| found <= most),
+            "{}, {}: {measured:?}, at most {bounds:?}",
+            subject.scene,
+            subject.name
+        );
         for (name, committed, now) in [
             ("iou", Some(row.iou), accuracy.iou),
             (

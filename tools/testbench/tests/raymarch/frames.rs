@@ -1,13 +1,10 @@
 //! Tests of whole frames of the raymarcher.
 
-use glint_model::SIZES;
 use glint_model::raymarch::{Palette, State};
 use glint_testbench::{Raymarcher, Taken};
 use glint_vectors::Random;
 
-use crate::scenes::{
-    FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, setup, setup_with, tunnel,
-};
+use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, setup};
 
 /// Number of lanes of the module `raymarcher_sponge`.
 const LANES: u64 = 4;
@@ -47,11 +44,11 @@ fn draw_in_short(bench: &mut Raymarcher, random: &mut Random, fields: &[&str]) {
 }
 
 #[test]
-fn frames_of_sponges_with_cones_and_stalls() {
+fn frames_of_sponges_with_stalls() {
     let mut random = Random(12);
     let mut bench = Raymarcher::new("raymarcher_sponge", 2);
     for _ in 0..3 {
-        let mut setup = setup_with(&mut random, &SPONGES, true);
+        let mut setup = setup(&mut random, &SPONGES);
         setup.tuning.cap = setup.tuning.cap.min(20);
         bench.draw(Some(&mut random), &setup, &Palette::default());
     }
@@ -63,8 +60,7 @@ fn frames_of_round_fields_in_all_lights() {
     let mut bench = Raymarcher::new("raymarcher", 1);
     for frame in 0..5 {
         let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
-        let prepass = frame % 2 == 1;
-        let mut setup = setup_with(&mut random, fields, prepass);
+        let mut setup = setup(&mut random, fields);
         setup.tuning.cap = setup.tuning.cap.min(20);
         let palette = Palette {
             lights: lights(&mut random),
@@ -110,22 +106,6 @@ fn sponges_keep_the_lanes_busy() {
         let share = taken.stats.evaluations as f64 / (taken.clocks * LANES) as f64;
         assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }
-}
-
-/// Measures the cost of a frame in the sponge's largest tunnel, where rays take the most evaluations, without and with a
-/// prepass of cones: at 320 × 180, or at 1280 × 720 with `GLINT_RTL_FIELDS=all`.
-#[test]
-fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
-    let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|fields| fields == "all");
-    let size = SIZES[if all { 2 } else { 0 }];
-    let mut bench = Raymarcher::new("raymarcher_sponge", 1);
-    let clocks = [false, true].map(|prepass| {
-        let setup = tunnel(size, prepass);
-        let taken = bench.draw(None, &setup, &Palette::default());
-        println!("{size:?}, prepass {prepass}: {}", busy(&taken));
-        taken.clocks
-    });
-    assert!(clocks[1] * 3 < clocks[0] * 2, "{clocks:?} clocks");
 }
 
 #[test]

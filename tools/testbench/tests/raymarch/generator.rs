@@ -4,11 +4,11 @@ use glint_model::raymarch::FieldSetup;
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
-use crate::scenes::{FIELDS, ROUND, every_field, setup, setup_with};
-use glint_testbench::raymarch::{RayPlace, cone, ray, set_blocks, set_generator};
+use crate::scenes::{FIELDS, ROUND, setup};
+use glint_testbench::raymarch::{RayPlace, ray, set_generator};
 use glint_vectors::Random;
 
-/// Name of the module variant with all fields and cones.
+/// Name of the module variant with all fields.
 const GENERATOR: &str = "ray_generator_all";
 
 /// Returns the type of a ray at the module's output.
@@ -38,32 +38,10 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
         .collect()
 }
 
-/// Returns the model's cones of a frame, ordered by their number.
-fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
-    let cones = setup.cones.expect("cones");
-    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
-    let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
-    let places = (0..rows).flat_map(move |row| {
-        (0..eyes).flat_map(move |eye| (0..columns).map(move |column| (eye, column, row)))
-    });
-    (0..)
-        .zip(places)
-        .map(|(number, (eye, column, row))| {
-            cone(
-                layout,
-                RayPlace::of_cone(eye, number),
-                &setup.cone(&cones, eye, column, row),
-            )
-        })
-        .collect()
-}
-
 /// Compares the rays of the first `lines` lines of a frame with the model's; returns the clocks up to the last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_rows(setup.width));
     module.drive("round", setup.is_round());
-    module.drive("cones", 0);
-    module.drive("prepass", 0);
     let rays = expected(&ray_type(module), setup, lines);
     let clocks = run(module, setup, &rays, stalls);
     end(module, lines == setup.height);
@@ -131,33 +109,5 @@ fn whole_frames_and_one_ray_a_clock() {
         let rays = u64::from(eyes * setup.width * setup.height);
         let clocks = check(&mut module, &setup, setup.height, Stalls::new(number, 0.0));
         assert!(clocks <= rays + 35, "{clocks} clocks for {rays} rays");
-    }
-}
-
-#[test]
-fn cones_of_whole_frames() {
-    let mut random = Random(7);
-    let mut module = Module::new(GENERATOR, 3);
-    for number in 0..12 {
-        let setup = setup_with(&mut random, &every_field(), true);
-        let cones = setup.cones.expect("cones");
-        let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
-        set_generator(&mut module, &setup, 45);
-        set_blocks(&mut module, &setup, "offset", "spread");
-        for (name, value) in [
-            ("last_column", columns - 1),
-            ("last_line", 44),
-            ("last_band", rows / 45 - 1),
-            ("round", setup.is_round().into()),
-            ("cones", 1),
-            ("prepass", 1),
-            ("block", cones.block),
-        ] {
-            module.drive(name, value);
-        }
-        let stalls = Stalls::new(number, [0.0, 0.5][number as usize % 2]);
-        let cones = expected_cones(&ray_type(&module), &setup);
-        run(&mut module, &setup, &cones, stalls);
-        end(&mut module, true);
     }
 }

@@ -6,14 +6,14 @@ use glint_core::field::Primitive;
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Pipe};
 
-use crate::scenes::{SPONGES, every_field, setup, setup_with};
-use glint_testbench::raymarch::{End, RayPlace, cone, ray, set_lane};
+use crate::scenes::{SPONGES, every_field, setup};
+use glint_testbench::raymarch::{End, RayPlace, ray, set_lane};
 use glint_vectors::Random;
 
-/// Number of rays or cones in a frame.
+/// Number of rays in a frame.
 const RAYS: usize = 2_000;
 
-/// A sent ray or cone, its expected end, and its number of evaluations of the field.
+/// A sent ray, its expected end, and its number of evaluations of the field.
 struct Sent {
     item: Bits,
     end: End,
@@ -46,28 +46,6 @@ fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMa
     all
 }
 
-/// Makes random cones of a frame, with their expected ends, by place.
-fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<RayPlace, Sent> {
-    let cones = setup.cones.expect("cones");
-    let eyes = if setup.stereo.is_some() { 2 } else { 1 };
-    let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
-    let mut all = HashMap::new();
-    while all.len() < RAYS {
-        let number = random.integer(0, i64::from(columns * rows) - 1) as u32;
-        let eye = random.bits() as usize % eyes;
-        let start = setup.cone(&cones, eye, number % columns, number / columns);
-        let (t, steps) = setup.march_cone(&start);
-        let place = RayPlace::of_cone(eye, number);
-        let sent = Sent {
-            item: cone(layout, place, &start),
-            end: End::expected_of_cone(&start, (t, steps)),
-            steps: steps * setup.passes(),
-        };
-        all.insert(place, sent);
-    }
-    all
-}
-
 struct Bench(Pipe);
 
 impl Bench {
@@ -86,11 +64,10 @@ impl Bench {
         self.0.module.packed_type("raymarch_pkg::ray_t").clone()
     }
 
-    /// Sends rays or cones of a frame through the lane, and compares their ends with the expected ends.
-    fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<RayPlace, Sent>) {
+    /// Sends rays of a frame through the lane, and compares their ends with the expected ends.
+    fn check(&mut self, setup: &FieldSetup, mut expected: HashMap<RayPlace, Sent>) {
         let Self(pipe) = self;
         set_lane(&mut pipe.module, setup);
-        pipe.module.drive("cones", cones);
         let end = pipe.module.packed_type("raymarch_pkg::end_t").clone();
         let count = expected.len();
         let evaluations: u64 = expected.values().map(|sent| u64::from(sent.steps)).sum();
@@ -102,11 +79,7 @@ impl Bench {
         pipe.module.clock();
         for item in pipe.sink.take() {
             let record = end.record_of(item[0]);
-            let (place, found) = if cones {
-                End::of_cone(&record)
-            } else {
-                End::of(&record)
-            };
+            let (place, found) = End::of(&record);
             let sent = expected
                 .remove(&place)
                 .unwrap_or_else(|| panic!("{place:?} ended twice, or was never sent: {setup:?}"));
@@ -135,23 +108,7 @@ fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
         let setup = setup(&mut random, fields);
         let bench = frame % benches.len();
         let rays = some_rays(&mut random, &benches[bench].ray(), &setup);
-        benches[bench].check(&setup, false, rays);
-    }
-}
-
-/// Sends frames of cones and frames of rays alternately.
-#[test]
-fn random_cones_and_rays_in_all_fields() {
-    let mut random = Random(4);
-    let mut benches = benches("ring_lane_all");
-    for frame in 0..rays() / RAYS / 5 {
-        let setup = setup_with(&mut random, &every_field(), true);
-        let bench = &mut benches[frame % 4];
-        if frame / 4 % 3 == 2 {
-            bench.check(&setup, false, some_rays(&mut random, &bench.ray(), &setup));
-        } else {
-            bench.check(&setup, true, some_cones(&mut random, &bench.ray(), &setup));
-        }
+        benches[bench].check(&setup, rays);
     }
 }
 

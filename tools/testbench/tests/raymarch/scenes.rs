@@ -99,16 +99,8 @@ pub fn camera(random: &mut Random) -> View {
 
 /// Makes random frame constants, with random tuning and one or two eyes.
 pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
-    setup_with(random, fields, false)
-}
-
-/// Makes random frame constants as [`setup`] does, with a prepass if `prepass` is set.
-pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool) -> FieldSetup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
-    let mut options = FieldOptions {
-        prepass,
-        ..FieldOptions::of(&field)
-    };
+    let mut options = FieldOptions::of(&field);
     options.stereo = random.coin().then(|| stereo(random));
     if random.coin() {
         let tuning = &mut options.tuning;
@@ -150,16 +142,4 @@ pub fn lights(random: &mut Random) -> Lights {
         count: random.integer(1, 4) as usize,
         materials,
     }
-}
-
-/// Makes the frame constants of a view along the largest tunnel of the Menger sponge.
-pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
-    let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
-    let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
-    let options = FieldOptions {
-        prepass,
-        ..FieldOptions::default()
-    };
-    let sponge = Field::parse("menger:4").unwrap();
-    FieldSetup::new(&sponge, &view, size, &options).unwrap()
 }

@@ -6,7 +6,7 @@ use std::thread;
 use glint_model::FrameBuffer;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayResult, State, render_rows};
 
-/// Number of rows of a strip: the number of rows of the largest block of the prepass.
+/// Number of rows of a strip.
 const ROWS: usize = 16;
 
 /// Draws a field into a picture that already contains its triangles. Returns the counts of its rays, and the number of pixels

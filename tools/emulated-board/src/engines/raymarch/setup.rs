@@ -5,7 +5,7 @@ use glint_core::fixed::Q32_32;
 use glint_core::picture::Size;
 use glint_core::stereo::Tint;
 use glint_model::DepthScale;
-use glint_model::raymarch::{Beside, Cones, Eye, FieldSetup, Palette, Tuning, block_for};
+use glint_model::raymarch::{Beside, Eye, FieldSetup, Palette, Tuning};
 use litex_pac::raymarch::{
     Control, DepthScale as DepthScaleRegister, Kind, Solid as SolidRegister, Stereo,
     Tuning as TuningRegister, offset,
@@ -36,12 +36,6 @@ pub fn field_setup(
     };
     let (solid, beside) = solid(parameters, spheres);
     let steps = [offset::ACROSS_X, offset::DOWN_X].map(|first| parameters.row(first, 32));
-    let eyes = if stereo.is_some() { 2 } else { 1 };
-    let cones = control.prepass().then(|| Cones {
-        block: block_for((width, height), eyes),
-        offset: parameters.row(offset::CONE_OFFSET_X, 32),
-        spread: parameters.unsigned(offset::CONE_SPREAD, 14),
-    });
     let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
     let scale = DepthScaleRegister::from_bits(parameters.word(offset::DEPTH_SCALE));
     // A 6-bit number in two's complement.
@@ -65,7 +59,6 @@ pub fn field_setup(
         eyes: [offset::ORIGIN_LEFT_X, offset::ORIGIN_RIGHT_X].map(|first| eye(parameters, first)),
         steps,
         near: parameters.unsigned(offset::NEAR, 23),
-        cones,
         depth,
         tuning: Tuning {
             threshold: tuning.threshold().into(),

@@ -74,9 +74,8 @@ fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Draws every fourth field from one camera with one or two eyes, every second of these pictures with a prepass; also one field
-/// of each kind that is not in `FIELDS`. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye and with
-/// two eyes, and from one camera also with a prepass.
+/// Draws every fourth field from one camera with one or two eyes; also one field of each kind that is not in `FIELDS`. With
+/// `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye and with two eyes.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = running_board();
@@ -90,26 +89,19 @@ fn the_soc_draws_every_field() {
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
                 let once = side == number % 3;
                 let in_turn = once && stereo.is_some() == ((number / 4 + side) % 2 == 0);
-                for prepass in [false, true] {
-                    let drawn = if all() {
-                        !prepass || once
-                    } else {
-                        is_further && once && stereo.is_none() && !prepass
-                            || in_turn && number % 4 == 0 && prepass == (number / 4 % 2 == 1)
+                let is_drawn =
+                    all() || is_further && once && stereo.is_none() || in_turn && number % 4 == 0;
+                if is_drawn {
+                    let subject = FieldSubject {
+                        field: &field,
+                        appearance: &Appearance::default(),
+                        quality: Quality::default(),
                     };
-                    if drawn {
-                        let subject = FieldSubject {
-                            field: &field,
-                            appearance: &Appearance::default(),
-                            quality: Quality::default(),
-                            prepass,
-                        };
-                        let frame = Frame {
-                            stereo,
-                            ..Frame::new(Subject::Field(subject), *view, Size::W320)
-                        };
-                        compare(&mut renderer, &frame, once);
-                    }
+                    let frame = Frame {
+                        stereo,
+                        ..Frame::new(Subject::Field(subject), *view, Size::W320)
+                    };
+                    compare(&mut renderer, &frame, once);
                 }
             }
         }
@@ -125,7 +117,6 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
         field: &Field::from(Menger { depth: 4 }),
         appearance: &Appearance::default(),
         quality: Quality::default(),
-        prepass: true,
     };
     let [view, ..] = views();
     let sizes = [Size::W640, Size::W1280];
@@ -138,7 +129,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     }
 }
 
-/// Draws a mesh that intersects a field, with clipped triangles, light, fog, sky and prepass, and compares the pictures with
+/// Draws a mesh that intersects a field, with clipped triangles, light, fog and sky, and compares the pictures with
 /// the model's. With `GLINT_RTL_FIELDS=all`, also draws from more cameras, at a second size, and in consecutive frames.
 #[test]
 fn the_soc_draws_a_mesh_in_a_field() {
@@ -161,7 +152,6 @@ fn the_soc_draws_a_mesh_in_a_field() {
         field: &Field::parse("box:0.75,0.75,0.75").unwrap(),
         appearance: &appearance,
         quality: Quality::default(),
-        prepass: true,
     };
     let both = |view, size, cull| {
         let mesh = MeshSubject {

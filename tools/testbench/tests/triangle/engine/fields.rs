@@ -7,7 +7,6 @@ use glint_core::fixed::Q32_32;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
-use glint_model::raymarch::Rays;
 use glint_model::triangle::descriptor::band_rows;
 use glint_model::{FieldSubject, Frame, Subject};
 use glint_testbench::raymarch::{Pixel, RayPlace, pixel};
@@ -33,7 +32,6 @@ impl Picture {
             field: &Field::parse(text).unwrap(),
             appearance: &Appearance::default(),
             quality: Quality::default(),
-            prepass: false,
         };
         let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();
         let frame = Frame {
@@ -47,13 +45,13 @@ impl Picture {
         let image = Drawn::of_frame(&frame);
         let constants = frame.constants().unwrap();
         let field = constants.field().unwrap();
-        let (setup, mut rays) = (&field.setup, Rays::new(&field.setup));
+        let setup = &field.setup;
         let eyes = if tint.is_some() { 2 } else { 1 };
         let lines = band_rows(setup.width);
         let mut bands = vec![vec![]; (setup.height / lines) as usize];
         for (y, x) in (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (y, x))) {
             for eye in 0..eyes {
-                let ray = rays.ray(eye, x, y);
+                let ray = setup.ray(eye, x, y);
                 let place = RayPlace {
                     odd: y / lines % 2 == 1,
                     line: y % lines,

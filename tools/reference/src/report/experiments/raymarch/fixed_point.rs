@@ -122,7 +122,6 @@ impl FixedPoint {
             outcome,
             coded: None,
             steps,
-            cones: 0,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Experiment: errors of the model's pictures, compared with exact hits of the rays, and numbers of distance evaluations.
 
-use glint_model::raymarch::{FieldOptions, FieldSetup};
+use glint_model::raymarch::FieldOptions;
 use serde::{Deserialize, Serialize};
 
 use super::requirements::{LARGE, LARGE_COST, SMALL, SMALL_COST, missed};
@@ -19,8 +19,6 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Side length of the prepass's blocks in pixels; 0 without a prepass. Each block has one cone.
-    pub prepass: u32,
     /// Intersection over union of two sets: the pixels that hit in the picture, and the pixels that hit in the reference.
     pub iou: f64,
     /// Number of pixels where the picture hits and the reference misses.
@@ -48,10 +46,8 @@ pub struct Row {
     /// Fraction of unstable pixels. A pixel is unstable if a tiny change of its ray changes the result, because the pixel is close to an
     /// edge.
     pub unstable: f64,
-    /// Mean number of evaluations per ray, including the evaluations by the cones of the prepass.
+    /// Mean number of evaluations per ray.
     pub evaluations: f64,
-    /// Number of evaluations by the cones of the prepass, divided by the number of rays.
-    pub evaluations_cones: f64,
     /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,
     /// Names of the requirements that the picture does not meet.
@@ -61,7 +57,7 @@ pub struct Row {
 }
 
 impl Row {
-    fn new(subject: &Subject, setup: &FieldSetup, measured: &Measured) -> Self {
+    fn new(subject: &Subject, measured: &Measured) -> Self {
         let &Measured {
             accuracy, coded, ..
         } = measured;
@@ -90,7 +86,6 @@ impl Row {
             view: subject.name.clone(),
             width,
             height,
-            prepass: setup.cones.map_or(0, |cones| 1 << cones.block),
             iou: accuracy.iou,
             false_hits: accuracy.false_hit,
             false_misses: accuracy.false_miss,
@@ -105,7 +100,6 @@ impl Row {
             normal_p99: accuracy.normal.map(|normal| normal.p99),
             unstable: accuracy.unstable,
             evaluations: measured.cost(),
-            evaluations_cones: measured.cones as f64 / accuracy.rays.max(1) as f64,
             evaluations_max: measured.most,
             missed: list(0),
             not_reached: list(1),
@@ -128,19 +122,10 @@ pub fn measure(quick: bool) -> Vec<Row> {
     } else {
         raymarched::sponges(LARGE)
     };
-    let mut rows = Vec::new();
-    for subjects in [small, large] {
-        for prepass in [false, true] {
-            rows.extend(subjects.iter().map(|subject| {
-                let options = FieldOptions {
-                    prepass,
-                    ..FieldOptions::of(&subject.parsed)
-                };
-                let setup = subject.setup(&options);
-                let measured = Measured::new(&subject.expected, &raymarched::picture(&setup, 0));
-                Row::new(subject, &setup, &measured)
-            }));
-        }
-    }
-    rows
+    let subjects = small.iter().chain(&large);
+    let rows = subjects.map(|subject| {
+        let picture = subject.picture(&FieldOptions::of(&subject.parsed));
+        Row::new(subject, &Measured::new(&subject.expected, &picture))
+    });
+    rows.collect()
 }

@@ -46,8 +46,6 @@ pub struct Case {
     /// Text form of the field, as typed in the console.
     pub field: &'static str,
     stereo: Option<&'static str>,
-    /// Whether a prepass marches a cone for each block of pixels.
-    pub prepass: bool,
     /// Width and height in pixels.
     pub size: (u32, u32),
     /// The SoC build that draws the field.
@@ -68,7 +66,6 @@ impl Case {
     pub fn contains(&self, row: &Row) -> bool {
         self.field == row.field
             && self.stereo == row.stereo.as_deref()
-            && self.prepass == row.prepass
             && self.size == (row.width, row.height)
             && self.build.lanes == row.lanes
     }
@@ -78,7 +75,6 @@ impl Case {
 const STEREO_SPONGE: Case = Case {
     field: "menger:4",
     stereo: Some("0.03,1.5"),
-    prepass: false,
     size: (320, 180),
     build: FIELDS,
     cameras: of_the_sponge,
@@ -88,15 +84,15 @@ const STEREO_SPONGE: Case = Case {
     aim: Some(120.0),
 };
 
-/// The sponge, drawn on the full screen with a prepass.
+/// The sponge, drawn on the full screen.
 const LARGE_SPONGE: Case = Case {
     stereo: None,
-    prepass: true,
     size: (1280, 720),
     build: SPONGE,
     path: still,
+    clock: 100.0,
     at_least: 30.0,
-    aim: Some(60.0),
+    aim: None,
     ..STEREO_SPONGE
 };
 
@@ -111,31 +107,12 @@ const LATTICE: Case = Case {
 };
 
 /// All measured cases, in the order of the report's page.
-pub const CASES: [Case; 8] = [
+pub const CASES: [Case; 4] = [
     STEREO_SPONGE,
-    Case {
-        prepass: true,
-        ..STEREO_SPONGE
-    },
-    Case {
-        prepass: false,
-        clock: 100.0,
-        aim: None,
-        ..LARGE_SPONGE
-    },
     LARGE_SPONGE,
-    Case {
-        build: FIELDS,
-        ..LARGE_SPONGE
-    },
     LATTICE,
     Case {
         build: SPHERES,
-        ..LATTICE
-    },
-    Case {
-        prepass: true,
-        at_least: 60.0,
         ..LATTICE
     },
 ];
@@ -168,8 +145,6 @@ pub struct Row {
     pub field: String,
     /// Stereo parameters, as typed in the console; `None` for a picture of one eye.
     pub stereo: Option<String>,
-    /// Whether a prepass marches a cone for each block of pixels.
-    pub prepass: bool,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -251,7 +226,6 @@ fn draw(
             field: &field,
             appearance: &Appearance::default(),
             quality: Quality::default(),
-            prepass: case.prepass,
         };
         let pose = camera.turned(angles).view().map_err(anyhow::Error::msg)?;
         let frame = Frame {
@@ -278,7 +252,6 @@ fn draw(
         rows.push(Row {
             field: case.field.to_owned(),
             stereo: case.stereo.map(str::to_owned),
-            prepass: case.prepass,
             width: case.size.0,
             height: case.size.1,
             lanes: case.build.lanes,

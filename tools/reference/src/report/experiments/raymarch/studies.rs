@@ -1,7 +1,7 @@
 //! Experiments: each study varies one parameter of the raymarching, and measures errors, evaluations and clocks.
 
 use anyhow::{Result, bail};
-use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
+use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Tuning};
 
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
 use super::requirements::{LARGE, SMALL};
@@ -15,14 +15,12 @@ use crate::report::{progress, soc};
 type Study = fn(&Views) -> Vec<Trial>;
 
 /// Name and function of each study, in the order on the report's page. The file of a study is `raymarch-NAME.csv`.
-const STUDIES: [(&str, Study); 8] = [
+const STUDIES: [(&str, Study); 6] = [
     ("fraction", fractions),
     ("cap", caps),
     ("threshold", thresholds),
     ("norm", norms),
     ("end", ends),
-    ("prepass", prepasses),
-    ("block", blocks),
     ("normal", normals),
 ];
 
@@ -203,65 +201,6 @@ fn ends(views: &Views) -> Vec<Trial> {
             })
         });
     trials.collect()
-}
-
-fn prepasses(views: &Views) -> Vec<Trial> {
-    const THRESHOLDS: [u32; 5] = [7, 14, 28, 56, 112];
-    let options = |threshold, prepass| FieldOptions {
-        prepass,
-        ..tuned(Tuning {
-            threshold,
-            ..DEFAULT_TUNING
-        })
-    };
-    // For pictures of this size, the gateware's prepass has blocks of 4 × 4 pixels. Larger blocks exist only in the model.
-    let built = [("no prepass", false), ("blocks of 4", true)];
-    let built = built.into_iter().flat_map(|(family, prepass)| {
-        THRESHOLDS.map(|threshold| {
-            views.model(family, format!("{threshold}"), &options(threshold, prepass))
-        })
-    });
-    let others = [3, 4].into_iter().flat_map(|block| {
-        THRESHOLDS.map(|threshold| with_blocks(views, block, &options(threshold, false)))
-    });
-    built.chain(others).collect()
-}
-
-/// Runs a trial, in software only, with one cone for each block of 2^`block` × 2^`block` pixels.
-fn with_blocks(views: &Views, block: u32, options: &FieldOptions) -> Trial {
-    let family = format!("blocks of {}", 1 << block);
-    views.trial(
-        &family,
-        options.tuning.threshold.to_string(),
-        0,
-        |subject| {
-            let mut setup = subject.setup(options);
-            setup.cones = Some(Cones::new(block, setup.is_round(), &setup.steps));
-            raymarched::picture(&setup, 0)
-        },
-    )
-}
-
-fn blocks(views: &Views) -> Vec<Trial> {
-    let options = [14, DEFAULT_TUNING.threshold, 56, 112].map(|threshold| {
-        tuned(Tuning {
-            threshold,
-            ..DEFAULT_TUNING
-        })
-    });
-    let alone = options.map(|options| {
-        let config = options.tuning.threshold.to_string();
-        views.trial("no prepass", config, 0, |subject| subject.picture(&options))
-    });
-    let blocks = (2..=4).flat_map(|block| {
-        options.map(|options| {
-            let mut trial = with_blocks(views, block, &options);
-            // The gateware's prepass has blocks of 8 × 8 pixels for pictures of this size.
-            trial.shipped = block == 3 && options.tuning == DEFAULT_TUNING;
-            trial
-        })
-    });
-    alone.into_iter().chain(blocks).collect()
 }
 
 fn normals(views: &Views) -> Vec<Trial> {
