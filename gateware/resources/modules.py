@@ -79,7 +79,7 @@ MODULES = [
     Module(top="ray_paint", variants={"ray_paint_all": _ALL_PAINT}),
     Module(top="round_light", measured=("round_light",)),
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
-    Module(top="exit_lane", variants={"exit_lane_deep": {"LEVELS": 6}}),
+    Module(top="exit_lane", variants={"exit_lane_all": {"LEVELS": 6, "LIMITS": 1}}),
     Module(top="exit_reciprocal"),
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},

@@ -43,20 +43,28 @@ module exit_borders #(
     localparam int unsigned UNUSED    = exit_pkg::INTERVAL_BITS - BITS;
     localparam int unsigned CELL_BITS = DEEP ? 10 : 7;
 
+    // Registered, as they have many loads.
     logic is_sponge, is_cubes, is_planes, is_deep;
     logic [DIGITS-1:0] levels;
 
-    assign is_sponge = LEVELS != 0 && (!BOXES || solid.rule == exit_pkg::SPONGE);
-    assign is_cubes  = BOXES && solid.rule == exit_pkg::CUBES;
-    assign is_planes = BOXES && solid.rule == exit_pkg::PLANES;
-    assign is_deep   = DEEP && solid.levels > 3'd4;
+    always_ff @(posedge clk) begin
+        is_sponge <= LEVELS != 0 && (!BOXES || solid.rule == exit_pkg::SPONGE);
+        is_cubes  <= BOXES && solid.rule == exit_pkg::CUBES;
+        is_planes <= BOXES && solid.rule == exit_pkg::PLANES;
+        is_deep   <= DEEP && solid.levels > 3'd4;
+        for (int level = 0; level < DIGITS; level++)
+            levels[level] <= LEVELS != 0 && (!BOXES || solid.rule == exit_pkg::SPONGE) && 3'(level) < solid.levels;
+    end
 
-    always_comb for (int level = 0; level < DIGITS; level++) levels[level] = is_sponge && 3'(level) < solid.levels;
+    // The first digit of a cell is the number of times that PLACE_VALUE fits in its number; a table has the digits of the rest.
+    localparam int unsigned PLACE_VALUE = DEEP ? 243 : 27;
+    localparam int unsigned REST_BITS   = DEEP ? 8 : 5;
 
-    // Returns the ternary digits of a number below 243, in two bits each.
-    function automatic logic [9:0] ternary(input logic [7:0] number);
-        ternary = {2'(number / 8'd81), 2'(number / 8'd27 % 8'd3), 2'(number / 8'd9 % 8'd3), 2'(number / 8'd3 % 8'd3), 2'(number % 8'd3)};
-    endfunction
+    logic [2*DIGITS-3:0] ternary [0:2**REST_BITS-1];
+
+    initial
+        for (int i = 0; i < 2**REST_BITS; i++)
+            ternary[i] = (2*DIGITS-2)'({2'(i / 81), 2'(i / 27 % 3), 2'(i / 9 % 3), 2'(i / 3 % 3), 2'(i % 3)});
 
     // The suffix of a name is the number of clocks after the point.
     logic [2:0][BITS-1:0]      interval_4, interval_5, interval_6;
@@ -66,24 +74,23 @@ module exit_borders #(
     logic [DIGITS-1:0]         two_5, three_5;
 
     for (genvar i = 0; i < 3; i++) begin : axes
-        logic                    below_1, below_2, over_1, over_2;
-        logic [5:0]              cube_1, cube_2;
-        logic [CELL_BITS-1:0]    cell_1;
-        logic [2*DIGITS-1:0]     digits_2;
-        logic [BITS-1:0]         interval_3, reached;
-        logic [exit_pkg::POINT_BITS-2:0] local_0;
+        logic                 below_1, below_2, over_1, over_2, far_1;
+        logic [5:0]           cube_1, cube_2;
+        logic [CELL_BITS-1:0] cell_1;
+        logic [2*DIGITS-1:0]  digits_2;
+        logic [BITS-1:0]      interval_3, reached;
 
-        // Cubes are repeated: only the coordinate within the cell is compared with the side.
-        assign local_0 = {is_cubes ? 9'd0 : point[i][26:18], point[i][17:0]};
         assign reached = reached_3[i][exit_pkg::INTERVAL_BITS-1:UNUSED];
 
         always_ff @(posedge clk) begin
+            // Cubes are repeated: only the coordinate within the cell is compared with the side. The side is even.
             below_1 <= point[i][exit_pkg::POINT_BITS-1];
-            over_1  <= local_0 >= 27'({solid.half[i], 1'b0});
+            over_1  <= {is_cubes ? 4'd0 : point[i][21:18], point[i][17:1]} >= solid.half[i];
+            far_1   <= point[i][26:22] != '0 && !is_cubes;
             cube_1  <= {point[i][exit_pkg::POINT_BITS-1:23] != '0, point[i][22:18]};
 
             below_2 <= below_1;
-            over_2  <= over_1;
+            over_2  <= over_1 || far_1;
             cube_2  <= cube_1;
 
             interval_3[BITS-1] <= !below_2;
@@ -101,25 +108,25 @@ module exit_borders #(
                 middle_5[level][i] <= interval_4[i][BITS-3-2*level +: 2] == 2'd1;
         end
 
-        // The digits of the cell. A cell of a sponge of up to four levels counts as nine cells of 2^9 units.
+        // The digits of the cell. A cell of a sponge of up to four levels counts as nine cells of 2^9 units in a build for more.
+        logic [1:0]           first_1, first_2;
+        logic [REST_BITS-1:0] rest_2;
+
         if (DEEP) begin : deep
-            logic [1:0] first_1, first_2;
-            logic [7:0] rest_2;
-
-            // A multiple of 243 is subtracted modulo 256.
-            assign first_1  = {cell_1 >= 10'd486, cell_1 >= 10'd243 && cell_1 < 10'd486};
-            assign digits_2 = {first_2, ternary(rest_2)};
-
-            always_ff @(posedge clk) begin
-                cell_1  <= {point[i][18:12], is_deep ? point[i][11:9] : 3'd0} + (is_deep ? 10'd0 : 10'(point[i][18:12]));
-                first_2 <= first_1;
-                rest_2  <= cell_1[7:0] + (first_1[1] ? 8'd26 : first_1[0] ? 8'd13 : 8'd0);
-            end
+            always_ff @(posedge clk)
+                cell_1 <= {point[i][18:12], is_deep ? point[i][11:9] : 3'd0} + (is_deep ? 10'd0 : 10'(point[i][18:12]));
         end else begin : plain
-            always_ff @(posedge clk) begin
-                cell_1   <= point[i][18:12];
-                digits_2 <= (2*DIGITS)'(ternary({1'b0, cell_1}));
-            end
+            always_ff @(posedge clk) cell_1 <= point[i][18:12];
+        end
+
+        assign first_1  = {cell_1 >= CELL_BITS'(2 * PLACE_VALUE), cell_1 >= CELL_BITS'(PLACE_VALUE) && cell_1 < CELL_BITS'(2 * PLACE_VALUE)};
+        assign digits_2 = {first_2, ternary[rest_2]};
+
+        always_ff @(posedge clk) begin
+            first_2 <= first_1;
+            // Modulo 2^REST_BITS.
+            rest_2 <= cell_1[REST_BITS-1:0]
+                      - REST_BITS'(first_1[1] ? 2 * PLACE_VALUE : first_1[0] ? PLACE_VALUE : 0);
         end
     end
 
@@ -186,12 +193,13 @@ module exit_borders #(
     end
 
     // Coordinates of planes, in units of 2^UNIT: a cell of a sponge has two, or of up to four levels in a build for more, sixteen. The first
-    // digit is 3 at the upper plane.
-    localparam int unsigned UNIT    = DEEP ? 8 : 11;
-    localparam int unsigned AT_BITS = exit_pkg::PLANE_BITS - UNIT;
+    // digit is 3 at the upper plane. The coordinate of a sponge has fewer bits than those of other solids.
+    localparam int unsigned UNIT     = DEEP ? 8 : 11;
+    localparam int unsigned SUM_BITS = 19 - UNIT;
 
-    // Returns the coordinate of two ternary digits: `unit` times their number, without `centre`. A table: a sum would be a chain of carries.
-    function automatic logic [AT_BITS-1:0] pair(input logic [3:0] digits, input logic [AT_BITS-1:0] unit, input logic [AT_BITS-1:0] centre);
+    // Returns the coordinate of two ternary digits: `unit` times their number, without `centre`. A table: products would be chains of
+    // carries.
+    function automatic logic [SUM_BITS-1:0] pair(input logic [3:0] digits, input logic [SUM_BITS-1:0] unit, input logic [SUM_BITS-1:0] centre);
         case (digits)
             4'b0001: pair = unit - centre;
             4'b0010: pair = unit * 2 - centre;
@@ -207,36 +215,41 @@ module exit_borders #(
     endfunction
 
     for (genvar i = 0; i < 3; i++) begin : planes
-        logic [exit_pkg::DIGIT_BITS-1:0] digits;
-        logic signed [exit_pkg::BORDER_BITS-1:0] border;
-        logic [AT_BITS-1:0] high, middle, low;
+        logic [exit_pkg::DIGIT_BITS-1:0]       digits;
+        logic [exit_pkg::PLANE_BITS-1:0]       border;
+        logic [SUM_BITS-1:0]                   high, middle, low, sum;
 
         assign digits = next[i][exit_pkg::DIGIT_BITS-1:0];
-        assign border = solid.border[i];
+        assign border = exit_pkg::PLANE_BITS'($signed(solid.border[i]));
 
-        // A sponge has two or three terms, cubes and other solids have `border`, and cubes also the number of the cell.
         always_comb begin
             low = '0;
             if (DEEP && is_deep) begin
-                high   = pair(digits[11:8], AT_BITS'(162), AT_BITS'(729));
-                middle = pair(digits[7:4], AT_BITS'(18), '0);
-                low    = pair(digits[3:0], AT_BITS'(2), '0);
+                high   = pair(digits[11:8], SUM_BITS'(162), SUM_BITS'(729));
+                middle = pair(digits[7:4], SUM_BITS'(18), '0);
+                low    = pair(digits[3:0], SUM_BITS'(2), '0);
             end else if (DEEP) begin
-                high   = pair(digits[11:8], AT_BITS'(144), AT_BITS'(648));
-                middle = pair(digits[7:4], AT_BITS'(16), '0);
+                high   = pair(digits[11:8], SUM_BITS'(144), SUM_BITS'(648));
+                middle = pair(digits[7:4], SUM_BITS'(16), '0);
             end else begin
-                high   = pair(digits[11:8], AT_BITS'(18), AT_BITS'(81));
-                middle = pair(digits[7:4], AT_BITS'(2), '0);
+                high   = pair(digits[11:8], SUM_BITS'(18), SUM_BITS'(81));
+                middle = pair(digits[7:4], SUM_BITS'(2), '0);
             end
             if (!is_sponge) begin
-                high   = AT_BITS'(border >>> UNIT);
+                high   = border[18:UNIT];
                 middle = '0;
                 low    = '0;
             end
-            if (is_cubes) middle[AT_BITS-1:18-UNIT] = below_7[i] ? '1 : 7'(digits[11:6]);
+            sum = high + middle + low;
         end
 
-        always_ff @(posedge clk) at[i] <= {high + middle + low, border[UNIT-1:0]};
+        // Cubes also have the number of the cell.
+        logic [6:0] cube, other;
+
+        assign cube  = {7{below_7[i]}} | {1'b0, digits[11:6]};
+        assign other = is_sponge ? {7{sum[SUM_BITS-1]}} : border[24:18];
+
+        always_ff @(posedge clk) at[i] <= {is_cubes ? cube : other, sum[SUM_BITS-2:0], border[UNIT-1:0]};
     end
 endmodule
 

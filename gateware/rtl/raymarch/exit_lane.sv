@@ -23,6 +23,8 @@ module exit_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1,
     parameter bit          STEREO = 1'b1,
+    // Whether each ray has a limit of its own, as that of a ray that meets a sphere. Otherwise `far_t` is the limit of every ray.
+    parameter bit          LIMITS = 1'b0,
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = 32
 ) (
@@ -30,6 +32,7 @@ module exit_lane #(
     input  wire                                           rst,
     input  wire  [1:0][2:0][exit_pkg::PLANE_BITS-1:0]     origins,
     input  wire exit_pkg::solid_t                         solid,
+    input  wire  [exit_pkg::T_BITS-1:0]                   far_t,
     // Rays.
     input  wire                                           in_valid,
     output logic                                          in_ready,
@@ -52,7 +55,7 @@ module exit_lane #(
     logic [COUNT_BITS-1:0] places;
     logic                  enter, finished, again, ended, end_ready, gone_out;
 
-    // State of a ray: T and the axis of the last plane that it has crossed, and the number of evaluations with the one that begins.
+    // State of a ray: T and the axis of the last plane that it has crossed, and the number of evaluations, with that of this round.
     logic [exit_pkg::T_BITS-1:0] t_0, t_21, t_22;
     logic [1:0]                  axis_0, axis_21, axis_22;
     logic [7:0]                  steps_0, steps_21, steps_22;
@@ -64,6 +67,7 @@ module exit_lane #(
     logic [1:0]                     exit_axis_21, exit_axis_22;
     logic [2:0]                     crossed_21, crossed_22;
     logic                           hit_22, left_22, later_22;
+    exit_pkg::end_t                 end_in;
 
     assign again    = occupied[LAST] && !finished;
     assign ended    = occupied[LAST] && finished;
@@ -77,7 +81,7 @@ module exit_lane #(
         over_0   <= !again && in_ray.over;
         t_0      <= !again ? in_ray.start : later_22 ? exit_22 : t_22;
         axis_0   <= !again ? in_ray.axis : exit_axis_22;
-        steps_0  <= (again ? steps_22 : '0) + 1'b1;
+        steps_0  <= (again ? steps_22 : '0) + 8'(again || !in_ray.over);
         if (enter != gone_out) places <= enter ? places - 1'b1 : places + 1'b1;
 
         evaluates <= occupied[0] && !over_0;
@@ -120,7 +124,6 @@ module exit_lane #(
 
     (* ram_style = "distributed" *) logic [AIM_BITS-1:0]                 aims     [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [3*exit_pkg::INVERSE_BITS-1:0] inverses [0:2**SLOT_BITS-1];
-    (* ram_style = "distributed" *) logic [exit_pkg::T_BITS-1:0]         limits   [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [CARGO_BITS-1:0]               cargos   [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [STATE_BITS-1:0]               states   [0:2**SLOT_BITS-1];
 
@@ -128,12 +131,10 @@ module exit_lane #(
     logic [2:0]                             down_0, down_4, down_13, down_22;
     logic [2:0][exit_pkg::SPEED_BITS-1:0]   speed_0, speed_1;
     logic [2:0][exit_pkg::INVERSE_BITS-1:0] inverse_14;
-    logic [exit_pkg::T_BITS-1:0]            limit_21, limit_22;
     logic [raymarch_pkg::PLACE_BITS-1:0]    place_22;
 
     assign {eye_0, down_0, speed_0}             = aims[slot_0];
     assign inverse_14                           = inverses[slot_14];
-    assign limit_21                             = limits[slot_21];
     assign {place_22, down_22}                  = cargos[slot_22];
     assign {t_21, axis_21, steps_21, over_21}   = states[slot_21];
 
@@ -141,12 +142,32 @@ module exit_lane #(
         if (!again) begin
             aims[slot_22]     <= {in_ray.place[17], in_ray.down, in_ray.speed};
             inverses[slot_22] <= in_ray.inverse;
-            limits[slot_22]   <= in_ray.limit;
             cargos[slot_22]   <= {in_ray.place, in_ray.down};
         end
         states[slot_0] <= {t_0, axis_0, steps_0, over_0};
         {t_22, axis_22, steps_22, over_22} <= {t_21, axis_21, steps_21, over_21};
-        limit_22                           <= limit_21;
+    end
+
+    // The limit, and T of an end: without a hit, the limit.
+    logic [exit_pkg::T_BITS-1:0] limit_21, end_t_22;
+
+    if (LIMITS) begin : own_limits
+        (* ram_style = "distributed" *) logic [exit_pkg::T_BITS-1:0] limits [0:2**SLOT_BITS-1];
+        logic [exit_pkg::T_BITS-1:0] limit_22;
+
+        assign limit_21 = limits[slot_21];
+        assign end_t_22 = end_in.hit ? t_22 : limit_22;
+
+        always_ff @(posedge clk) begin
+            if (!again) limits[slot_22] <= in_ray.limit;
+            limit_22 <= limit_21;
+        end
+        wire _unused = &{1'b0, far_t};
+    end else begin : one_limit
+        assign limit_21 = far_t;
+        assign end_t_22 = t_22;
+
+        wire _unused = &{1'b0, in_ray.limit};
     end
 
     delay #(.WIDTH(4), .CLOCKS(4)) signs (.clk, .enable(1'b1), .in({eye_0, down_0}), .out({eye_4, down_4}));
@@ -183,7 +204,7 @@ module exit_lane #(
     end
 
     // The planes around the point.
-    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_8, next_12, next_22;
+    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_8, next_12;
     logic [2:0] there_12, there_19, above_12, above_21;
     logic [1:0] choice_12, choice_19;
     logic       hit_12, hit_21, gone_12, gone_21;
@@ -199,18 +220,26 @@ module exit_lane #(
     delay #(.WIDTH(5), .CLOCKS(9)) ends_wait (.clk, .enable(1'b1), .in({above_12, hit_12, gone_12}), .out({above_21, hit_21, gone_21}));
 
     // The intervals that a ray has reached. Those of a point without a crossed plane need no memory: the ray's later points are not below
-    // it.
+    // it. Only sponges of more than four levels have all digits.
+    localparam int unsigned UNUSED    = LEVELS > 4 ? 0 : 4;
+    localparam int unsigned USED_BITS = exit_pkg::INTERVAL_BITS - UNUSED;
+
+    (* ram_style = "distributed" *) logic [3*(USED_BITS-1)-1:0] followed [0:2**SLOT_BITS-1];
+    logic [2:0][USED_BITS-2:0] next_digits_12, next_digits_22;
+
+    assign next_digits_22 = followed[slot_22];
+    always_ff @(posedge clk) followed[slot_12] <= next_digits_12;
+
     for (genvar i = 0; i < 3; i++) begin : intervals
-        (* ram_style = "distributed" *) logic [exit_pkg::INTERVAL_BITS-1:0] reached  [0:2**SLOT_BITS-1];
-        (* ram_style = "distributed" *) logic [exit_pkg::INTERVAL_BITS-1:0] followed [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [USED_BITS-1:0] reached [0:2**SLOT_BITS-1];
 
-        assign reached_8[i] = reached[slot_8];
-        assign next_22[i]   = followed[slot_22];
+        // The highest bit of a next interval is 1.
+        assign next_digits_12[i] = next_12[i][exit_pkg::INTERVAL_BITS-2:UNUSED];
+        assign reached_8[i]      = exit_pkg::INTERVAL_BITS'(reached[slot_8]) << UNUSED;
 
-        always_ff @(posedge clk) begin
-            followed[slot_12] <= next_12[i];
-            if (!again || crossed_22[i]) reached[slot_22] <= again ? next_22[i] : in_ray.reached[i];
-        end
+        always_ff @(posedge clk)
+            if (!again || crossed_22[i])
+                reached[slot_22] <= again ? {1'b1, next_digits_22[i]} : in_ray.reached[i][exit_pkg::INTERVAL_BITS-1:UNUSED];
     end
 
     // The exits at the planes.
@@ -245,14 +274,12 @@ module exit_lane #(
     assign finished = over_22 || hit_22 || left_22;
 
     // At a hit, the ray ends at the plane that it had crossed before this evaluation.
-    exit_pkg::end_t end_in;
-
     assign end_in.place    = place_22;
     assign end_in.hit      = hit_22 && !over_22;
-    assign end_in.t        = hit_22 && !over_22 ? t_22 : limit_22;
+    assign end_in.t        = end_t_22;
     assign end_in.axis     = axis_22;
     assign end_in.positive = down_22[axis_22];
-    assign end_in.steps    = over_22 ? '0 : steps_22;
+    assign end_in.steps    = steps_22;
 
     // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
     fifo #(.WIDTH(exit_pkg::END_BITS), .DEPTH(PLACES)) ends (

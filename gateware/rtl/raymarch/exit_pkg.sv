@@ -52,8 +52,9 @@ package exit_pkg;
     localparam int unsigned INVERSE_BITS = SCALE_BITS + FACTOR_BITS;
 
     // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start`
-    // is its T, `limit` the largest T of a hit, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that
-    // it has reached, 0 where it has crossed no plane. A ray with `over` misses without an evaluation.
+    // is its T, `limit` the largest T of a hit where rays have limits of their own, `axis` the axis of the last plane that it has crossed,
+    // and `reached` has the intervals that it has reached, 0 where it has crossed no plane. A ray with `over` misses without an evaluation;
+    // other rays start within their limit.
     typedef struct packed {
         logic                          over;
         logic [PLACE_BITS-1:0]         place;
@@ -66,8 +67,8 @@ package exit_pkg;
         logic [2:0][INVERSE_BITS-1:0]  inverse;
     } ray_t;
 
-    // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit), the axis and the sign of the face's outward
-    // normal, and the number of evaluations.
+    // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit if rays have limits of their own, and any T
+    // otherwise), the axis and the sign of the face's outward normal, and the number of evaluations.
     typedef struct packed {
         logic [PLACE_BITS-1:0] place;
         logic                  hit;

@@ -47,12 +47,9 @@ module exit_quotient (
     always_ff @(posedge clk) begin
         t[exit_pkg::T_BITS] <= product_4[53:48] != '0 || scale_4 != '0 && product_4[47:40] != '0
                                || scale_4[1] && product_4[39:32] != '0 || scale_4 == '1 && product_4[31:24] != '0;
-        unique case (scale_4)
-            2'd0: t[exit_pkg::T_BITS-1:0] <= product_4[47:20];
-            2'd1: t[exit_pkg::T_BITS-1:0] <= product_4[39:12];
-            2'd2: t[exit_pkg::T_BITS-1:0] <= product_4[31:4];
-            2'd3: t[exit_pkg::T_BITS-1:0] <= {product_4[23:0], 4'd0};
-        endcase
+        t[exit_pkg::T_BITS-1:0] <= scale_4 == 2'd3 ? {product_4[23:0], 4'd0}
+                                   : scale_4 == 2'd2 ? product_4[31:4]
+                                   : scale_4 == 2'd1 ? product_4[39:12] : product_4[47:20];
     end
 
     wire _unused = &{1'b0, high_4[42:PRODUCT_BITS-LOW_BITS]};

@@ -9,7 +9,7 @@ use glint_model::raymarch::exits::{Beam, Exits, Eye, Inverse, Rule, Solid, Words
 use glint_testbench::{Bits, Layout, Module, Pipe};
 use glint_vectors::Random;
 
-use crate::scenes::{FIELDS, SPONGES, camera, size, stereo};
+use crate::scenes::{FIELDS, SPONGES, UNIONS, camera, size, stereo};
 
 /// Number of rays in a frame.
 const RAYS: usize = 2_000;
@@ -21,12 +21,18 @@ fn fields() -> Vec<&'static str> {
     SPONGES.into_iter().chain(others).collect()
 }
 
-/// Fields of a lane that draws sponges up to depth 6.
-fn deep_fields() -> Vec<&'static str> {
-    [&SPONGES[..], &FIELDS].concat()
+/// Fields of a lane that draws sponges up to depth 6, and whose rays may meet spheres.
+fn all_fields() -> Vec<&'static str> {
+    let is_union = |field: &&str| field.starts_with("union:");
+    let unions = UNIONS.into_iter().filter(is_union);
+    [&SPONGES[..], &FIELDS]
+        .concat()
+        .into_iter()
+        .chain(unions)
+        .collect()
 }
 
-/// End of a ray. A miss has the ray's limit as its parameter, and no face.
+/// End of a ray. A miss has no face, and the ray's limit as its parameter: the far limit, or the parameter at a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct End {
     is_hit: bool,
@@ -86,20 +92,21 @@ fn set_lane(module: &mut Module, exits: &Exits) {
     };
     record.set_all("border", half().map(border));
     module.drive_bits("solid", record.bits());
+    module.drive("far_t", exits.far);
     for (eye, Eye { origin, .. }) in exits.eyes.iter().enumerate() {
         module.drive_all(&format!("origins[{eye}]"), origin.iter().copied());
     }
 }
 
-/// Packs a ray as a `ray_t`.
-fn pack(layout: &Layout, exits: &Exits, place: u32, beam: &Beam) -> Bits {
+/// Packs a ray as a `ray_t`. `end` is its end in the model.
+fn pack(layout: &Layout, exits: &Exits, place: u32, beam: &Beam, end: &End) -> Bits {
     let solid = exits.solid.expect("a solid");
     let mut record = layout.record();
     record.set("place", place);
     let start = &beam.start;
-    record.set("over", exits.misses_at_start(beam));
+    record.set("over", end.steps == 0);
     record.set("start", start.t.min(exits.far));
-    record.set("limit", exits.far);
+    record.set("limit", if end.is_hit { exits.far as u64 } else { end.t });
     record.set("axis", start.face as u64);
     let down = (0..3).filter(|&axis| beam.down[axis]);
     record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
@@ -136,33 +143,43 @@ fn some_rays(
         let place = (y / 64 % 2) << 18 | (eye as u32) << 17 | (y % 64) << 11 | x;
         let beam = exits.ray(eye, x, y);
         let found = exits.follow(&beam);
-        let face = match found.state {
-            State::Hit(Surface::Face { axis, positive }) => Some((axis.into(), positive)),
-            _ => None,
+        let (face, t) = match found.state {
+            State::Hit(Surface::Face { axis, positive }) => {
+                (Some((axis.into(), positive)), found.t)
+            }
+            State::Hit(_) => (None, found.t),
+            _ => (None, exits.far),
         };
         let end = End {
             is_hit: face.is_some(),
-            t: if face.is_some() { found.t } else { exits.far } as u64,
+            t: t as u64,
             face,
             steps: found.steps.into(),
         };
-        let item = pack(layout, exits, place, &beam);
+        let item = pack(layout, exits, place, &beam, &end);
         all.insert(place, Sent { item, end });
     }
     all
 }
 
-struct Bench(Pipe);
+struct Bench {
+    pipe: Pipe,
+    /// Whether rays have limits of their own; otherwise the parameter of a miss has no meaning.
+    has_limits: bool,
+}
 
 impl Bench {
     fn new(name: &str, seed: u32, stalls: [f64; 2]) -> Self {
         let (rays, ends) = (("in", &["ray"][..]), ("out", &["end"][..]));
-        Self(Pipe::new(name, seed, rays, ends, stalls))
+        Self {
+            pipe: Pipe::new(name, seed, rays, ends, stalls),
+            has_limits: name == "exit_lane_all",
+        }
     }
 
     /// Sends rays of a frame through the lane, and compares their ends with the expected ends.
     fn check(&mut self, exits: &Exits, mut expected: HashMap<u32, Sent>) {
-        let Self(pipe) = self;
+        let Self { pipe, has_limits } = self;
         set_lane(&mut pipe.module, exits);
         let layout = pipe.module.packed_type("exit_pkg::end_t").clone();
         let count = expected.len();
@@ -178,9 +195,14 @@ impl Bench {
             let record = layout.record_of(item[0]);
             let place = record.get("place") as u32;
             let is_hit = record.is_set("hit");
+            let has_t = is_hit || *has_limits;
             let found = End {
                 is_hit,
-                t: record.get("t"),
+                t: if has_t {
+                    record.get("t")
+                } else {
+                    exits.far as u64
+                },
                 face: is_hit.then(|| (record.get("axis"), record.is_set("positive"))),
                 steps: record.get("steps"),
             };
@@ -231,7 +253,11 @@ fn random_rays(name: &str, fields: &[&str]) {
         .zip(shares)
         .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
-    let layout = benches[0].0.module.packed_type("exit_pkg::ray_t").clone();
+    let layout = benches[0]
+        .pipe
+        .module
+        .packed_type("exit_pkg::ray_t")
+        .clone();
     for frame in 0..frames() {
         let field = Field::parse(fields[frame % fields.len()]).expect("a field");
         let stereo = random.coin().then(|| stereo(&mut random));
@@ -249,6 +275,6 @@ fn random_rays_in_flat_solids() {
 }
 
 #[test]
-fn random_rays_in_deep_sponges() {
-    random_rays("exit_lane_deep", &deep_fields());
+fn random_rays_with_limits() {
+    random_rays("exit_lane_all", &all_fields());
 }
