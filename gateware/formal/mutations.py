@@ -114,6 +114,10 @@ def _ring(old, new, fails):
     return Mutation("ring_lane.sv", old, new, fails)
 
 
+def _exits(old, new, fails):
+    return Mutation("exit_lane.sv", old, new, fails)
+
+
 _FIFO = [
     _fifo("read_valid <= stored ||", "read_valid <= stored && in_valid ||", "order.shown_in_time"),
     _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "shown.payload_stable"),
@@ -223,6 +227,23 @@ MUTATIONS = {
         _ring("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "takes_again"),
         _ring("{in_ray.place, in_ray.length,", "{in_ray.place, ~in_ray.length,", "as_it_came"),
         _ring("steps_1 + 8'd1 >= tuning.cap", "steps_1 >= tuning.cap", "counts_steps"),
+        Mutation("fifo.sv", "stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
+        Mutation("fifo.sv", "load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
+    ],
+    "exit_lane": [
+        _exits("again || enter}", "again || in_valid}", "none_made_up"),
+        _exits("if (!again) begin", "if (!again || in_valid) begin", "none_twice"),
+        _exits("assign in_ready = !again && places", "assign in_ready = places", "none_lost"),
+        _exits("!again && places != '0;\n    assign enter", "!again;\n    assign enter", "no_more_than_fit"),
+        _exits("occupied[LAST] && finished;", "occupied[LAST] && finished && !in_valid;", "none_lost"),
+        _exits("= over_22 || hit_22 || left_22;", "= over_22 || left_22;", "none_lost"),
+        _exits("enter ? places - 1'b1 : places + 1'b1", "enter ? places - 1'b1 : places", "empty_takes"),
+        _exits("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "takes_again"),
+        _exits("slot_21 <= following(slot_21);", "slot_21 <= following(slot_12);", "limit_in_step"),
+        _exits("states[slot_0] <=", "states[slot_22] <=", "start_in_step"),
+        _exits("reached[slot_8])", "reached[slot_12])", "tag_in_step"),
+        _exits("followed[slot_12] <=", "followed[slot_13] <=", "tag_in_step"),
+        _exits("+ 8'(again || !in_ray.over);", "+ 8'd1;", "counts_steps"),
         Mutation("fifo.sv", "stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
         Mutation("fifo.sv", "load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
     ],

@@ -34,7 +34,8 @@ _AT_A_TIME = 2
 
 
 # Stand-ins for modules of gateware/rtl, for the proofs that list them.
-_STAND_INS = ("any_colour", "any_field", "any_level", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
+_STAND_INS = ("any_colour", "any_field", "any_level", "any_product", "any_tables", "any_solid", "any_stepper", "no_product",
+              "plain_setup")
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
 
@@ -78,6 +79,7 @@ class Proof:
 # their mutations.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 35, ("any_product", "any_field"), engine=_WORDS),
+    Proof("exit_lane", "exit_lane_proof", 54, ("any_product", "any_solid")),
     Proof("line_raster", "line_raster_proof", 23),
     Proof("line_setup", "line_setup_proof", 47, ("any_product",)),
     Proof("band_flush", "band_flush_proof", 20),
