@@ -13,24 +13,32 @@ module exit_reciprocal (
     input  wire  [23:0]                        magnitude,
     output logic [exit_pkg::INVERSE_BITS-1:0]  inverse
 );
-    // The suffix of a name is the number of clocks after the magnitude.
+    // The suffix of a name is the number of clocks after the magnitude. The shift is 8 times a number, plus twice a number, plus a bit, so
+    // that these are the bits of its sum.
     logic [24:0] whole_0, whole_1, whole_2, whole_3;
-    logic [4:0]  lead_1, lead_2, lead_3, lead_9;
+    logic [1:0]  eights_0, twos_1;
+    logic [4:0]  lead_3, lead_9;
+    logic [1:0]  eights_1;
+    logic [3:0]  lead_2;
 
     assign whole_0 = {magnitude, 1'b1};
 
+    always_comb begin
+        if (whole_0[24:17] != '0)     eights_0 = 2'd0;
+        else if (whole_0[16:9] != '0) eights_0 = 2'd1;
+        else                          eights_0 = {1'b1, whole_0[8:1] == '0};
+        if (whole_1[24:23] != '0)      twos_1 = 2'd0;
+        else if (whole_1[22:21] != '0) twos_1 = 2'd1;
+        else                           twos_1 = {1'b1, whole_1[20:19] == '0};
+    end
+
     always_ff @(posedge clk) begin
-        if (whole_0[24:17] != '0)     {lead_1, whole_1} <= {5'd0, whole_0};
-        else if (whole_0[16:9] != '0) {lead_1, whole_1} <= {5'd8, whole_0[16:0], 8'd0};
-        else if (whole_0[8:1] != '0)  {lead_1, whole_1} <= {5'd16, whole_0[8:0], 16'd0};
-        else                          {lead_1, whole_1} <= {5'd24, 1'b1, 24'd0};
-
-        if (whole_1[24:23] != '0)      {lead_2, whole_2} <= {lead_1, whole_1};
-        else if (whole_1[22:21] != '0) {lead_2, whole_2} <= {lead_1 + 5'd2, whole_1[22:0], 2'd0};
-        else if (whole_1[20:19] != '0) {lead_2, whole_2} <= {lead_1 + 5'd4, whole_1[20:0], 4'd0};
-        else                           {lead_2, whole_2} <= {lead_1 + 5'd6, whole_1[18:0], 6'd0};
-
-        {lead_3, whole_3} <= whole_2[24] ? {lead_2, whole_2} : {lead_2 + 5'd1, whole_2[23:0], 1'b0};
+        whole_1  <= whole_0 << {eights_0, 3'd0};
+        eights_1 <= eights_0;
+        whole_2  <= whole_1 << {twos_1, 1'b0};
+        lead_2   <= {eights_1, twos_1};
+        whole_3  <= whole_2[24] ? whole_2 : whole_2 << 1;
+        lead_3   <= {lead_2, !whole_2[24]};
     end
 
     // The value at the end of interval i is 2^34/(1025 + i), with 24 bits. Its first bit is 1; its second bit, 1 up to i = 340, follows from
@@ -48,19 +56,25 @@ module exit_reciprocal (
         for (int i = 0; i < 1024; i++)
             entries[i] = {22'(quotient(1025 + i)), 14'(quotient(1024 + i) - quotient(1025 + i))};
 
-    logic [35:0] entry_4, entry_5;
-    logic        high_4, high_5;
+    // A second port reads the value two clocks later, when the sum needs it.
+    logic [35:0] fall_4, fall_5, start_6, start_7;
+    logic [9:0]  index_4, index_5;
+    logic        high_6, high_7;
     logic [14:0] left_4, left_5;
-    logic [23:0] value_7;
 
     always_ff @(posedge clk) begin
-        entry_4 <= entries[whole_3[23:14]];
-        high_4  <= whole_3[23:14] <= 10'(LAST_HIGH);
+        fall_4  <= entries[whole_3[23:14]];
+        fall_5  <= fall_4;
         // The part of the interval after the number.
         left_4  <= 15'd16384 - {1'b0, whole_3[13:0]};
-        entry_5 <= entry_4;
-        high_5  <= high_4;
         left_5  <= left_4;
+
+        index_4 <= whole_3[23:14];
+        index_5 <= index_4;
+        start_6 <= entries[index_5];
+        high_6  <= index_5 <= 10'(LAST_HIGH);
+        start_7 <= start_6;
+        high_7  <= high_6;
     end
 
     // The sum is rounded up: the decrease up to the number is rounded down.
@@ -69,9 +83,8 @@ module exit_reciprocal (
     logic [24:0]        half_9;
     logic               low_8, low_9;
 
-    delay #(.WIDTH(24), .CLOCKS(2)) value_waits (.clk, .enable(1'b1), .in({1'b1, high_5, entry_5[35:14]}), .out(value_7));
     multiply_add #(.BITS(40)) interpolation (
-        .clk, .enable(1'b1), .a({11'd0, entry_5[13:0]}), .b({3'd0, left_5}), .c({2'd0, value_7, 14'h3FFF}), .p(sum_8)
+        .clk, .enable(1'b1), .a({11'd0, fall_5[13:0]}), .b({3'd0, left_5}), .c({3'd1, high_7, start_7[35:14], 14'h3FFF}), .p(sum_8)
     );
     assign value_8 = sum_8[38:14];
     assign low_8   = !value_8[24] && value_8[23:22] != 2'b11;
@@ -96,7 +109,7 @@ module exit_reciprocal (
         inverse            <= {scale_11, odd_11 ? {coarse_11, 1'b0} : {1'b0, coarse_11}};
     end
 
-    wire _unused = &{1'b0, sum_8[39], sum_8[13:0], half_9[24], half_9[0], whole_3[24]};
+    wire _unused = &{1'b0, sum_8[39], sum_8[13:0], half_9[24], half_9[0], whole_3[24], fall_5[35:14], start_7[13:0]};
 endmodule
 
 `default_nettype wire
