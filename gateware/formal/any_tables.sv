@@ -1,4 +1,4 @@
-// Stand-ins for the tables of the raymarcher, and for its depth codes, in proofs. They return arbitrary results, so properties
+// Stand-ins for the tables of the raymarcher, for its depth codes, and for its reciprocals and quotients, in proofs. They return arbitrary results, so properties
 // proven with them hold for all contents.
 
 `default_nettype none
@@ -42,6 +42,27 @@ module depth_code (
     (* anyseq *) logic [17:0] any;
 
     assign code = any;
+endmodule
+
+module exit_reciprocal (
+    input  wire                                clk,
+    input  wire  [23:0]                        magnitude,
+    output logic [exit_pkg::INVERSE_BITS-1:0]  inverse
+);
+    (* anyseq *) logic [exit_pkg::INVERSE_BITS-1:0] any;
+
+    assign inverse = any;
+endmodule
+
+module exit_quotient (
+    input  wire                                clk,
+    input  wire  [exit_pkg::PLANE_BITS-1:0]   distance,
+    input  wire  [exit_pkg::INVERSE_BITS-1:0]  inverse,
+    output logic [exit_pkg::EXIT_BITS-1:0]     t
+);
+    (* anyseq *) logic [exit_pkg::EXIT_BITS-1:0] any;
+
+    assign t = any;
 endmodule
 
 `default_nettype wire

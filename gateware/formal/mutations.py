@@ -98,6 +98,14 @@ def _generator(old, new, fails):
     return Mutation("ray_generator.sv", old, new, fails)
 
 
+def _pixels(old, new, fails):
+    return Mutation("ray_pixels.sv", old, new, fails)
+
+
+def _start(old, new, fails):
+    return Mutation("exit_start.sv", old, new, fails)
+
+
 def _smooth(old, new, fails):
     return Mutation("smooth_shader.sv", old, new, fails)
 
@@ -168,18 +176,18 @@ MUTATIONS = {
     "ray_generator": [
         _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
         _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
-        _generator("in_valid(valid[LAST])", "in_valid(valid[LAST] || valid[LAST-1])", "nothing_made_up"),
+        _start("out_valid = valid[LAST];", "out_valid = valid[LAST] || valid[LAST-1];", "nothing_made_up"),
         _credit("next > COUNT_BITS'(1)", "1'b1", "in_order"),
-        _generator("enters    = running && credit;", "enters    = running;", "in_order"),
-        _generator("begins || running || !empty;", "begins || running;", "busy_to_the_end"),
-        _generator("begins || running || !empty;", "begins || running || !empty || !start;", "idle_afterwards"),
-        _generator("in_valid(valid[LAST])", "in_valid(valid[LAST] && out_ready)", "shown_in_time"),
+        _pixels("valid     = running && credit;", "valid     = running;", "in_order"),
+        _generator("walking || !empty;", "walking;", "busy_to_the_end"),
+        _generator("walking || !empty;", "walking || !empty || !start;", "idle_afterwards"),
+        _start("out_valid = valid[LAST];", "out_valid = valid[LAST] && in_valid;", "shown_in_time"),
     ],
     "ray_paint": [
         _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
         _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _paint("in_valid && in_ready};", "in_valid};", "nothing_made_up"),
-        _paint("CLOCKS(26)) place_waits", "CLOCKS(25)) place_waits", "in_order"),
+        _paint("CLOCKS(26 - BEGIN)) place_waits", "CLOCKS(25 - BEGIN)) place_waits", "in_order"),
         _credit("next > COUNT_BITS'(1)", "next != '0", "nothing_too_many"),
         _paint("valid <= {valid", "if (in_valid) valid <= {valid", "shown_in_time"),
         _credit("gave    <= out_valid && out_ready;", "gave    <= out_valid && out_ready && !sent;", "taken_in_time"),

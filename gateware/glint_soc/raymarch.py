@@ -11,7 +11,7 @@ from migen import Case, Cat, ClockSignal, Constant, If, Instance, Mux, ResetSign
 
 from .clock_control import ClockControl
 from .counters import Counters
-from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
+from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_exits, has_octants, mask
 from .packed import Package, Struct
 from .parameters import Parameter, PassParameters
 from .rtl import add_sources
@@ -23,6 +23,14 @@ _ERRORS = [
     ("1", "field", "the flat field, the depth of the sponge, spheres or fillets are not built"),
     ("2", "stereo", "two eyes are not built"),
 ]
+
+_RULES = [("0", "box", "inside of a box"), ("1", "planes", "outside of the slab between two planes"),
+          ("2", "sponge", "Menger sponge"), ("3", "cubes", "cubes, repeated every 64 field units")]
+
+_EXITS = [("0", "second", "the second of three"), ("1", "first", "the first"), ("2", "last", "the last")]
+
+INTERVAL_BITS = 13
+"""Width of the interval of a coordinate: `INTERVAL_BITS` of rtl/raymarch/exit_pkg.sv."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +44,16 @@ class Fields:
     round: bool = True
     blend: bool = True
     stereo: bool = True
+
+    @property
+    def has_exits(self):
+        """Whether rays of some fields leave empty prisms."""
+        return has_exits(self.flat)
+
+    @property
+    def has_marching(self):
+        """Whether rays of some fields march by distances."""
+        return self.round or has_octants(self.flat)
 
     def parameters(self):
         """Returns the parameters of the module by name."""
@@ -122,9 +140,21 @@ class Raymarcher(LiteXModule):
             CSRField("kind", size=KIND_BITS, offset=22,
                      values=[(str(number), flat.name, flat.text) for number, flat in enumerate(FLAT_FIELDS)],
                      description="Kind of the flat field."),
-        ], description="The solid.")
+        ], description="The solid of marching rays.")
+        self._exits = Parameter(name="exits", fields=[
+            CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances."),
+            CSRField("rule", size=2, offset=1, values=_RULES, description="The solid."),
+            CSRField("depth", size=3, offset=4, description="Levels of the sponge."),
+            *(CSRField(f"{eye}_exit", size=2, offset=8 + 2 * number, values=_EXITS,
+                       description=f"By which of its planes a ray leaves the prism around the {eye} eye.")
+              for number, eye in enumerate(("left", "right"))),
+        ], description="Rays by exits: the solid whose empty prisms they leave.")
+        border = [self._register(f"border_{axis}", 22, f"By exits, the coordinate of a plane perpendicular to {axis}, s9.12: the lower plane "
+                                 "of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes.")
+                  for axis in "xyz"]
         self._cube_half = Parameter(22, name="cube_half", description="Half the side of the sponge's smallest solid cubes, u10.12.")
-        box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12.") for axis in "xyz"]
+        box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12; by exits of any solid, and of a "
+                                   "repeated cube.") for axis in "xyz"]
         self._tuning = Parameter(name="tuning", fields=[
             CSRField("threshold", size=16, offset=0, description="Threshold, u4.12: a ray hits where the distance is below "
                      "threshold + t * 2^-footprint."),
@@ -133,16 +163,25 @@ class Raymarcher(LiteXModule):
             CSRField("cap", size=8, offset=20, description="Step limit, at least 1: evaluations after which a ray is undecided. "
                      "Fields with spheres take four times this limit."),
         ], description="Threshold and step limit of the rays.")
-        self._far = Parameter(23, name="far", description="Far limit of t, u11.12.")
-        self._near = Parameter(23, name="near", description="Depth of the near plane, or of the nearest corner of the bounding box "
-                                "if larger, times 2^e, u11.12.")
-        origins, outside, first = [], [], []
+        self._far = Parameter(28, name="far", description="Far limit: of T, u14.14, by exits; of t, u11.12, of marching rays.")
+        self._near = Parameter(28, name="near", description="Near limit: by exits the near plane's T, u14.14; of marching rays the depth of "
+                               "the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12.")
+        origins, outside, first, starts, nexts = [], [], [], [], []
         for eye in ("left", "right"):
             for axis in "xyz":
                 origins.append(self._register(f"origin_{eye}_{axis}", 25, f"Position of the {eye} eye, {axis}, s13.12."))
                 outside.append(self._register(f"outside_{eye}_{axis}", 24, f"Distance of the {eye} eye outside of the bounding box "
                                               f"along {axis}, u12.12."))
                 first.append(self._register(f"first_{eye}_{axis}", 32, f"D of the {eye} eye's first ray, {axis}, s2.30."))
+                nexts.append(self._register(f"next_{eye}_{axis}", 29, f"Intervals above the planes of the prism around the {eye} eye "
+                                            f"along {axis} (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the "
+                                            "mirrored axis in bits 16 to 28."))
+            for way, text in (("", ""), ("mirrored_", "mirrored ")):
+                for axis in "xyz":
+                    starts.append(self._register(f"start_{eye}_{way}{axis}", 28, "Plane of the empty prism around the "
+                                                 f"{eye} eye along the {text}{axis} axis: its distance in bits 0 to 24, u12.12; "
+                                                 "bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit "
+                                                 "27 if it has left the solid beyond the plane."))
         bounds = [self._register(f"bounds_{axis}", 24, f"Half the side of the bounding box along {axis}, u12.12.")
                   for axis in "xyz"]
         across = [self._register(f"across_{axis}", 32, f"Change of D per column, {axis}, s2.30.") for axis in "xyz"]
@@ -189,13 +228,14 @@ class Raymarcher(LiteXModule):
         enable, stereo = (getattr(self._control.fields, name) for name in ("enable", "stereo"))
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
-        solid, tuning = self._solid.fields, self._tuning.fields
+        solid, exits, tuning = self._solid.fields, self._exits.fields, self._tuning.fields
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
         # Kind 0, the sponge, is accepted by every build: without levels it is an empty field, which a frame of spheres alone
         # selects.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
-        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | (solid.is_round & int(not fields.round)) |
+        no_rays = (exits.enable & int(not fields.has_exits)) | (~exits.enable & int(not fields.has_marching))
+        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (solid.is_round & int(not fields.round)) |
                                   (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
         constants = Struct("solid_t", "The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and "
@@ -206,15 +246,19 @@ class Raymarcher(LiteXModule):
             "cube_half": self._cube_half.storage, "half": _contents(box_half),
             **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
         limits = Struct("tuning_t", "Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.", {
-            **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage})
+            **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage[:23]})
         colours = Struct("palette_t", "Colours, {blue, green, red}, of the zenith, of undecided rays, and of the faces by surface.", {
             "zenith": palette[7].storage, "undecided": palette[6].storage,
             "faces": [*_contents(palette[:6]), *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
         # The registers that this build reads, without registers whose writes take effect at once.
         eyes = 2 if fields.stereo else 1
-        registers = [self._cube_half, *box_half, self._tuning, self._far, self._near, *origins[:3*eyes], *outside[:3*eyes],
-                     *first[:3*eyes], *bounds, *across, *down, self._depth_scale, *palette, self._horizon, self._fog_shift]
+        registers = [*box_half, self._far, self._near, *origins[:3*eyes], *first[:3*eyes], *across, *down, self._depth_scale, *palette,
+                     self._horizon, self._fog_shift]
+        if fields.has_exits:
+            registers += [*border, *starts[:6*eyes], *nexts[:3*eyes]]
+        if fields.has_marching:
+            registers += [self._cube_half, self._tuning, *outside[:3*eyes], *bounds]
         self.parameters = PassParameters(registers)
         # Parameters are also copied while the block is disabled.
         self.clock_control = ClockControl(
@@ -243,6 +287,19 @@ class Raymarcher(LiteXModule):
             i_across         = Cat(*_contents(across)),
             i_down           = Cat(*_contents(down)),
             i_near_limit     = self._near.storage,
+            i_far_limit      = self._far.storage,
+            i_exits          = exits.enable,
+            i_rule           = exits.rule,
+            i_levels         = exits.depth,
+            i_halves         = Cat(*(half.storage[:21] for half in box_half)),
+            i_borders        = Cat(*_contents(border)),
+            i_choice         = Cat(exits.left_exit, exits.right_exit),
+            i_distances      = Cat(*(start.storage[:25] for start in starts)),
+            i_there          = Cat(*(start.storage[25] for start in starts)),
+            i_away           = Cat(*(start.storage[26] for start in starts)),
+            i_last           = Cat(*(start.storage[27] for start in starts)),
+            i_nexts          = Cat(*(after.storage[way:way + INTERVAL_BITS] for pair in (nexts[:3], nexts[3:]) for way in (0, 16)
+                                     for after in pair)),
             i_origins        = Cat(*_contents(origins)),
             i_outside        = Cat(*_contents(outside)),
             i_bounds         = Cat(*_contents(bounds)),

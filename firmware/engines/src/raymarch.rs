@@ -2,13 +2,14 @@
 
 use core::fmt;
 
-use glint_core::field::{FixedSpheres, FlatConstants, Solid};
+use glint_core::field::{FixedSpheres, FlatConstants, Solid as Marched};
 use glint_core::stereo::Tint;
 use glint_hal::raymarch::{
-    self as driver, Capabilities, Control, Counters, DepthScale, Eye, Field, Kind, Raymarcher,
-    Stereo, Tables, Tuning, colour,
+    self as driver, Capabilities, Control, Counters, DepthScale, Exit, Field, Kind, Raymarcher,
+    Solid, Start, Stereo, Tables, Tuning, colour,
 };
-use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Lights, Palette};
+use glint_model::raymarch::exits::{self, AXES, Exits, Rule};
+use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Form, Lights, Marching, Palette};
 
 /// A feature that a frame needs and this build of the raymarcher lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +24,8 @@ pub enum Missing {
     Blend,
     /// Two eyes.
     Stereo,
+    /// Marching rays of fields that are drawn by exits.
+    Marching,
 }
 
 impl fmt::Display for Missing {
@@ -34,6 +37,7 @@ impl fmt::Display for Missing {
             Self::Round => f.write_str("no spheres"),
             Self::Blend => f.write_str("no smooth unions"),
             Self::Stereo => f.write_str("no stereo"),
+            Self::Marching => f.write_str("no marching rays for this field"),
         }
     }
 }
@@ -46,21 +50,24 @@ impl Missing {
     /// # Errors
     /// The missing feature.
     pub fn check(capabilities: &Capabilities, setup: &FieldSetup) -> Result<(), Self> {
-        if let Solid::Flat(solid) = &setup.solid {
-            let constants = solid.constants();
-            if u32::from(constants.levels) >> capabilities.levels != 0 {
-                return Err(Self::Levels(capabilities.levels));
-            }
-            // Kind 0, the sponge, is covered by the check of the levels above.
-            if constants.kind != 0 && capabilities.flat >> constants.kind & 1 == 0 {
-                return Err(Self::Flat(kind(&constants)));
-            }
+        let (kind, levels) = kind(setup);
+        if u32::from(levels) >> capabilities.levels != 0 {
+            return Err(Self::Levels(capabilities.levels));
         }
-        if setup.is_round() && !capabilities.round {
-            return Err(Self::Round);
+        // Kind 0, the sponge, is covered by the check of the levels above.
+        if kind as u8 != 0 && capabilities.flat >> kind as u8 & 1 == 0 {
+            return Err(Self::Flat(kind));
         }
-        if setup.blend().width != 0 && !capabilities.blend {
-            return Err(Self::Blend);
+        if let Form::Marching(marching) = &setup.form {
+            if marching.is_round() && !capabilities.round {
+                return Err(Self::Round);
+            }
+            if marching.blend().width != 0 && !capabilities.blend {
+                return Err(Self::Blend);
+            }
+            if !capabilities.round && kind != Kind::Octahedron {
+                return Err(Self::Marching);
+            }
         }
         if setup.stereo.is_some() && !capabilities.stereo {
             return Err(Self::Stereo);
@@ -104,50 +111,45 @@ pub fn set_field(
     if !has_tables {
         raymarcher.set_tables(tables(palette));
     }
-    let flat = match &setup.solid {
-        Solid::Flat(flat) => flat.constants(),
-        Solid::Spheres(_) => FlatConstants::default(),
-    };
-    let solid = driver::Solid::default()
-        .with_kind(kind(&flat))
-        .with_levels(flat.levels)
-        .with_has(flat.has)
-        .with_room(flat.room)
-        .with_repeated(flat.repeated)
-        .with_flat_too(setup.beside.is_some());
-    let solid = match setup.spheres() {
-        Some(spheres) => {
-            set_spheres(raymarcher, spheres, &setup.blend(), &palette.lights);
-            solid
-                .with_is_round(true)
-                .with_spheres_repeated(spheres.repeated)
-                .with_last_sphere((spheres.count - 1) as u8)
-                .with_last_light((palette.lights.count - 1) as u8)
-        }
-        None => solid,
-    };
     let stereo = match setup.stereo {
         None => Stereo::Mono,
         Some(Tint::RedBlue) => Stereo::RedBlue,
         Some(Tint::RedCyan) => Stereo::RedCyan,
     };
+    let (kind, levels) = kind(setup);
+    let solid = Solid::default().with_kind(kind).with_levels(levels);
+    let axes = |[x, y, z, _]: [i32; AXES]| [x, y, z];
+    let (solid, half, form, limits, eyes, steps) = match &setup.form {
+        Form::Exits(exits) => (
+            solid,
+            exits
+                .solid
+                .unwrap_or_default()
+                .half()
+                .map(|half| half as u32),
+            exit_form(exits),
+            [exits.far as u32, exits.near as u32],
+            exits.eyes.map(|eye| [eye.origin, axes(eye.first)]),
+            exits.steps.map(axes),
+        ),
+        Form::Marching(marching) => (
+            with_spheres(raymarcher, marching, &palette.lights, solid),
+            constants(&marching.solid).half,
+            march_form(marching),
+            [marching.tuning.far, marching.near],
+            marching.eyes.map(|eye| [eye.origin, eye.first]),
+            marching.steps,
+        ),
+    };
     raymarcher.set_field(&Field {
         control: Control::default().with_stereo(stereo),
         solid,
-        cube_half: flat.cube_half,
-        half: flat.half,
-        tuning: Tuning::default()
-            .with_threshold(setup.tuning.threshold as u16)
-            .with_footprint(setup.tuning.footprint as u8)
-            .with_cap(setup.tuning.cap as u8),
-        limits: [setup.tuning.far, setup.near],
-        eyes: setup.eyes.each_ref().map(|eye| Eye {
-            origin: &eye.origin,
-            outside: &eye.outside,
-            first: &eye.first,
-        }),
-        bounds: &setup.bounds,
-        steps: setup.steps.each_ref(),
+        half,
+        form,
+        limits,
+        origins: eyes.map(|[origin, _]| origin),
+        first: eyes.map(|[_, first]| first),
+        steps,
         depth_scale: DepthScale::default()
             .with_mantissa(setup.depth.mantissa)
             .with_exponent(setup.depth.exponent as u8 & 0x3F),
@@ -156,6 +158,87 @@ pub fn set_field(
         fog_shift: palette.fog_shift as u8,
     });
     Ok(())
+}
+
+/// The constants of rays by exits.
+fn exit_form(exits: &Exits) -> driver::Form<'_> {
+    let solid = exits.solid.unwrap_or_default();
+    let rule = match solid.rule {
+        Rule::Planes => driver::Rule::Planes,
+        Rule::Sponge { .. } => driver::Rule::Sponge,
+        Rule::Repeated { .. } => driver::Rule::Cubes,
+        Rule::Box | Rule::Octahedron => driver::Rule::Box,
+    };
+    let exit = |start: &exits::Start| match start.exit {
+        exits::Exit::First => Exit::First,
+        exits::Exit::Second => Exit::Second,
+        exits::Exit::Last => Exit::Last,
+    };
+    let start = |side: &exits::Side| Start {
+        distance: side.distance as u32,
+        there: side.is_bounded,
+        away: side.is_away,
+        last: side.is_last,
+        next: if side.is_bounded {
+            solid.code(side.next) as u16
+        } else {
+            0
+        },
+    };
+    let prism = |eye: &exits::Eye| {
+        let axes = |[x, y, z, _]: &[exits::Side; AXES]| [start(x), start(y), start(z)];
+        eye.start.sides.each_ref().map(axes)
+    };
+    let [left, right] = &exits.eyes;
+    driver::Form::Exits {
+        exits: driver::Exits::default()
+            .with_rule(rule)
+            .with_depth(solid.rule.levels() as u8)
+            .with_left_exit(exit(&left.start))
+            .with_right_exit(exit(&right.start)),
+        borders: solid.borders(),
+        prisms: [prism(left), prism(right)],
+    }
+}
+
+/// The constants of marching rays.
+fn march_form(marching: &Marching) -> driver::Form<'_> {
+    let flat = constants(&marching.solid);
+    driver::Form::March {
+        cube_half: flat.cube_half,
+        tuning: Tuning::default()
+            .with_threshold(marching.tuning.threshold as u16)
+            .with_footprint(marching.tuning.footprint as u8)
+            .with_cap(marching.tuning.cap as u8),
+        outside: marching.eyes.each_ref().map(|eye| &eye.outside),
+        bounds: &marching.bounds,
+    }
+}
+
+/// The solid of marching rays. Also writes the constants of its spheres.
+fn with_spheres(
+    raymarcher: &Raymarcher,
+    marching: &Marching,
+    lights: &Lights,
+    solid: Solid,
+) -> Solid {
+    let flat = constants(&marching.solid);
+    let solid = solid
+        .with_has(flat.has)
+        .with_room(flat.room)
+        .with_repeated(flat.repeated)
+        .with_flat_too(marching.beside.is_some());
+    match marching.spheres() {
+        Some(spheres) => {
+            set_spheres(raymarcher, spheres, &marching.blend(), lights);
+            solid
+                .with_is_round(true)
+                .with_spheres_repeated(spheres.repeated)
+                .with_last_sphere((spheres.count - 1) as u8)
+                .with_last_light((lights.count - 1) as u8)
+        }
+        None => solid,
+    }
 }
 
 /// Writes the constants of the spheres, their fillet with the flat solid, and their lights.
@@ -182,8 +265,26 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
     }
 }
 
-/// The kind of a flat field as a register value. `Kind::ALL` contains every kind of the model, so the default `Menger` is never used.
-fn kind(constants: &FlatConstants) -> Kind {
-    let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
-    kind.unwrap_or(Kind::Menger)
+/// The kind of the flat field as a register value, and the levels of a sponge, the first level in bit 0.
+fn kind(setup: &FieldSetup) -> (Kind, u8) {
+    match &setup.form {
+        Form::Exits(exits) => match exits.solid.map(|solid| solid.rule) {
+            Some(rule @ Rule::Sponge { .. }) => (Kind::Menger, (1_u32 << rule.levels()) as u8 - 1),
+            _ => (Kind::Box, 0),
+        },
+        Form::Marching(marching) => {
+            let flat = constants(&marching.solid);
+            // `Kind::ALL` contains every kind of the model, so the default `Menger` is never used.
+            let kind = Kind::ALL.get(usize::from(flat.kind)).copied();
+            (kind.unwrap_or(Kind::Menger), flat.levels)
+        }
+    }
+}
+
+/// The constants of the flat solid of marching rays.
+fn constants(solid: &Marched) -> FlatConstants {
+    match solid {
+        Marched::Flat(flat) => flat.constants(),
+        Marched::Spheres(_) => FlatConstants::default(),
+    }
 }

@@ -25,6 +25,10 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     ]);
     let mut raymarcher = Raymarcher::probe(registers).unwrap();
     let plain = FieldOptions::default();
+    let marching = FieldOptions {
+        marches: true,
+        ..plain
+    };
     let stereo = FieldOptions {
         stereo: Some(Stereo::parse("0.05,3").unwrap()),
         ..plain
@@ -36,6 +40,7 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         ("planes:1", plain, Err(Missing::Flat(Kind::Box))),
         ("sphere:1", plain, Err(Missing::Round)),
         ("menger:4", stereo, Err(Missing::Stereo)),
+        ("menger:4", marching, Err(Missing::Marching)),
         ("menger:4", plain, Ok(())),
     ] {
         block.borrow_mut().writes.clear();

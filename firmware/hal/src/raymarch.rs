@@ -5,7 +5,9 @@
 //! does not access memory.
 
 use litex_pac::raymarch::{self, EvEnable, EvPending, Sphere, Table};
-pub use litex_pac::raymarch::{Control, Counters, DepthScale, Kind, Solid, Stereo, Tuning};
+pub use litex_pac::raymarch::{
+    Control, Counters, DepthScale, Exit, Exits, Kind, Rule, Solid, Stereo, Tuning,
+};
 
 use crate::Absent;
 
@@ -27,15 +29,47 @@ pub struct Capabilities {
     pub blend: bool,
 }
 
-/// The constants of an eye in the registers `origin`, `outside` and `first` (docs/registers.md).
+/// The planes of the prism around an eye, along each axis and along each mirrored axis.
+pub type Prism = [[Start; 3]; 2];
+
+/// A plane of the prism around an eye, along an axis or a mirrored axis.
+#[derive(Clone, Copy, Default)]
+pub struct Start {
+    /// Distance of the plane, u12.12.
+    pub distance: u32,
+    /// Whether there is such a plane.
+    pub there: bool,
+    /// Whether a ray along the axis leads away from the solid.
+    pub away: bool,
+    /// Whether a ray has left the solid beyond the plane.
+    pub last: bool,
+    /// The interval above the plane (gateware/rtl/raymarch/exit_pkg.sv), 13 bits.
+    pub next: u16,
+}
+
+/// The constants that depend on how rays find the solid.
 #[derive(Clone, Copy)]
-pub struct Eye<'a> {
-    /// Position.
-    pub origin: &'a [i32; 3],
-    /// Distance outside of the bounding box along each axis.
-    pub outside: &'a [u32; 3],
-    /// Direction of the first pixel's ray.
-    pub first: &'a [i32; 3],
+pub enum Form<'a> {
+    /// Rays leave empty prisms.
+    Exits {
+        /// The solid's rule, and the planes by which rays leave the prisms around the eyes.
+        exits: Exits,
+        /// Coordinates of planes of the solid.
+        borders: [i32; 3],
+        /// The prisms around the left and the right eye.
+        prisms: [Prism; 2],
+    },
+    /// Rays march by distances.
+    March {
+        /// Half the side of a sponge's smallest cubes.
+        cube_half: u32,
+        /// Precision of the ray march.
+        tuning: Tuning,
+        /// Distance of the left and of the right eye outside of the bounding box along each axis.
+        outside: [&'a [u32; 3]; 2],
+        /// Half the sides of the solid's bounding box.
+        bounds: &'a [u32; 3],
+    },
 }
 
 /// The tables of fog and of occlusion.
@@ -52,20 +86,18 @@ pub struct Field<'a> {
     pub control: Control,
     /// The solid.
     pub solid: Solid,
-    /// Half the side of a sponge's smallest cubes.
-    pub cube_half: u32,
-    /// Half the sides of a box; for an octahedron its size and two zeros.
+    /// Half the sides of a box or, by exits, of any solid; for an octahedron its size and two zeros.
     pub half: [u32; 3],
-    /// Precision of the ray march.
-    pub tuning: Tuning,
+    /// How rays find the solid.
+    pub form: Form<'a>,
+    /// Position of the left and of the right eye.
+    pub origins: [[i32; 3]; 2],
     /// The far limit and the near limit of the rays.
     pub limits: [u32; 2],
-    /// The left and the right eye.
-    pub eyes: [Eye<'a>; 2],
-    /// Half the sides of the solid's bounding box.
-    pub bounds: &'a [u32; 3],
+    /// Direction of the first pixel's ray, of the left and of the right eye.
+    pub first: [[i32; 3]; 2],
     /// Change of the direction per pixel to the right and per pixel down.
-    pub steps: [&'a [i32; 3]; 2],
+    pub steps: [[i32; 3]; 2],
     /// The scale of depth codes.
     pub depth_scale: DepthScale,
     /// The colours of the faces.
@@ -120,38 +152,54 @@ impl Raymarcher {
     pub fn set_field(&mut self, field: &Field) {
         let registers = &self.registers;
         registers.solid().write(field.solid);
-        registers.cube_half().write(field.cube_half);
         registers.half_x().write(field.half[0]);
         registers.half_y().write(field.half[1]);
         registers.half_z().write(field.half[2]);
-        registers.tuning().write(field.tuning);
-        let [left, right] = field.eyes;
+        match &field.form {
+            Form::Exits {
+                exits,
+                borders,
+                prisms,
+            } => self.set_exits(*exits, borders, prisms),
+            Form::March {
+                cube_half,
+                tuning,
+                outside: [left, right],
+                bounds,
+            } => {
+                registers.exits().write(Exits::default());
+                registers.cube_half().write(*cube_half);
+                registers.tuning().write(*tuning);
+                registers.outside_left_x().write(left[0]);
+                registers.outside_left_y().write(left[1]);
+                registers.outside_left_z().write(left[2]);
+                registers.outside_right_x().write(right[0]);
+                registers.outside_right_y().write(right[1]);
+                registers.outside_right_z().write(right[2]);
+                registers.bounds_x().write(bounds[0]);
+                registers.bounds_y().write(bounds[1]);
+                registers.bounds_z().write(bounds[2]);
+            }
+        }
+        let [left, right] = field.origins;
+        registers.origin_left_x().write(place(left[0]));
+        registers.origin_left_y().write(place(left[1]));
+        registers.origin_left_z().write(place(left[2]));
+        registers.origin_right_x().write(place(right[0]));
+        registers.origin_right_y().write(place(right[1]));
+        registers.origin_right_z().write(place(right[2]));
+        let [left, right] = field.first;
         let [across, down] = field.steps;
         // The registers are written one by one, because a loop would need a table of their addresses.
         let [far, near] = field.limits;
         registers.far().write(far);
         registers.near().write(near);
-        registers.origin_left_x().write(place(left.origin[0]));
-        registers.origin_left_y().write(place(left.origin[1]));
-        registers.origin_left_z().write(place(left.origin[2]));
-        registers.origin_right_x().write(place(right.origin[0]));
-        registers.origin_right_y().write(place(right.origin[1]));
-        registers.origin_right_z().write(place(right.origin[2]));
-        registers.outside_left_x().write(left.outside[0]);
-        registers.outside_left_y().write(left.outside[1]);
-        registers.outside_left_z().write(left.outside[2]);
-        registers.outside_right_x().write(right.outside[0]);
-        registers.outside_right_y().write(right.outside[1]);
-        registers.outside_right_z().write(right.outside[2]);
-        registers.first_left_x().write(left.first[0] as u32);
-        registers.first_left_y().write(left.first[1] as u32);
-        registers.first_left_z().write(left.first[2] as u32);
-        registers.first_right_x().write(right.first[0] as u32);
-        registers.first_right_y().write(right.first[1] as u32);
-        registers.first_right_z().write(right.first[2] as u32);
-        registers.bounds_x().write(field.bounds[0]);
-        registers.bounds_y().write(field.bounds[1]);
-        registers.bounds_z().write(field.bounds[2]);
+        registers.first_left_x().write(left[0] as u32);
+        registers.first_left_y().write(left[1] as u32);
+        registers.first_left_z().write(left[2] as u32);
+        registers.first_right_x().write(right[0] as u32);
+        registers.first_right_y().write(right[1] as u32);
+        registers.first_right_z().write(right[2] as u32);
         registers.across_x().write(across[0] as u32);
         registers.across_y().write(across[1] as u32);
         registers.across_z().write(across[2] as u32);
@@ -174,6 +222,40 @@ impl Raymarcher {
         registers.fog_shift().write(field.fog_shift);
         registers.depth_scale().write(field.depth_scale);
         registers.control().write(field.control.with_enable(true));
+    }
+
+    fn set_exits(&self, exits: Exits, borders: &[i32; 3], prisms: &[Prism; 2]) {
+        let registers = &self.registers;
+        let border = |coordinate: i32| coordinate as u32 & 0x3F_FFFF;
+        registers.exits().write(exits.with_enable(true));
+        registers.border_x().write(border(borders[0]));
+        registers.border_y().write(border(borders[1]));
+        registers.border_z().write(border(borders[2]));
+        let [left, right] = prisms;
+        registers.start_left_x().write(left[0][0].plane());
+        registers.start_left_y().write(left[0][1].plane());
+        registers.start_left_z().write(left[0][2].plane());
+        registers.start_left_mirrored_x().write(left[1][0].plane());
+        registers.start_left_mirrored_y().write(left[1][1].plane());
+        registers.start_left_mirrored_z().write(left[1][2].plane());
+        registers.start_right_x().write(right[0][0].plane());
+        registers.start_right_y().write(right[0][1].plane());
+        registers.start_right_z().write(right[0][2].plane());
+        registers
+            .start_right_mirrored_x()
+            .write(right[1][0].plane());
+        registers
+            .start_right_mirrored_y()
+            .write(right[1][1].plane());
+        registers
+            .start_right_mirrored_z()
+            .write(right[1][2].plane());
+        registers.next_left_x().write(next(left, 0));
+        registers.next_left_y().write(next(left, 1));
+        registers.next_left_z().write(next(left, 2));
+        registers.next_right_x().write(next(right, 0));
+        registers.next_right_y().write(next(right, 1));
+        registers.next_right_z().write(next(right, 2));
     }
 
     /// Writes an entry of the constants of spheres and of the light on them (docs/registers.md, `sphere`).
@@ -213,6 +295,20 @@ impl Raymarcher {
     #[must_use]
     pub fn counters(&self) -> Counters {
         Counters::read(&self.registers)
+    }
+}
+
+/// The intervals above the planes of a prism along an axis and along the mirrored axis, as the value of a register `next`.
+fn next(prism: &Prism, axis: usize) -> u32 {
+    let [upward, mirrored] = [0, 1].map(|way: usize| u32::from(prism[way][axis].next));
+    upward | mirrored << 16
+}
+
+impl Start {
+    /// The plane as the value of a register `start`.
+    const fn plane(self) -> u32 {
+        let flags = self.there as u32 | (self.away as u32) << 1 | (self.last as u32) << 2;
+        self.distance & 0x1FF_FFFF | flags << 25
     }
 }
 

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xd5e0_0f5b;
+pub const BUILD_ID: u32 = 0x6c92_5843;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4963,7 +4963,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 24 bits: The solid. Reads as 0.
+        /// `solid`, 24 bits: The solid of marching rays. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -4971,36 +4971,68 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_581c) }
         }
 
+        /// `exits`, 12 bits: Rays by exits: the solid whose empty prisms they leave. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn exits(&self) -> Register<Exits, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5820) }
+        }
+
+        /// `border_x`, 22 bits: By exits, the coordinate of a plane perpendicular to x, s9.12: the lower plane of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn border_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5824) }
+        }
+
+        /// `border_y`, 22 bits: By exits, the coordinate of a plane perpendicular to y, s9.12: the lower plane of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn border_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5828) }
+        }
+
+        /// `border_z`, 22 bits: By exits, the coordinate of a plane perpendicular to z, s9.12: the lower plane of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn border_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_582c) }
+        }
+
         /// `cube_half`, 22 bits: Half the side of the sponge's smallest solid cubes, u10.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn cube_half(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5820) }
+            unsafe { Register::at(0xf000_5830) }
         }
 
-        /// `half_x`, 22 bits: Half the side of the box along x, u10.12. Reads as 0.
+        /// `half_x`, 22 bits: Half the side of the box along x, u10.12; by exits of any solid, and of a repeated cube. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5824) }
+            unsafe { Register::at(0xf000_5834) }
         }
 
-        /// `half_y`, 22 bits: Half the side of the box along y, u10.12. Reads as 0.
+        /// `half_y`, 22 bits: Half the side of the box along y, u10.12; by exits of any solid, and of a repeated cube. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5828) }
+            unsafe { Register::at(0xf000_5838) }
         }
 
-        /// `half_z`, 22 bits: Half the side of the box along z, u10.12. Reads as 0.
+        /// `half_z`, 22 bits: Half the side of the box along z, u10.12; by exits of any solid, and of a repeated cube. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_582c) }
+            unsafe { Register::at(0xf000_583c) }
         }
 
         /// `tuning`, 28 bits: Threshold and step limit of the rays. Reads as 0.
@@ -5008,23 +5040,23 @@ pub mod raymarch {
         #[must_use]
         pub const fn tuning(&self) -> Register<Tuning, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5830) }
+            unsafe { Register::at(0xf000_5840) }
         }
 
-        /// `far`, 23 bits: Far limit of t, u11.12. Reads as 0.
+        /// `far`, 28 bits: Far limit: of T, u14.14, by exits; of t, u11.12, of marching rays. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn far(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5834) }
+            unsafe { Register::at(0xf000_5844) }
         }
 
-        /// `near`, 23 bits: Depth of the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12. Reads as 0.
+        /// `near`, 28 bits: Near limit: by exits the near plane's T, u14.14; of marching rays the depth of the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn near(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5838) }
+            unsafe { Register::at(0xf000_5848) }
         }
 
         /// `origin_left_x`, 25 bits: Position of the left eye, x, s13.12. Reads as 0.
@@ -5032,7 +5064,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_583c) }
+            unsafe { Register::at(0xf000_584c) }
         }
 
         /// `outside_left_x`, 24 bits: Distance of the left eye outside of the bounding box along x, u12.12. Reads as 0.
@@ -5040,7 +5072,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5840) }
+            unsafe { Register::at(0xf000_5850) }
         }
 
         /// `first_left_x`, 32 bits: D of the left eye's first ray, x, s2.30. Reads as 0.
@@ -5048,7 +5080,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5844) }
+            unsafe { Register::at(0xf000_5854) }
+        }
+
+        /// `next_left_x`, 29 bits: Intervals above the planes of the prism around the left eye along x (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn next_left_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5858) }
         }
 
         /// `origin_left_y`, 25 bits: Position of the left eye, y, s13.12. Reads as 0.
@@ -5056,7 +5096,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5848) }
+            unsafe { Register::at(0xf000_585c) }
         }
 
         /// `outside_left_y`, 24 bits: Distance of the left eye outside of the bounding box along y, u12.12. Reads as 0.
@@ -5064,7 +5104,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_584c) }
+            unsafe { Register::at(0xf000_5860) }
         }
 
         /// `first_left_y`, 32 bits: D of the left eye's first ray, y, s2.30. Reads as 0.
@@ -5072,7 +5112,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5850) }
+            unsafe { Register::at(0xf000_5864) }
+        }
+
+        /// `next_left_y`, 29 bits: Intervals above the planes of the prism around the left eye along y (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn next_left_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5868) }
         }
 
         /// `origin_left_z`, 25 bits: Position of the left eye, z, s13.12. Reads as 0.
@@ -5080,7 +5128,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5854) }
+            unsafe { Register::at(0xf000_586c) }
         }
 
         /// `outside_left_z`, 24 bits: Distance of the left eye outside of the bounding box along z, u12.12. Reads as 0.
@@ -5088,7 +5136,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5858) }
+            unsafe { Register::at(0xf000_5870) }
         }
 
         /// `first_left_z`, 32 bits: D of the left eye's first ray, z, s2.30. Reads as 0.
@@ -5096,7 +5144,63 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_585c) }
+            unsafe { Register::at(0xf000_5874) }
+        }
+
+        /// `next_left_z`, 29 bits: Intervals above the planes of the prism around the left eye along z (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn next_left_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5878) }
+        }
+
+        /// `start_left_x`, 28 bits: Plane of the empty prism around the left eye along the x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_587c) }
+        }
+
+        /// `start_left_y`, 28 bits: Plane of the empty prism around the left eye along the y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5880) }
+        }
+
+        /// `start_left_z`, 28 bits: Plane of the empty prism around the left eye along the z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5884) }
+        }
+
+        /// `start_left_mirrored_x`, 28 bits: Plane of the empty prism around the left eye along the mirrored x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_mirrored_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5888) }
+        }
+
+        /// `start_left_mirrored_y`, 28 bits: Plane of the empty prism around the left eye along the mirrored y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_mirrored_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_588c) }
+        }
+
+        /// `start_left_mirrored_z`, 28 bits: Plane of the empty prism around the left eye along the mirrored z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_mirrored_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5890) }
         }
 
         /// `origin_right_x`, 25 bits: Position of the right eye, x, s13.12. Reads as 0.
@@ -5104,7 +5208,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5860) }
+            unsafe { Register::at(0xf000_5894) }
         }
 
         /// `outside_right_x`, 24 bits: Distance of the right eye outside of the bounding box along x, u12.12. Reads as 0.
@@ -5112,7 +5216,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5864) }
+            unsafe { Register::at(0xf000_5898) }
         }
 
         /// `first_right_x`, 32 bits: D of the right eye's first ray, x, s2.30. Reads as 0.
@@ -5120,7 +5224,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5868) }
+            unsafe { Register::at(0xf000_589c) }
+        }
+
+        /// `next_right_x`, 29 bits: Intervals above the planes of the prism around the right eye along x (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn next_right_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58a0) }
         }
 
         /// `origin_right_y`, 25 bits: Position of the right eye, y, s13.12. Reads as 0.
@@ -5128,7 +5240,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_586c) }
+            unsafe { Register::at(0xf000_58a4) }
         }
 
         /// `outside_right_y`, 24 bits: Distance of the right eye outside of the bounding box along y, u12.12. Reads as 0.
@@ -5136,7 +5248,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5870) }
+            unsafe { Register::at(0xf000_58a8) }
         }
 
         /// `first_right_y`, 32 bits: D of the right eye's first ray, y, s2.30. Reads as 0.
@@ -5144,7 +5256,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5874) }
+            unsafe { Register::at(0xf000_58ac) }
+        }
+
+        /// `next_right_y`, 29 bits: Intervals above the planes of the prism around the right eye along y (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn next_right_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58b0) }
         }
 
         /// `origin_right_z`, 25 bits: Position of the right eye, z, s13.12. Reads as 0.
@@ -5152,7 +5272,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5878) }
+            unsafe { Register::at(0xf000_58b4) }
         }
 
         /// `outside_right_z`, 24 bits: Distance of the right eye outside of the bounding box along z, u12.12. Reads as 0.
@@ -5160,7 +5280,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_587c) }
+            unsafe { Register::at(0xf000_58b8) }
         }
 
         /// `first_right_z`, 32 bits: D of the right eye's first ray, z, s2.30. Reads as 0.
@@ -5168,7 +5288,63 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5880) }
+            unsafe { Register::at(0xf000_58bc) }
+        }
+
+        /// `next_right_z`, 29 bits: Intervals above the planes of the prism around the right eye along z (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn next_right_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58c0) }
+        }
+
+        /// `start_right_x`, 28 bits: Plane of the empty prism around the right eye along the x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58c4) }
+        }
+
+        /// `start_right_y`, 28 bits: Plane of the empty prism around the right eye along the y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58c8) }
+        }
+
+        /// `start_right_z`, 28 bits: Plane of the empty prism around the right eye along the z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58cc) }
+        }
+
+        /// `start_right_mirrored_x`, 28 bits: Plane of the empty prism around the right eye along the mirrored x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_mirrored_x(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d0) }
+        }
+
+        /// `start_right_mirrored_y`, 28 bits: Plane of the empty prism around the right eye along the mirrored y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_mirrored_y(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d4) }
+        }
+
+        /// `start_right_mirrored_z`, 28 bits: Plane of the empty prism around the right eye along the mirrored z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_mirrored_z(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d8) }
         }
 
         /// `bounds_x`, 24 bits: Half the side of the bounding box along x, u12.12. Reads as 0.
@@ -5176,7 +5352,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn bounds_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5884) }
+            unsafe { Register::at(0xf000_58dc) }
         }
 
         /// `bounds_y`, 24 bits: Half the side of the bounding box along y, u12.12. Reads as 0.
@@ -5184,7 +5360,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn bounds_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5888) }
+            unsafe { Register::at(0xf000_58e0) }
         }
 
         /// `bounds_z`, 24 bits: Half the side of the bounding box along z, u12.12. Reads as 0.
@@ -5192,7 +5368,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn bounds_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_588c) }
+            unsafe { Register::at(0xf000_58e4) }
         }
 
         /// `across_x`, 32 bits: Change of D per column, x, s2.30. Reads as 0.
@@ -5200,7 +5376,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5890) }
+            unsafe { Register::at(0xf000_58e8) }
         }
 
         /// `across_y`, 32 bits: Change of D per column, y, s2.30. Reads as 0.
@@ -5208,7 +5384,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5894) }
+            unsafe { Register::at(0xf000_58ec) }
         }
 
         /// `across_z`, 32 bits: Change of D per column, z, s2.30. Reads as 0.
@@ -5216,7 +5392,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5898) }
+            unsafe { Register::at(0xf000_58f0) }
         }
 
         /// `down_x`, 32 bits: Change of D per line, x, s2.30. Reads as 0.
@@ -5224,7 +5400,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_589c) }
+            unsafe { Register::at(0xf000_58f4) }
         }
 
         /// `down_y`, 32 bits: Change of D per line, y, s2.30. Reads as 0.
@@ -5232,7 +5408,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a0) }
+            unsafe { Register::at(0xf000_58f8) }
         }
 
         /// `down_z`, 32 bits: Change of D per line, z, s2.30. Reads as 0.
@@ -5240,7 +5416,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a4) }
+            unsafe { Register::at(0xf000_58fc) }
         }
 
         /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent. Reads as 0.
@@ -5248,7 +5424,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a8) }
+            unsafe { Register::at(0xf000_5900) }
         }
 
         /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5256,7 +5432,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ac) }
+            unsafe { Register::at(0xf000_5904) }
         }
 
         /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5264,7 +5440,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b0) }
+            unsafe { Register::at(0xf000_5908) }
         }
 
         /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5272,7 +5448,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b4) }
+            unsafe { Register::at(0xf000_590c) }
         }
 
         /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5280,7 +5456,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b8) }
+            unsafe { Register::at(0xf000_5910) }
         }
 
         /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5288,7 +5464,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58bc) }
+            unsafe { Register::at(0xf000_5914) }
         }
 
         /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5296,7 +5472,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c0) }
+            unsafe { Register::at(0xf000_5918) }
         }
 
         /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5304,7 +5480,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c4) }
+            unsafe { Register::at(0xf000_591c) }
         }
 
         /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5312,7 +5488,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c8) }
+            unsafe { Register::at(0xf000_5920) }
         }
 
         /// `horizon`, 24 bits: Colour of the horizon, and of the fog. Reads as 0.
@@ -5320,7 +5496,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn horizon(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58cc) }
+            unsafe { Register::at(0xf000_5924) }
         }
 
         /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e. Reads as 0.
@@ -5328,7 +5504,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d0) }
+            unsafe { Register::at(0xf000_5928) }
         }
 
         /// `table`, 17 bits: Writing sets an entry of the tables of fog and light. Reads as 0.
@@ -5336,7 +5512,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d4) }
+            unsafe { Register::at(0xf000_592c) }
         }
 
         /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces. Reads as 0.
@@ -5344,7 +5520,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d8) }
+            unsafe { Register::at(0xf000_5930) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
@@ -5352,7 +5528,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58dc) }
+            unsafe { Register::at(0xf000_5934) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
@@ -5360,7 +5536,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e0) }
+            unsafe { Register::at(0xf000_5938) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -5368,7 +5544,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e4) }
+            unsafe { Register::at(0xf000_593c) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, counted for each eye, modulo 2^32.
@@ -5376,7 +5552,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e8) }
+            unsafe { Register::at(0xf000_5940) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
@@ -5384,7 +5560,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ec) }
+            unsafe { Register::at(0xf000_5944) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: occupied slots of the lanes, modulo 2^32.
@@ -5392,7 +5568,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f0) }
+            unsafe { Register::at(0xf000_5948) }
         }
 
         /// `hits`, 32 bits: Rays that hit, modulo 2^32.
@@ -5400,7 +5576,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f4) }
+            unsafe { Register::at(0xf000_594c) }
         }
 
         /// `misses`, 32 bits: Rays that missed, modulo 2^32.
@@ -5408,7 +5584,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f8) }
+            unsafe { Register::at(0xf000_5950) }
         }
 
         /// `undecided`, 32 bits: Undecided rays, modulo 2^32.
@@ -5416,7 +5592,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58fc) }
+            unsafe { Register::at(0xf000_5954) }
         }
     }
 
@@ -5438,118 +5614,162 @@ pub mod raymarch {
         pub const EV_ENABLE: u32 = 0x18;
         /// `solid`.
         pub const SOLID: u32 = 0x1c;
+        /// `exits`.
+        pub const EXITS: u32 = 0x20;
+        /// `border_x`.
+        pub const BORDER_X: u32 = 0x24;
+        /// `border_y`.
+        pub const BORDER_Y: u32 = 0x28;
+        /// `border_z`.
+        pub const BORDER_Z: u32 = 0x2c;
         /// `cube_half`.
-        pub const CUBE_HALF: u32 = 0x20;
+        pub const CUBE_HALF: u32 = 0x30;
         /// `half_x`.
-        pub const HALF_X: u32 = 0x24;
+        pub const HALF_X: u32 = 0x34;
         /// `half_y`.
-        pub const HALF_Y: u32 = 0x28;
+        pub const HALF_Y: u32 = 0x38;
         /// `half_z`.
-        pub const HALF_Z: u32 = 0x2c;
+        pub const HALF_Z: u32 = 0x3c;
         /// `tuning`.
-        pub const TUNING: u32 = 0x30;
+        pub const TUNING: u32 = 0x40;
         /// `far`.
-        pub const FAR: u32 = 0x34;
+        pub const FAR: u32 = 0x44;
         /// `near`.
-        pub const NEAR: u32 = 0x38;
+        pub const NEAR: u32 = 0x48;
         /// `origin_left_x`.
-        pub const ORIGIN_LEFT_X: u32 = 0x3c;
+        pub const ORIGIN_LEFT_X: u32 = 0x4c;
         /// `outside_left_x`.
-        pub const OUTSIDE_LEFT_X: u32 = 0x40;
+        pub const OUTSIDE_LEFT_X: u32 = 0x50;
         /// `first_left_x`.
-        pub const FIRST_LEFT_X: u32 = 0x44;
+        pub const FIRST_LEFT_X: u32 = 0x54;
+        /// `next_left_x`.
+        pub const NEXT_LEFT_X: u32 = 0x58;
         /// `origin_left_y`.
-        pub const ORIGIN_LEFT_Y: u32 = 0x48;
+        pub const ORIGIN_LEFT_Y: u32 = 0x5c;
         /// `outside_left_y`.
-        pub const OUTSIDE_LEFT_Y: u32 = 0x4c;
+        pub const OUTSIDE_LEFT_Y: u32 = 0x60;
         /// `first_left_y`.
-        pub const FIRST_LEFT_Y: u32 = 0x50;
+        pub const FIRST_LEFT_Y: u32 = 0x64;
+        /// `next_left_y`.
+        pub const NEXT_LEFT_Y: u32 = 0x68;
         /// `origin_left_z`.
-        pub const ORIGIN_LEFT_Z: u32 = 0x54;
+        pub const ORIGIN_LEFT_Z: u32 = 0x6c;
         /// `outside_left_z`.
-        pub const OUTSIDE_LEFT_Z: u32 = 0x58;
+        pub const OUTSIDE_LEFT_Z: u32 = 0x70;
         /// `first_left_z`.
-        pub const FIRST_LEFT_Z: u32 = 0x5c;
+        pub const FIRST_LEFT_Z: u32 = 0x74;
+        /// `next_left_z`.
+        pub const NEXT_LEFT_Z: u32 = 0x78;
+        /// `start_left_x`.
+        pub const START_LEFT_X: u32 = 0x7c;
+        /// `start_left_y`.
+        pub const START_LEFT_Y: u32 = 0x80;
+        /// `start_left_z`.
+        pub const START_LEFT_Z: u32 = 0x84;
+        /// `start_left_mirrored_x`.
+        pub const START_LEFT_MIRRORED_X: u32 = 0x88;
+        /// `start_left_mirrored_y`.
+        pub const START_LEFT_MIRRORED_Y: u32 = 0x8c;
+        /// `start_left_mirrored_z`.
+        pub const START_LEFT_MIRRORED_Z: u32 = 0x90;
         /// `origin_right_x`.
-        pub const ORIGIN_RIGHT_X: u32 = 0x60;
+        pub const ORIGIN_RIGHT_X: u32 = 0x94;
         /// `outside_right_x`.
-        pub const OUTSIDE_RIGHT_X: u32 = 0x64;
+        pub const OUTSIDE_RIGHT_X: u32 = 0x98;
         /// `first_right_x`.
-        pub const FIRST_RIGHT_X: u32 = 0x68;
+        pub const FIRST_RIGHT_X: u32 = 0x9c;
+        /// `next_right_x`.
+        pub const NEXT_RIGHT_X: u32 = 0xa0;
         /// `origin_right_y`.
-        pub const ORIGIN_RIGHT_Y: u32 = 0x6c;
+        pub const ORIGIN_RIGHT_Y: u32 = 0xa4;
         /// `outside_right_y`.
-        pub const OUTSIDE_RIGHT_Y: u32 = 0x70;
+        pub const OUTSIDE_RIGHT_Y: u32 = 0xa8;
         /// `first_right_y`.
-        pub const FIRST_RIGHT_Y: u32 = 0x74;
+        pub const FIRST_RIGHT_Y: u32 = 0xac;
+        /// `next_right_y`.
+        pub const NEXT_RIGHT_Y: u32 = 0xb0;
         /// `origin_right_z`.
-        pub const ORIGIN_RIGHT_Z: u32 = 0x78;
+        pub const ORIGIN_RIGHT_Z: u32 = 0xb4;
         /// `outside_right_z`.
-        pub const OUTSIDE_RIGHT_Z: u32 = 0x7c;
+        pub const OUTSIDE_RIGHT_Z: u32 = 0xb8;
         /// `first_right_z`.
-        pub const FIRST_RIGHT_Z: u32 = 0x80;
+        pub const FIRST_RIGHT_Z: u32 = 0xbc;
+        /// `next_right_z`.
+        pub const NEXT_RIGHT_Z: u32 = 0xc0;
+        /// `start_right_x`.
+        pub const START_RIGHT_X: u32 = 0xc4;
+        /// `start_right_y`.
+        pub const START_RIGHT_Y: u32 = 0xc8;
+        /// `start_right_z`.
+        pub const START_RIGHT_Z: u32 = 0xcc;
+        /// `start_right_mirrored_x`.
+        pub const START_RIGHT_MIRRORED_X: u32 = 0xd0;
+        /// `start_right_mirrored_y`.
+        pub const START_RIGHT_MIRRORED_Y: u32 = 0xd4;
+        /// `start_right_mirrored_z`.
+        pub const START_RIGHT_MIRRORED_Z: u32 = 0xd8;
         /// `bounds_x`.
-        pub const BOUNDS_X: u32 = 0x84;
+        pub const BOUNDS_X: u32 = 0xdc;
         /// `bounds_y`.
-        pub const BOUNDS_Y: u32 = 0x88;
+        pub const BOUNDS_Y: u32 = 0xe0;
         /// `bounds_z`.
-        pub const BOUNDS_Z: u32 = 0x8c;
+        pub const BOUNDS_Z: u32 = 0xe4;
         /// `across_x`.
-        pub const ACROSS_X: u32 = 0x90;
+        pub const ACROSS_X: u32 = 0xe8;
         /// `across_y`.
-        pub const ACROSS_Y: u32 = 0x94;
+        pub const ACROSS_Y: u32 = 0xec;
         /// `across_z`.
-        pub const ACROSS_Z: u32 = 0x98;
+        pub const ACROSS_Z: u32 = 0xf0;
         /// `down_x`.
-        pub const DOWN_X: u32 = 0x9c;
+        pub const DOWN_X: u32 = 0xf4;
         /// `down_y`.
-        pub const DOWN_Y: u32 = 0xa0;
+        pub const DOWN_Y: u32 = 0xf8;
         /// `down_z`.
-        pub const DOWN_Z: u32 = 0xa4;
+        pub const DOWN_Z: u32 = 0xfc;
         /// `depth_scale`.
-        pub const DEPTH_SCALE: u32 = 0xa8;
+        pub const DEPTH_SCALE: u32 = 0x100;
         /// `colour_0`.
-        pub const COLOUR_0: u32 = 0xac;
+        pub const COLOUR_0: u32 = 0x104;
         /// `colour_1`.
-        pub const COLOUR_1: u32 = 0xb0;
+        pub const COLOUR_1: u32 = 0x108;
         /// `colour_2`.
-        pub const COLOUR_2: u32 = 0xb4;
+        pub const COLOUR_2: u32 = 0x10c;
         /// `colour_3`.
-        pub const COLOUR_3: u32 = 0xb8;
+        pub const COLOUR_3: u32 = 0x110;
         /// `colour_4`.
-        pub const COLOUR_4: u32 = 0xbc;
+        pub const COLOUR_4: u32 = 0x114;
         /// `colour_5`.
-        pub const COLOUR_5: u32 = 0xc0;
+        pub const COLOUR_5: u32 = 0x118;
         /// `colour_6`.
-        pub const COLOUR_6: u32 = 0xc4;
+        pub const COLOUR_6: u32 = 0x11c;
         /// `colour_7`.
-        pub const COLOUR_7: u32 = 0xc8;
+        pub const COLOUR_7: u32 = 0x120;
         /// `horizon`.
-        pub const HORIZON: u32 = 0xcc;
+        pub const HORIZON: u32 = 0x124;
         /// `fog_shift`.
-        pub const FOG_SHIFT: u32 = 0xd0;
+        pub const FOG_SHIFT: u32 = 0x128;
         /// `table`.
-        pub const TABLE: u32 = 0xd4;
+        pub const TABLE: u32 = 0x12c;
         /// `sphere`.
-        pub const SPHERE: u32 = 0xd8;
+        pub const SPHERE: u32 = 0x130;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0xdc;
+        pub const CYCLES_BUSY: u32 = 0x134;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0xe0;
+        pub const CYCLES_STALLED: u32 = 0x138;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0xe4;
+        pub const ITEMS_IN: u32 = 0x13c;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0xe8;
+        pub const ITEMS_OUT: u32 = 0x140;
         /// `cycles_idle`.
-        pub const CYCLES_IDLE: u32 = 0xec;
+        pub const CYCLES_IDLE: u32 = 0x144;
         /// `evaluations`.
-        pub const EVALUATIONS: u32 = 0xf0;
+        pub const EVALUATIONS: u32 = 0x148;
         /// `hits`.
-        pub const HITS: u32 = 0xf4;
+        pub const HITS: u32 = 0x14c;
         /// `misses`.
-        pub const MISSES: u32 = 0xf8;
+        pub const MISSES: u32 = 0x150;
         /// `undecided`.
-        pub const UNDECIDED: u32 = 0xfc;
+        pub const UNDECIDED: u32 = 0x154;
     }
 
     /// A value of `caps`.
@@ -5986,6 +6206,92 @@ pub mod raymarch {
         }
     }
 
+    /// A value of `exits`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Exits(u32);
+
+    impl Value for Exits {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Exits {
+        /// `enable`, bit 0: Rays leave empty prisms; otherwise they march by distances.
+        #[inline]
+        #[must_use]
+        pub const fn enable(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `enable`.
+        #[inline]
+        #[must_use]
+        pub const fn with_enable(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `rule`, bits 2 to 1: The solid.
+        #[inline]
+        #[must_use]
+        pub const fn rule(self) -> Rule {
+            Rule::from_bits(((self.0 >> 1) & 0x3) as u8)
+        }
+
+        /// This value with another `rule`.
+        #[inline]
+        #[must_use]
+        pub const fn with_rule(self, value: Rule) -> Self {
+            Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
+        }
+
+        /// `depth`, bits 6 to 4: Levels of the sponge.
+        #[inline]
+        #[must_use]
+        pub const fn depth(self) -> u8 {
+            ((self.0 >> 4) & 0x7) as u8
+        }
+
+        /// This value with another `depth`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_depth(self, value: u8) -> Self {
+            Self(self.0 & !(0x7 << 4) | (value as u32 & 0x7) << 4)
+        }
+
+        /// `left_exit`, bits 9 to 8: By which of its planes a ray leaves the prism around the left eye.
+        #[inline]
+        #[must_use]
+        pub const fn left_exit(self) -> Option<Exit> {
+            Exit::from_bits(((self.0 >> 8) & 0x3) as u8)
+        }
+
+        /// This value with another `left_exit`.
+        #[inline]
+        #[must_use]
+        pub const fn with_left_exit(self, value: Exit) -> Self {
+            Self(self.0 & !(0x3 << 8) | (value as u32 & 0x3) << 8)
+        }
+
+        /// `right_exit`, bits 11 to 10: By which of its planes a ray leaves the prism around the right eye.
+        #[inline]
+        #[must_use]
+        pub const fn right_exit(self) -> Option<Exit> {
+            Exit::from_bits(((self.0 >> 10) & 0x3) as u8)
+        }
+
+        /// This value with another `right_exit`.
+        #[inline]
+        #[must_use]
+        pub const fn with_right_exit(self, value: Exit) -> Self {
+            Self(self.0 & !(0x3 << 10) | (value as u32 & 0x3) << 10)
+        }
+    }
+
     /// A value of `tuning`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Tuning(u32);
@@ -6319,6 +6625,108 @@ pub mod raymarch {
                 Self::Menger => "sponges",
                 Self::Box => "boxes, cubes and planes",
                 Self::Octahedron => "octahedra",
+            }
+        }
+    }
+
+    /// Values of `exits.rule`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(u8)]
+    pub enum Rule {
+        /// Inside of a box.
+        Box = 0,
+        /// Outside of the slab between two planes.
+        Planes = 1,
+        /// Menger sponge.
+        Sponge = 2,
+        /// Cubes, repeated every 64 field units.
+        Cubes = 3,
+    }
+
+    impl Rule {
+        /// Every value, in the order of the gateware's description.
+        pub const ALL: [Self; 4] = [Self::Box, Self::Planes, Self::Sponge, Self::Cubes];
+
+        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
+        #[inline]
+        #[must_use]
+        pub const fn from_bits(bits: u8) -> Self {
+            match bits & 0x3 {
+                0 => Self::Box,
+                1 => Self::Planes,
+                2 => Self::Sponge,
+                _ => Self::Cubes,
+            }
+        }
+
+        /// Its name in the gateware's description.
+        #[must_use]
+        pub const fn name(self) -> &'static str {
+            match self {
+                Self::Box => "box",
+                Self::Planes => "planes",
+                Self::Sponge => "sponge",
+                Self::Cubes => "cubes",
+            }
+        }
+
+        /// Its text in the gateware's description.
+        #[must_use]
+        pub const fn text(self) -> &'static str {
+            match self {
+                Self::Box => "inside of a box",
+                Self::Planes => "outside of the slab between two planes",
+                Self::Sponge => "Menger sponge",
+                Self::Cubes => "cubes, repeated every 64 field units",
+            }
+        }
+    }
+
+    /// Values of `exits.left_exit` and `exits.right_exit`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(u8)]
+    pub enum Exit {
+        /// The second of three.
+        Second = 0,
+        /// The first.
+        First = 1,
+        /// The last.
+        Last = 2,
+    }
+
+    impl Exit {
+        /// Every value, in the order of the gateware's description.
+        pub const ALL: [Self; 3] = [Self::Second, Self::First, Self::Last];
+
+        /// The value of a field's `bits`; `None` where the gateware has no name for them.
+        #[inline]
+        #[must_use]
+        pub const fn from_bits(bits: u8) -> Option<Self> {
+            Some(match bits {
+                0 => Self::Second,
+                1 => Self::First,
+                2 => Self::Last,
+                _ => return None,
+            })
+        }
+
+        /// Its name in the gateware's description.
+        #[must_use]
+        pub const fn name(self) -> &'static str {
+            match self {
+                Self::Second => "second",
+                Self::First => "first",
+                Self::Last => "last",
+            }
+        }
+
+        /// Its text in the gateware's description.
+        #[must_use]
+        pub const fn text(self) -> &'static str {
+            match self {
+                Self::Second => "the second of three",
+                Self::First => "the first",
+                Self::Last => "the last",
             }
         }
     }

@@ -12,7 +12,7 @@ use glint_core::feature::WIREFRAME;
 use crate::edges::EdgeStats;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
-use crate::raymarch::{FieldStats, Ray, RayResult, render_field};
+use crate::raymarch::{FieldStats, RayEnd, render_field};
 use crate::triangle::setup::Setup;
 use crate::triangle::{DrawnTriangle, PreparedMesh, Projected, Stats, draw_parts, set_up_parts};
 use crate::wireframe::{WireframeStats, render_wireframe};
@@ -122,7 +122,7 @@ impl Frame<'_> {
             buffer.depth.fill(0);
         }
         if let Some(FieldConstants { setup, palette }) = constants.field() {
-            let mut show = |x, _, _: &Ray, _: &RayResult| {
+            let mut show = |x, _, _: &RayEnd| {
                 if x % PIXELS_A_CALL == 0 {
                     progress();
                 }

@@ -2,16 +2,12 @@
 
 use glint_core::camera::View;
 use glint_core::field::Field;
+use glint_core::fixed::Q32_32;
 
 use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
-
-/// Number of low bits that are cleared in the mantissa of the shared scale. The conversion of the scale to depths in
-/// field units multiplies it by up to 40.5 for fields without a period; with cleared bits the mantissa still fits 17 bits without
-/// truncation.
-const EVEN_BITS: u32 = 7;
 
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth codes for both.
 /// `options` must have one eye.
@@ -29,23 +25,35 @@ pub fn constants(
 ) -> Result<(MeshSetup, FieldSetup), RenderError> {
     let mut frame = MeshSetup::new(view, size.0, size.1, radius)?;
     let mut setup = FieldSetup::new(field, view, size, options)?;
-    let shared = shared(frame.depth, setup.world_depth);
+    let shared = shared(frame.depth, setup.world_depth, setup.scale);
     frame.depth = shared;
     setup.world_depth = shared;
     setup.depth = shared.times(setup.scale, setup.exponent);
     Ok((frame, setup))
 }
 
-/// Returns the smaller of two scales of depth codes, with its mantissa truncated to 10 bits. With the smaller scale, the depth codes of
-/// neither mesh nor field overflow.
-fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
+/// Returns the smaller of two scales of depth codes, with its mantissa truncated so that its product with `scale` has 17 bits at most, if
+/// that takes no more than 10 low bits. With the smaller scale, the depth codes of neither mesh nor field overflow.
+fn shared(a: DepthScale, b: DepthScale, scale: Q32_32) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a
     } else {
         b
     };
+    let cleared = cleared_bits(scale);
     DepthScale {
-        mantissa: smaller.mantissa >> EVEN_BITS << EVEN_BITS,
+        mantissa: smaller.mantissa >> cleared << cleared,
         ..smaller
+    }
+}
+
+/// Number of low bits to clear in a mantissa of 17 bits: the length of the scale's odd factor. It is 7 for 40.5 = 81/2, and 10 for 45.5625 =
+/// 729/16. The product with a longer factor is truncated in any case.
+fn cleared_bits(scale: Q32_32) -> u32 {
+    let scale = scale.to_bits().unsigned_abs();
+    let odd = scale.checked_shr(scale.trailing_zeros()).unwrap_or(0);
+    match u64::BITS - odd.leading_zeros() {
+        length @ 8..=10 => length,
+        _ => 7,
     }
 }

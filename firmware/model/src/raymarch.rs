@@ -6,14 +6,17 @@
 //!
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
-//! [`FieldSetup`] has the constants of a frame, [`Ray`] is a pixel's ray before its first step,
-//! [`FieldSetup::march`] finds the end of the ray, and [`paint()`] computes the colour for this end.
+//! [`Ray`] is a marching ray before its first step, and [`Marching::march`] finds its end. Most flat fields have no marching rays:
+//! [`exits`] finds the ends of their rays. For both, [`FieldSetup`] has the constants of a frame, [`FieldSetup::trace`] finds the end of
+//! a pixel's ray, and [`paint()`] computes the colour for this end.
 
 mod blend;
 mod directions;
+mod end;
 pub mod exits;
 mod fog;
 mod lights;
+mod marching;
 mod options;
 mod paint;
 mod palette;
@@ -22,11 +25,13 @@ mod render;
 mod setup;
 
 pub use blend::{Beside, Blend};
+pub use end::{RayEnd, State};
 pub use glint_core::stereo::{Stereo, Tint};
 pub use lights::{Light, Lights};
+pub use marching::{Eye, Marching};
 pub use options::{DEFAULT_TUNING, FieldOptions, ROUND_TUNING, Tuning};
 pub use paint::paint;
 pub use palette::Palette;
-pub use ray::{ROUND_INVERSE, Ray, RayResult, State};
+pub use ray::{ROUND_INVERSE, Ray, RayResult};
 pub use render::{FieldStats, render_field, render_rows, rgb565};
-pub use setup::{Eye, FieldSetup};
+pub use setup::{FieldSetup, Form};

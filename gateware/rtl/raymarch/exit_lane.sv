@@ -119,7 +119,7 @@ module exit_lane #(
     end
 
     localparam int unsigned AIM_BITS   = 4 + 3 * exit_pkg::SPEED_BITS;
-    localparam int unsigned CARGO_BITS = raymarch_pkg::PLACE_BITS + 3;
+    localparam int unsigned CARGO_BITS = raymarch_pkg::PLACE_BITS + 3 + 8;
     localparam int unsigned STATE_BITS = exit_pkg::T_BITS + 2 + 8 + 1;
 
     (* ram_style = "distributed" *) logic [AIM_BITS-1:0]                 aims     [0:2**SLOT_BITS-1];
@@ -132,17 +132,18 @@ module exit_lane #(
     logic [2:0][exit_pkg::SPEED_BITS-1:0]   speed_0, speed_1;
     logic [2:0][exit_pkg::INVERSE_BITS-1:0] inverse_14;
     logic [raymarch_pkg::PLACE_BITS-1:0]    place_22;
+    logic [7:0]                             height_22;
 
     assign {eye_0, down_0, speed_0}             = aims[slot_0];
     assign inverse_14                           = inverses[slot_14];
-    assign {place_22, down_22}                  = cargos[slot_22];
+    assign {place_22, down_22, height_22}       = cargos[slot_22];
     assign {t_21, axis_21, steps_21, over_21}   = states[slot_21];
 
     always_ff @(posedge clk) begin
         if (!again) begin
             aims[slot_22]     <= {in_ray.place[17], in_ray.down, in_ray.speed};
             inverses[slot_22] <= in_ray.inverse;
-            cargos[slot_22]   <= {in_ray.place, in_ray.down};
+            cargos[slot_22]   <= {in_ray.place, in_ray.down, in_ray.height};
         end
         states[slot_0] <= {t_0, axis_0, steps_0, over_0};
         {t_22, axis_22, steps_22, over_22} <= {t_21, axis_21, steps_21, over_21};
@@ -280,6 +281,7 @@ module exit_lane #(
     assign end_in.axis     = axis_22;
     assign end_in.positive = down_22[axis_22];
     assign end_in.steps    = steps_22;
+    assign end_in.height   = height_22;
 
     // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
     fifo #(.WIDTH(exit_pkg::END_BITS), .DEPTH(PLACES)) ends (

@@ -53,22 +53,26 @@ package exit_pkg;
 
     // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start`
     // is its T, `limit` the largest T of a hit where rays have limits of their own, `axis` the axis of the last plane that it has crossed,
-    // and `reached` has the intervals that it has reached, 0 where it has crossed no plane. A ray with `over` misses without an evaluation;
-    // other rays start within their limit.
+    // and `reached` has the intervals that it has reached, 0 where it has crossed no plane. `height` is that of sky_height. A ray with
+    // `over` misses without an evaluation; other rays start within their limit.
     typedef struct packed {
+        logic [T_BITS-1:0]             limit;
         logic                          over;
         logic [PLACE_BITS-1:0]         place;
         logic [T_BITS-1:0]             start;
-        logic [T_BITS-1:0]             limit;
         logic [1:0]                    axis;
         logic [2:0][INTERVAL_BITS-1:0] reached;
         logic [2:0]                    down;
+        logic [7:0]                    height;
         logic [2:0][SPEED_BITS-1:0]    speed;
         logic [2:0][INVERSE_BITS-1:0]  inverse;
     } ray_t;
 
+    // Width of a ray without its limit.
+    localparam int unsigned RAY_BITS = 1 + PLACE_BITS + T_BITS + 2 + 3 * INTERVAL_BITS + 3 + 8 + 3 * SPEED_BITS + 3 * INVERSE_BITS;
+
     // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit if rays have limits of their own, and any T
-    // otherwise), the axis and the sign of the face's outward normal, and the number of evaluations.
+    // otherwise), the axis and the sign of the face's outward normal, the number of evaluations, and the ray's `height`.
     typedef struct packed {
         logic [PLACE_BITS-1:0] place;
         logic                  hit;
@@ -76,9 +80,10 @@ package exit_pkg;
         logic [1:0]            axis;
         logic                  positive;
         logic [7:0]            steps;
+        logic [7:0]            height;
     } end_t;
 
-    localparam int unsigned END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8;
+    localparam int unsigned END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

@@ -36,8 +36,8 @@ module field_box (
     // Returns side − |k| − 1, which is the complement of |k| − side, the distance from the coordinate k to the box's face. If the box is
     // not bounded along the axis (`there` is low), the result is the largest value. Yosys puts the absolute value into the LUTs of this
     // sum, but uses separate LUTs for the absolute value of a minuend.
-    function automatic logic signed [22:0] depth_within(input logic [21:0] k, input logic [21:0] side, input logic there);
-        depth_within = there ? $signed({1'b0, side}) + $signed(~{2'b0, k[20:0] ^ {21{k[21]}}}) : {1'b0, {22{1'b1}}};
+    function automatic logic signed [22:0] depth_within(input logic [21:0] k, input logic [21:0] side, input logic has_side);
+        depth_within = has_side ? $signed({1'b0, side}) + $signed(~{2'b0, k[20:0] ^ {21{k[21]}}}) : {1'b0, {22{1'b1}}};
     endfunction
 
     assign big_is_z = z_over_x && z_over_y;

@@ -10,6 +10,12 @@ package fields_pkg;
     // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
     localparam int unsigned ALL = 7;
     localparam int unsigned OCTANTS = 4;
+    // Mask of the fields whose rays leave empty prisms, unless they are united with spheres.
+    localparam int unsigned EXITS = 3;
+    // Mask of each field.
+    localparam int unsigned MENGER = 1;
+    localparam int unsigned BOX = 2;
+    localparam int unsigned OCTAHEDRON = 4;
 
     // Whether the faces of a kind of field are perpendicular to the diagonals.
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);

@@ -1,25 +1,29 @@
 // Computes pixels from the ends of rays: the colour of the surface, darkened by occlusion and blended with fog, and the depth code
 // (docs/formats/raymarch.md, "Ends").
 //
-//             ┌─▶ t·inverse ─▶ depth ─┬─▶ depth_code ───────────────────────────────┐
-//   ends ─────┤                       └─▶ fog ─┐                                    ├─▶ group of one pixel
-//             ├─▶ steps ─▶ light ─────┐        ▼                                    │
-//             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
+//             ┌─▶ depth ─┬─▶ depth_code ──────────────────────────────────────────────┐
+//   ends ─────┤          └─▶ fog ─────┐                                               ├─▶ group of one pixel
+//             ├─▶ steps ─▶ light ──┐  ▼                                               │
+//             └─▶ surface ─▶ colour × ─▶ mixed with the horizon ─▶ RGB565, L8 ────────┘
 //
-// First, the hit point is moved onto the plane of its face: t is increased by `gap` / `slope`, where `gap` is the distance to this plane
-// and `slope` is the component of the direction along the plane's normal.
+// The parameter T of a ray that leaves empty prisms is a depth. With MARCH there are also rays that march by distances: the hit point is
+// first moved onto the plane of its face, and then t is multiplied by the inverse of the ray's length. t is increased by `gap` / `slope`,
+// where `gap` is the distance to this plane and `slope` is the component of the direction along the plane's normal. In a build with both,
+// `exits` states which rays the frame has.
 //
 // A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask with one bit set, one depth code, and one colour
 // for all pixels of the group. With `stereo` the colour holds the pixel's luminance twice, and `out_eye` selects the valid half.
 //
 // With ROUND, the end of a ray on a sphere or fillet arrives with its colour, `in_colour`. While `round` is high, rays are scaled by their
-// Euclidean length. Streams are valid/ready. Latency 37 clocks, throughput one pixel per clock. The parameters must hold while pixels are
+// Euclidean length. Streams are valid/ready. Latency 26 clocks, 37 with MARCH; throughput one pixel per clock. The parameters must hold while pixels are
 // in the pipeline, which cannot be stopped: valid bits travel with the pixels, and credit_fifo at its end limits the number of pixels
 // inside.
 
 `default_nettype none
 
 module ray_paint #(
+    parameter bit EXITS   = 1'b1,
+    parameter bit MARCH   = 1'b0,
     parameter bit ROUND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0,
@@ -30,6 +34,7 @@ module ray_paint #(
     input  wire                     rst,
     // Frame.
     input  wire                     stereo,
+    input  wire                     exits,
     input  wire                     round,
     // Number of groups of eight pixels in a line: 40, 80 or 160.
     input  wire  [7:0]              stride,
@@ -57,81 +62,101 @@ module ray_paint #(
     output logic [17:0]             out_code,
     output logic [15:0]             out_colour
 );
-    localparam int unsigned LAST = 29, FIRST = 6;
+    // The suffix of a name is the signal's clock. An end enters in clock BEGIN, and its group leaves in clock LAST.
+    localparam int unsigned LAST = 29, BEGIN = MARCH ? 0 : 5, FIRST = MARCH ? 6 : 0;
 
-    logic [FIRST+LAST:1] valid;
+    localparam int unsigned LATENCY = FIRST + LAST - BEGIN;
+
+    logic [LATENCY:1] valid;
 
     always_ff @(posedge clk) begin
-        valid <= {valid[FIRST+LAST-1:1], in_valid && in_ready};
+        valid <= {valid[LATENCY-1:1], in_valid && in_ready};
         if (rst) valid <= '0;
     end
 
-    // The hit point moves to the plane of its face in FIRST clocks: 2 for the reciprocal of `slope`, 3 for the product of this reciprocal
-    // and `gap`, 1 for the sum of this product and t. The clock numbers below count from `ending_0`, the end of the ray with this sum as
-    // its t.
-    raymarch_pkg::end_t    ending_0, waited;
-    logic [16:0]        slope_inverse;
-    logic [11:0]        gap_waits;
-    logic signed [29:0] way;
-    logic [23:0]        reached;
-    logic [22:0]        t_waits_0;
-
-    delay #(.WIDTH(12), .CLOCKS(2)) gap_delay (.clk, .enable(1'b1), .in(in_end.gap), .out(gap_waits));
-    multiply_add #(.BITS(30)) to_surface (
-        .clk, .enable(1'b1), .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
-    );
-    delay #(.WIDTH(23), .CLOCKS(5)) t_delay (.clk, .enable(1'b1), .in(in_end.t), .out(t_waits_0));
-    delay #(.WIDTH(raymarch_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable(1'b1), .in(in_end), .out(waited));
-    always_ff @(posedge clk) reached <= {1'b0, t_waits_0} + {4'b0, way[28:9]};
-
-    always_comb begin
-        ending_0   = waited;
-        // The sum is saturated to 23 bits.
-        ending_0.t = reached[22:0] | {23{reached[23]}};
-    end
-
-    // The suffix of a name is the signal's clock: 2 for the reciprocal of the length, 5 for the depth.
-    logic [16:0]        inverse_2, largest_inverse_2;
-    logic [22:0]        t_2;
-    logic signed [42:0] product_5;
+    raymarch_pkg::end_t ending;
+    logic [39:0]        depth_5;
     logic [17:0]        code_28;
 
-    inverse_table length_inverse (
-        .clk, .index_a(ending_0.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
-    );
-    if (ROUND) begin : by_squares
-        logic [16:0] round_inverse_2;
-        round_inverse inverse_of_square (.clk, .index(ending_0.length), .inverse(round_inverse_2));
-        assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
-    end else begin : by_largest
-        assign inverse_2 = largest_inverse_2;
+    if (MARCH) begin : marching
+        // In the FIRST clocks the hit point moves to the plane of its face: 2 for the reciprocal of `slope`, 3 for the product of this
+        // reciprocal and `gap`, 1 for the sum of this product and t. In a frame of exits `gap` is 0.
+        raymarch_pkg::end_t waited;
+        logic [16:0]        slope_inverse, largest_inverse_2, inverse_2;
+        logic [11:0]        gap_waits;
+        logic signed [29:0] way;
+        logic signed [42:0] product_5;
+        logic [raymarch_pkg::END_T_BITS-1:0] t_waits_0, reached, t_5;
+        logic [22:0]        t_2;
+        logic               by_exits;
+
+        assign by_exits = EXITS && exits;
+
+        delay #(.WIDTH(12), .CLOCKS(2)) gap_delay (.clk, .enable(1'b1), .in(in_end.gap), .out(gap_waits));
+        multiply_add #(.BITS(30)) to_surface (
+            .clk, .enable(1'b1), .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
+        );
+        delay #(.WIDTH(raymarch_pkg::END_T_BITS), .CLOCKS(5)) t_delay (.clk, .enable(1'b1), .in(in_end.t), .out(t_waits_0));
+        delay #(.WIDTH(raymarch_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable(1'b1), .in(in_end), .out(waited));
+        always_ff @(posedge clk) reached <= t_waits_0 + {8'b0, way[28:9]};
+
+        always_comb begin
+            ending   = waited;
+            // The sum of a marching ray is saturated to 23 bits.
+            ending.t = reached | {5'b0, {23{reached[23] && !by_exits}}};
+        end
+
+        inverse_table length_inverse (
+            .clk, .index_a(ending.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
+        );
+        if (ROUND) begin : by_squares
+            logic [16:0] round_inverse_2;
+            round_inverse inverse_of_square (.clk, .index(ending.length), .inverse(round_inverse_2));
+            assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
+        end else begin : by_largest
+            assign inverse_2 = largest_inverse_2;
+        end
+
+        delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable(1'b1), .in(ending.t[22:0]), .out(t_2));
+        multiply_add #(.BITS(43)) along (.clk, .enable(1'b1), .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
+
+        if (EXITS) begin : depths
+            delay #(.WIDTH(raymarch_pkg::END_T_BITS), .CLOCKS(5)) t_goes (.clk, .enable(1'b1), .in(ending.t), .out(t_5));
+            assign depth_5 = by_exits ? {5'b0, t_5, 7'b0} : product_5[39:0];
+        end else begin : products
+            assign t_5     = '0;
+            assign depth_5 = product_5[39:0];
+        end
+
+        wire _unused = &{1'b0, way[29], way[8:0], waited.t, product_5[42:40], exits, t_5};
+    end else begin : depths_alone
+        assign ending  = in_end;
+        assign depth_5 = {5'b0, in_end.t, 7'b0};
+        wire _unused = &{1'b0, exits, in_end.gap, in_end.slope, in_end.length};
     end
 
-    delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable(1'b1), .in(ending_0.t), .out(t_2));
-    multiply_add #(.BITS(43)) along (.clk, .enable(1'b1), .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
-
     depth_code coded (
-        .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
+        .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(depth_5), .code(code_28)
     );
 
-    // The suffix of a name is the signal's clock: 7 for the indices into the tables of fog and light, 9 for the entries of the tables.
+    // Indices into the tables of fog and light in clock 7, and the entries of the tables in clock 9.
     logic [18:0] deep_6;
     logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
 
     always_ff @(posedge clk) begin
-        deep_6      <= product_5[39:21] >> fog_shift;
+        deep_6      <= depth_5[39:21] >> fog_shift;
         fog_entry_7 <= deep_6[18:8] != '0 ? '1 : deep_6[7:0];
     end
 
-    delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable(1'b1), .in(ending_0.steps), .out(steps_7));
-    delay #(.WIDTH(8), .CLOCKS(7)) height_waits (.clk, .enable(1'b1), .in(t_2[7:0]), .out(height_9));
+    delay #(.WIDTH(8), .CLOCKS(7 - BEGIN)) steps_wait (.clk, .enable(1'b1), .in(ending.steps), .out(steps_7));
+    delay #(.WIDTH(8), .CLOCKS(9 - BEGIN)) height_waits (.clk, .enable(1'b1), .in(ending.t[7:0]), .out(height_9));
     paint_table fog_and_light (
         .clk, .write(table_write), .write_entry(table_entry), .write_part(table_part),
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
     );
 
-    // The suffix of a name is the signal's clock: 7 for the state and the surface of the end; 8 for two colours, of which the highest bit
-    // of the surface selects one; 9 for the colour of the surface; 10 for the shares of light and fog in 256ths.
+    // State and surface of the end in clock 7; in clock 8 two colours, of which the highest bit of the surface selects one; in clock 9 the
+    // colour of the surface; in clock 10 the shares of light and fog in 256ths.
     raymarch_pkg::state_t state_7, state_8, state_9;
     logic [2:0]        surface_7;
     logic              upper_8;
@@ -140,8 +165,8 @@ module ray_paint #(
     logic [7:0]        fog_part;
     logic [8:0]        light_10, fog_10, fog_14;
 
-    delay #(.WIDTH(5), .CLOCKS(7)) ending (
-        .clk, .enable(1'b1), .in({ending_0.state, ending_0.surface}), .out({state_7, surface_7})
+    delay #(.WIDTH(5), .CLOCKS(7 - BEGIN)) surfaces (
+        .clk, .enable(1'b1), .in({ending.state, ending.surface}), .out({state_7, surface_7})
     );
 
     // The end of a ray on a sphere or fillet arrives with a colour that includes the light.
@@ -197,8 +222,7 @@ module ray_paint #(
 
     delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable(1'b1), .in(fog_10), .out(fog_14));
 
-    // The suffix of a name is the signal's clock: 13 for the darkened colour, 14 for its difference from the horizon's colour, 17 for the
-    // colour blended with fog.
+    // The darkened colour in clock 13, its difference from the horizon's colour in clock 14, the colour blended with fog in clock 17.
     logic [2:0][7:0] faded_17;
 
     for (genvar i = 0; i < 3; i++) begin : channels
@@ -244,10 +268,10 @@ module ray_paint #(
     logic [10:0]       first_row_28, row_29;
     logic [7:0]        column_28;
 
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable(1'b1), .in(ending_0.place), .out(place_26));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26 - BEGIN)) place_waits (.clk, .enable(1'b1), .in(ending.place), .out(place_26));
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable(1'b1), .in(place_26), .out(place_29));
     delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable(1'b1), .in(place_26.column[10:3]), .out(column_28));
-    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable(1'b1), .in(ending_0.state == raymarch_pkg::HIT), .out(hit_28));
+    delay #(.WIDTH(1), .CLOCKS(28 - BEGIN)) hit_waits (.clk, .enable(1'b1), .in(ending.state == raymarch_pkg::HIT), .out(hit_28));
 
     always_ff @(posedge clk) begin
         line_times_5 <= {1'b0, place_26.line, 2'd0} + 9'(place_26.line);
@@ -263,14 +287,14 @@ module ray_paint #(
     /* verilator lint_off PINCONNECTEMPTY */
     credit_fifo #(.WIDTH(1 + 11 + 6 + 8 + 3 + 18 + 16), .DEPTH(PLACES)) leaving (
         .clk, .rst, .idle(), .credit(in_ready), .sent(in_valid),
-        .in_valid(valid[FIRST+LAST]), .in_data({place_29.eye, row_29, place_29.line, place_29.column, code_29, colour_29}),
+        .in_valid(valid[LATENCY]), .in_data({place_29.eye, row_29, place_29.line, place_29.column, code_29, colour_29}),
         .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, number, out_code, out_colour})
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
     assign out_mask = 8'b1 << number;
 
-    wire _unused = &{1'b0, way[29], way[8:0], waited, ending_0, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, ending, depth_5[39:21], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

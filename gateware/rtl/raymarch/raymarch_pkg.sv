@@ -11,6 +11,8 @@ package raymarch_pkg;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
     localparam int unsigned DIRECTION_BITS = 18;
+    // Width of the ray parameter at the end of a ray.
+    localparam int unsigned END_T_BITS     = 28;
 
     // Position of a pixel: parity of its band's number, eye (0 for the left or only eye), line in the band, and column.
     typedef struct packed {
@@ -22,8 +24,8 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray before its first step. `length` is the index of the length of D in the table of reciprocals (docs/formats/raymarch.md, "Rays"),
-    // `start` the first t.
+    // A marching ray before its first step. `length` is the index of the length of D in the table of reciprocals
+    // (docs/formats/raymarch.md, "Rays"), `start` the first t.
     typedef struct packed {
         place_t                    place;
         logic [9:0]                length;
@@ -35,27 +37,29 @@ package raymarch_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `surface` is {axis, positive} of a
-    // face, or the number of a sphere; `gap` is the distance from the point at `t` to the face, and `slope` is the component of
-    // the direction along the inward normal of the face. Only the light on spheres uses `direction`. `round` marks an end on a
-    // sphere or a fillet. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8. For a
-    // miss, `t` is the sine of the ray's elevation in 8 bits, 0 below the horizon.
+    // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `t` is T, u14.14, of a ray that leaves empty
+    // prisms, and u11.12 of a marching ray. `surface` is {axis, positive} of a face, or the number of a sphere. For a miss, `t` is the sine
+    // of the ray's elevation in 8 bits, 0 below the horizon. The other fields belong to marching rays: `gap` is the distance from the point
+    // at `t` to the face, `slope` is the component of the direction along the inward normal of the face, and `length` as in ray_t. Only
+    // the light on spheres uses `direction`. `round` marks an end on a sphere or a fillet. On a fillet, `face` is the face's {axis,
+    // positive} and `share` is the sphere's weight, u0.8.
     typedef struct packed {
         logic [2:0]        face;
         logic [7:0]        share;
         logic [2:0][DIRECTION_BITS-1:0] direction;
         logic              round;
-        place_t            place;
         logic [9:0]        length;
-        logic [T_BITS-1:0] t;
+        logic [11:0]       gap;
+        logic [9:0]        slope;
+        place_t            place;
+        logic [END_T_BITS-1:0] t;
         logic [7:0]        steps;
         state_t            state;
         logic [2:0]        surface;
-        logic [11:0]       gap;
-        logic [9:0]        slope;
     } end_t;
-    localparam int unsigned FLAT_END_BITS  = PLACE_BITS + 10 + T_BITS + 8 + 2 + 3 + 12 + 10;
-    localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
+    localparam int unsigned EXIT_END_BITS  = PLACE_BITS + END_T_BITS + 8 + 2 + 3;
+    localparam int unsigned MARCH_END_BITS = EXIT_END_BITS + 10 + 12 + 10;
+    localparam int unsigned ROUND_END_BITS = MARCH_END_BITS + 1 + 3 * DIRECTION_BITS;
     localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
 
     // The nearest sphere among the spheres evaluated so far for a point: its distance and its number.
@@ -108,10 +112,10 @@ package raymarch_pkg;
         endcase
     endfunction
 
-    // Returns the number of low bits of an end_t that a lane stores, which depends on whether the build has spheres (`round`)
-    // and fillets (`blend`).
-    function automatic int unsigned end_bits(input bit round, input bit blend);
-        end_bits = blend ? END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
+    // Returns the number of low bits of an end_t that a build uses, which depends on whether it has marching rays (`march`), spheres
+    // (`round`) and fillets (`blend`).
+    function automatic int unsigned end_bits(input bit march, input bit round, input bit blend);
+        end_bits = blend ? END_BITS : round ? ROUND_END_BITS : march ? MARCH_END_BITS : EXIT_END_BITS;
     endfunction
 
     // Returns the number of clocks from a point to its distance. Arguments: levels of the sponge, bit mask of the flat fields,

@@ -1,10 +1,13 @@
-// The raymarcher: computes the pixels of a distance field (docs/formats/raymarch.md, "Distance fields"), band by band, for the band
-// buffer. A band is a horizontal strip of the picture.
+// The raymarcher: computes the pixels of a field (docs/formats/raymarch.md), band by band, for the band buffer. A band is a horizontal
+// strip of the picture.
 //
-//                    ┌─▶ ring_lane ─┐            ┌──────────────────┐
-//   ray_generator ───┼─▶ ring_lane ─┼─▶ ends ─┬──┴▶ ray_paint ─▶ groups of one pixel
-//                    └─▶ ...       ─┘         └▶ waiting ─┘
-//                                          of the next band
+//                    ┌─▶ lane ─┐            ┌──────────────────┐
+//   ray_generator ───┼─▶ lane ─┼─▶ ends ─┬──┴▶ ray_paint ─▶ groups of one pixel
+//                    └─▶ ...  ─┘         └▶ waiting ─┘
+//                                     of the next band
+//
+// In a lane, an exit_lane finds the ends of rays that leave empty prisms, and a ring_lane those of rays that march by distances. A build
+// has the lanes that its fields need; `exits` selects one kind for the frame.
 //
 // `start` (one clock, not while `busy`) begins a frame; its parameters must hold until the frame has ended. The pixels of a
 // band are sent while `band_open` is high, in any order, each pixel once, or with `stereo` once for each eye. `band_done` is
@@ -16,7 +19,7 @@
 // band need very different numbers of evaluations.
 //
 // When rays with one evaluation follow rays with many evaluations, the lanes could accept more rays than the generator produces, one per
-// clock. A long ring holds enough rays to keep the lane busy during this time; a lane with a short ring has a queue of rays for this
+// clock. A long ring holds enough rays to keep the lane busy during this time; a ring_lane with a short ring has a queue of rays for this
 // purpose.
 //
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. round_light then precedes ray_paint,
@@ -28,13 +31,13 @@
 `default_nettype none
 
 module raymarcher #(
-    parameter int unsigned LANES   = 2,
-    parameter int unsigned LEVELS  = 6,
-    parameter int unsigned FIELDS  = fields_pkg::ALL,
-    parameter bit          ROUND   = 1'b1,
-    parameter bit          BLEND   = 1'b1,
+    parameter int unsigned LANES  = 2,
+    parameter int unsigned LEVELS = 6,
+    parameter int unsigned FIELDS = fields_pkg::ALL,
+    parameter bit          ROUND  = 1'b1,
+    parameter bit          BLEND  = 1'b1,
     parameter bit          STEREO  = 1'b1,
-    parameter int unsigned EARLY   = ROUND ? 1024 : 512
+    parameter int unsigned EARLY  = ROUND ? 1024 : 512
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -44,12 +47,27 @@ module raymarcher #(
     // Parameters of the frame. `size` is 0 for 320x180, 1 for 640x360 and 2 for 1280x720.
     input  wire  [1:0]                size,
     input  wire                       stereo,
-    // Rays and positions of both eyes, the left eye first, and the box about the field (docs/formats/raymarch.md, "Rays").
+    input  wire                       exits,
+    // Rays of both eyes, the left eye first, and the limits of their parameters: u14.14 of exits, u11.12 of marching rays.
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
-    input  wire  [22:0]               near_limit,
+    input  wire  [exit_pkg::T_BITS-1:0] near_limit,
+    input  wire  [exit_pkg::T_BITS-1:0] far_limit,
+    // Positions of both eyes.
     input  wire  [1:0][2:0][24:0]     origins,
+    // Exits: the solid (exit_pkg::solid_t); and for both eyes, for each axis as it is and mirrored, the prism around the eye (exit_start).
+    input  wire  [1:0]                rule,
+    input  wire  [2:0]                levels,
+    input  wire  [2:0][exit_pkg::HALF_BITS-1:0]               halves,
+    input  wire  [2:0][exit_pkg::BORDER_BITS-1:0]             borders,
+    input  wire  [1:0][1:0]                choice,
+    input  wire  [1:0][1:0][2:0][exit_pkg::PLANE_BITS-1:0]   distances,
+    input  wire  [1:0][1:0][2:0]      there,
+    input  wire  [1:0][1:0][2:0]      away,
+    input  wire  [1:0][1:0][2:0]      last,
+    input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0] nexts,
+    // Marching rays: the box about the field (docs/formats/raymarch.md, "Rays").
     input  wire  [1:0][2:0][23:0]     outside,
     input  wire  [2:0][23:0]          bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
@@ -86,7 +104,10 @@ module raymarcher #(
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
+    // Fields that are drawn by exits when there are no spheres, and whether the build has each kind of rays.
+    localparam bit          EXITS      = (FIELDS & fields_pkg::EXITS) != 0;
+    localparam bit          MARCH      = ROUND || (FIELDS & fields_pkg::OCTANTS) != 0;
+    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(MARCH, ROUND, BLEND);
 
     // Values derived from `size`: the number of the last band, and the numbers of lines of a band, of columns (eight pixels wide) of a
     // line, of rows (of eight pixels) of a band, and of rays of a band.
@@ -109,26 +130,30 @@ module raymarcher #(
     logic [EARLY_BITS-1:0] early;
     logic                  ray_moves, group_moves;
 
-    logic                  generating, ray_valid, ray_ready;
-    raymarch_pkg::ray_t       ray;
+    logic                  generating, ray_valid, ray_ready, by_exits;
+    logic                  ray_odd;
+    raymarch_pkg::ray_t    ray;
+    exit_pkg::ray_t        exit_ray;
 
-    // Numbers of the last column, of the last line of a band, and of the last band, counted from 0.
+    // Numbers of the last column and of the last line of a band, counted from 0.
     logic [10:0] column_ends;
-    logic [5:0]  line_ends, band_ends;
+    logic [5:0]  line_ends;
 
     always_ff @(posedge clk) begin
         column_ends <= {stride, 3'd0} - 11'd1;
         line_ends   <= lines - 6'd1;
-        band_ends   <= last_band;
     end
 
-    ray_generator #(.ROUND(ROUND), .STEREO(STEREO)) generator (
-        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band(band_ends),
-        .stereo, .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
-        .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
+    assign by_exits = EXITS && (!MARCH || exits);
+
+    ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .STEREO(STEREO)) generator (
+        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .stereo, .exits,
+        .first, .across, .down, .near_limit, .round(solid.is_round), .origins, .outside, .far_limit, .choice, .distances,
+        .there, .away, .last, .nexts, .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
     );
 
-    assign is_early    = ray.place.odd != odd;
+    assign ray_odd     = by_exits ? exit_ray.place[raymarch_pkg::PLACE_BITS-1] : ray.place.odd;
+    assign is_early    = ray_odd != odd;
     assign may_enter   = !is_early || early != EARLY_BITS'(EARLY);
     assign ray_moves   = ray_valid && ray_ready;
     assign group_moves = group_valid && group_ready;
@@ -166,30 +191,73 @@ module raymarcher #(
             lane_valid[i] = ray_valid && may_enter && (lane_ready & ((LANES'(1) << i) - 1'b1)) == '0;
     assign ray_ready = may_enter && lane_ready != '0;
 
-    // Depth of the queue before a lane; 0 for no queue.
-    localparam int unsigned QUEUE = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 0;
-
     for (genvar i = 0; i < LANES; i++) begin : lanes
-        logic               entry_valid, entry_ready;
-        raymarch_pkg::ray_t entry;
+        // Signals of the exit_lane and of the ring_lane.
+        logic               exit_ready, exit_valid, exit_evaluates, exit_waits, ring_ready, ring_valid, ring_idles, ring_evaluates, ring_waits;
+        raymarch_pkg::end_t exit_end, ring_end;
 
-        if (QUEUE != 0) begin : queued
-            fifo #(.WIDTH(raymarch_pkg::RAY_BITS), .DEPTH(QUEUE)) queue (
-                .clk, .rst(reset), .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_data(ray),
-                .out_valid(entry_valid), .out_ready(entry_ready), .out_data(entry)
+        if (EXITS) begin : leaving
+            exit_pkg::end_t found;
+
+            exit_lane #(
+                .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0), .STEREO(STEREO)
+            ) lane (
+                .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
+                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
+                .out_valid(exit_valid), .out_ready(end_taken[i] && by_exits), .out_end(found),
+                .evaluates(exit_evaluates), .waits(exit_waits)
             );
-        end else begin : at_once
-            assign {entry_valid, lane_ready[i], entry} = {lane_valid[i], entry_ready, ray};
+
+            always_comb begin
+                exit_end         = '0;
+                exit_end.place   = found.place;
+                exit_end.t       = found.hit ? found.t : raymarch_pkg::END_T_BITS'(found.height);
+                exit_end.steps   = found.steps;
+                exit_end.state   = found.hit ? raymarch_pkg::HIT : raymarch_pkg::MISS;
+                exit_end.surface = {found.axis, found.positive};
+            end
+        end else begin : no_leaving
+            assign {exit_ready, exit_valid, exit_evaluates, exit_waits} = '0;
+            assign exit_end = '0;
         end
 
-        assign idles[i] = entry_ready && !entry_valid;
+        if (MARCH) begin : marching
+            // Unions of spheres and flat fields march, and so do fields with faces perpendicular to the diagonals.
+            localparam int unsigned MARCHED = ROUND ? FIELDS : FIELDS & fields_pkg::OCTANTS;
+            // Depth of the queue before a lane; 0 for no queue.
+            localparam int unsigned QUEUE   = raymarch_pkg::has_short_rings(LEVELS, MARCHED, ROUND, BLEND) ? 32 : 0;
 
-        ring_lane #(.LEVELS(LEVELS), .FIELDS(FIELDS), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO)) lane (
-            .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write, .sphere_number, .sphere,
-            .in_valid(entry_valid), .in_ready(entry_ready), .in_ray(entry),
-            .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
-            .evaluates(evaluates[i]), .waits(waits[i])
-        );
+            logic               entry_valid, entry_ready;
+            raymarch_pkg::ray_t entry;
+
+            if (QUEUE != 0) begin : queued
+                fifo #(.WIDTH(raymarch_pkg::RAY_BITS), .DEPTH(QUEUE)) queue (
+                    .clk, .rst(reset), .in_valid(lane_valid[i] && !by_exits), .in_ready(ring_ready), .in_data(ray),
+                    .out_valid(entry_valid), .out_ready(entry_ready), .out_data(entry)
+                );
+            end else begin : at_once
+                assign {entry_valid, ring_ready, entry} = {lane_valid[i] && !by_exits, entry_ready, ray};
+            end
+
+            assign ring_idles = entry_ready && !entry_valid;
+
+            ring_lane #(.LEVELS(LEVELS), .FIELDS(MARCHED), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO)) lane (
+                .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write, .sphere_number, .sphere,
+                .in_valid(entry_valid), .in_ready(entry_ready), .in_ray(entry),
+                .out_valid(ring_valid), .out_ready(end_taken[i] && !by_exits), .out_end(ring_end),
+                .evaluates(ring_evaluates), .waits(ring_waits)
+            );
+        end else begin : no_marching
+            assign {ring_ready, ring_valid, ring_idles, ring_evaluates, ring_waits} = '0;
+            assign ring_end = '0;
+        end
+
+        assign lane_ready[i] = by_exits ? exit_ready : ring_ready;
+        assign end_valid[i]  = by_exits ? exit_valid : ring_valid;
+        assign end_of[i]     = by_exits ? exit_end : ring_end;
+        assign idles[i]      = by_exits ? exit_ready && !lane_valid[i] : ring_idles;
+        assign evaluates[i]  = by_exits ? exit_evaluates : ring_evaluates;
+        assign waits[i]      = by_exits ? exit_waits : ring_waits;
     end
 
     // In each clock one lane, chosen in rotation, may output the end of a ray. This rate suffices, because the generator produces at most
@@ -244,8 +312,8 @@ module raymarcher #(
         wire _unused = &{1'b0, lights};
     end
 
-    ray_paint #(.ROUND(ROUND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
-        .clk, .rst(reset), .stereo, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
+    ray_paint #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
+        .clk, .rst(reset), .stereo, .exits, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
         .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),
@@ -274,7 +342,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating};
+    wire _unused = &{1'b0, generating, ray, exit_ray, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 
 `default_nettype wire

@@ -57,7 +57,7 @@ module ring_lane #(
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
     localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
     localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
-    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
+    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(1'b1, ROUND, BLEND);
 
     // Constants of a ray in the ring. They are stored in a word of LUT memory per slot, written when the ray enters the slot.
     typedef struct packed {
@@ -347,8 +347,8 @@ module ring_lane #(
     end
 
     assign end_in = {
-        face_end, share_end, last_cargo.direction, last_round, last_cargo.place, last_cargo.length, end_t, steps_end, last_state, last_surface,
-        last_round ? 12'd0 : face_gap, last_round ? 10'h3FF : slope
+        face_end, share_end, last_cargo.direction, last_round, last_cargo.length, last_round ? 12'd0 : face_gap,
+        last_round ? 10'h3FF : slope, last_cargo.place, raymarch_pkg::END_T_BITS'(end_t), steps_end, last_state, last_surface
     };
 
     delay #(.WIDTH(11), .CLOCKS(2)) blended (.clk, .enable(1'b1), .in({face, share}), .out({face_end, share_end}));

@@ -35,7 +35,7 @@ module round_light #(
     output logic [23:0]              out_colour
 );
     localparam int unsigned LAST = BLEND ? 26 : 22;
-    localparam int unsigned KEPT_BITS = raymarch_pkg::FLAT_END_BITS + 1;
+    localparam int unsigned KEPT_BITS = raymarch_pkg::MARCH_END_BITS + 1;
 
     (* ram_style = "distributed" *) logic [65:0] centres [0:7];
     (* ram_style = "distributed" *) logic [4:0]  shifts [0:7];
@@ -130,7 +130,7 @@ module round_light #(
 
         assign origin = eye_2 ? origins[1][i] : origins[0][i];
         multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 17)) place (
-            .clk, .enable, .a({2'b0, held.t}), .b(held.direction[i]), .c({origin, 17'b0}), .p(sum)
+            .clk, .enable, .a({2'b0, held.t[raymarch_pkg::T_BITS-1:0]}), .b(held.direction[i]), .c({origin, 17'b0}), .p(sum)
         );
         assign apart = sum[39:17] - {centre_3[i][21], centre_3[i]};
 

@@ -149,6 +149,48 @@ def cases(rates):
     return found
 
 
+# Scenes of fields that are drawn by exits: size, quality, required frames a second, and goal.
+SCENES = [("cubes", 640, "balanced", 150, 190), ("cubes", 1280, "exact", 30, 60), ("menger", 1280, "exact", 30, 60),
+          ("mesh-in-field", 1280, "exact", 30, 60)]
+
+
+def targets(rates, cycles, marching):
+    """Frames a second of fields that are drawn by exits: of the slowest view with marching rays, with marching rays that start at cones, and
+    with exits; None is not measured."""
+
+    def slowest(frames):
+        return CLOCK / frames.max() if len(frames) else None
+
+    def row(name, same, spent, at_least, aim):
+        before = marching[same]
+        starts = [slowest(before[before.cones == cones].cycles) for cones in (False, True)]
+        return {"name": name, "marching": starts[0], "cones": starts[1], "exits": CLOCK / spent, "at_least": at_least, "aim": aim}
+
+    for case in cases(rates):
+        stereo = marching.stereo.isna() if case["stereo"] is None else marching.stereo == case["stereo"]
+        same = (marching.scene == case["field"]) & stereo & (marching.width == case["width"]) & (marching.lanes == case["lanes"])
+        if same.any():
+            spent = max(view["cycles_frame"] for view in case["views"])
+            yield row(case["name"], same, spent, case["at_least"], case["aim"])
+    for scene, width, quality, at_least, aim in SCENES:
+        measured = cycles[(cycles.scene == scene) & (cycles.width == width) & (cycles.rays == quality)]
+        name = f"scene `{scene}` | 1 | {width}×{width * 9 // 16} | 2"
+        yield row(name, (marching.scene == scene) & (marching.width == width), measured.cycles.iloc[0], at_least, aim)
+
+
+def beside(pictures):
+    """The pictures by exits, each with the figures of its marching rays, named `marching_COLUMN`."""
+    of_form = dict(iter(pictures.groupby("form", sort=False)))
+    return of_form["exits"].merge(of_form["marching"].rename(columns=lambda name: f"marching_{name}"), how="left",
+                                  left_on=["scene", "view", "width"], right_on=["marching_scene", "marching_view", "marching_width"])
+
+
+def worst(pictures):
+    """The largest errors of pictures."""
+    return {"undecided": pictures.undecided.sum(), "iou": pictures.iou.min(), "wrong_faces": pictures.wrong_faces.max(),
+            "depth_p99": pictures.depth_p99.max()}
+
+
 def best_clocks(clocks):
     """The clocks of each rate and scene: measured if available, otherwise computed."""
     return clocks.sort_values("measured", ascending=False, kind="stable").drop_duplicates(["rate", "scene"]).sort_index()
@@ -270,14 +312,10 @@ def index(read, blocks):
     add("smooth shading", "gouraud.md", forms, cost="cost", error_unit="steps of a channel", cost_unit="clocks a pixel",
         block="triangle_engine_smooth")
 
-    for study, name, error, unit, cost, cost_unit in [
-        ("threshold", "ray: threshold of a hit", "depth_p99.fillna(0)", "world units, p99 of depths", "cycles", "cycles a picture"),
-        ("cap", "ray: step limit", "1 - iou", "of the masks", "cycles", "cycles a picture"),
-        ("fraction", "ray: fraction bits", "depth_median.fillna(0)", "world units, median of depths", "evaluations", "evaluations a ray"),
-    ]:
-        trials = read(f"raymarch-{study}")
-        trials["config"] = trials.family + ": " + trials.config
-        add(name, "raymarch.md", trials, error=error, rms=None, cost=cost, error_unit=unit, cost_unit=cost_unit, block="raymarcher")
+    forms = read("raymarch-form")
+    forms["config"] = forms.family.where(forms.family == "exits", forms.family + ": " + forms.config)
+    add("ray to a sponge", "raymarch.md", forms, error="depth_p99", rms=None, cost="cycles", error_unit="world units, p99 of depths",
+        cost_unit="cycles a picture", block="raymarcher")
 
     methods = read("imu-methods").query("motion == 'tumble' and rate == 200")
     add("attitude, a sample", "imu.md", methods.assign(config=methods.method), error="error", rms=None, cost="cycles",

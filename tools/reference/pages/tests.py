@@ -54,6 +54,24 @@ class Qualities(unittest.TestCase):
                 self.assertTrue((is_ordered * levels[column].diff()[1:] > 0).all(), f"{scene}: {column}")
 
 
+class Raymarcher(unittest.TestCase):
+    def test_targets_are_of_the_slowest_view(self):
+        rates = tables.read(tables.COMMITTED, "raymarch-rates").iloc[:2].assign(view=["aside", "amid"], cycles_frame=[1e6, 2e6])
+        marching = rates.drop(columns="commit").rename(columns={"field": "scene"}).assign(cones=False, cycles=[4e6, 3e6])
+        scenes = pd.DataFrame([(*scene[:3], 1e6) for scene in figures.SCENES], columns=["scene", "width", "rays", "cycles"])
+        found = list(figures.targets(rates, scenes, marching))
+        self.assertEqual(len(found), 1 + len(figures.SCENES))
+        of_rates = [figures.CLOCK / found[0][name] if found[0][name] else None for name in ("marching", "cones", "exits")]
+        self.assertEqual(of_rates, [4e6, None, 2e6])
+        self.assertEqual((found[1]["marching"], found[1]["exits"]), (None, figures.CLOCK / 1e6))
+
+    def test_each_picture_by_exits_has_its_marching_picture(self):
+        pictures = pd.DataFrame([("exits", "a", "aside", 320, 1), ("marching", "a", "aside", 320, 9), ("marching", "b", "aside", 320, 7)],
+                                columns=["form", "scene", "view", "width", "evaluations"])
+        found = figures.beside(pictures)
+        self.assertEqual(found[["scene", "evaluations", "marching_evaluations"]].to_numpy().tolist(), [["a", 1, 9]])
+
+
 class Index(unittest.TestCase):
     CHOICES = pd.DataFrame(
         [("cheapest", 1e-1, 1), ("cheap", 1e-2, 5), ("own", 1e-3, 10), ("worse", 1e-2, 20), ("better", 1e-4, 30), ("best", 1e-6, 40),

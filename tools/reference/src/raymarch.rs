@@ -17,6 +17,7 @@ mod grid;
 mod menger;
 pub mod metrics;
 pub mod raymarched;
+mod rendered;
 mod solids;
 mod surface;
 mod trace;

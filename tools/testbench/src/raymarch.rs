@@ -2,7 +2,10 @@
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
-use glint_model::raymarch::{FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565};
+use glint_model::raymarch::exits::{Beam, Exit, Exits, Eye, Inverse, Rule, Side};
+use glint_model::raymarch::{
+    FieldSetup, Form, Lights, Marching, Palette, Ray, RayEnd, RayResult, State, paint, rgb565,
+};
 
 /// Position of a pixel, as in the member `place` of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,6 +28,12 @@ impl RayPlace {
         record.set("place.column", self.column);
     }
 
+    /// The place as a number, as the member `place` of a ray by exits has it.
+    #[must_use]
+    pub fn bits(&self) -> u32 {
+        u32::from(self.odd) << 18 | (self.eye as u32) << 17 | self.line << 11 | self.column
+    }
+
     fn of(record: &Record) -> Self {
         Self {
             odd: record.is_set("place.odd"),
@@ -42,6 +51,55 @@ pub fn ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     record.set("start", ray.start);
     record.set("length", ray.length);
     place.set(&mut record);
+    record.bits()
+}
+
+/// Packs a ray by exits, before its first evaluation, as an `exit_pkg::ray_t`.
+///
+/// # Panics
+/// If the frame has no flat solid.
+pub fn exit_ray(layout: &Layout, exits: &Exits, place: RayPlace, beam: &Beam) -> Bits {
+    let solid = exits.solid.expect("a solid");
+    let mut record = layout.record();
+    record.set("place", place.bits());
+    let start = &beam.start;
+    let is_over = exits.misses_at_start(beam);
+    record.set("over", is_over);
+    record.set("height", beam.height());
+    let down = (0..3).filter(|&axis| beam.down[axis]);
+    record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
+    for axis in 0..3 {
+        record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 2);
+        record.set(&format!("inverse[{axis}]"), reciprocal(beam.inverse[axis]));
+    }
+    // A ray that is over has no start.
+    if !is_over {
+        record.set("start", start.t);
+        record.set("axis", start.face as u64);
+        for axis in 0..3 {
+            record.set(&format!("reached[{axis}]"), solid.code(start.reached[axis]));
+        }
+    }
+    record.bits()
+}
+
+/// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
+#[must_use]
+pub fn reciprocal(inverse: Inverse) -> u64 {
+    let Inverse { mantissa, exponent } = inverse;
+    let scale = (exponent / 8) as u64;
+    scale << 30 | u64::from(mantissa) << (exponent % 8)
+}
+
+/// Clears the start of a ray that is over, which has no meaning.
+#[must_use]
+pub fn without_start(record: &Record) -> Bits {
+    let mut record = record.clone();
+    if record.is_set("over") {
+        for name in ["start", "axis", "reached[0]", "reached[1]", "reached[2]"] {
+            record.set(name, 0);
+        }
+    }
     record.bits()
 }
 
@@ -174,17 +232,26 @@ impl End {
     }
 }
 
-fn solid(mut solid: Record, setup: &FieldSetup) -> Record {
-    let blend = setup.blend();
-    solid.set("flat_too", setup.beside.is_some());
+/// The constants of a frame whose rays march.
+///
+/// # Panics
+/// If the rays of the frame go by exits.
+#[must_use]
+pub fn marching(setup: &FieldSetup) -> &Marching {
+    setup.marching().expect("marching rays")
+}
+
+fn solid(mut solid: Record, marching: &Marching) -> Record {
+    let blend = marching.blend();
+    solid.set("flat_too", marching.beside.is_some());
     solid.set("blend_inverse", blend.inverse);
     solid.set("blend_width", blend.width);
-    if let Some(spheres) = setup.spheres() {
+    if let Some(spheres) = marching.spheres() {
         solid.set("last_sphere", spheres.count as u64 - 1);
         solid.set("spheres_repeated", spheres.repeated);
         solid.set("is_round", 1);
     }
-    if let Solid::Flat(flat) = &setup.solid {
+    if let Solid::Flat(flat) = &marching.solid {
         let constants = flat.constants();
         solid.set("kind", constants.kind);
         solid.set("levels", constants.levels);
@@ -236,9 +303,10 @@ fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>;
     module.drive_all(&format!("{name}[1]"), right);
 }
 
-/// Drives the frame constants of a lane.
+/// Drives the frame constants of a lane for marching rays.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
-    let tuning = &setup.tuning;
+    let marching = marching(setup);
+    let tuning = &marching.tuning;
     let record = module
         .record("tuning")
         .with("far_limit", tuning.far)
@@ -246,11 +314,77 @@ pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
         .with("footprint", tuning.footprint)
         .with("threshold", tuning.threshold);
     module.drive_bits("tuning", record);
-    drive_eyes(module, "origins", setup.eyes.map(|eye| eye.origin));
-    module.drive_all("bounds", setup.bounds);
-    let solid = solid(module.record("solid"), setup);
+    drive_eyes(module, "origins", marching.eyes.map(|eye| eye.origin));
+    module.drive_all("bounds", marching.bounds);
+    let solid = solid(module.record("solid"), marching);
     module.drive_bits("solid", solid);
     set_spheres(module, setup, &Palette::default().lights);
+}
+
+/// The name in the gateware and the number of levels of a solid by exits.
+///
+/// # Panics
+/// For an octahedron, whose rays march.
+#[must_use]
+pub fn rule(rule: Rule) -> (&'static str, u64, u32) {
+    let (name, number) = match rule {
+        Rule::Box => ("BOX", 0),
+        Rule::Planes => ("PLANES", 1),
+        Rule::Sponge { .. } => ("SPONGE", 2),
+        Rule::Repeated { .. } => ("CUBES", 3),
+        Rule::Octahedron => unreachable!("a field of marching rays"),
+    };
+    (name, number, rule.levels())
+}
+
+/// Drives the solid of a raymarcher's rays by exits.
+fn set_solid(module: &mut Module, exits: &Exits) {
+    let solid = exits.solid.expect("a solid");
+    let (_, number, levels) = rule(solid.rule);
+    module.drive("rule", number);
+    module.drive("levels", levels);
+    module.drive_all("halves", solid.half());
+    module.drive_all("borders", solid.borders());
+}
+
+/// Drives the prisms around the eyes.
+fn set_starts(module: &mut Module, exits: &Exits) {
+    let solid = exits.solid.expect("a solid");
+    for (number, Eye { start, .. }) in exits.eyes.iter().enumerate() {
+        let choice: u32 = match start.exit {
+            Exit::Second => 0,
+            Exit::First => 1,
+            Exit::Last => 2,
+        };
+        module.drive(&format!("choice[{number}]"), choice);
+        for (way, sides) in start.sides.iter().enumerate() {
+            let at = |name: &str| format!("{name}[{number}][{way}]");
+            let sides = &sides[..3];
+            let bits = |is_set: fn(&Side) -> bool| -> u32 {
+                let axes = (0..).zip(sides).filter(|(_, side)| is_set(side));
+                axes.map(|(axis, _)| 1 << axis).sum()
+            };
+            module.drive_all(&at("distances"), sides.iter().map(|side| side.distance));
+            module.drive(&at("there"), bits(|side| side.is_bounded));
+            module.drive(&at("away"), bits(|side| side.is_away));
+            module.drive(&at("last"), bits(|side| side.is_last));
+            let next = sides.iter().map(|side| solid.code(side.next));
+            module.drive_all(&at("nexts"), next);
+        }
+    }
+}
+
+/// Drives the frame constants of a whole raymarcher.
+pub fn set_raymarcher(module: &mut Module, setup: &FieldSetup) {
+    match &setup.form {
+        Form::Exits(exits) => {
+            let solid = module.record("solid");
+            module.drive_bits("solid", solid);
+            set_solid(module, exits);
+        }
+        Form::Marching(_) => set_lane(module, setup),
+    }
+    set_rays(module, setup);
 }
 
 /// Drives the frame constants of the ray generator, with bands of `band_lines` lines.
@@ -267,14 +401,49 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
 
 /// Drives the frame constants for the starts of the rays.
 pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
-    let eyes = setup.eyes;
     module.drive("stereo", setup.stereo.is_some());
-    module.drive("near_limit", setup.near);
-    drive_eyes(module, "first", eyes.map(|eye| eye.first));
-    module.drive_all("across", setup.steps[0]);
-    module.drive_all("down", setup.steps[1]);
-    drive_eyes(module, "outside", eyes.map(|eye| eye.outside));
-    drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
+    module.drive("exits", setup.exits().is_some());
+    match &setup.form {
+        Form::Exits(exits) => {
+            let axes = |[x, y, z, _]: [i32; 4]| [x, y, z];
+            let eyes = exits.eyes;
+            module.drive("near_limit", exits.near as u64);
+            module.drive("far_limit", exits.far as u64);
+            drive_eyes(module, "first", eyes.map(|eye| axes(eye.first)));
+            module.drive_all("across", axes(exits.steps[0]));
+            module.drive_all("down", axes(exits.steps[1]));
+            drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
+            set_starts(module, exits);
+        }
+        Form::Marching(marching) => {
+            let eyes = marching.eyes;
+            module.drive("near_limit", marching.near);
+            drive_eyes(module, "first", eyes.map(|eye| eye.first));
+            module.drive_all("across", marching.steps[0]);
+            module.drive_all("down", marching.steps[1]);
+            drive_eyes(module, "outside", eyes.map(|eye| eye.outside));
+            drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
+        }
+    }
+}
+
+/// Packs the `end_t` of a ray by exits from the model's end.
+pub fn exit_end(layout: &Layout, place: RayPlace, end: &RayEnd) -> Bits {
+    let mut record = layout.record();
+    let (kind, surface, t) = match end.state {
+        State::Hit(surface) => (
+            Kind::Hit,
+            surface.face().unwrap_or_default(),
+            end.depth >> 7,
+        ),
+        _ => (Kind::Miss, 0, end.height.into()),
+    };
+    record.set("surface", surface);
+    record.set_name("state", kind.name());
+    record.set("steps", end.steps.min(255));
+    record.set("t", t);
+    place.set(&mut record);
+    record.bits()
 }
 
 /// Packs the `end_t` of a ray from the model's result.
@@ -309,6 +478,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.drive_bits("palette", colours);
     module.drive("horizon", colour(palette.horizon));
     module.drive("stereo", setup.stereo.is_some());
+    module.drive("exits", setup.exits().is_some());
     module.drive("depth_mantissa", setup.depth.mantissa);
     module.drive("depth_exponent", setup.depth.exponent);
     module.drive("fog_shift", palette.fog_shift);
@@ -363,18 +533,9 @@ impl From<[u64; 7]> for Pixel {
 }
 
 /// Computes the pixel expected from the paint module for the model's result of a ray.
-pub fn pixel(
-    setup: &FieldSetup,
-    palette: &Palette,
-    place: RayPlace,
-    ray: &Ray,
-    outcome: &RayResult,
-) -> Pixel {
-    let colour = paint(setup, palette, ray, outcome);
-    let code = match outcome.state {
-        State::Hit(_) => setup.depth_code(ray, outcome.reached()),
-        _ => 0,
-    };
+pub fn pixel(setup: &FieldSetup, palette: &Palette, place: RayPlace, end: &RayEnd) -> Pixel {
+    let colour = paint(setup, palette, end);
+    let code = setup.depth_code(end);
     let colour = match setup.stereo {
         None => rgb565(colour),
         Some(_) => u16::from_le_bytes([colour[1]; 2]),

@@ -6,7 +6,7 @@ use glint_model::raymarch::{FieldSetup, FieldStats, Palette};
 use glint_model::triangle::descriptor::band_rows;
 use glint_vectors::Random;
 
-use crate::raymarch::{Pixel, RayPlace, pixel, set_lane, set_lights, set_paint, set_rays};
+use crate::raymarch::{Pixel, RayPlace, pixel, set_lights, set_paint, set_raymarcher};
 use crate::{Bits, Counters, Module, Sink, Stalls};
 
 const COUNTERS: [&str; 8] = [
@@ -77,8 +77,7 @@ impl Raymarcher {
     }
 
     fn set(&mut self, setup: &FieldSetup, palette: &Palette) {
-        set_lane(&mut self.module, setup);
-        set_rays(&mut self.module, setup);
+        set_raymarcher(&mut self.module, setup);
         set_paint(&mut self.module, setup, palette);
         set_lights(&mut self.module, setup, &palette.lights);
         self.module.drive("size", setup.width / 640);
@@ -116,12 +115,12 @@ impl Raymarcher {
                         column: x,
                         eye: eye as usize,
                     };
-                    let ray = setup.ray(place.eye, x, band * lines + y);
-                    let outcome = setup.march(&ray);
-                    stats.count(setup, &outcome);
-                    expected.insert((eye.into(), y.into(), x.into()), {
-                        pixel(setup, palette, place, &ray, &outcome)
-                    });
+                    let end = setup.trace(place.eye, x, band * lines + y);
+                    stats.count(&end);
+                    expected.insert(
+                        (eye.into(), y.into(), x.into()),
+                        pixel(setup, palette, place, &end),
+                    );
                 }
             }
             if let Some(random) = &mut random {

@@ -42,13 +42,11 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
     run::program("glint-reference", "report", name, arguments)
 }
 
-/// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: SoCs with four lanes for the sponge and for
-/// spheres, and the raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
+/// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for spheres, and the
+/// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
-            let sponge = "sponge";
-            gateware::build_beside(sponge, &["--fields", sponge], Library::Profiled)?;
             let spheres = ["--fields", "spheres,stereo", "--lanes", "4"];
             gateware::build_beside("spheres-4", &spheres, Library::Quick)?;
             model("raymarcher")
@@ -148,7 +146,6 @@ fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     ];
     if !quick {
         files.extend([
-            "gateware/virtual-sponge/libglint_soc.so",
             "gateware/virtual-spheres-4/libglint_soc.so",
             "gateware/virtual-smooth/libglint_soc.so",
             "gateware/models/raymarcher.so",

@@ -46,75 +46,79 @@ fn something_else_is_not_taken_for_the_raymarcher() {
     assert_eq!(block.borrow().writes, [silent], "its interrupt is silent");
 }
 
+/// A field whose rays have this form.
+fn field(form: Form<'_>) -> Field<'_> {
+    Field {
+        control: Control::default().with_stereo(Stereo::RedCyan),
+        solid: Solid::default().with_levels(0b111),
+        half: [40, 41, 42],
+        form,
+        limits: [44, 45],
+        origins: [[1, -2, 3], [-10, 11, -12]],
+        first: [[-7, 8, -9], [16, -17, 18]],
+        steps: [[22, -23, 24], [-25, 26, -27]],
+        depth_scale: DepthScale::default().with_mantissa(47),
+        faces: &[[230, 130, 0]; 8],
+        sky: [[1; 3], [2; 3], [3; 3]],
+        fog_shift: 5,
+    }
+}
+
 #[test]
 fn a_field_is_described_before_it_is_enabled() {
     let (raymarcher, block) = probe(IDENT);
     let mut raymarcher = raymarcher.unwrap();
+    let faces = [0, 1, 2, 3, 4, 5, 6, 7].map(|face| [230, 130, face]);
+    let (tuning, cube_half) = (Tuning::default().with_cap(43), 3 << 11);
+    let (outside, bounds) = ([[4, 5, 6], [13, 14, 15]], [19, 20, 21]);
     let field = Field {
-        control: Control::default().with_stereo(Stereo::RedCyan),
-        solid: Solid::default().with_levels(0b111),
-        cube_half: 3 << 11,
-        half: [40, 41, 42],
-        tuning: Tuning::default().with_cap(43),
-        limits: [44, 45],
-        eyes: [
-            Eye {
-                origin: &[1, -2, 3],
-                outside: &[4, 5, 6],
-                first: &[-7, 8, -9],
-            },
-            Eye {
-                origin: &[-10, 11, -12],
-                outside: &[13, 14, 15],
-                first: &[16, -17, 18],
-            },
-        ],
-        bounds: &[19, 20, 21],
-        steps: [&[22, -23, 24], &[-25, 26, -27]],
-        depth_scale: DepthScale::default().with_mantissa(47),
-        faces: &[0, 1, 2, 3, 4, 5, 6, 7].map(|face| [230, 130, face]),
-        sky: [[1; 3], [2; 3], [3; 3]],
-        fog_shift: 5,
+        faces: &faces,
+        ..field(Form::March {
+            cube_half,
+            tuning,
+            outside: outside.each_ref(),
+            bounds: &bounds,
+        })
     };
     raymarcher.set_field(&field);
     let r = registers();
     assert_eq!(r.solid().read(), field.solid);
-    assert_eq!(r.cube_half().read(), field.cube_half);
+    assert!(!r.exits().read().enable());
+    assert_eq!(r.cube_half().read(), cube_half);
     let half = [r.half_x(), r.half_y(), r.half_z()];
     assert_eq!(half.map(|x| x.read()), field.half);
-    assert_eq!(r.tuning().read(), field.tuning);
+    assert_eq!(r.tuning().read(), tuning);
     assert_eq!([r.far().read(), r.near().read()], field.limits);
-    let eyes = [
+    // Coordinates of an eye have 25 bits.
+    let origins = [
+        [r.origin_left_x(), r.origin_left_y(), r.origin_left_z()],
+        [r.origin_right_x(), r.origin_right_y(), r.origin_right_z()],
+    ];
+    let origins = origins.map(|row| row.map(|x| x.read().cast_signed() << 7 >> 7));
+    assert_eq!(origins, field.origins);
+    let found = [
+        [r.outside_left_x(), r.outside_left_y(), r.outside_left_z()],
         [
-            [r.origin_left_x(), r.origin_left_y(), r.origin_left_z()],
-            [r.outside_left_x(), r.outside_left_y(), r.outside_left_z()],
-            [r.first_left_x(), r.first_left_y(), r.first_left_z()],
-        ],
-        [
-            [r.origin_right_x(), r.origin_right_y(), r.origin_right_z()],
-            [
-                r.outside_right_x(),
-                r.outside_right_y(),
-                r.outside_right_z(),
-            ],
-            [r.first_right_x(), r.first_right_y(), r.first_right_z()],
+            r.outside_right_x(),
+            r.outside_right_y(),
+            r.outside_right_z(),
         ],
     ];
-    for (eye, registers) in field.eyes.iter().zip(eyes) {
-        let [origin, outside, first] = registers.map(|row| row.map(|x| x.read()));
-        // Coordinates of an eye have 25 bits.
-        assert_eq!(&origin.map(|x| x.cast_signed() << 7 >> 7), eye.origin);
-        assert_eq!(&outside, eye.outside);
-        assert_eq!(&first.map(u32::cast_signed), eye.first);
-    }
-    let bounds = [r.bounds_x(), r.bounds_y(), r.bounds_z()];
-    assert_eq!(&bounds.map(|x| x.read()), field.bounds);
+    assert_eq!(found.map(|row| row.map(|x| x.read())), outside);
+    let first = [
+        [r.first_left_x(), r.first_left_y(), r.first_left_z()],
+        [r.first_right_x(), r.first_right_y(), r.first_right_z()],
+    ];
+    let first = first.map(|row| row.map(|x| x.read().cast_signed()));
+    assert_eq!(first, field.first);
+    let found = [r.bounds_x(), r.bounds_y(), r.bounds_z()];
+    assert_eq!(found.map(|x| x.read()), bounds);
     let steps = [
         [r.across_x(), r.across_y(), r.across_z()],
         [r.down_x(), r.down_y(), r.down_z()],
     ];
     let steps = steps.map(|step| step.map(|x| x.read().cast_signed()));
-    assert_eq!(steps.each_ref(), field.steps);
+    assert_eq!(steps, field.steps);
     assert_eq!(r.depth_scale().read(), field.depth_scale);
     assert_eq!(r.colour_1().read(), 230 | 130 << 8 | 1 << 16, "red first");
     let sky = [r.colour_6(), r.colour_7(), r.horizon()];
@@ -135,6 +139,69 @@ fn a_field_is_described_before_it_is_enabled() {
     );
     raymarcher.clear_field();
     assert!(!r.control().read().enable());
+}
+
+#[test]
+fn rays_by_exits_have_the_prism_around_each_eye() {
+    let (raymarcher, _block) = probe(IDENT);
+    let exits = Exits::default()
+        .with_rule(Rule::Sponge)
+        .with_depth(3)
+        .with_right_exit(Exit::Last);
+    // Planes are numbered: by eye, by way, and by axis.
+    let start = |number: u32| Start {
+        distance: 100 + number,
+        there: number.is_multiple_of(2),
+        away: number.is_multiple_of(3),
+        last: number.is_multiple_of(5),
+        next: 0x1000 | number as u16,
+    };
+    let prism = |eye: u32| [0, 1].map(|way| [0, 1, 2].map(|axis| start(6 * eye + 3 * way + axis)));
+    raymarcher.unwrap().set_field(&field(Form::Exits {
+        exits,
+        borders: [-1, 2, -3],
+        prisms: [prism(0), prism(1)],
+    }));
+    let r = registers();
+    assert_eq!(r.exits().read(), exits.with_enable(true));
+    let borders = [r.border_x(), r.border_y(), r.border_z()];
+    assert_eq!(borders.map(|x| x.read()), [0x3F_FFFF, 2, 0x3F_FFFD]);
+    let planes = [
+        r.start_left_x(),
+        r.start_left_y(),
+        r.start_left_z(),
+        r.start_left_mirrored_x(),
+        r.start_left_mirrored_y(),
+        r.start_left_mirrored_z(),
+        r.start_right_x(),
+        r.start_right_y(),
+        r.start_right_z(),
+        r.start_right_mirrored_x(),
+        r.start_right_mirrored_y(),
+        r.start_right_mirrored_z(),
+    ];
+    for (number, plane) in (0..).zip(planes) {
+        let Start {
+            distance,
+            there,
+            away,
+            last,
+            ..
+        } = start(number);
+        let flags = u32::from(there) | u32::from(away) << 1 | u32::from(last) << 2;
+        assert_eq!(plane.read(), distance | flags << 25, "plane {number}");
+    }
+    let next = [
+        r.next_left_x(),
+        r.next_left_y(),
+        r.next_left_z(),
+        r.next_right_x(),
+        r.next_right_y(),
+        r.next_right_z(),
+    ];
+    let next = next.map(|next| [next.read() & 0xFFFF, next.read() >> 16]);
+    let axes = [0, 1, 2, 6, 7, 8].map(|number| [0x1000 | number, 0x1000 | (number + 3)]);
+    assert_eq!(next, axes);
 }
 
 #[test]

@@ -14,8 +14,8 @@ use crate::triangle::{MeshLight, MeshSetup};
 
 /// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
 ///
-/// The constants take about 1,700 bytes, mostly tables of a field's palette. To save time, keep one `FrameConstants` and
-/// [update](Self::update) it for each frame instead of moving new ones.
+/// The constants take about 3,700 bytes, mostly those of rays by exits and tables of a field's palette. To save time, keep one
+/// `FrameConstants` and [update](Self::update) it for each frame instead of moving new ones.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
     /// Constants of the mesh, or the constants that all objects share.

@@ -1,7 +1,9 @@
 //! The directions of a frame's rays in full precision.
 
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::fixed::Q2_23;
+
+use crate::error::{FIELD_HALF_WIDTH, RenderError, SIZES};
 
 /// Directions of the pixels' rays with 51 fraction bits, scaled so that their component along the camera's forward axis n
 /// is 1. `narrow` converts them to the directions D of docs/formats/raymarch.md ("Rays").
@@ -72,4 +74,21 @@ impl Directions {
         let shift = 21 + self.exponent;
         ((x + (1 << (shift - 1))) >> shift) as i32
     }
+}
+
+/// Checks that rays of a camera can be drawn, in a picture of this size.
+///
+/// # Errors
+/// [`RenderError::Size`], [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.
+pub(super) fn check(view: &View, (width, height): (u32, u32)) -> Result<(), RenderError> {
+    if !SIZES.contains(&(width, height)) {
+        return Err(RenderError::Size { width, height });
+    }
+    if view.projection() == Projection::Orthographic {
+        return Err(RenderError::Orthographic);
+    }
+    if !(FIELD_HALF_WIDTH[0]..=FIELD_HALF_WIDTH[1]).contains(&view.half_width()) {
+        return Err(RenderError::HalfWidth(view.half_width()));
+    }
+    Ok(())
 }

@@ -14,6 +14,7 @@
 //! word lengths.
 
 mod balls;
+mod code;
 mod follow;
 mod intervals;
 mod lattice;
@@ -25,9 +26,10 @@ mod spheres;
 mod words;
 
 pub use balls::{Ball, Sight};
+pub use code::CODE_BITS;
 pub use follow::End;
 pub use intervals::{AXES, Border, Exit, Place, Prism, Rule, Solid};
 pub use ray::{Beam, Way};
 pub use rectangle::Rectangle;
-pub use setup::{Exits, Eye, Start};
+pub use setup::{Exits, Eye, Side, Start};
 pub use words::{Inverse, Words};

@@ -69,6 +69,8 @@ const MARK: [u8; 3] = [255, 0, 255];
 pub struct FieldOptions {
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
+    /// Whether rays march also in a field that is drawn by exits, to compare both.
+    pub marches: bool,
     /// Precision of the march of rays.
     pub tuning: Tuning,
     /// Colours, without fog.
@@ -105,13 +107,14 @@ impl FieldOptions {
         let lighting = appearance.lighting().seen_from(view);
         let mut palette = Palette::of(field, material, &lighting, appearance.field_background());
         if occlusion {
-            palette = palette.with_occlusion();
+            palette = palette.with_occlusion(field);
         }
         if undecided {
             palette.undecided = MARK;
         }
         Self {
             stereo,
+            marches: false,
             palette,
             fog,
             tuning: Tuning::of(field, quality),
@@ -123,6 +126,7 @@ impl Default for FieldOptions {
     fn default() -> Self {
         Self {
             stereo: None,
+            marches: false,
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
             fog: U4_28::ZERO,

@@ -4,6 +4,7 @@ use glint_core::colour::luminance;
 use glint_core::field::Field;
 use glint_core::light::{Background, Lighting, Material};
 
+use super::exits::Exits;
 use super::lights::{Light, Lights};
 
 /// The colours of a frame, computed from materials and lights; eight bits per channel. With two eyes the colours are grey: all channels
@@ -76,12 +77,15 @@ impl Palette {
         }
     }
 
-    /// Darkens narrow places: the share of light left is 255·40/(40 + steps), rounded down.
+    /// Darkens narrow places: the share of light left is 255·h/(h + n), rounded down. For rays that march, h is 40 and n is the number of
+    /// steps. For rays by exits, which take far fewer steps, h is 6 and n the number of steps before the last one, which finds the hit:
+    /// a surface without a hole before it keeps its light.
     #[must_use]
-    pub fn with_occlusion(self) -> Self {
-        const HALF: u32 = 40;
+    pub fn with_occlusion(self, field: &Field) -> Self {
+        let (half, last) = if Exits::draws(field) { (6, 1) } else { (40, 0) };
+        let share = |steps: usize| 255 * half / (half + steps.saturating_sub(last));
         Self {
-            occlusion: core::array::from_fn(|steps| (255 * HALF / (HALF + steps as u32)) as u8),
+            occlusion: core::array::from_fn(|steps| share(steps) as u8),
             ..self
         }
     }

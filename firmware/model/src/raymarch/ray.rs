@@ -1,9 +1,10 @@
-//! Rays through a distance field: their start, their march and their end.
+//! Rays that march through a distance field: their start, their march and their end.
 
 use glint_core::field::{FRACTION, Surface, cropped, magnitude};
 
+use super::end::{RayEnd, State};
+use super::marching::{Eye, Marching};
 use super::options::FARTHEST;
-use super::setup::{Eye, FieldSetup};
 
 /// Lower bounds of 1/m for numbers m in (0, 1). The index i is the first ten fraction bits of m. The entry is
 /// 2^10/(i + 1), truncated so that its product with m is always less than 1 after rounding: u8.9, 17 bits.
@@ -52,18 +53,7 @@ pub struct Ray {
     pub start: u32,
 }
 
-/// Result of a ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Surface reached.
-    Hit(Surface),
-    /// Far limit reached, or bounding box left.
-    Miss,
-    /// Step limit reached.
-    Undecided,
-}
-
-/// The end of a ray.
+/// The end of a marching ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayResult {
     /// Whether the ray hit a surface, missed or ended undecided.
@@ -88,7 +78,7 @@ impl RayResult {
     }
 }
 
-impl FieldSetup {
+impl Marching {
     /// The ray of pixel (x, y) for an eye.
     pub fn ray(&self, eye: usize, x: u32, y: u32) -> Ray {
         // The unscaled direction D with 24 fraction bits, s1.24.
@@ -120,8 +110,7 @@ impl FieldSetup {
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
             ((square + (1 << 19)) >> 24) as u32 & 0x3FF
         } else {
-            let [a, b, c] = parts;
-            a.max(b).max(c) >> 14 & 0x3FF
+            longest(parts)
         }
     }
 
@@ -136,9 +125,8 @@ impl FieldSetup {
 
     /// Scales an unscaled direction D with length index `length` to a direction of length 1 at most.
     fn scaled(&self, direction: [i32; 3], length: u32) -> [i32; 3] {
-        let inverse = i64::from(self.inverse(length));
-        // Rounds a product with 24 + 9 fraction bits to 17.
-        direction.map(|d| ((i64::from(d) * inverse + (1 << 15)) >> 16) as i32)
+        let inverse = self.inverse(length);
+        direction.map(|part| scaled(part, inverse))
     }
 
     /// Parameter t at the given depth along the camera's forward axis n, or slightly less, of a ray with length index
@@ -260,11 +248,44 @@ impl FieldSetup {
         })
     }
 
+    /// The end of a ray as a picture shows it.
+    pub fn seen(&self, ray: &Ray, end: &RayResult) -> RayEnd {
+        RayEnd {
+            state: end.state,
+            depth: self.depth_of(ray, end.reached()),
+            steps: end.steps,
+            evaluations: end.steps * self.passes(),
+            // The upper 8 of the 17 fraction bits.
+            height: (ray.direction[2].max(0) >> 9).min(255) as u8,
+            normal: self.normal(ray, end),
+        }
+    }
+
+    /// The vector from the centre of the sphere that was hit to the hit; `None` if the ray hit no sphere or fillet.
+    fn normal(&self, ray: &Ray, end: &RayResult) -> Option<[i32; 3]> {
+        let State::Hit(surface) = end.state else {
+            return None;
+        };
+        let (spheres, number) = (self.spheres()?, surface.number()?);
+        let sphere = spheres.list.get(usize::from(number))?;
+        Some(spheres.from(sphere, self.point(ray, end.t)))
+    }
+
     /// Depth along the camera's forward axis n of a ray's point at t, in field units times 2^e with the exponent e of this
     /// setup, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
         u64::from(t) * u64::from(self.inverse(ray.length))
     }
+}
+
+/// The first ten fraction bits of the largest of three magnitudes with 24 fraction bits.
+fn longest([a, b, c]: [u32; 3]) -> u32 {
+    a.max(b).max(c) >> 14 & 0x3FF
+}
+
+/// The product of a component of D, s1.24, and a factor, u8.9: s1.17, to nearest.
+fn scaled(part: i32, factor: u32) -> i32 {
+    ((i64::from(part) * i64::from(factor) + (1 << 15)) >> 16) as i32
 }
 
 /// Converts a coordinate of a point to the field's format s10.12.

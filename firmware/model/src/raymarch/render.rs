@@ -1,8 +1,8 @@
 //! Drawing of all pixels of a frame with a distance field.
 
+use super::end::{RayEnd, State};
 use super::paint::paint;
 use super::palette::Palette;
-use super::ray::{Ray, RayResult, State};
 use super::setup::FieldSetup;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
@@ -33,11 +33,11 @@ impl FieldStats {
         self.undecided += other.undecided;
     }
 
-    /// Adds a ray with the result `outcome` to the counts.
-    pub fn count(&mut self, setup: &FieldSetup, outcome: &RayResult) {
+    /// Adds a ray to the counts.
+    pub fn count(&mut self, end: &RayEnd) {
         self.rays += 1;
-        self.evaluations += u64::from(outcome.steps * setup.passes());
-        *match outcome.state {
+        self.evaluations += u64::from(end.evaluations);
+        *match end.state {
             State::Hit(_) => &mut self.hits,
             State::Miss => &mut self.misses,
             State::Undecided => &mut self.undecided,
@@ -48,8 +48,8 @@ impl FieldStats {
 /// Draws a field into `target`. A pixel of the target changes if the field's depth code is at least the code stored
 /// there. With two eyes every pixel changes.
 ///
-/// With two eyes `palette` must be grey, and depths are the left eye's. `show` receives the column, row, ray and result
-/// of every ray. Not inlined, so that the loop and its callees do not evict each other from the instruction cache.
+/// With two eyes `palette` must be grey, and depths are the left eye's. `show` receives the column and row of every ray,
+/// and its end. Not inlined, so that the loop and its callees do not evict each other from the instruction cache.
 ///
 /// # Errors
 /// [`RenderError`] if the target's size differs from the setup's; the target is then unchanged.
@@ -58,7 +58,7 @@ pub fn render_field(
     setup: &FieldSetup,
     palette: &Palette,
     target: &mut FrameBuffer,
-    show: &mut dyn FnMut(u32, u32, &Ray, &RayResult),
+    show: &mut dyn FnMut(u32, u32, &RayEnd),
 ) -> Result<FieldStats, RenderError> {
     target.check()?;
     target.check_size((setup.width, setup.height))?;
@@ -74,20 +74,15 @@ pub fn render_rows(
     first: u32,
     colour: &mut [u16],
     depth: &mut [u32],
-    show: &mut dyn FnMut(u32, u32, &Ray, &RayResult),
+    show: &mut dyn FnMut(u32, u32, &RayEnd),
 ) -> FieldStats {
     let width = setup.width;
     let mut stats = FieldStats::default();
     let mut look = |eye, x, y| {
-        let ray = setup.ray(eye, x, y);
-        let outcome = setup.march(&ray);
-        stats.count(setup, &outcome);
-        show(x, y, &ray, &outcome);
-        let code = match outcome.state {
-            State::Hit(_) => setup.depth_code(&ray, outcome.reached()),
-            State::Miss | State::Undecided => 0,
-        };
-        (paint(setup, palette, &ray, &outcome), code)
+        let end = setup.trace(eye, x, y);
+        stats.count(&end);
+        show(x, y, &end);
+        (paint(setup, palette, &end), setup.depth_code(&end))
     };
     let pixels = core::iter::zip(colour.iter_mut(), depth.iter_mut());
     let places = (first..setup.height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -109,9 +104,12 @@ pub fn render_rows(
 }
 
 impl FieldSetup {
-    /// The depth code of a ray's point at the parameter t.
-    pub fn depth_code(&self, ray: &Ray, t: u32) -> u32 {
-        let Reciprocal { y, lead } = Reciprocal::of(self.depth_of(ray, t));
+    /// The depth code of a hit; 0 for any other end of a ray.
+    pub fn depth_code(&self, end: &RayEnd) -> u32 {
+        let State::Hit(_) = end.state else {
+            return 0;
+        };
+        let Reciprocal { y, lead } = Reciprocal::of(end.depth);
         // The reciprocal of the depth as an integer has 24 + `lead` fraction bits. The depth has 21 fraction bits, so 21
         // are subtracted.
         let shift = lead as i32 + 3 - self.depth.exponent;

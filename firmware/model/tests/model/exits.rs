@@ -8,7 +8,7 @@ use glint_core::field::{Field, Surface};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::stereo::Stereo;
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{Exits, Words};
+use glint_model::raymarch::exits::{CODE_BITS, Exits, Words};
 use rand::RngExt as _;
 use rand_pcg::Pcg64Mcg;
 
@@ -664,4 +664,69 @@ fn rectangles_hold_all_pixels_that_see_a_sphere() {
         }
     }
     assert!(met > 10_000, "{met}");
+}
+
+/// Codes of intervals, and the coordinates that they stand for, in the order of both.
+#[test]
+fn codes_of_intervals_increase_and_return() {
+    let eye = [1 << 20; 3];
+    for (field, intervals) in [
+        ("menger:4", 0..=81),
+        ("menger:1", 0..=81),
+        ("menger:6", 0..=729),
+        ("box:1,0.5,0.25", 0..=1),
+        ("planes:1", 0..=1),
+        ("cubes:2,0.4", -2..=64),
+        ("lattice:1,0.3", -2..=64),
+    ] {
+        let solid = frame(field, eye, [ONE, 0, 0]).solid.expect("a solid");
+        assert_eq!((solid.code(i32::MIN), solid.interval(0)), (0, i32::MIN));
+        let mut before = 0;
+        for interval in intervals {
+            let code = solid.code(interval);
+            assert!(before < code && code >> CODE_BITS == 0, "{field}: {code:b}");
+            assert_eq!(solid.interval(code), interval, "{field}: {code:b}");
+            before = code;
+        }
+    }
+    // The digits of a cell of a sponge, from the first one, and the first digit above it.
+    let sponge = frame("menger:4", eye, [ONE, 0, 0]).solid.expect("a solid");
+    assert_eq!(sponge.code(27 + 2 * 9 + 1), 0b1_01_10_00_01_00_00);
+    assert_eq!(sponge.code(81), 0b1_11_00_00_00_00_00);
+}
+
+/// A frame's constants for the rays of an eye, after a way through the words of a register block, make the same rays.
+#[test]
+fn a_start_in_codes_makes_the_same_rays() {
+    let mut random = Pcg64Mcg::new(3);
+    for round in 0..300 {
+        let field = [
+            "menger:4",
+            "menger:6",
+            "box:1,0.5,0.25",
+            "cubes:2,0.4",
+            "planes:1",
+        ][round % 5];
+        let eye = [0; 3].map(|_| random.random_range(-4 * HALF..4 * HALF));
+        let exits = frame(field, eye, [0; 3]);
+        let solid = exits.solid.expect("a solid");
+        let mut coded = exits;
+        for eye in &mut coded.eyes {
+            for side in eye.start.sides.as_flattened_mut() {
+                assert!((0..1 << 25).contains(&side.distance), "{side:?}");
+                if side.is_bounded {
+                    side.next = solid.interval(solid.code(side.next));
+                }
+            }
+        }
+        for _ in 0..20 {
+            let direction = [0; 3].map(|_| random.random_range(-ONE..ONE) << 6);
+            let [before, after] = [exits, coded].map(|mut exits| {
+                exits.aim(direction);
+                let beam = exits.ray(0, 0, 0);
+                (beam, exits.follow(&beam))
+            });
+            assert_eq!(before, after, "{field} {eye:?}");
+        }
+    }
 }

@@ -51,17 +51,20 @@ fn fog_falls_off_as_e_to_its_depth() {
 
 #[test]
 fn a_frame_without_fog_has_the_palette_it_was_given() {
-    let options = FieldOptions {
-        palette: Palette::default().with_occlusion(),
-        ..FieldOptions::default()
-    };
-    let setup = setup("box:1,1,1", "0.9", &options);
-    assert_eq!(options.palette_for(&setup), options.palette);
-    let occlusion = options.palette.occlusion;
-    assert_eq!(
-        (occlusion[0], occlusion[40], occlusion[255]),
-        (255, 127, 34)
-    );
+    // Rays by exits, and rays that march.
+    for (field, half, last) in [("box:1,1,1", 7, 5), ("octahedron:1", 40, 34)] {
+        let options = FieldOptions {
+            palette: Palette::default().with_occlusion(&Field::parse(field).unwrap()),
+            ..FieldOptions::default()
+        };
+        let setup = setup(field, "0.9", &options);
+        assert_eq!(options.palette_for(&setup), options.palette);
+        let occlusion = options.palette.occlusion;
+        assert_eq!(
+            (occlusion[0], occlusion[half], occlusion[255]),
+            (255, 127, last)
+        );
+    }
 }
 
 #[test]

@@ -59,9 +59,12 @@ enum Page {
         /// Measure only the errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
-        /// Measure only one table: pictures, rates, words, or a study: fraction, cap, threshold, norm, end or normal
+        /// Measure only one table: pictures, rates, words, or a study: form, fraction, cap, threshold, norm, end or normal
         #[arg(long, value_name = "NAME", conflicts_with = "quick")]
         study: Option<String>,
+        /// Measure only the rates of fields whose text contains TEXT
+        #[arg(long, value_name = "TEXT", requires = "study")]
+        only: Option<String>,
     },
     /// Smooth shading and its alternatives: errors, clocks and FPGA resources
     Gouraud {
@@ -151,14 +154,13 @@ impl Page {
     fn is_partial(&self) -> bool {
         match self {
             Self::Sine { quick, .. }
-            | Self::Raymarch { quick, .. }
             | Self::Gouraud { quick, .. }
             | Self::Imu { quick, .. }
             | Self::Kernels { quick, .. }
             | Self::Long { quick, .. } => *quick,
-            Self::Triangle { quick, only, .. } | Self::Quality { quick, only, .. } => {
-                *quick || only.is_some()
-            }
+            Self::Triangle { quick, only, .. }
+            | Self::Raymarch { quick, only, .. }
+            | Self::Quality { quick, only, .. } => *quick || only.is_some(),
             Self::Timeline { only } | Self::Stiff { only, .. } => only.is_some(),
             Self::Geometry { .. } | Self::Gesture { .. } | Self::Pages => false,
         }
@@ -235,7 +237,9 @@ fn main() -> Result<()> {
         Page::Triangle { quick, study, only } => {
             measure_triangle(quick, study.as_deref(), only.as_deref(), &to)?;
         }
-        Page::Raymarch { quick, study } => measure_raymarch(quick, study.as_deref(), &to)?,
+        Page::Raymarch { quick, study, only } => {
+            measure_raymarch(quick, study.as_deref(), only.as_deref(), &to)?;
+        }
         Page::Gouraud { quick, earlier } => measure_gouraud(quick, earlier, &to)?,
         Page::Geometry { cycles } => {
             let cycles = cycles.measure("geometry")?;
@@ -313,12 +317,20 @@ fn measure_triangle(
 }
 
 /// Measures the pictures, the rates and all studies of the raymarcher, or only the table `study`.
-fn measure_raymarch(quick: bool, study: Option<&str>, to: &Folder) -> Result<()> {
+fn measure_raymarch(
+    quick: bool,
+    study: Option<&str>,
+    only: Option<&str>,
+    to: &Folder,
+) -> Result<()> {
     if study.is_none_or(|study| study == "pictures") {
         to.write("raymarch", &raymarch::pictures::measure(quick))?;
     }
     if study.map_or(!quick, |study| study == "rates") {
-        to.write_with_commit("raymarch-rates", &raymarch::rates::measure()?)?;
+        to.write_with_commit(
+            "raymarch-rates",
+            &raymarch::rates::measure(only.unwrap_or_default())?,
+        )?;
     }
     if study.map_or(!quick, |study| study == "words") {
         to.write_with_commit("raymarch-words", &raymarch::words::measure()?)?;

@@ -74,8 +74,7 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
 
 /// End of a ray of a field, and its depth code.
 fn surface(setup: &FieldSetup, eye: usize, x: u32, y: u32) -> (Seen, u32) {
-    let ray = setup.ray(eye, x, y);
-    let end = setup.march(&ray);
+    let end = setup.trace(eye, x, y);
     let State::Hit(surface) = end.state else {
         return (Seen::Background, 0);
     };
@@ -90,8 +89,7 @@ fn surface(setup: &FieldSetup, eye: usize, x: u32, y: u32) -> (Seen, u32) {
         Surface::Round { .. } | Surface::Blended { .. } => Face::Round,
     };
     let sphere = surface.number().unwrap_or(0).into();
-    let code = setup.depth_code(&ray, end.reached());
-    (Seen::Surface { face, sphere }, code)
+    (Seen::Surface { face, sphere }, setup.depth_code(&end))
 }
 
 /// Draws the triangles of a frame. The colour of a triangle is its index in the returned list, counted from 1.

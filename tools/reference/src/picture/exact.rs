@@ -16,7 +16,7 @@ use crate::camera::{
     Camera, Ray, Side, Size, Stereo, Vector, add_scaled, cross, dot, length, normalised, subtract,
 };
 use crate::line::{ExactSegment, Rectangle};
-use crate::raymarch::raymarched::depth;
+use crate::raymarch::raymarched::reach;
 use crate::raymarch::{Face, Field};
 use crate::triangle::exact::SnappedVertex;
 use crate::triangle::surface::{Class, ProjectedTriangle};
@@ -351,7 +351,7 @@ fn draw_field(
             None => camera.ray(centre, size()),
         };
         // The far limit of the model's rays.
-        let farthest = depth(setup, &setup.ray(eye, x, y), setup.tuning.far);
+        let farthest = reach(setup, eye, x, y, ray.direction);
         *pixel = field_pixel(&field, appearance, &appeared, &ray, (camera.near, farthest));
     }
     Ok(())

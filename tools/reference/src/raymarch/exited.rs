@@ -1,12 +1,9 @@
 //! Pictures of the model's rays by exits as input of [`metrics`](super::metrics).
 
-use glint_core::field::Surface;
-use glint_model::raymarch::State;
 use glint_model::raymarch::exits::{Beam, End, Exits, Rule};
 
-use super::Face;
 use super::metrics::RayOutcome;
-use super::raymarched::RenderedRay;
+use super::rendered::{self, RenderedRay};
 use crate::camera::Vector;
 
 /// Draws the picture of one eye, row by row. With each ray, returns the number of tested spheres.
@@ -27,31 +24,7 @@ pub fn picture(exits: &Exits, eye: usize) -> Vec<(RenderedRay, u32)> {
 
 /// Converts the end of a ray to the form of the comparison.
 pub fn outcome(exits: &Exits, beam: &Beam, end: &End) -> RayOutcome {
-    let State::Hit(surface) = end.state else {
-        return RayOutcome::Miss;
-    };
-    let sign = |is_positive| if is_positive { 1.0 } else { -1.0 };
-    let (face, normal) = match surface {
-        Surface::Face { axis, positive } => {
-            let axis = usize::from(axis);
-            let mut normal = [0.0; 3];
-            normal[axis] = sign(positive);
-            (Face::Axis { axis, positive }, normal)
-        }
-        Surface::Octant { signs } => {
-            let normal = [0, 1, 2].map(|i| sign(signs >> i & 1 == 1));
-            (Face::of_normal(normal), normal)
-        }
-        Surface::Round { .. } | Surface::Blended { .. } => {
-            let normal = exits.normal(beam, end).expect("a sphere");
-            (Face::Round, normal.map(|part| part as f64))
-        }
-    };
-    RayOutcome::Hit {
-        t: depth(exits, end.t),
-        face,
-        normal,
-    }
+    rendered::outcome(&exits.seen(beam, end), depth(exits, end.t))
 }
 
 /// The depth along the camera's n of a ray's point at the parameter `t`, in world units.
@@ -60,17 +33,21 @@ pub fn depth(exits: &Exits, t: i64) -> f64 {
     units / exits.scale.to_num::<f64>()
 }
 
-/// Whether a point of an eye's ray is beyond the end of a repeated solid, 2^11 field units from the lower corner of the eye's cell along
-/// some axis. `t` is the point's parameter. A surface at the end is beyond.
-pub fn is_beyond(exits: &Exits, eye: usize, direction: Vector, t: f64) -> bool {
+/// The largest depth of a hit by an eye's ray, in world units along the camera's n. `direction` is the ray's direction, whose component along
+/// n is 1. A repeated solid ends 2^11 field units from the lower corner of the eye's cell along each axis; a surface at the end is beyond.
+pub fn reach(exits: &Exits, eye: usize, direction: Vector) -> f64 {
+    let far = depth(exits, exits.far);
     let is_repeated = exits
         .solid
         .is_some_and(|solid| matches!(solid.rule, Rule::Repeated { .. }));
+    if !is_repeated {
+        return far;
+    }
     let scale = exits.scale.to_num::<f64>();
-    is_repeated
-        && (0..3).any(|axis| {
+    (0..3)
+        .map(|axis| {
             let corner = exits.eyes[eye].corners[usize::from(direction[axis] < 0.0)][axis];
-            let place = corner as f64 / 4096.0 + direction[axis].abs() * t * scale;
-            place > 2048.0 - 1e-3
+            (2048.0 - 1e-3 - corner as f64 / 4096.0) / (direction[axis].abs() * scale)
         })
+        .fold(far, f64::min)
 }

@@ -3,117 +3,60 @@
 use glint_core::camera::View;
 use glint_core::field::{
     CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Octahedron,
-    Planes, Primitive, Surface,
+    Planes, Primitive,
 };
 use glint_core::fixed::Q32_32;
-use glint_model::raymarch::{self, FieldOptions, FieldSetup, State};
+use glint_model::raymarch::exits::Exits;
+use glint_model::raymarch::{FieldOptions, FieldSetup, Form, RayEnd};
 
 use super::metrics::{self, Accuracy, Expected, Quantiles, RayOutcome, accuracy};
-use super::{Face, Field, Plane, Sphere, views};
-use crate::camera::{Camera, Size, length};
+use super::rendered::outcome;
+use super::{Field, Plane, Sphere, exited, views};
+use crate::camera::{Camera, Size, Vector};
 
-/// Result of one ray of a picture, and its cost: the number of evaluations of the field's distance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RenderedRay {
-    /// Result of the ray. The depth of a hit (its distance along the camera's n, in world units) is computed from the ray's
-    /// parameter t.
-    pub outcome: RayOutcome,
-    /// Depth of a hit in world units, computed from the depth code. `None` without a hit, or if the code has no depth.
-    pub coded: Option<f64>,
-    /// Number of evaluations of the field by the ray.
-    pub steps: u32,
-}
+pub use super::rendered::RenderedRay;
 
-impl RenderedRay {
-    /// Returns [`Self::outcome`] with the depth from the depth code, if available.
-    pub fn by_code(&self) -> RayOutcome {
-        match (self.outcome, self.coded) {
-            (RayOutcome::Hit { face, normal, .. }, Some(t)) => RayOutcome::Hit { t, face, normal },
-            (outcome, _) => outcome,
-        }
+/// Returns the default options for marching rays, also in a field that the model draws by exits.
+pub fn marching() -> FieldOptions {
+    FieldOptions {
+        marches: true,
+        ..FieldOptions::default()
     }
 }
 
 /// Draws the picture of one eye with the model, row by row. Eye 0 is the left or only eye.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     pixels(setup)
-        .map(|(x, y)| {
-            let ray = setup.ray(eye, x, y);
-            rendered_ray(setup, &ray, &setup.march(&ray))
-        })
+        .map(|(x, y)| rendered_ray(setup, &setup.trace(eye, x, y)))
         .collect()
 }
 
 /// Converts `end`, the model's result of a ray, to the form of the comparison.
-pub fn rendered_ray(
-    setup: &FieldSetup,
-    ray: &raymarch::Ray,
-    end: &raymarch::RayResult,
-) -> RenderedRay {
-    let (outcome, coded) = match end.state {
-        State::Miss => (RayOutcome::Miss, None),
-        State::Undecided => (RayOutcome::Undecided, None),
-        State::Hit(surface) => {
-            let (face, normal) = match surface {
-                Surface::Face { axis, positive } => {
-                    let axis = usize::from(axis);
-                    let mut normal = [0.0; 3];
-                    normal[axis] = if positive { 1.0 } else { -1.0 };
-                    (Face::Axis { axis, positive }, normal)
-                }
-                Surface::Octant { signs } => {
-                    let sign = |i: usize| if signs >> i & 1 == 1 { 1.0 } else { -1.0 };
-                    let normal = [0, 1, 2].map(|i| sign(i) / 3.0_f64.sqrt());
-                    (Face::of_normal(normal), normal)
-                }
-                Surface::Round { .. } => {
-                    let normal = setup.normal(ray, end).expect("a round surface");
-                    (Face::Round, normal.map(f64::from))
-                }
-                Surface::Blended {
-                    axis,
-                    positive,
-                    share,
-                    ..
-                } => {
-                    let round = setup
-                        .normal(ray, end)
-                        .expect("a round surface")
-                        .map(f64::from);
-                    let share = f64::from(share) / 256.0;
-                    let mut normal = round.map(|part| part / length(round) * share);
-                    normal[usize::from(axis)] += (1.0 - share) * if positive { 1.0 } else { -1.0 };
-                    (Face::Round, normal)
-                }
-            };
-            let hit = RayOutcome::Hit {
-                t: depth(setup, ray, end.reached()),
-                face,
-                normal,
-            };
-            let coded = setup
-                .world_depth
-                .distance(setup.depth_code(ray, end.reached()));
-            (hit, coded.map(|depth| depth.to_num()))
-        }
-    };
+pub fn rendered_ray(setup: &FieldSetup, end: &RayEnd) -> RenderedRay {
+    let coded = setup.world_depth.distance(setup.depth_code(end));
     RenderedRay {
-        outcome,
-        coded,
-        steps: end.steps * setup.passes(),
+        outcome: outcome(end, depth(setup, end.depth)),
+        coded: coded.map(|depth| depth.to_num()),
+        steps: end.evaluations,
     }
 }
 
-/// Returns the depth at which a ray reaches the far limit, in world units along the camera's n.
-fn reach(setup: &FieldSetup, ray: &raymarch::Ray) -> f64 {
-    depth(setup, ray, setup.tuning.far)
+/// Converts the model's depth along the camera's n, in the format of [`RayEnd::depth`], to world units.
+pub fn depth(setup: &FieldSetup, depth: u64) -> f64 {
+    let units = depth as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
+    units / setup.scale.to_num::<f64>()
 }
 
-/// Returns the depth of the point at parameter `t` of a ray: its distance along the camera's n, in world units. `t` is in the model's
-/// fixed-point format.
-pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
-    let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
-    units / setup.scale.to_num::<f64>()
+/// Returns the largest depth of a hit by the ray of pixel (x, y), in world units along the camera's n. `direction` is the ray's direction,
+/// whose component along n is 1.
+pub fn reach(setup: &FieldSetup, eye: usize, x: u32, y: u32, direction: Vector) -> f64 {
+    match &setup.form {
+        Form::Exits(exits) => exited::reach(exits, eye, direction),
+        Form::Marching(marching) => {
+            let ray = marching.ray(eye, x, y);
+            depth(setup, marching.depth_of(&ray, marching.tuning.far))
+        }
+    }
 }
 
 /// Computes the reference picture up to the far limit of the model's rays. The numbers of `camera` must be exact in the formats
@@ -123,8 +66,12 @@ fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected>
         width: setup.width,
         height: setup.height,
     };
-    let rays = pixels(setup).map(|(x, y)| setup.ray(0, x, y));
-    let reaches: Vec<f64> = rays.map(|ray| reach(setup, &ray)).collect();
+    let reaches: Vec<f64> = pixels(setup)
+        .map(|(x, y)| {
+            let ray = camera.ray([x, y].map(f64::from), size);
+            reach(setup, 0, x, y, ray.direction)
+        })
+        .collect();
     let farthest = reaches.iter().copied().fold(0.0, f64::max);
     let limits = (camera.near, farthest);
     let mut picture = metrics::expected(field, size, limits, |pixel| camera.ray(pixel, size));
@@ -249,14 +196,23 @@ impl Subject {
             parsed,
             view,
         };
-        let setup = subject.setup(&FieldOptions::default());
-        subject.expected = expected(&setup, &subject.field, &subject.camera);
+        subject.expected = subject.expected_of(&subject.setup(&FieldOptions::default()));
         subject
     }
 
     /// Returns the model's constants of a frame of this subject with these options.
     pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
         FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a supported size")
+    }
+
+    /// Whether the model draws this subject by exits.
+    pub fn is_drawn_by_exits(&self) -> bool {
+        Exits::draws(&self.parsed)
+    }
+
+    /// Computes the reference picture up to the far limit of the rays of `setup`.
+    pub fn expected_of(&self, setup: &FieldSetup) -> Vec<Expected> {
+        expected(setup, &self.field, &self.camera)
     }
 
     /// Draws this subject with the model and these options.

@@ -68,7 +68,6 @@ fn rays_away_from_edges_see_the_exact_surface() {
             }
         };
         let field = Field::of(&scene);
-        let reach = exited::depth(&exits, exits.far);
         let unit = 1.0 / 4096.0 / exits.scale.to_num::<f64>();
         for _ in 0..500 {
             let eye = if stereo.is_some() {
@@ -82,8 +81,8 @@ fn rays_away_from_edges_see_the_exact_surface() {
             );
             let hit = |dx: f64, dy: f64| {
                 let ray = ray(eye, [f64::from(x) + dx, f64::from(y) + dy]);
-                let hit = field.hit(ray.origin, ray.direction, camera.near, reach);
-                hit.filter(|hit| !exited::is_beyond(&exits, eye, ray.direction, hit.t))
+                let reach = exited::reach(&exits, eye, ray.direction);
+                field.hit(ray.origin, ray.direction, camera.near, reach)
             };
             let surface = |hit: Option<Hit>| hit.map(|hit| (hit.face, hit.member));
             let exact = hit(0.0, 0.0);

@@ -2,10 +2,10 @@
 
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
-use glint_model::raymarch::{FieldOptions, FieldSetup, Ray, State, Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Marching, Ray, State, Stereo, Tint};
 use glint_reference::camera::{Camera, Vector};
 use glint_reference::raymarch::metrics::{Accuracy, RayOutcome};
-use glint_reference::raymarch::raymarched::{self, Measured, Subject};
+use glint_reference::raymarch::raymarched::{self, Measured, Subject, marching};
 use glint_reference::raymarch::{Field, views};
 
 const SIZE: (u32, u32) = (320, 180);
@@ -24,11 +24,19 @@ fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> FieldSetup {
     FieldSetup::new(&scene, &view, SIZE, options).expect("a size")
 }
 
+/// The constants of rays that march.
+fn marching_rays(setup: &FieldSetup) -> &Marching {
+    setup.marching().expect("marching rays")
+}
+
 fn see(name: &str, scene: &str, camera: &Camera) -> Seen {
     let subject = Subject::new(name, scene, camera, SIZE);
     let picture = subject.picture(&FieldOptions::default());
     let measured = Measured::new(&subject.expected, &picture);
-    println!("{name}, {scene}: {measured:?}");
+    println!(
+        "{name}, {scene}: {} evaluations a ray, {measured:?}",
+        measured.cost()
+    );
     Seen {
         name: format!("{name}, {scene}"),
         found: measured.accuracy,
@@ -86,12 +94,14 @@ fn at(eye: Vector, target: Vector) -> Camera {
 }
 
 #[test]
-fn the_deepest_sponge_is_where_it_is_and_its_smallest_faces_are_not_all_right() {
+fn the_deepest_sponge_is_where_it_is() {
     for (name, eye, target) in views::views() {
-        let seen = see(name, "menger:6", &at(eye, target));
-        assert!(seen.found.iou >= 0.999, "{name}");
-        // A cell of the last level is only 456 coordinate steps wide, and the threshold of a hit is at least 28 steps.
-        seen.near(2e-4, 1.6e-2).faced(0.07).decided(0).cheap(15.0);
+        see(name, "menger:6", &at(eye, target))
+            .masked(0)
+            .decided(0)
+            .near(4e-7, 2e-6)
+            .faced(2e-4)
+            .cheap(2.2);
     }
 }
 
@@ -107,7 +117,7 @@ fn a_camera_inside_the_solid_sees_it_at_the_near_plane() {
         see("inside", scene, &at(eye, target))
             .masked(0)
             .decided(0)
-            .near(2e-5, 2e-5)
+            .near(1e-6, 1e-6)
             .cheap(1.0);
     }
 }
@@ -118,16 +128,16 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
     see("level with the top", "menger:4", &above)
         .masked(0)
         .decided(0)
-        .near(2e-6, 7e-3)
-        .faced(0.01)
-        .cheap(3.3);
+        .near(1e-9, 2e-6)
+        .faced(0.0)
+        .cheap(0.7);
     // The eye is in the plane of the front face. Half of the rays go into the face, and the other half away from it.
     let on = at([0.9375, -1.0, 0.9375], [-0.5, -1.5, 0.5]);
     see("on the front", "menger:4", &on)
-        .masked(20)
+        .masked(0)
         .decided(0)
-        .near(2e-5, 2e-5)
-        .cheap(1.01);
+        .near(1e-6, 1e-6)
+        .cheap(1.0);
 }
 
 #[test]
@@ -138,23 +148,23 @@ fn a_camera_just_beside_a_face_sees_it() {
     see("macro", "menger:1", &at(eye, [0.75, 0.0, 0.765_625]))
         .masked(0)
         .decided(0)
-        .near(5e-6, 1.2e-5)
+        .near(2e-6, 2e-6)
         .faced(0.0)
         .cheap(1.0);
     let over = at([-1.25, -1.125, 1.001_953_125], [1.0, 0.875, 1.0]);
     see("grazing", "box:1,1,1", &over)
         .masked(0)
         .decided(0)
-        .near(2e-4, 4e-3)
-        .faced(1e-3)
-        .cheap(2.5);
+        .near(1e-6, 4e-6)
+        .faced(0.0)
+        .cheap(0.6);
     // The eye is just below the ceiling and looks to the horizon. A third of the rays are already inside the ceiling at the near plane.
     let under = at([0.0, 0.0, 0.998_046_875], [4.0, 3.0, 0.998_046_875]);
     see("grazing", "planes:1", &under)
-        .masked(30)
-        .decided(2600)
-        .near(1e-3, 5e-2)
-        .cheap(52.0);
+        .masked(0)
+        .decided(0)
+        .near(1e-6, 3e-5)
+        .cheap(1.0);
 }
 
 #[test]
@@ -168,27 +178,47 @@ fn lenses_may_be_long_and_wide() {
     with(0.05)
         .masked(0)
         .decided(0)
-        .near(2e-5, 1e-3)
-        .faced(0.01)
-        .cheap(5.0);
+        .near(1e-6, 2e-6)
+        .faced(2e-4)
+        .cheap(1.7);
     with(4.0)
-        .masked(1)
+        .masked(0)
         .decided(0)
-        .near(1e-4, 3e-3)
-        .faced(0.01)
-        .cheap(1.1);
+        .near(1e-6, 1e-5)
+        .faced(0.0)
+        .cheap(1.0);
 }
 
 #[test]
 fn a_camera_may_be_far_away() {
     let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
     camera.half_width = 0.05;
-    // The camera looks along the walls of the sponge's tunnels, so the picture shows mostly the depths of tunnels. The threshold
-    // of a hit grows with the distance, and here a tunnel is only a few thresholds wide. So many rays end at a tunnel's wall,
-    // which they would pass with a threshold of 0.
-    let seen = see("far away", "menger:4", &camera);
-    assert!(seen.found.iou >= 0.98);
-    seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);
+    // The camera looks along the walls of the sponge's tunnels, so the picture shows mostly the depths of tunnels.
+    see("far away", "menger:4", &camera)
+        .masked(0)
+        .decided(0)
+        .near(5e-6, 2e-4)
+        .faced(6e-4)
+        .cheap(1.3);
+}
+
+/// Marching rays, the other form of a ray to a sponge, have errors at edges, and take more evaluations.
+#[test]
+fn marching_rays_see_the_sponge_but_for_edges() {
+    for (name, eye, target) in views::views() {
+        let subject = Subject::new(name, "menger:4", &at(eye, target), SIZE);
+        let measured = Measured::new(&subject.expected, &subject.picture(&marching()));
+        let seen = Seen {
+            name: name.into(),
+            found: measured.accuracy,
+            cost: measured.cost(),
+        };
+        seen.masked(40)
+            .decided(0)
+            .near(2e-4, 5e-4)
+            .faced(0.01)
+            .cheap(14.4);
+    }
 }
 
 /// Marches rays exactly along an axis, a direction that no pixel's ray has. Next to a wall, each step is only as long as the
@@ -205,11 +235,8 @@ fn rays_along_the_axes_end_at_the_walls() {
             let mut eye = [0.0; 3];
             eye[axis] = f64::from(-2 * side);
             (eye[(axis + 1) % 3], eye[(axis + 2) % 3]) = (a, b);
-            let setup = setup(
-                "menger:4",
-                &at(eye, [3.0, 4.0, 0.0]),
-                &FieldOptions::default(),
-            );
+            let setup = setup("menger:4", &at(eye, [3.0, 4.0, 0.0]), &marching());
+            let rays = marching_rays(&setup);
             let mut direction = [0; 3];
             direction[axis] = ((1 << 17) - 1) * side;
             let ray = Ray {
@@ -218,11 +245,14 @@ fn rays_along_the_axes_end_at_the_walls() {
                 length: 1023,
                 start: 0,
             };
-            let end = setup.march(&ray);
+            let end = rays.march(&ray);
             let direction = direction.map(|x| f64::from(x) / f64::from(1 << 17));
             let exact = sponge.hit(eye, direction, 0.0, 100.0);
             let context = || format!("{eye:?}, {axis}, {side}: {end:?}, {exact:?}");
-            match (raymarched::rendered_ray(&setup, &ray, &end).outcome, exact) {
+            match (
+                raymarched::rendered_ray(&setup, &rays.seen(&ray, &end)).outcome,
+                exact,
+            ) {
                 (RayOutcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
                     beside += 1;
                 }
@@ -248,10 +278,11 @@ fn rays_along_the_axes_end_at_the_walls() {
 #[test]
 fn the_first_step_is_the_last_where_there_is_but_one() {
     for (name, eye, target) in views::views() {
-        let mut options = FieldOptions::default();
+        let mut options = marching();
         let free = setup("menger:4", &at(eye, target), &options);
         options.tuning.cap = 1;
         let capped = setup("menger:4", &at(eye, target), &options);
+        let [free, capped] = [&free, &capped].map(marching_rays);
         for (x, y) in pixels() {
             let ray = free.ray(0, x, y);
             let (end, first) = (free.march(&ray), capped.march(&ray));
@@ -268,8 +299,9 @@ fn the_first_step_is_the_last_where_there_is_but_one() {
 #[test]
 fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
     let camera = at([0.0, -3.0, 0.0], [0.25, 0.0, 0.125]);
-    let mut options = FieldOptions::default();
+    let mut options = marching();
     let free = setup("menger:4", &camera, &options);
+    let free = marching_rays(&free);
     let mut ends: Vec<u32> = pixels()
         .map(|(x, y)| free.march(&free.ray(0, x, y)))
         .filter(|end| matches!(end.state, State::Hit(_)))
@@ -278,6 +310,7 @@ fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
     ends.sort_unstable();
     options.tuning.far = ends[ends.len() / 2];
     let short = setup("menger:4", &camera, &options);
+    let short = marching_rays(&short);
     let (mut seen, mut beyond) = (0, 0);
     for (x, y) in pixels() {
         let ray = free.ray(0, x, y);

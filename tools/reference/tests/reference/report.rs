@@ -13,18 +13,19 @@ use glint_core::field::Field;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
-use glint_model::raymarch::{FieldOptions, Palette};
+use glint_model::raymarch::Palette;
 use glint_reference::imu::measure::method_error;
 use glint_reference::imu::method::Method;
 use glint_reference::imu::motion::Motion;
-use glint_reference::raymarch::raymarched::{Measured, others, rounds, sponges};
+use glint_reference::raymarch::raymarched::{marching, sponges};
 use glint_reference::raymarch::views;
 use glint_reference::report::cycles::Cycles;
 use glint_reference::report::experiments::geometry::precision;
 use glint_reference::report::experiments::gouraud::forms;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
 use glint_reference::report::experiments::kernels as small_kernels;
-use glint_reference::report::experiments::raymarch::{pictures, rates, trials};
+use glint_reference::report::experiments::raymarch::pictures::{self, Form};
+use glint_reference::report::experiments::raymarch::{rates, trials};
 use glint_reference::report::experiments::{quality, sine, timeline};
 use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
@@ -363,12 +364,12 @@ fn the_committed_frames_a_second_are_of_these_frames() {
     }
 }
 
-/// Draws the views of the sponge with Glint's configuration on the verilated raymarcher, and compares the cycles with raymarch-cap.csv.
+/// Draws the views of the sponge with marching rays on the verilated raymarcher, and compares the cycles with raymarch-cap.csv.
 #[test]
 fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
     let mut raymarcher = Raymarcher::new("raymarcher", 1);
-    let (options, palette) = (FieldOptions::default(), Palette::default());
+    let (options, palette) = (marching(), Palette::default());
     let subjects = sponges(size);
     let clocks: u64 = subjects
         .iter()
@@ -391,19 +392,78 @@ fn the_committed_cycles_of_pictures_hold() {
 
 /// Bounds of the pictures of fields whose text starts with a word: false hits and misses, undecided rays, the median and the 99th
 /// percentile of the depth's error in world units, the fraction of wrong faces, the 99th percentile of the normal's error in degrees, and
-/// evaluations per ray. The first line that matches a field determines its bounds.
-const BOUNDS: [(&str, [f64; 7]); 8] = [
-    ("menger", [40.0, 0.0, 2e-4, 5e-4, 0.01, 0.0, 14.4]),
-    ("box:", [8.0, 0.0, 1e-5, 5e-3, 0.0, 0.0, 1.6]),
-    ("cubes:0.25", [0.0, 0.0, 1e-5, 3e-4, 2e-3, 0.0, 13.0]),
-    ("planes:12", [8.0, 0.0, 2e-3, 1.1e-2, 0.0, 0.0, 13.0]),
+/// evaluations per ray. The first line that matches a form of rays and a field determines its bounds.
+const BOUNDS: [(Form, &str, [f64; 7]); 14] = [
+    // Exact masks, and errors of depths by the rounding of the eye.
+    (
+        Form::Exits,
+        "menger",
+        [0.0, 0.0, 4e-7, 2e-6, 2e-4, 0.0, 1.9],
+    ),
+    (Form::Exits, "box:", [0.0, 0.0, 3e-7, 2e-6, 0.0, 0.0, 0.6]),
+    (
+        Form::Exits,
+        "cubes:0.25",
+        [0.0, 0.0, 7e-7, 3e-6, 2e-4, 0.0, 1.6],
+    ),
+    (
+        Form::Exits,
+        "planes:12",
+        [0.0, 0.0, 6e-6, 2e-5, 0.0, 0.0, 0.6],
+    ),
+    (
+        Form::Exits,
+        "cubes:2",
+        [0.0, 0.0, 5e-7, 2e-5, 2e-4, 0.0, 2.3],
+    ),
+    (
+        Form::Exits,
+        "planes:0.5",
+        [0.0, 0.0, 4e-7, 8e-5, 0.0, 0.0, 1.0],
+    ),
+    (
+        Form::Marching,
+        "menger",
+        [40.0, 0.0, 2e-4, 5e-4, 0.01, 0.0, 14.4],
+    ),
+    (
+        Form::Marching,
+        "box:",
+        [8.0, 0.0, 1e-5, 5e-3, 0.0, 0.0, 1.6],
+    ),
+    (
+        Form::Marching,
+        "cubes:0.25",
+        [0.0, 0.0, 1e-5, 3e-4, 2e-3, 0.0, 13.0],
+    ),
+    (
+        Form::Marching,
+        "planes:12",
+        [8.0, 0.0, 2e-3, 1.1e-2, 0.0, 0.0, 13.0],
+    ),
     // Towards the horizon, rays run along faces. Some of these rays stay undecided, and some end at a face that the exact ray only
     // passes.
-    ("cubes:2", [30.0, 240.0, 2e-5, 0.5, 1.3e-2, 0.0, 35.0]),
-    ("planes:0.5", [0.0, 1150.0, 6e-4, 5e-2, 0.0, 0.0, 55.0]),
+    (
+        Form::Marching,
+        "cubes:2",
+        [30.0, 240.0, 2e-5, 0.5, 1.3e-2, 0.0, 35.0],
+    ),
+    (
+        Form::Marching,
+        "planes:0.5",
+        [0.0, 1150.0, 6e-4, 5e-2, 0.0, 0.0, 55.0],
+    ),
     // Towards the horizon, spheres are smaller than a pixel, so the normals of hits there have large errors.
-    ("lattice", [40.0, 0.0, 3e-4, 6e-3, 0.01, 0.7, f64::INFINITY]),
-    ("", [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY]),
+    (
+        Form::Marching,
+        "lattice",
+        [40.0, 0.0, 3e-4, 6e-3, 0.01, 0.7, f64::INFINITY],
+    ),
+    (
+        Form::Marching,
+        "",
+        [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY],
+    ),
 ];
 
 /// Draws the small pictures of raymarch.csv again, compares their errors with the committed errors, and checks the bounds of the
@@ -411,57 +471,55 @@ const BOUNDS: [(&str, [f64; 7]); 8] = [
 #[test]
 fn the_committed_pictures_of_fields_hold() {
     let rows: Vec<pictures::Row> = committed("raymarch.csv");
-    let size = (320, 180);
-    let subjects: Vec<_> = [sponges(size), others(size), rounds(size)]
-        .into_iter()
-        .flatten()
-        .collect();
-    for subject in &subjects {
+    let subjects = pictures::small();
+    let forms = |subject| {
+        pictures::forms(subject)
+            .iter()
+            .map(move |&form| (subject, form))
+    };
+    for (subject, form) in subjects.iter().flat_map(forms) {
+        let now = pictures::Row::measure(subject, form, None);
         let row = rows.iter().find(|row| {
-            (&row.scene, &row.view) == (&subject.scene, &subject.name) && row.width == 320
+            (row.form, &row.scene, &row.view, row.width) == (form, &now.scene, &now.view, now.width)
         });
         let row = row.expect("pictures were added or removed: run `cargo xtask report raymarch`");
-        let picture = subject.picture(&FieldOptions::of(&subject.parsed));
-        let measured = Measured::new(&subject.expected, &picture);
-        let accuracy = measured.accuracy;
-        let depth = accuracy.depth.expect("a visible field");
-        let coded = measured.coded.expect("a visible field");
+        let what = format!("{form:?}, {} {}", now.scene, now.view);
         let mut bounds = BOUNDS.into_iter();
-        let bounds = bounds.find(|(start, _)| subject.scene.starts_with(start));
-        let (_, bounds) = bounds.expect("every text starts with nothing");
+        let bounds =
+            bounds.find(|(of_form, start, _)| *of_form == form && now.scene.starts_with(start));
+        let (_, _, bounds) = bounds.unwrap_or_else(|| panic!("{what}: no bounds"));
         let found = [
-            (accuracy.false_hit + accuracy.false_miss) as f64,
-            accuracy.undecided as f64,
-            depth.median,
-            depth.p99,
-            accuracy.wrong_faces,
+            (now.false_hits + now.false_misses) as f64,
+            now.undecided as f64,
+            now.depth_median.expect("a visible field"),
+            now.depth_p99.expect("a visible field"),
+            now.wrong_faces,
             // Some views show only flat faces, without normals of round surfaces to compare.
-            accuracy.normal.map_or(0.0, |normal| normal.p99),
-            measured.cost(),
+            now.normal_p99.unwrap_or(0.0),
+            now.evaluations,
         ];
         assert!(
             found.iter().zip(bounds).all(|(&found, most)| found <= most),
-            "{}, {}: {measured:?}, at most {bounds:?}",
-            subject.scene,
-            subject.name
+            "{what}: {found:?}, at most {bounds:?}"
         );
         for (name, committed, now) in [
-            ("iou", Some(row.iou), accuracy.iou),
+            ("iou", Some(row.iou), Some(now.iou)),
             (
                 "undecided",
                 Some(row.undecided as f64),
-                accuracy.undecided as f64,
+                Some(now.undecided as f64),
             ),
-            ("depth_median", row.depth_median, depth.median),
-            ("depth_p99", row.depth_p99, depth.p99),
-            ("depth_max", row.depth_max, depth.max),
-            ("code_median", row.code_median, coded.median),
-            ("code_p99", row.code_p99, coded.p99),
-            ("wrong_faces", Some(row.wrong_faces), accuracy.wrong_faces),
-            ("evaluations", Some(row.evaluations), measured.cost()),
+            ("depth_median", row.depth_median, now.depth_median),
+            ("depth_p99", row.depth_p99, now.depth_p99),
+            ("depth_max", row.depth_max, now.depth_max),
+            ("code_median", row.code_median, now.code_median),
+            ("code_p99", row.code_p99, now.code_p99),
+            ("wrong_faces", Some(row.wrong_faces), Some(now.wrong_faces)),
+            ("evaluations", Some(row.evaluations), Some(now.evaluations)),
         ] {
-            let what = format!("raymarch.csv: {name} of {} {}", subject.scene, subject.name);
-            assert_close(committed.expect("a number"), now, 1e-6, &what);
+            let number = |figure: Option<f64>| figure.expect("a visible field");
+            let what = format!("raymarch.csv: {name} of {what}");
+            assert_close(number(committed), number(now), 1e-6, &what);
         }
     }
 }

@@ -64,9 +64,7 @@ fn spheres_are_lit_as_they_should_be() {
         let mut most: f64 = 0.0;
         for ((x, y), expected) in pixels.zip(&subject.expected) {
             let Some(hit) = expected.hit else { continue };
-            let ray = setup.ray(0, x, y);
-            let end = setup.march(&ray);
-            let found = paint(&setup, &palette, &ray, &end);
+            let found = paint(&setup, &palette, &setup.trace(0, x, y));
             for (i, found) in found.into_iter().enumerate() {
                 let mut light = f64::from(lights.ambient[i]);
                 for one in &lights.list[..2] {

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 
 use glint_core::field::{Field, Surface};
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{Beam, Exits, Eye, Inverse, Rule, Solid, Words};
+use glint_model::raymarch::exits::{Beam, Exits, Eye, Inverse, Words};
+use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
 use glint_testbench::{Bits, Layout, Module, Pipe};
 use glint_vectors::Random;
 
@@ -39,58 +40,17 @@ struct End {
     t: u64,
     face: Option<(u64, bool)>,
     steps: u64,
-}
-
-/// The code of an interval (`exit_pkg`).
-fn interval(solid: &Solid, number: i32) -> u64 {
-    let there = |digits: u64| 1 << 12 | digits;
-    match (solid.rule, number) {
-        (_, i32::MIN) => 0,
-        // The cell and the digit of its gap: the cell -1 is all ones.
-        (Rule::Repeated { .. }, -2..) => {
-            let (cell, gap) = ((number >> 1) as u64 & 0x3F, (number & 1) as u64);
-            let digits = cell << 6 | gap << 4;
-            if number < 0 { digits } else { there(digits) }
-        }
-        (_, ..0) => 0,
-        (Rule::Sponge { cells, .. }, _) if number < cells => {
-            // A cell of a sponge of up to four levels counts as nine.
-            let number = number * (729 / cells);
-            let digit = |level: u32| (number / 3_i32.pow(level) % 3) as u64;
-            there((0..6).map(|level| digit(level) << (2 * level)).sum())
-        }
-        (_, 0) => there(0),
-        _ => there(0b11 << 10),
-    }
-}
-
-/// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
-fn packed(inverse: Inverse) -> u64 {
-    let Inverse { mantissa, exponent } = inverse;
-    let scale = (exponent / 8) as u64;
-    scale << 30 | u64::from(mantissa) << (exponent % 8)
+    height: u64,
 }
 
 /// Drives the constants of a frame.
 fn set_lane(module: &mut Module, exits: &Exits) {
     let solid = exits.solid.expect("a solid");
-    let (rule, levels) = match solid.rule {
-        Rule::Box => ("BOX", 0),
-        Rule::Planes => ("PLANES", 0),
-        Rule::Sponge { cells, last, .. } => ("SPONGE", (cells / last).ilog(3)),
-        Rule::Repeated { .. } => ("CUBES", 0),
-        Rule::Octahedron => unreachable!("a field of another lane"),
-    };
+    let (name, _, levels) = rule(solid.rule);
     let mut record = module.record("solid").with("levels", levels);
-    record.set_name("rule", rule);
-    let half = || solid.side[..3].iter().map(|side| side / 2);
-    record.set_all("half", half());
-    let border = |half: i64| match solid.rule {
-        Rule::Planes => half,
-        Rule::Repeated { .. } => (1 << 18) - half,
-        _ => -half,
-    };
-    record.set_all("border", half().map(border));
+    record.set_name("rule", name);
+    record.set_all("half", solid.half());
+    record.set_all("border", solid.borders());
     module.drive_bits("solid", record.bits());
     module.drive("far_t", exits.far);
     for (eye, Eye { origin, .. }) in exits.eyes.iter().enumerate() {
@@ -98,26 +58,11 @@ fn set_lane(module: &mut Module, exits: &Exits) {
     }
 }
 
-/// Packs a ray as a `ray_t`. `end` is its end in the model.
-fn pack(layout: &Layout, exits: &Exits, place: u32, beam: &Beam, end: &End) -> Bits {
-    let solid = exits.solid.expect("a solid");
-    let mut record = layout.record();
-    record.set("place", place);
-    let start = &beam.start;
+/// Packs a ray as a `ray_t`. `end` is its end in the model, which determines its limit.
+fn pack(layout: &Layout, exits: &Exits, place: RayPlace, beam: &Beam, end: &End) -> Bits {
+    let mut record = layout.record_of(exit_ray(layout, exits, place, beam));
     record.set("over", end.steps == 0);
-    record.set("start", start.t.min(exits.far));
     record.set("limit", if end.is_hit { exits.far as u64 } else { end.t });
-    record.set("axis", start.face as u64);
-    let down = (0..3).filter(|&axis| beam.down[axis]);
-    record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
-    for axis in 0..3 {
-        record.set(
-            &format!("reached[{axis}]"),
-            interval(&solid, start.reached[axis]),
-        );
-        record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 2);
-        record.set(&format!("inverse[{axis}]"), packed(beam.inverse[axis]));
-    }
     record.bits()
 }
 
@@ -139,8 +84,12 @@ fn some_rays(
         let x = random.integer(0, i64::from(exits.width) - 1) as u32;
         let y = random.integer(0, i64::from(exits.height) - 1) as u32;
         let eye = random.bits() as usize % eyes;
-        // The bits of a `place_t`, here with the lowest bit of the band's number.
-        let place = (y / 64 % 2) << 18 | (eye as u32) << 17 | (y % 64) << 11 | x;
+        let place = RayPlace {
+            odd: y / 64 % 2 == 1,
+            line: y % 64,
+            column: x,
+            eye,
+        };
         let beam = exits.ray(eye, x, y);
         let found = exits.follow(&beam);
         let (face, t) = match found.state {
@@ -155,9 +104,10 @@ fn some_rays(
             t: t as u64,
             face,
             steps: found.steps.into(),
+            height: beam.height().into(),
         };
         let item = pack(layout, exits, place, &beam, &end);
-        all.insert(place, Sent { item, end });
+        all.insert(place.bits(), Sent { item, end });
     }
     all
 }
@@ -205,6 +155,7 @@ impl Bench {
                 },
                 face: is_hit.then(|| (record.get("axis"), record.is_set("positive"))),
                 steps: record.get("steps"),
+                height: record.get("height"),
             };
             let sent = expected
                 .remove(&place)
@@ -234,7 +185,7 @@ fn reciprocals() {
     module.settle();
     for clock in 0..numbers.len() + LATENCY {
         if let Some(&number) = clock.checked_sub(LATENCY).and_then(|i| numbers.get(i)) {
-            let expected = packed(Inverse::of(2 * number + 1, &Words::CHOSEN));
+            let expected = reciprocal(Inverse::of(2 * number + 1, &Words::CHOSEN));
             assert_eq!(module.value(inverse), expected, "of {number:#x}");
         }
         let number = numbers.get(clock).copied().unwrap_or_default();

@@ -4,7 +4,7 @@ use glint_model::raymarch::{Palette, State};
 use glint_testbench::{Raymarcher, Taken};
 use glint_vectors::Random;
 
-use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, setup};
+use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, limit_steps, setup};
 
 /// Number of lanes of the module `raymarcher_sponge`.
 const LANES: u64 = 4;
@@ -39,7 +39,7 @@ fn frames_of_all_fields_with_stalls() {
 /// much as 20 decided rays.
 fn draw_in_short(bench: &mut Raymarcher, random: &mut Random, fields: &[&str]) {
     let mut setup = setup(random, fields);
-    setup.tuning.cap = setup.tuning.cap.min(40);
+    limit_steps(&mut setup, 40);
     bench.draw(Some(random), &setup, &Palette::default());
 }
 
@@ -49,7 +49,7 @@ fn frames_of_sponges_with_stalls() {
     let mut bench = Raymarcher::new("raymarcher_sponge", 2);
     for _ in 0..3 {
         let mut setup = setup(&mut random, &SPONGES);
-        setup.tuning.cap = setup.tuning.cap.min(20);
+        limit_steps(&mut setup, 20);
         bench.draw(Some(&mut random), &setup, &Palette::default());
     }
 }
@@ -61,7 +61,7 @@ fn frames_of_round_fields_in_all_lights() {
     for frame in 0..5 {
         let fields = [&ROUND[..], &UNIONS, &SPONGES][frame % 3];
         let mut setup = setup(&mut random, fields);
-        setup.tuning.cap = setup.tuning.cap.min(20);
+        limit_steps(&mut setup, 20);
         let palette = Palette {
             lights: lights(&mut random),
             ..Palette::default()
@@ -78,8 +78,7 @@ fn round_pixels_take_a_clock_a_light() {
     let mut bench = Raymarcher::new("raymarcher", 1);
     let setup = loop {
         let setup = setup(&mut random, &["sphere:1"]);
-        let middle = setup.ray(0, setup.width / 2, setup.height / 2);
-        let end = setup.march(&middle);
+        let end = setup.trace(0, setup.width / 2, setup.height / 2);
         if setup.width == 320 && end.steps > 2 && matches!(end.state, State::Hit(_)) {
             break setup;
         }
@@ -116,7 +115,7 @@ fn a_frame_given_up_leaves_nothing() {
         let setup = setup(&mut random, &["cubes:2,0.5"]);
         bench.give_up(&setup, clocks);
         let mut setup = setup;
-        setup.tuning.cap = 8;
+        limit_steps(&mut setup, 8);
         bench.draw(Some(&mut random), &setup, &Palette::default());
     }
 }

@@ -1,19 +1,23 @@
 //! Tests of the ray generator: its rays equal the model's rays of a frame, in order.
 
-use glint_model::raymarch::FieldSetup;
+use glint_model::raymarch::{FieldSetup, Form, Marching};
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
-use crate::scenes::{FIELDS, ROUND, setup};
-use glint_testbench::raymarch::{RayPlace, ray, set_generator};
+use crate::scenes::{FIELDS, ROUND, marching_setup, setup};
+use glint_testbench::raymarch::{RayPlace, exit_ray, ray, set_generator, without_start};
 use glint_vectors::Random;
 
-/// Name of the module variant with all fields.
-const GENERATOR: &str = "ray_generator_all";
+/// The module with rays by exits, and its variant with all kinds of rays.
+const GENERATORS: [&str; 2] = ["ray_generator", "ray_generator_all"];
 
-/// Returns the type of a ray at the module's output.
-fn ray_type(module: &Module) -> Layout {
-    module.packed_type("raymarch_pkg::ray_t").clone()
+/// The output port for the rays of a frame, and their type.
+fn output(module: &Module, setup: &FieldSetup) -> (&'static str, Layout) {
+    let (port, kind) = match setup.form {
+        Form::Exits(_) => ("exit", "exit_pkg::ray_t"),
+        Form::Marching(_) => ("ray", "raymarch_pkg::ray_t"),
+    };
+    (port, module.packed_type(kind).clone())
 }
 
 /// Returns the model's rays of the first `lines` lines of a frame, in the order of the generator.
@@ -34,40 +38,54 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
         })
     });
     places
-        .map(|(place, y)| ray(layout, place, &setup.ray(place.eye, place.column, y)))
+        .map(|(place, y)| match &setup.form {
+            Form::Exits(exits) => {
+                let beam = exits.ray(place.eye, place.column, y);
+                exit_ray(layout, exits, place, &beam)
+            }
+            Form::Marching(marching) => {
+                ray(layout, place, &marching.ray(place.eye, place.column, y))
+            }
+        })
         .collect()
 }
 
 /// Compares the rays of the first `lines` lines of a frame with the model's; returns the clocks up to the last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_rows(setup.width));
-    module.drive("round", setup.is_round());
-    let rays = expected(&ray_type(module), setup, lines);
-    let clocks = run(module, setup, &rays, stalls);
+    let is_round = setup.marching().is_some_and(Marching::is_round);
+    module.drive("round", is_round);
+    let (port, layout) = output(module, setup);
+    let rays = expected(&layout, setup, lines);
+    let (taken, clocks) = run(module, port, rays.len(), stalls);
+    for (number, (item, wanted)) in taken.iter().zip(rays).enumerate() {
+        let found = match setup.form {
+            Form::Exits(_) => without_start(&layout.record_of(*item)),
+            Form::Marching(_) => *item,
+        };
+        assert_eq!(found, wanted, "ray {number} of {setup:?}");
+    }
     end(module, lines == setup.height);
     clocks
 }
 
-/// Starts the generator and compares its rays with all of `expected`; returns the number of clocks.
-fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stalls) -> u64 {
-    let mut sink = Sink::new(module, "out", &["ray"], stalls);
+/// Starts the generator and takes `count` rays from its output `port`; returns them, and the number of clocks.
+fn run(module: &mut Module, port: &str, count: usize, stalls: Stalls) -> (Vec<Bits>, u64) {
+    let mut sink = Sink::new(module, "out", &[port], stalls);
     let start = module.port("start");
     module.set(start, 1);
     module.clock();
     module.set(start, 0);
     let begun = module.cycles();
-    while sink.items().len() < expected.len() {
+    while sink.items().len() < count {
         assert!(
-            module.cycles() - begun < 1000 + 100 * expected.len() as u64,
+            module.cycles() - begun < 1000 + 100 * count as u64,
             "the generator stalls"
         );
         step(module, &mut [], &mut [&mut sink]);
     }
     let clocks = module.cycles() - begun;
-    for (number, (item, wanted)) in sink.take().iter().zip(expected).enumerate() {
-        assert_eq!(item[0], *wanted, "ray {number} of {setup:?}");
-    }
-    clocks
+    (sink.take().iter().map(|item| item[0]).collect(), clocks)
 }
 
 /// Ends a frame: checks that the generator is idle after a whole frame, resets it after a part of a frame.
@@ -91,20 +109,28 @@ fn end(module: &mut Module, whole: bool) {
 fn beginnings_of_random_frames() {
     let fields = [&FIELDS[..], &ROUND].concat();
     let mut random = Random(5);
-    let mut module = Module::new(GENERATOR, 1);
+    let mut modules = GENERATORS.map(|name| Module::new(name, 1));
     for number in 0..60 {
-        let setup = setup(&mut random, &fields);
         let share = [0.0, 0.5, 0.9][number as usize % 3];
-        check(&mut module, &setup, 3, Stalls::new(number, share));
+        let stalls = Stalls::new(number, share);
+        let [exits, all] = &mut modules;
+        match number % 4 {
+            0 => check(exits, &setup(&mut random, &FIELDS), 3, stalls),
+            1 => check(all, &marching_setup(&mut random, &FIELDS), 3, stalls),
+            _ => check(all, &setup(&mut random, &fields), 3, stalls),
+        };
     }
 }
 
 #[test]
 fn whole_frames_and_one_ray_a_clock() {
     let mut random = Random(6);
-    let mut module = Module::new(GENERATOR, 2);
-    for number in 0..3 {
-        let setup = setup(&mut random, &FIELDS);
+    for (number, name) in (0..).zip([GENERATORS[1], GENERATORS[0], GENERATORS[1]]) {
+        let mut module = Module::new(name, 2);
+        let setup = match number {
+            0 => marching_setup(&mut random, &FIELDS),
+            _ => setup(&mut random, &FIELDS),
+        };
         let eyes = if setup.stereo.is_some() { 2 } else { 1 };
         let rays = u64::from(eyes * setup.width * setup.height);
         let clocks = check(&mut module, &setup, setup.height, Stalls::new(number, 0.0));

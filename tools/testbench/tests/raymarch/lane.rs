@@ -6,8 +6,8 @@ use glint_core::field::Primitive;
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Pipe};
 
-use crate::scenes::{SPONGES, every_field, setup};
-use glint_testbench::raymarch::{End, RayPlace, ray, set_lane};
+use crate::scenes::{SPONGES, every_field, marching_setup};
+use glint_testbench::raymarch::{End, RayPlace, marching, ray, set_lane};
 use glint_vectors::Random;
 
 /// Number of rays in a frame.
@@ -23,6 +23,7 @@ struct Sent {
 /// Makes random rays of a frame, with their expected ends, by place.
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<RayPlace, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
+    let marching = marching(setup);
     let mut all = HashMap::new();
     // A place has only the parity of the band, so rays of different bands can have equal places; one ray per place is kept.
     while all.len() < RAYS {
@@ -34,12 +35,12 @@ fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMa
             column: x,
             eye: random.bits() as usize % eyes,
         };
-        let start = setup.ray(place.eye, x, y);
-        let outcome = setup.march(&start);
+        let start = marching.ray(place.eye, x, y);
+        let outcome = marching.march(&start);
         let sent = Sent {
             item: ray(layout, place, &start),
             end: End::expected(&start, &outcome),
-            steps: outcome.steps * setup.passes(),
+            steps: outcome.steps * marching.passes(),
         };
         all.insert(place, sent);
     }
@@ -105,7 +106,7 @@ fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
     let mut random = Random(3);
     let mut benches = benches(name);
     for frame in 0..rays() / RAYS {
-        let setup = setup(&mut random, fields);
+        let setup = marching_setup(&mut random, fields);
         let bench = frame % benches.len();
         let rays = some_rays(&mut random, &benches[bench].ray(), &setup);
         benches[bench].check(&setup, rays);

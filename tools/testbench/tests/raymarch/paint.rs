@@ -1,12 +1,12 @@
 //! Tests of the module `ray_paint`, which computes colours and depths from the ends of rays.
 
 use glint_core::field::Surface;
-use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
+use glint_model::raymarch::{FieldSetup, Marching, Palette, Ray, RayEnd, RayResult, State};
 use glint_model::triangle::descriptor::band_rows;
-use glint_testbench::Pipe;
+use glint_testbench::{Bits, Layout, Pipe};
 
-use crate::scenes::{FIELDS, setup};
-use glint_testbench::raymarch::{Pixel, RayPlace, end, pixel, set_paint};
+use crate::scenes::{FIELDS, marching_setup, setup};
+use glint_testbench::raymarch::{Pixel, RayPlace, end, exit_end, marching, pixel, set_paint};
 use glint_vectors::Random;
 
 fn palette(random: &mut Random) -> Palette {
@@ -25,9 +25,9 @@ fn palette(random: &mut Random) -> Palette {
 }
 
 /// Makes a result of the ray `start`: the model's, or a random result with `t` above 0, even if no ray of the scene can produce it.
-fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
+fn ending(random: &mut Random, marching: &Marching, start: &Ray) -> RayResult {
     if random.coin() {
-        return setup.march(start);
+        return marching.march(start);
     }
     let state = match random.bits() % 8 {
         0 => State::Miss,
@@ -50,47 +50,95 @@ fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     }
 }
 
-#[test]
-fn ends_of_random_rays() {
+/// Makes an end of a ray by exits: the model's, or a random end with a depth above 0, even if no ray of the scene can produce it.
+fn exit_ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayEnd {
+    let end = setup.trace(place.eye, place.column, place.line);
+    if random.coin() {
+        return end;
+    }
+    let state = match random.bits() % 8 {
+        0 => State::Miss,
+        number => State::Hit(Surface::Face {
+            axis: (number % 3) as u8,
+            positive: random.coin(),
+        }),
+    };
+    RayEnd {
+        state,
+        depth: (random.logarithmic(1.0, 268_435_456.0) as u64) << 7,
+        steps: random.integer(1, 255) as u32,
+        height: random.bits() as u8,
+        ..end
+    }
+}
+
+/// Sends ends of rays through a module, in frames of `new_setup`. `ending` makes an end, and its bits.
+fn check(
+    name: &str,
+    new_setup: impl Fn(&mut Random) -> FieldSetup,
+    ending: impl Fn(&mut Random, &Layout, &FieldSetup, RayPlace) -> (Bits, RayEnd),
+) {
     const COUNT: usize = 4_000;
     let mut random = Random(8);
     let (input, output) = (("in", &["end"][..]), ("out", &Pixel::PAYLOAD[..]));
     for frame in 0..24 {
         let share = [0.0, 0.5][frame as usize % 2];
-        let mut pipe = Pipe::new("ray_paint", frame, input, output, [share; 2]);
+        let mut pipe = Pipe::new(name, frame, input, output, [share; 2]);
         let layout = pipe.module.packed_type("raymarch_pkg::end_t").clone();
-        let setup = setup(&mut random, &FIELDS);
+        let setup = new_setup(&mut random);
         let palette = palette(&mut random);
         set_paint(&mut pipe.module, &setup, &palette);
         pipe.module.drive("stride", setup.width / 8);
         let expected: Vec<_> = (0..COUNT)
             .map(|_| {
-                let column = random.integer(0, i64::from(setup.width) - 1) as u32;
                 let lines = i64::from(band_rows(setup.width));
                 let place = RayPlace {
                     odd: random.coin(),
                     line: random.integer(0, lines - 1) as u32,
-                    column,
+                    column: random.integer(0, i64::from(setup.width) - 1) as u32,
                     eye: (random.bits() % 2) as usize,
                 };
-                let start = setup.ray(place.eye, column, place.line);
-                let outcome = ending(&mut random, &setup, &start);
-                pipe.source
-                    .push(vec![end(&layout, place, &start, &outcome)]);
-                (
-                    pixel(&setup, &palette, place, &start, &outcome),
-                    start,
-                    outcome,
-                )
+                let (bits, end) = ending(&mut random, &layout, &setup, place);
+                pipe.source.push(vec![bits]);
+                (pixel(&setup, &palette, place, &end), end)
             })
             .collect();
         let limit = 20 * COUNT as u64;
         let clocks = pipe.run(limit, |pipe| pipe.sink.items().len() == COUNT);
         pipe.module.clock();
         assert!(share > 0.0 || clocks < COUNT as u64 + 40, "{clocks} clocks");
-        for (item, (wanted, start, outcome)) in pipe.sink.take().iter().zip(&expected) {
+        for (item, (wanted, end)) in pipe.sink.take().iter().zip(&expected) {
             let found = Pixel::from(std::array::from_fn(|i| item[i].number()));
-            assert_eq!(found, *wanted, "{outcome:?} of {start:?} in {setup:?}");
+            assert_eq!(found, *wanted, "{end:?} in {setup:?}");
         }
     }
+}
+
+#[test]
+fn ends_of_random_rays_by_exits() {
+    for name in ["ray_paint", "ray_paint_march"] {
+        check(
+            name,
+            |random| setup(random, &FIELDS),
+            |random, layout, setup, place| {
+                let end = exit_ending(random, setup, place);
+                (exit_end(layout, place, &end), end)
+            },
+        );
+    }
+}
+
+#[test]
+fn ends_of_random_marching_rays() {
+    check(
+        "ray_paint_march",
+        |random| marching_setup(random, &FIELDS),
+        |random, layout, setup, place| {
+            let marching = marching(setup);
+            let start = marching.ray(place.eye, place.column, place.line);
+            let outcome = ending(random, marching, &start);
+            let bits = end(layout, place, &start, &outcome);
+            (bits, marching.seen(&start, &outcome))
+        },
+    );
 }

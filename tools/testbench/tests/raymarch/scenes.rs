@@ -4,7 +4,9 @@ use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::raymarch::{FieldOptions, FieldSetup, Light, Lights, Stereo, Tint};
+use glint_model::raymarch::{
+    FieldOptions, FieldSetup, Form, Light, Lights, Marching, Stereo, Tint,
+};
 
 use glint_vectors::{Camera, Random};
 
@@ -97,10 +99,29 @@ pub fn camera(random: &mut Random) -> View {
     Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
 }
 
+/// Lowers the step limit of a frame's rays, which march, to `cap` if it is higher.
+pub fn limit_steps(setup: &mut FieldSetup, cap: u32) {
+    if let Form::Marching(Marching { tuning, .. }) = &mut setup.form {
+        tuning.cap = tuning.cap.min(cap);
+    }
+}
+
 /// Makes random frame constants, with random tuning and one or two eyes.
 pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
+    setup_of(random, fields, false)
+}
+
+/// Makes random frame constants of marching rays, also of fields that are drawn by exits.
+pub fn marching_setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
+    setup_of(random, fields, true)
+}
+
+fn setup_of(random: &mut Random, fields: &[impl AsRef<str>], marches: bool) -> FieldSetup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
-    let mut options = FieldOptions::of(&field);
+    let mut options = FieldOptions {
+        marches,
+        ..FieldOptions::of(&field)
+    };
     options.stereo = random.coin().then(|| stereo(random));
     if random.coin() {
         let tuning = &mut options.tuning;

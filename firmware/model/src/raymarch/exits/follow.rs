@@ -7,7 +7,7 @@ use super::lattice;
 use super::narrow::floor;
 use super::ray::Beam;
 use super::setup::Exits;
-use crate::raymarch::State;
+use crate::raymarch::{RayEnd, State};
 
 /// The end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +78,20 @@ impl Exits {
             way = self.left(beam, &way, &prism);
         }
         beyond(way.t, steps)
+    }
+
+    /// The end of a ray as a picture shows it.
+    pub fn seen(&self, beam: &Beam, end: &End) -> RayEnd {
+        RayEnd {
+            state: end.state,
+            depth: self.depth_of(end.t),
+            steps: end.steps,
+            evaluations: end.steps,
+            height: beam.height(),
+            normal: self
+                .normal(beam, end)
+                .map(|normal| normal.map(|part| part as i32)),
+        }
     }
 
     /// The vector from the centre of the sphere that was hit to the hit, in field units with 12 fraction bits; `None` if the ray hit no

@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use glint_core::field::Surface;
+use glint_core::field::{FRACTION, Surface};
 
 /// Number of axes: three, and a fourth for the fourth pair of faces of an octahedron.
 pub const AXES: usize = 4;
@@ -17,9 +17,10 @@ pub(super) const PERIOD: u32 = 18;
 const LAST_CELL: i64 = 32;
 
 /// The rule of a solid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rule {
     /// The inside of a box. Intervals: below −1, inside 0, above 1.
+    #[default]
     Box,
     /// The outside of a slab between two planes perpendicular to z, with the same intervals.
     Planes,
@@ -42,8 +43,32 @@ pub enum Rule {
     Octahedron,
 }
 
-/// A solid, for one frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+impl Rule {
+    /// The sponge with this number of levels, at most 6. The side of its smallest cells is a power of two: a field unit, or an eighth of one
+    /// in a sponge of more than four levels.
+    pub const fn sponge(levels: u32) -> Self {
+        let (cells, exponent) = match levels {
+            ..=4 => (81, FRACTION),
+            _ => (729, FRACTION - 3),
+        };
+        Self::Sponge {
+            cells,
+            last: cells / 3_i32.pow(if levels < 6 { levels } else { 6 }),
+            exponent,
+        }
+    }
+
+    /// Number of levels of a sponge; 0 for other solids.
+    pub const fn levels(&self) -> u32 {
+        match *self {
+            Self::Sponge { cells, last, .. } if last > 0 => (cells / last).ilog(3),
+            _ => 0,
+        }
+    }
+}
+
+/// A solid, for one frame. The default is an empty box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Solid {
     /// The rule.
     pub rule: Rule,
@@ -83,9 +108,10 @@ pub struct Border {
 }
 
 /// Which of the exits along the axes leaves a prism.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Exit {
     /// The first: the ray is in a prism while it is in all intervals.
+    #[default]
     First,
     /// The second of three: the ray is in one of three prisms while it is in two of the intervals.
     Second,
@@ -93,10 +119,11 @@ pub enum Exit {
     Last,
 }
 
-impl Prism {
-    /// The axis of the exit at which the ray leaves the prism, and whether the ray has crossed the border along each axis by then. Of equal
-    /// exits, the one along the axis with the smaller number is the earlier one. `exits` has the parameters at the borders.
-    pub(super) fn leaving(&self, exits: &[Option<i64>; AXES]) -> (usize, [bool; AXES]) {
+impl Exit {
+    /// The axis of the exit at which the ray leaves a prism, and whether the ray has crossed the border along each axis by then. Of equal
+    /// exits, the one along the axis with the smaller number is the earlier one. `exits` has the parameters at the borders; without any,
+    /// the axis is z.
+    pub(super) fn leaving(self, exits: &[Option<i64>; AXES]) -> (usize, [bool; AXES]) {
         let rank = |axis: usize| {
             let exit = exits[axis]?;
             let is_earlier =
@@ -104,18 +131,34 @@ impl Prism {
             Some((0..AXES).filter(is_earlier).count())
         };
         let ranks = [0, 1, 2, 3].map(rank);
-        let wanted = match self.exit {
-            Exit::First => 0,
-            Exit::Second => 1,
-            Exit::Last => ranks.iter().flatten().count().saturating_sub(1),
+        let wanted = match self {
+            Self::First => 0,
+            Self::Second => 1,
+            Self::Last => ranks.iter().flatten().count().saturating_sub(1),
         };
         let crossed = ranks.map(|rank| rank.is_some_and(|rank| rank <= wanted));
         let face = ranks.iter().position(|&rank| rank == Some(wanted));
-        (face.unwrap_or_default(), crossed)
+        (face.unwrap_or(2), crossed)
     }
 }
 
 impl Solid {
+    /// Half the side along each of the axes x, y and z, u9.12.
+    pub const fn half(&self) -> [i32; 3] {
+        let [x, y, z, _] = self.side;
+        [(x / 2) as i32, (y / 2) as i32, (z / 2) as i32]
+    }
+
+    /// The coordinate from the centre, s9.12, of a plane perpendicular to each of the axes x, y and z: the lower plane of a box and of a
+    /// sponge, the upper one of planes, and the lower one of the cube after the middle one of repeated cubes.
+    pub fn borders(&self) -> [i32; 3] {
+        self.half().map(|half| match self.rule {
+            Rule::Planes => half,
+            Rule::Repeated { .. } => (1 << PERIOD) - half,
+            Rule::Box | Rule::Sponge { .. } | Rule::Octahedron => -half,
+        })
+    }
+
     /// The intervals of a point. Rounding may place a point below a border that its ray has crossed: intervals are never below those
     /// that the ray has `reached`.
     pub(super) fn intervals(&self, point: &[i64; AXES], reached: &[i32; AXES]) -> [i32; AXES] {

@@ -2,7 +2,7 @@
 
 use glint_core::field::{FRACTION, magnitude};
 
-use super::intervals::{AXES, Prism, Solid};
+use super::intervals::{AXES, Exit, Prism, Solid};
 use super::narrow::{floor, squared};
 use super::setup::Exits;
 use super::words::Inverse;
@@ -44,6 +44,18 @@ pub struct Way {
     pub reached: [i32; AXES],
 }
 
+impl Beam {
+    /// How far up the ray leads ([`RayEnd::height`](crate::raymarch::RayEnd::height)), for a solid whose axes are x, y and z: the first ten
+    /// bits of the component along z, divided by those of the largest component and one more.
+    pub fn height(&self) -> u8 {
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| self.speed[axis] >> 15);
+        match self.down[2] {
+            true => 0,
+            false => ((z << 8) / (x.max(y).max(z) + 1)) as u8,
+        }
+    }
+}
+
 impl Way {
     /// Whether the ray has left the solid for good, or is beyond its limit.
     pub(super) fn has_left(&self, solid: &Solid, limit: i64) -> bool {
@@ -55,8 +67,8 @@ impl Exits {
     /// The ray of pixel (x, y) for an eye.
     pub fn ray(&self, eye: usize, column: u32, row: u32) -> Beam {
         // The direction D, s1.24, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
-        // component is therefore its complement.
-        let direction = self.direction(eye, column, row).map(|part| part >> 6);
+        // component is therefore its complement. The component wraps only for invalid frame constants.
+        let direction = self.direction(eye, column, row).map(|part| part << 1 >> 7);
         let down = direction.map(|part| part < 0);
         let speed = direction.map(|part| 2 * magnitude(part) + 1);
         // The square is that of 23 bits, without the square of the lowest 6.
@@ -84,17 +96,12 @@ impl Exits {
             },
             is_away: false,
         };
-        let Some(start) = &self.eyes[eye].start else {
-            return beam;
-        };
-        let side = |axis: usize| usize::from(down[axis]);
-        let prism = Prism {
-            borders: [0, 1, 2, 3].map(|axis: usize| start.borders[side(axis)][axis]),
-            exit: start.exit,
-        };
+        let start = &self.eyes[eye].start;
+        let sides = [0, 1, 2, 3].map(|axis: usize| &start.sides[usize::from(down[axis])][axis]);
+        let borders = sides.map(|side| side.is_bounded.then_some((side.distance, side.next)));
         Beam {
-            start: self.left(&beam, &beam.start, &prism),
-            is_away: (0..AXES).any(|axis| start.is_away[side(axis)][axis]),
+            start: self.leave(&beam, &beam.start, start.exit, &borders),
+            is_away: sides.iter().any(|side| side.is_away),
             ..beam
         }
     }
@@ -108,18 +115,33 @@ impl Exits {
     /// The place where a ray leaves a prism that contains `way`.
     pub(super) fn left(&self, beam: &Beam, way: &Way, prism: &Prism) -> Way {
         let corner = self.eyes[beam.eye].corner(&beam.down);
+        let borders = [0, 1, 2, 3].map(|axis: usize| {
+            let border = prism.borders[axis]?;
+            Some((border.at - corner[axis], border.next))
+        });
+        self.leave(beam, way, prism.exit, &borders)
+    }
+
+    /// The place where a ray leaves a prism that contains `way`. `borders` has the distance from the eye to each of the prism's borders, and
+    /// the interval beyond it.
+    fn leave(
+        &self,
+        beam: &Beam,
+        way: &Way,
+        exit: Exit,
+        borders: &[Option<(i64, i32)>; AXES],
+    ) -> Way {
         let exits = [0, 1, 2, 3].map(|axis: usize| {
-            let distance = prism.borders[axis]?.at - corner[axis];
+            let (distance, _) = borders[axis]?;
             Some(self.words.divided(distance, FRACTION, beam.inverse[axis]))
         });
-        let (face, crossed) = prism.leaving(&exits);
-        let exit = exits[face].unwrap_or_default();
-        let reached = [0, 1, 2, 3].map(|axis: usize| match prism.borders[axis] {
-            Some(border) if crossed[axis] => border.next,
+        let (face, crossed) = exit.leaving(&exits);
+        let reached = [0, 1, 2, 3].map(|axis: usize| match borders[axis] {
+            Some((_, next)) if crossed[axis] => next,
             _ => way.reached[axis],
         });
         Way {
-            t: way.t.max(exit),
+            t: way.t.max(exits[face].unwrap_or_default()),
             face,
             reached,
         }

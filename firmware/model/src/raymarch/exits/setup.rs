@@ -1,6 +1,6 @@
 //! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
-use glint_core::camera::{Projection, View};
+use glint_core::camera::View;
 use glint_core::field::{
     FRACTION, Field, FixedSpheres, MAX_SPHERES, Placed, Primitive, Solid as Kind, cropped, units,
 };
@@ -11,8 +11,8 @@ use super::balls::Ball;
 use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
 use super::rectangle::Rectangle;
 use super::words::Words;
-use crate::error::{FIELD_HALF_WIDTH, RenderError, SIZES};
-use crate::raymarch::directions::Directions;
+use crate::error::RenderError;
+use crate::raymarch::directions::{Directions, check};
 
 /// Far limit, as an exponent of the depth in field units.
 const FAR: u32 = 11;
@@ -26,23 +26,47 @@ pub struct Eye {
     pub corners: [[i64; AXES]; 2],
     /// Direction D of the first pixel's ray along each axis, s2.30.
     pub first: [i32; AXES],
-    /// The empty prism around the eye. `None` if the eye is not in an empty prism, or if it is on a border, so that the prism is not the
-    /// same for all rays.
-    pub start: Option<Start>,
+    /// The empty prism around the eye.
+    pub start: Start,
 }
 
-/// The empty prism around an eye, which all rays leave first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The empty prism around an eye, which all rays leave first. It has no borders if the eye is not in an empty prism, or if the eye is on a
+/// border, so that the prism is not the same for all rays: they then start at the near plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Start {
     /// The exit at which a ray leaves the prism.
     pub exit: Exit,
-    /// The borders along each axis, and along each mirrored axis.
-    pub borders: [[Option<Border>; AXES]; 2],
-    /// Whether a ray along the axis, or along the mirrored axis, leads away from the solid.
-    pub is_away: [[bool; AXES]; 2],
+    /// The sides of the prism along each axis, and along each mirrored axis.
+    pub sides: [[Side; AXES]; 2],
+}
+
+/// The side of the empty prism around an eye at which rays leave it along an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Side {
+    /// Whether the prism has a border on this side.
+    pub is_bounded: bool,
+    /// Distance from the eye to the border, 25 bits, of which 12 are fraction bits; 0 without a border.
+    pub distance: i64,
+    /// The interval beyond the border; 0 without a border.
+    pub next: i32,
+    /// Whether a ray to this side leads away from the solid.
+    pub is_away: bool,
+    /// Whether the interval beyond the border is above the solid.
+    pub is_last: bool,
 }
 
 impl Eye {
+    /// An eye at a position in field units, s13.12, with the directions of its rays and its prism still to be set.
+    pub fn at(origin: [i32; 3], solid: &Option<Solid>) -> Self {
+        let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
+        let place = along(solid, origin.map(i64::from));
+        Self {
+            origin,
+            corners: [1, -1].map(|sign| [0, 1, 2, 3].map(|i: usize| half[i] + sign * place[i])),
+            ..Self::default()
+        }
+    }
+
     /// The position from the solid's lower corner, with the axes mirrored that are `down`.
     pub(super) fn corner(&self, down: &[bool; AXES]) -> [i64; AXES] {
         [0, 1, 2, 3].map(|axis: usize| self.corners[usize::from(down[axis])][axis])
@@ -79,7 +103,20 @@ pub struct Exits {
 }
 
 impl Exits {
-    /// Computes the constants for a field, a camera and one of the [`SIZES`]. A smooth union is drawn as a sharp one.
+    /// Whether pictures of a field are drawn by exits. Rays march in all other fields.
+    pub const fn draws(field: &Field) -> bool {
+        matches!(
+            field,
+            Field::Primitive(
+                Primitive::Menger(_)
+                    | Primitive::Box(_)
+                    | Primitive::Cubes(_)
+                    | Primitive::Planes(_)
+            )
+        )
+    }
+
+    /// Computes the constants for a field, a camera and one of the [`SIZES`](crate::SIZES). A smooth union is drawn as a sharp one.
     ///
     /// # Errors
     /// [`RenderError::Size`] for another size, [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too
@@ -91,15 +128,7 @@ impl Exits {
         stereo: Option<Stereo>,
         words: Words,
     ) -> Result<Self, RenderError> {
-        if !SIZES.contains(&(width, height)) {
-            return Err(RenderError::Size { width, height });
-        }
-        if view.projection() == Projection::Orthographic {
-            return Err(RenderError::Orthographic);
-        }
-        if !(FIELD_HALF_WIDTH[0]..=FIELD_HALF_WIDTH[1]).contains(&view.half_width()) {
-            return Err(RenderError::HalfWidth(view.half_width()));
-        }
+        check(view, (width, height))?;
         let (solid, scale) = match field {
             Field::Primitive(primitive) => placed(primitive),
             Field::Union(union) => placed(union.flat()),
@@ -114,15 +143,11 @@ impl Exits {
                 Some(Rule::Repeated { .. }) => origin.map(|x| cropped(x, PERIOD)),
                 _ => origin,
             };
-            let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
-            let place = along(&solid, origin.map(i64::from));
-            let corners =
-                [1, -1].map(|sign| [0, 1, 2, 3].map(|i: usize| half[i] + sign * place[i]));
+            let eye = Eye::at(origin, &solid);
             Eye {
-                origin,
-                corners,
                 first: first(&rays, i, [width / 2, height / 2], &steps, narrow),
-                start: solid.and_then(|solid| Start::new(&solid, &corners)),
+                start: solid.map_or_else(Start::default, |solid| Start::new(&solid, &eye.corners)),
+                ..eye
             }
         });
         let near = units(
@@ -217,6 +242,16 @@ impl Exits {
         }
     }
 
+    /// Whether an eye is inside the solid, and not on its surface: in the solid for rays that lead up, and for rays that lead down.
+    pub(in crate::raymarch) fn is_inside(&self, eye: usize) -> bool {
+        self.solid.is_some_and(|solid| {
+            self.eyes[eye].corners.iter().all(|corner| {
+                let intervals = solid.intervals(corner, &[i32::MIN; AXES]);
+                solid.place(&intervals) == Place::Solid
+            })
+        })
+    }
+
     /// Depth along the camera's forward axis n at the parameter `t`, in field units times 2^e, u19.21.
     pub fn depth_of(&self, t: i64) -> u64 {
         (t as u64) << (21 - self.words.parameter)
@@ -226,7 +261,7 @@ impl Exits {
 impl Start {
     /// The empty prism around an eye at `corners`, if it is the same for all rays that do not lead away from the solid: for each of the
     /// ways to mirror the axes, the borders along an axis depend only on this axis.
-    fn new(solid: &Solid, corners: &[[i64; AXES]; 2]) -> Option<Self> {
+    fn new(solid: &Solid, corners: &[[i64; AXES]; 2]) -> Self {
         let intervals = corners.map(|corner| solid.intervals(&corner, &[i32::MIN; AXES]));
         let is_away = intervals
             .map(|sides| [0, 1, 2, 3].map(|axis: usize| solid.is_above(axis, sides[axis])));
@@ -239,7 +274,7 @@ impl Start {
             }
             let place = solid.place(&[0, 1, 2, 3].map(|axis: usize| intervals[side(axis)][axis]));
             let Place::Empty(prism) = place else {
-                return None;
+                return Self::default();
             };
             let mut is_same = *exit.get_or_insert(prism.exit) == prism.exit;
             for axis in 0..AXES {
@@ -247,14 +282,26 @@ impl Start {
                 is_same &= *borders[side(axis)][axis].get_or_insert(border) == border;
             }
             if !is_same {
-                return None;
+                return Self::default();
             }
         }
-        Some(Self {
-            exit: exit?,
-            borders: borders.map(|side| side.map(Option::flatten)),
-            is_away,
-        })
+        let Some(exit) = exit else {
+            return Self::default();
+        };
+        let side = |down: usize, axis: usize| {
+            let border: Option<Border> = borders[down][axis].flatten();
+            Side {
+                is_bounded: border.is_some(),
+                distance: border.map_or(0, |border| border.at - corners[down][axis]),
+                next: border.map_or(0, |border| border.next),
+                is_away: is_away[down][axis],
+                is_last: border.is_some_and(|border| solid.is_above(axis, border.next)),
+            }
+        };
+        Self {
+            exit,
+            sides: [0, 1].map(|down| [0, 1, 2, 3].map(|axis| side(down, axis))),
+        }
     }
 }
 
@@ -303,17 +350,12 @@ fn placed(primitive: &Primitive) -> (Option<Solid>, Q32_32) {
     };
     let (rule, side, scale) = match (primitive, constants) {
         (Primitive::Menger(sponge), _) => {
-            // The side of the smallest cells is a power of two: a field unit, or an eighth of one in a sponge of more than four levels.
-            let (cells, exponent, scale) = match sponge.depth {
-                ..=4 => (81, FRACTION, Q32_32::lit("40.5")),
-                _ => (729, FRACTION - 3, Q32_32::lit("45.5625")),
+            let scale = match sponge.depth {
+                ..=4 => Q32_32::lit("40.5"),
+                _ => Q32_32::lit("45.5625"),
             };
-            let rule = Rule::Sponge {
-                cells,
-                last: cells / 3_i32.pow(sponge.depth.into()),
-                exponent,
-            };
-            (rule, [i64::from(cells) << exponent; AXES], scale)
+            let side = units(Q32_32::lit("2"), scale);
+            (Rule::sponge(sponge.depth.into()), [side; AXES], scale)
         }
         (Primitive::Octahedron(octahedron), _) => {
             let scale = Q32_32::lit("81");

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use glint_model::FrameBuffer;
-use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayResult, State, render_rows};
+use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayEnd, render_rows};
 
 /// Number of rows of a strip.
 const ROWS: usize = 16;
@@ -54,15 +54,11 @@ fn strip(
     // At pixels with triangles, the ray's depth test is repeated here, because the model does not count the rays that fail this test.
     let before = depth.to_vec();
     let mut hidden = 0;
-    let mut show = |x, y, ray: &_, outcome: &RayResult| {
+    let mut show = |x, y, end: &RayEnd| {
         let stored = before.get(((y - first) * setup.width + x) as usize);
         let stored = stored.copied().unwrap_or(0);
         if stored > 0 && setup.stereo.is_none() {
-            let code = match outcome.state {
-                State::Hit(_) => setup.depth_code(ray, outcome.reached()),
-                State::Miss | State::Undecided => 0,
-            };
-            hidden += u32::from(code < stored);
+            hidden += u32::from(setup.depth_code(end) < stored);
         }
     };
     let stats = render_rows(setup, palette, first, colour, depth, &mut show);

@@ -5,10 +5,11 @@ use glint_core::fixed::Q32_32;
 use glint_core::picture::Size;
 use glint_core::stereo::Tint;
 use glint_model::DepthScale;
-use glint_model::raymarch::{Beside, Eye, FieldSetup, Palette, Tuning};
+use glint_model::raymarch::exits::{self, Exits, Rule, Side, Start, Words};
+use glint_model::raymarch::{Beside, Eye, FieldSetup, Form, Marching, Palette, Tuning};
 use litex_pac::raymarch::{
-    Control, DepthScale as DepthScaleRegister, Kind, Solid as SolidRegister, Stereo,
-    Tuning as TuningRegister, offset,
+    Control, DepthScale as DepthScaleRegister, Exit, Exits as ExitsRegister, Kind,
+    Rule as RuleRegister, Solid as SolidRegister, Stereo, Tuning as TuningRegister, offset,
 };
 use litex_pac::register::Value;
 
@@ -34,9 +35,6 @@ pub fn field_setup(
         Some(Stereo::RedBlue) => Some(Tint::RedBlue),
         Some(Stereo::RedCyan) | None => Some(Tint::RedCyan),
     };
-    let (solid, beside) = solid(parameters, spheres);
-    let steps = [offset::ACROSS_X, offset::DOWN_X].map(|first| parameters.row(first, 32));
-    let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
     let scale = DepthScaleRegister::from_bits(parameters.word(offset::DEPTH_SCALE));
     // A 6-bit number in two's complement.
     let exponent = i32::from((scale.exponent() << 2) as i8 >> 2);
@@ -45,28 +43,116 @@ pub fn field_setup(
         exponent: exponent.max(LEAST_EXPONENT),
         origin: None,
     };
+    let exits = ExitsRegister::from_bits(parameters.word(offset::EXITS));
+    let form = if exits.enable() {
+        Form::Exits(leaving(parameters, exits, [width, height]))
+    } else {
+        Form::Marching(marching(parameters, spheres))
+    };
     FieldSetup {
         width,
         height,
-        solid,
-        beside,
         // The rays use neither the scale of the world nor the exponent of their directions.
         scale: Q32_32::ONE,
         exponent: 0,
+        depth,
         world_depth: depth,
+        stereo,
+        form,
+    }
+}
+
+/// The constants of rays by exits.
+fn leaving(parameters: &Parameters, register: ExitsRegister, [width, height]: [u32; 2]) -> Exits {
+    let rule = match register.rule() {
+        RuleRegister::Planes => Rule::Planes,
+        RuleRegister::Sponge => Rule::sponge(register.depth().into()),
+        RuleRegister::Cubes => Rule::Repeated { round: false },
+        RuleRegister::Box => Rule::Box,
+    };
+    let axes = |[x, y, z]: [i32; 3]| [x, y, z, 0];
+    let half = [offset::HALF_X, offset::HALF_Y, offset::HALF_Z];
+    let [x, y, z] = half.map(|at| 2 * i64::from(parameters.unsigned(at, 21)));
+    let solid = exits::Solid {
+        rule,
+        side: [x, y, z, 0],
+    };
+    let eyes = [
+        (offset::ORIGIN_LEFT_X, register.left_exit()),
+        (offset::ORIGIN_RIGHT_X, register.right_exit()),
+    ];
+    Exits {
+        words: Words::CHOSEN,
+        width,
+        height,
+        // The rays use neither the scale of the world nor the exponent of their directions.
+        scale: Q32_32::ONE,
+        exponent: 0,
+        eyes: eyes.map(|(first, exit)| {
+            let eye = eye(parameters, first);
+            exits::Eye {
+                first: axes(eye.first),
+                start: start(parameters, &solid, first, exit),
+                ..exits::Eye::at(eye.origin, &Some(solid))
+            }
+        }),
+        steps: [offset::ACROSS_X, offset::DOWN_X].map(|first| axes(parameters.row(first, 32))),
+        near: parameters.unsigned(offset::NEAR, 28).into(),
+        far: parameters.unsigned(offset::FAR, 28).into(),
+        solid: Some(solid),
+        balls: Default::default(),
+        count: 0,
+    }
+}
+
+/// The prism around the eye whose registers begin at `first`.
+fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option<Exit>) -> Start {
+    const START: u32 = offset::START_LEFT_X - offset::ORIGIN_LEFT_X;
+    const MIRRORED: u32 = offset::START_LEFT_MIRRORED_X - offset::START_LEFT_X;
+    const NEXT: u32 = offset::NEXT_LEFT_X - offset::ORIGIN_LEFT_X;
+    const AXIS: u32 = offset::NEXT_LEFT_Y - offset::NEXT_LEFT_X;
+    let side = |way: u32, axis: u32| {
+        let plane = parameters.word(first + START + way * MIRRORED + 4 * axis);
+        let next = parameters.word(first + NEXT + axis * AXIS) >> (16 * way) & 0x1FFF;
+        Side {
+            is_bounded: plane >> 25 & 1 == 1,
+            distance: i64::from(plane & 0x1FF_FFFF),
+            next: solid.interval(next),
+            is_away: plane >> 26 & 1 == 1,
+            is_last: plane >> 27 & 1 == 1,
+        }
+    };
+    Start {
+        exit: match exit {
+            Some(Exit::First) => exits::Exit::First,
+            Some(Exit::Last) => exits::Exit::Last,
+            Some(Exit::Second) | None => exits::Exit::Second,
+        },
+        sides: [0, 1].map(|way| {
+            let [x, y, z] = [0, 1, 2].map(|axis| side(way, axis));
+            [x, y, z, Side::default()]
+        }),
+    }
+}
+
+/// The constants of marching rays.
+fn marching(parameters: &Parameters, spheres: &Spheres) -> Marching {
+    let (solid, beside) = solid(parameters, spheres);
+    let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
+    Marching {
+        solid,
+        beside,
         bounds: [offset::BOUNDS_X, offset::BOUNDS_Y, offset::BOUNDS_Z]
             .map(|at| parameters.unsigned(at, 24)),
         eyes: [offset::ORIGIN_LEFT_X, offset::ORIGIN_RIGHT_X].map(|first| eye(parameters, first)),
-        steps,
+        steps: [offset::ACROSS_X, offset::DOWN_X].map(|first| parameters.row(first, 32)),
         near: parameters.unsigned(offset::NEAR, 23),
-        depth,
         tuning: Tuning {
             threshold: tuning.threshold().into(),
             footprint: tuning.footprint().into(),
             cap: tuning.cap().into(),
             far: parameters.unsigned(offset::FAR, 23),
         },
-        stereo,
     }
 }
 

@@ -4,7 +4,7 @@ use glint_model::raymarch::{DEFAULT_TUNING, ROUND_TUNING};
 use glint_testbench::Raymarcher;
 use serde::{Deserialize, Serialize};
 
-use super::raymarch::requirements::{FACES, IOU, LARGE_COST, MEDIAN, NORMALS, P99, SMALL_COST};
+use super::raymarch::requirements::{EXITS, LARGE_COST, MARCHING, SMALL_COST};
 use super::{gesture, timeline};
 use crate::imu::measure::LEFT_BIAS;
 
@@ -32,21 +32,30 @@ pub fn all() -> Vec<Row> {
             (laps * tuning.cap).to_string(),
         );
     }
-    for (name, [required, goal]) in [
-        ("iou", IOU.map(|part| part.to_string())),
-        ("median", MEDIAN.map(|error| format!("{error:e}"))),
-        ("p99", P99.map(|error| format!("{error:e}"))),
-        ("faces", FACES.map(|part| (100.0 * part).to_string())),
-        ("small_cost", SMALL_COST.map(|cost| cost.to_string())),
-        ("large_cost", LARGE_COST.map(|cost| cost.to_string())),
-    ] {
-        add(name, required);
-        add(&format!("{name}_goal"), goal);
+    for (kind, bounds) in [("exits", EXITS), ("marching", MARCHING)] {
+        for (name, [required, goal]) in [
+            ("iou", bounds.iou.map(|part| part.to_string())),
+            ("median", bounds.median.map(|error| format!("{error:e}"))),
+            ("p99", bounds.p99.map(|error| format!("{error:e}"))),
+            ("faces", bounds.faces.map(percent)),
+        ] {
+            add(&format!("{kind}_{name}"), required);
+            add(&format!("{kind}_{name}_goal"), goal);
+        }
     }
-    add("normals", NORMALS.to_string());
+    for (name, [required, goal]) in [("small_cost", SMALL_COST), ("large_cost", LARGE_COST)] {
+        add(name, required.to_string());
+        add(&format!("{name}_goal"), goal.to_string());
+    }
+    add("normals", MARCHING.normals.to_string());
     add("model_lanes", Raymarcher::LANES.to_string());
     add("timeline_lanes", timeline::LANES.to_string());
     add("camera_rate", gesture::RATE.to_string());
     add("left_bias", format!("{LEFT_BIAS:?}"));
     rows
+}
+
+/// A part as text in percent, without the binary rounding of its product.
+fn percent(part: f64) -> String {
+    format!("{}", (part * 1e8).round() / 1e6)
 }

@@ -35,7 +35,7 @@ fn usual() -> f64 {
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// Marches the rays of a picture of 320×180.
+/// Traces the rays of a picture of 320×180.
 fn picture(input: Seen) -> Result<Outcome> {
     let number = |v: [f64; 3]| v.map(Q32_32::from_num);
     let up = number([0.0, 0.0, 1.0]);
@@ -58,8 +58,7 @@ fn picture(input: Seen) -> Result<Outcome> {
     let mut stats = FieldStats::default();
     for eye in 0..if setup.stereo.is_some() { 2 } else { 1 } {
         for i in 0..SIZE.0 * SIZE.1 {
-            let ray = setup.ray(eye, i % SIZE.0, i / SIZE.0);
-            stats.count(&setup, &setup.march(&ray));
+            stats.count(&setup.trace(eye, i % SIZE.0, i / SIZE.0));
         }
     }
     let inside = match setup.has_eye_inside() {
@@ -84,9 +83,14 @@ struct Point {
 fn distance(Point { field, point }: Point) -> Result<Outcome> {
     let field = Field::parse(&field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let view = View::spherical(Q32_32::from_num(4), Default::default(), Default::default())?;
-    let setup = FieldSetup::new(&field, &view, SIZE, &FieldOptions::of(&field))?;
+    let options = FieldOptions {
+        marches: true,
+        ..FieldOptions::of(&field)
+    };
+    let setup = FieldSetup::new(&field, &view, SIZE, &options)?;
+    let marching = setup.marching().expect("marching rays");
     Ok(Outcome::exact(format!(
         "{}/2^12",
-        setup.sample(point).distance
+        marching.sample(point).distance
     )))
 }

@@ -51,14 +51,13 @@ impl Picture {
         let mut bands = vec![vec![]; (setup.height / lines) as usize];
         for (y, x) in (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (y, x))) {
             for eye in 0..eyes {
-                let ray = setup.ray(eye, x, y);
                 let place = RayPlace {
                     odd: y / lines % 2 == 1,
                     line: y % lines,
                     column: x,
                     eye,
                 };
-                let pixel = pixel(setup, &field.palette, place, &ray, &setup.march(&ray));
+                let pixel = pixel(setup, &field.palette, place, &setup.trace(eye, x, y));
                 bands[(y / lines) as usize].push(pixel);
             }
         }

@@ -2,10 +2,10 @@
 //!
 //! The gateware and its model have 12 fraction bits. Ray directions always have 17 fraction bits, as in the model.
 
-use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
+use glint_model::raymarch::{DEFAULT_TUNING, Marching, Ray, Tuning};
 
 use crate::raymarch::metrics::RayOutcome;
-use crate::raymarch::raymarched::{RenderedRay, Subject};
+use crate::raymarch::raymarched::{RenderedRay, Subject, marching};
 use crate::raymarch::{Face, Field};
 
 /// Number of fraction bits of a length in the model, whose unit is the field unit (docs/formats/raymarch.md).
@@ -16,8 +16,12 @@ const TWICE_SCALE: i64 = 81;
 
 /// The constants of a picture of the sponge for a number of fraction bits.
 pub struct FixedPoint {
+    /// Width and height of the picture.
+    size: (u32, u32),
     /// The model's constants of the picture, from which the ray directions are computed.
-    setup: FieldSetup,
+    marching: Marching,
+    /// Exponent e of the directions D (docs/formats/raymarch.md, "Rays").
+    exponent: u32,
     /// Number of fraction bits of a length in field units, from 8 to 16.
     fraction: u32,
     /// Sides S of the cells of each level, in field units with `fraction` bits: see `menger` in docs/formats/raymarch.md.
@@ -26,7 +30,7 @@ pub struct FixedPoint {
     bound: u32,
     /// Position of the eye, in field units with `fraction` bits.
     origin: [i32; 3],
-    /// Smallest depth of a hit, in field units with `fraction` bits, times 2^`setup.exponent`.
+    /// Smallest depth of a hit, in field units with `fraction` bits, times 2^`exponent`.
     near: u32,
     /// Parameters of the march. Threshold and far limit have `fraction` bits.
     tuning: Tuning,
@@ -43,7 +47,7 @@ impl FixedPoint {
             panic!("{}: expected a sponge", subject.scene);
         };
         assert!((1..=4).contains(&depth), "expected at most four levels");
-        let setup = subject.setup(&FieldOptions::default());
+        let setup = subject.setup(&marching());
         let view = subject
             .camera
             .view()
@@ -64,7 +68,9 @@ impl FixedPoint {
             ((u64::from(length) << fraction) + (1 << (MODEL_FRACTION - 1))) >> MODEL_FRACTION
         };
         Self {
-            setup,
+            size: subject.size,
+            marching: *setup.marching().expect("marching rays"),
+            exponent: setup.exponent,
             fraction,
             levels: (0..depth)
                 .map(|i| (27 / 3_i32.pow(i)) << fraction)
@@ -82,9 +88,9 @@ impl FixedPoint {
 
     /// Draws the picture, row by row, and returns the results of its rays.
     pub fn picture(&self) -> Vec<RenderedRay> {
-        let (width, height) = (self.setup.width, self.setup.height);
+        let (width, height) = self.size;
         (0..width * height)
-            .map(|i| self.march(&self.setup.ray(0, i % width, i / width)))
+            .map(|i| self.march(&self.marching.ray(0, i % width, i / width)))
             .collect()
     }
 
@@ -193,7 +199,7 @@ impl FixedPoint {
         let scaled = u64::from(t) * u64::from(self.reciprocal(ray.length));
         // The depth has 21 fraction bits, as in the model. The reciprocal contributes 9 of these bits.
         let scaled = scaled << MODEL_FRACTION >> self.fraction;
-        let bits = 21.0 + f64::from(self.setup.exponent);
+        let bits = 21.0 + f64::from(self.exponent);
         scaled as f64 * (-bits).exp2() / (TWICE_SCALE as f64 / 2.0)
     }
 
@@ -205,7 +211,7 @@ impl FixedPoint {
             length: first_bits & 0x3FF,
             start: 0,
         };
-        self.setup.depth_of(&ray, 1) as u32
+        self.marching.depth_of(&ray, 1) as u32
     }
 }
 
@@ -243,7 +249,7 @@ mod tests {
     fn with_the_models_fraction_bits_the_picture_is_the_models() {
         for subject in sponges((320, 180)) {
             let fixed = FixedPoint::new(&subject, MODEL_FRACTION, DEFAULT_TUNING.threshold);
-            let model = subject.picture(&FieldOptions::default());
+            let model = subject.picture(&marching());
             for (found, expected) in fixed.picture().iter().zip(&model) {
                 assert_eq!(
                     (found.outcome, found.steps),

@@ -1,16 +1,30 @@
-//! Experiment: errors of the model's pictures, compared with exact hits of the rays, and numbers of distance evaluations.
+//! Experiment: errors of the model's pictures, compared with exact hits of the rays, and numbers of evaluations, by exits and by marching
+//! rays.
 
-use glint_model::raymarch::FieldOptions;
+use glint_model::raymarch::{FieldOptions, Palette};
+use glint_testbench::Raymarcher;
 use serde::{Deserialize, Serialize};
 
-use super::requirements::{LARGE, LARGE_COST, SMALL, SMALL_COST, missed};
+use super::requirements::{EXITS, LARGE, LARGE_COST, MARCHING, SMALL, SMALL_COST};
 use crate::raymarch::Field;
 use crate::raymarch::raymarched::{self, Measured, Subject};
 
-/// Errors of a picture and its number of evaluations of the field's distance: a line of `raymarch.csv`. Depths are in world
-/// units along the camera's n.
+/// The form of a picture's rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Form {
+    /// Rays leave empty prisms.
+    Exits,
+    /// Rays advance by distances.
+    Marching,
+}
+
+/// Errors of a picture and its number of evaluations of the field: a line of `raymarch.csv`. Depths are in world units along the
+/// camera's n.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
+    /// Form of the rays. A field that is drawn by exits has a row for both forms.
+    pub form: Form,
     /// Text form of the field.
     pub scene: String,
     /// Name of the view.
@@ -50,6 +64,9 @@ pub struct Row {
     pub evaluations: f64,
     /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,
+    /// Clocks of the verilated raymarcher alone for the picture; `None` for fields that are not drawn by exits, and in a quick
+    /// measurement.
+    pub cycles: Option<u64>,
     /// Names of the requirements that the picture does not meet.
     pub missed: String,
     /// Names of the goals that the picture does not reach.
@@ -57,7 +74,23 @@ pub struct Row {
 }
 
 impl Row {
-    fn new(subject: &Subject, measured: &Measured) -> Self {
+    /// Draws the picture of a subject with the model. With `raymarcher`, measures the clocks too.
+    pub fn measure(subject: &Subject, form: Form, raymarcher: Option<&mut Raymarcher>) -> Self {
+        let setup = subject.setup(&FieldOptions {
+            marches: form == Form::Marching,
+            ..FieldOptions::of(&subject.parsed)
+        });
+        let measured = Measured::new(
+            &subject.expected_of(&setup),
+            &raymarched::picture(&setup, 0),
+        );
+        let mut row = Self::new(subject, form, &measured);
+        row.cycles =
+            raymarcher.map(|raymarcher| raymarcher.draw(None, &setup, &Palette::default()).clocks);
+        row
+    }
+
+    fn new(subject: &Subject, form: Form, measured: &Measured) -> Self {
         let &Measured {
             accuracy, coded, ..
         } = measured;
@@ -67,21 +100,20 @@ impl Row {
         } else {
             LARGE_COST
         };
-        // Returns the names of the missed requirements (`level` 0) or goals (`level` 1). Round fields have requirements but no
-        // goals; flat fields other than the sponge have neither.
+        // Returns the names of the missed requirements (`level` 0) or goals (`level` 1). Fields whose rays march have no goals.
         let list = |level: usize| {
-            let sponge = matches!(subject.field, Field::Menger { .. });
-            let mut missed = if sponge || subject.parsed.is_round() && level == 0 {
-                missed(&accuracy, level)
-            } else {
-                vec![]
+            let mut missed = match (subject.is_drawn_by_exits(), level) {
+                (true, _) => EXITS.missed(&accuracy, level),
+                (false, 0) => MARCHING.missed(&accuracy, level),
+                (false, _) => vec![],
             };
-            if sponge && measured.cost() > cost[level] {
+            if matches!(subject.field, Field::Menger { .. }) && measured.cost() > cost[level] {
                 missed.push("evaluations");
             }
             missed.join(" ")
         };
         Self {
+            form,
             scene: subject.scene.clone(),
             view: subject.name.clone(),
             width,
@@ -101,31 +133,44 @@ impl Row {
             unstable: accuracy.unstable,
             evaluations: measured.cost(),
             evaluations_max: measured.most,
+            cycles: None,
             missed: list(0),
             not_reached: list(1),
         }
     }
 }
 
-/// Measures all pictures. `quick` skips pictures of 1280 × 720.
+/// The pictures of 320 × 180.
+pub fn small() -> Vec<Subject> {
+    let mut subjects = raymarched::sponges(SMALL);
+    subjects.extend(raymarched::others(SMALL));
+    subjects.extend(raymarched::rounds(SMALL));
+    subjects
+}
+
+/// The forms of rays in which a subject's picture is measured.
+pub fn forms(subject: &Subject) -> &'static [Form] {
+    match subject.is_drawn_by_exits() {
+        true => &[Form::Exits, Form::Marching],
+        false => &[Form::Marching],
+    }
+}
+
+/// Measures all pictures. `quick` skips pictures of 1280 × 720, and clocks.
 pub fn measure(quick: bool) -> Vec<Row> {
-    let small: Vec<Subject> = [
-        raymarched::sponges(SMALL),
-        raymarched::others(SMALL),
-        raymarched::rounds(SMALL),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    let large = if quick {
-        vec![]
-    } else {
-        raymarched::sponges(LARGE)
-    };
-    let subjects = small.iter().chain(&large);
-    let rows = subjects.map(|subject| {
-        let picture = subject.picture(&FieldOptions::of(&subject.parsed));
-        Row::new(subject, &Measured::new(&subject.expected, &picture))
-    });
-    rows.collect()
+    let mut subjects = small();
+    let mut raymarcher = None;
+    if !quick {
+        subjects.extend(raymarched::sponges(LARGE));
+        raymarcher = Some(Raymarcher::new("raymarcher", 1));
+    }
+    let mut rows = Vec::new();
+    for subject in &subjects {
+        for &form in forms(subject) {
+            let raymarcher = raymarcher.as_mut();
+            let raymarcher = raymarcher.filter(|_| subject.is_drawn_by_exits());
+            rows.push(Row::measure(subject, form, raymarcher));
+        }
+    }
+    rows
 }

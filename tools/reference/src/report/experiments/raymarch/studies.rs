@@ -1,13 +1,14 @@
-//! Experiments: each study varies one parameter of the raymarching, and measures errors, evaluations and clocks.
+//! Experiments: each study varies one parameter of marching rays, and measures errors, evaluations and clocks.
 
 use anyhow::{Result, bail};
+use glint_core::quality::{Quality, Threshold};
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, Tuning};
 
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
-use super::requirements::{LARGE, SMALL};
+use super::requirements::SMALL;
 use super::trials::{Trial, Views, pixels};
 use crate::raymarch::metrics::RayOutcome;
-use crate::raymarch::raymarched::{self, Subject};
+use crate::raymarch::raymarched::{self, marching};
 use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::{progress, soc};
 
@@ -15,7 +16,8 @@ use crate::report::{progress, soc};
 type Study = fn(&Views) -> Vec<Trial>;
 
 /// Name and function of each study, in the order on the report's page. The file of a study is `raymarch-NAME.csv`.
-const STUDIES: [(&str, Study); 6] = [
+const STUDIES: [(&str, Study); 7] = [
+    ("form", forms),
     ("fraction", fractions),
     ("cap", caps),
     ("threshold", thresholds),
@@ -47,8 +49,8 @@ pub fn measure(
         );
     }
     let bar = progress::bar(studies.len() as u64)?;
+    let subjects = raymarched::sponges(SMALL);
     soc::two_at_a_time(&studies, |(name, study)| {
-        let subjects = subjects(name);
         finished(name, &study(&Views::new(&subjects, bar.clone())))?;
         bar.inc(1);
         Ok(())
@@ -57,22 +59,10 @@ pub fn measure(
     Ok(())
 }
 
-/// The pictures of a study: the sponge in all views at 320 × 180, or in the slowest view at 1280 × 720.
-fn subjects(study: &str) -> Vec<Subject> {
-    match study {
-        "block" => {
-            let mut large = raymarched::sponges(LARGE);
-            large.retain(|subject| subject.name == "tunnel");
-            large
-        }
-        _ => raymarched::sponges(SMALL),
-    }
-}
-
 fn tuned(tuning: Tuning) -> FieldOptions {
     FieldOptions {
         tuning,
-        ..FieldOptions::default()
+        ..marching()
     }
 }
 
@@ -92,11 +82,31 @@ fn in_f64(threshold: u32) -> Method {
     }
 }
 
+/// Rays by exits, and marching rays with the thresholds of each quality.
+fn forms(views: &Views) -> Vec<Trial> {
+    let mut exits = views.model("exits", "exits".into(), &FieldOptions::default());
+    exits.shipped = true;
+    let marching = Quality::ALL.map(|quality| {
+        let Threshold { base, footprint } = quality.preset().faces;
+        let options = tuned(Tuning {
+            threshold: base,
+            footprint,
+            ..DEFAULT_TUNING
+        });
+        let mut trial = views.model("marching", quality.name().to_owned(), &options);
+        trial.shipped = false;
+        trial
+    });
+    let mut trials = vec![exits];
+    trials.extend(marching);
+    trials
+}
+
 fn fractions(views: &Views) -> Vec<Trial> {
     let trial = |family: &str, fraction, threshold| {
         let shipped = (fraction, threshold) == (MODEL_FRACTION, DEFAULT_TUNING.threshold);
         if shipped {
-            let options = FieldOptions::default();
+            let options = marching();
             return views.model(family, format!("{fraction} bits"), &options);
         }
         views.trial(family, format!("{fraction} bits"), 0, |subject| {
@@ -178,7 +188,7 @@ fn norms(views: &Views) -> Vec<Trial> {
         })
         .collect();
     let config = format!("Glint, {}", DEFAULT_TUNING.threshold);
-    trials.push(views.model("the model", config, &FieldOptions::default()));
+    trials.push(views.model("the model", config, &marching()));
     trials
 }
 
@@ -204,7 +214,7 @@ fn ends(views: &Views) -> Vec<Trial> {
 }
 
 fn normals(views: &Views) -> Vec<Trial> {
-    let options = FieldOptions::default();
+    let options = marching();
     let mut trials = vec![views.model("the nearest face's", "active term".into(), &options)];
     for (family, taps) in [
         ("forward differences", Taps::Forward),

@@ -1,5 +1,4 @@
-//! Trials of raymarching with different parameters. Each trial draws views of the sponge: all four at 320 × 180, or for the study `block`
-//! the slowest one at 1280 × 720.
+//! Trials of marching rays with different parameters. Each trial draws the four views of the sponge at 320 × 180.
 
 use std::cell::RefCell;
 
@@ -8,11 +7,11 @@ use glint_testbench::Raymarcher;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 
-use super::requirements::missed;
+use super::requirements::MARCHING;
 use crate::camera::{Ray, Size};
 use crate::raymarch::Field;
 use crate::raymarch::metrics::{Expected, RayOutcome};
-use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
+use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject, marching};
 use crate::raymarch::variant::{Method, entry};
 
 /// Errors and cost of one configuration of the parameters: a line of a study's CSV file.
@@ -22,7 +21,7 @@ pub struct Trial {
     pub family: String,
     /// Value of the varied parameter.
     pub config: String,
-    /// Whether Glint itself uses the configuration.
+    /// Whether the configuration is that of the marching rays in the comparison with exits.
     pub shipped: bool,
     /// Intersection over union of two sets: the pixels that hit in the pictures, and the pixels that hit in the reference.
     pub iou: f64,
@@ -91,14 +90,14 @@ impl<'a> Views<'a> {
             wrong_faces: accuracy.wrong_faces,
             evaluations: measured.cost() + (hits as f64 * f64::from(added)) / found.len() as f64,
             cycles: None,
-            failed: missed(&accuracy, 0).join(" "),
+            failed: MARCHING.missed(&accuracy, 0).join(" "),
         }
     }
 
     /// Draws the views with the model, which provides the errors, and with the verilated raymarcher, which provides the clocks.
     pub fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
-        trial.shipped = *options == FieldOptions::default();
+        trial.shipped = *options == marching();
         let mut raymarcher = self.raymarcher.borrow_mut();
         let palette = Palette::default();
         let pictures = self.subjects.iter();
@@ -126,14 +125,15 @@ impl<'a> Views<'a> {
             let Field::Menger { depth } = subject.field else {
                 unreachable!("trials draw the sponge");
             };
-            let setup = subject.setup(&FieldOptions::default());
+            let setup = subject.setup(&marching());
+            let marching = setup.marching().expect("marching rays");
             pixels(subject)
                 .map(|(x, y, ray)| {
                     let begin = if exact_entry {
                         entry(&ray).max(subject.camera.near)
                     } else {
-                        let ray = setup.ray(0, x, y);
-                        raymarched::depth(&setup, &ray, ray.start)
+                        let ray = marching.ray(0, x, y);
+                        raymarched::depth(&setup, marching.depth_of(&ray, ray.start))
                     };
                     method.march(depth, &ray, begin)
                 })

@@ -191,9 +191,8 @@ fn to_the_far_limit(mut subject: Subject) -> Subject {
         for (pixel, i) in subject.expected.iter_mut().zip(0..) {
             let place = [i % width, i / width].map(f64::from);
             let direction = subject.camera.ray(place, size).direction;
-            pixel.hit = pixel
-                .hit
-                .filter(|hit| !exited::is_beyond(&exits, 0, direction, hit.t));
+            let reach = exited::reach(&exits, 0, direction);
+            pixel.hit = pixel.hit.filter(|hit| hit.t <= reach);
         }
     }
     subject

@@ -1,0 +1,74 @@
+//! Codes of intervals, as the gateware and its registers have them.
+
+use super::intervals::{Rule, Solid};
+
+/// Bits of the code of an interval ([`Solid::code`]).
+pub const CODE_BITS: u32 = 13;
+
+/// Bits of a code after the first one.
+const DIGITS: u32 = CODE_BITS - 1;
+
+/// The first bit of a code, 0 below the solid.
+const NOT_BELOW: u32 = 1 << DIGITS;
+
+/// The code above a solid that is not repeated.
+const ABOVE: u32 = NOT_BELOW | 3 << (DIGITS - 2);
+
+/// Bits of a cell's number of a repeated solid, and the places of the cell and of its gap in a code.
+const CELL_BITS: u32 = 6;
+const CELL: u32 = DIGITS - CELL_BITS;
+const GAP: u32 = CELL - 2;
+
+impl Solid {
+    /// The code of an interval, a number of [`CODE_BITS`] bits. A higher interval has a higher code. The first bit is 0 below the solid. The
+    /// other bits are
+    /// - of a sponge, the ternary digits of the smallest cell in two bits each, the first digit first, and 3 in the first digit above the
+    ///   sponge,
+    /// - of a repeated solid, the number of the cell in six bits, modulo 64, and 1 in the next two bits for the gap above the cube,
+    /// - of other solids, 0 inside, and 3 in the first two bits above.
+    ///
+    /// The rest is 0. All intervals below a solid that is not repeated have the code 0, as the lowest one.
+    pub fn code(&self, interval: i32) -> u32 {
+        match self.rule {
+            _ if interval == i32::MIN => 0,
+            Rule::Repeated { .. } => {
+                let cell = (interval >> 1) as u32 & ((1 << CELL_BITS) - 1);
+                let first = if interval < 0 { 0 } else { NOT_BELOW };
+                first | cell << CELL | (interval as u32 & 1) << GAP
+            }
+            _ if interval < 0 => 0,
+            Rule::Sponge { cells, .. } if interval < cells => places(cells)
+                .fold(NOT_BELOW, |code, (shift, cell)| {
+                    code | ((interval / cell % 3) as u32) << shift
+                }),
+            Rule::Box | Rule::Planes | Rule::Octahedron if interval == 0 => NOT_BELOW,
+            _ => ABOVE,
+        }
+    }
+
+    /// The interval with a [`code`](Self::code); the lowest one for the code 0.
+    pub fn interval(&self, code: u32) -> i32 {
+        let is_below = code & NOT_BELOW == 0;
+        match self.rule {
+            _ if code == 0 => i32::MIN,
+            Rule::Repeated { .. } => {
+                let cell = (code >> CELL & ((1 << CELL_BITS) - 1)) as i32;
+                let below = if is_below { 1 << CELL_BITS } else { 0 };
+                2 * (cell - below) + (code >> GAP & 3) as i32
+            }
+            _ if is_below => i32::MIN,
+            Rule::Sponge { cells, .. } if code < ABOVE => places(cells)
+                .map(|(shift, cell)| (code >> shift & 3) as i32 * cell)
+                .sum(),
+            Rule::Sponge { cells, .. } => cells,
+            Rule::Box | Rule::Planes | Rule::Octahedron => i32::from(code != NOT_BELOW),
+        }
+    }
+}
+
+/// The place in a code of each digit of a sponge's cell, and the digit's weight; `cells` is a power of three.
+fn places(cells: i32) -> impl Iterator<Item = (u32, i32)> {
+    let weights = core::iter::successors(Some(cells / 3), |weight| Some(weight / 3));
+    let shifts = (0..DIGITS / 2).map(|digit| DIGITS - 2 - 2 * digit);
+    core::iter::zip(shifts, weights.take_while(|&weight| weight > 0))
+}

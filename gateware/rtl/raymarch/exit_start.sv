@@ -1,0 +1,146 @@
+// Makes rays that leave empty prisms, and lets them leave the prism around the eye (docs/raymarch-exits.md, "Principle").
+//
+//   D ─┬─▶ signs, magnitudes ─▶ exit_reciprocal for each axis ─▶ exit_quotient ─▶ exit_choice ─▶ largest of the exit and the near plane
+//      └─▶ sky_height
+//
+// The prism is a constant of the frame: for each eye, and for each axis as it is and mirrored, the distance of the plane that bounds it,
+// whether there is one, the interval above this plane, whether this interval is above the solid, and whether a ray along the axis leads away
+// from the solid. `choice`, for each eye,
+// is that of exit_borders. An eye that is in no such prism has no planes; its rays start at the near plane.
+//
+// Latency 22 clocks, throughput one ray per clock, no handshake: `in_valid` travels with the ray. The constants must hold.
+
+`default_nettype none
+
+module exit_start #(
+    parameter bit STEREO = 1'b1
+) (
+    input  wire                                                   clk,
+    input  wire                                                   rst,
+    input  wire  [exit_pkg::T_BITS-1:0]                           near_limit,
+    input  wire  [exit_pkg::T_BITS-1:0]                           far_limit,
+    input  wire  [1:0][1:0]                                       choice,
+    input  wire  [1:0][1:0][2:0][exit_pkg::PLANE_BITS-1:0]       distances,
+    input  wire  [1:0][1:0][2:0]                                  there,
+    input  wire  [1:0][1:0][2:0]                                  away,
+    input  wire  [1:0][1:0][2:0]                                  last,
+    input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0]     nexts,
+    // Pixels.
+    input  wire                                                   in_valid,
+    input  wire raymarch_pkg::place_t                             in_place,
+    input  wire  [2:0][24:0]                                      in_direction,
+    // Rays.
+    output logic                                                  out_valid,
+    output exit_pkg::ray_t                                        out_ray
+);
+    localparam int unsigned LAST = 22;
+
+    logic [LAST:1] valid;
+
+    always_ff @(posedge clk) begin
+        valid <= {valid[LAST-1:1], in_valid};
+        if (rst) valid <= '0;
+    end
+
+    // The suffix of a name is the signal's clock: 1 for the magnitudes of D, 13 for their reciprocals and for the distances of the planes,
+    // 18 for the exits, 20 for the exit at which the ray leaves the prism.
+    logic [2:0][23:0] magnitude_1;
+    logic             eye_1, eye_12, eye_18;
+    logic [2:0]       down_1, down_12, down_18, down_22;
+    logic [2:0][exit_pkg::INVERSE_BITS-1:0] inverse_13, inverse_22;
+    logic [2:0][exit_pkg::SPEED_BITS-1:0]   speed_1, speed_22;
+    logic [2:0][exit_pkg::PLANE_BITS-1:0]  distance_13;
+    logic [2:0][exit_pkg::EXIT_BITS-1:0]    exit_18;
+
+    always_ff @(posedge clk) begin
+        eye_1 <= STEREO && in_place.eye;
+        for (int i = 0; i < 3; i++) begin
+            down_1[i]      <= in_direction[i][24];
+            magnitude_1[i] <= in_direction[i][23:0] ^ {24{in_direction[i][24]}};
+        end
+    end
+
+    delay #(.WIDTH(4), .CLOCKS(11)) signs_wait (.clk, .enable(1'b1), .in({eye_1, down_1}), .out({eye_12, down_12}));
+    delay #(.WIDTH(4), .CLOCKS(6)) signs_go (.clk, .enable(1'b1), .in({eye_12, down_12}), .out({eye_18, down_18}));
+    delay #(.WIDTH(3), .CLOCKS(4)) down_goes (.clk, .enable(1'b1), .in(down_18), .out(down_22));
+
+    for (genvar i = 0; i < 3; i++) begin : axes
+        exit_reciprocal reciprocal (.clk, .magnitude(magnitude_1[i]), .inverse(inverse_13[i]));
+
+        assign speed_1[i] = magnitude_1[i][23:1];
+
+        always_ff @(posedge clk)
+            distance_13[i] <= eye_12 ? down_12[i] ? distances[1][1][i] : distances[1][0][i]
+                                     : down_12[i] ? distances[0][1][i] : distances[0][0][i];
+
+        exit_quotient quotient (.clk, .distance(distance_13[i]), .inverse(inverse_13[i]), .t(exit_18[i]));
+    end
+
+    wide_delay #(.WIDTH(3 * exit_pkg::INVERSE_BITS), .CLOCKS(9)) inverse_waits (.clk, .in(inverse_13), .out(inverse_22));
+    wide_delay #(.WIDTH(3 * exit_pkg::SPEED_BITS), .CLOCKS(21)) speed_waits (.clk, .in(speed_1), .out(speed_22));
+
+    logic [2:0] there_18, away_18, away_19, away_20, away_21, last_18, last_19, last_20, crossed_20, above_21;
+    logic       some_19, some_20;
+    logic [1:0] axis_20;
+    logic [exit_pkg::EXIT_BITS-1:0] exit_20;
+    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] next_18, next_19, next_20;
+
+    always_comb
+        for (int i = 0; i < 3; i++) begin
+            there_18[i] = eye_18 ? down_18[i] ? there[1][1][i] : there[1][0][i] : down_18[i] ? there[0][1][i] : there[0][0][i];
+            away_18[i]  = eye_18 ? down_18[i] ? away[1][1][i] : away[1][0][i] : down_18[i] ? away[0][1][i] : away[0][0][i];
+            last_18[i]  = eye_18 ? down_18[i] ? last[1][1][i] : last[1][0][i] : down_18[i] ? last[0][1][i] : last[0][0][i];
+            next_18[i]  = eye_18 ? down_18[i] ? nexts[1][1][i] : nexts[1][0][i] : down_18[i] ? nexts[0][1][i] : nexts[0][0][i];
+        end
+
+    exit_choice leaving (
+        .clk, .exits(exit_18), .there(there_18), .choice(eye_18 ? choice[1] : choice[0]), .t(exit_20), .axis(axis_20), .crossed(crossed_20)
+    );
+
+    // A ray that leads away, has left the solid, or leaves the prism beyond the far limit misses without an evaluation.
+    logic [exit_pkg::T_BITS-1:0] exit_21, start_22;
+    logic [1:0] axis_21, axis_22;
+    logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_21, reached_22;
+    logic       later_21, beyond_21, over_22;
+
+    always_ff @(posedge clk) begin
+        next_19 <= next_18;
+        next_20 <= next_19;
+        some_19 <= there_18 != '0;
+        some_20 <= some_19;
+        away_19 <= away_18;
+        away_20 <= away_19;
+        last_19 <= last_18;
+        last_20 <= last_19;
+
+        exit_21   <= exit_20[exit_pkg::T_BITS-1:0];
+        later_21  <= some_20 && exit_20 > {1'b0, near_limit};
+        beyond_21 <= some_20 && exit_20 > {1'b0, far_limit};
+        axis_21   <= some_20 ? axis_20 : 2'd2;
+        away_21   <= away_20;
+        above_21  <= last_20 & crossed_20;
+        for (int i = 0; i < 3; i++) reached_21[i] <= crossed_20[i] ? next_20[i] : '0;
+
+        start_22   <= later_21 ? exit_21 : near_limit;
+        axis_22    <= axis_21;
+        reached_22 <= reached_21;
+        over_22    <= away_21 != '0 || beyond_21 || above_21 != '0;
+    end
+
+    logic [2:0][9:0] part_1;
+    logic [7:0]      height_10, height_22;
+
+    always_comb for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][23:14];
+
+    sky_height sky (.clk, .magnitude(part_1), .down(down_1[2]), .height(height_10));
+    delay #(.WIDTH(8), .CLOCKS(12)) height_waits (.clk, .enable(1'b1), .in(height_10), .out(height_22));
+
+    raymarch_pkg::place_t place_22;
+
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(22)) place_waits (.clk, .enable(1'b1), .in(in_place), .out(place_22));
+
+    assign out_valid = valid[LAST];
+    assign out_ray   = {exit_pkg::T_BITS'(0), over_22, place_22, start_22, axis_22, reached_22, down_22, height_22, speed_22, inverse_22};
+endmodule
+
+`default_nettype wire
