@@ -137,7 +137,7 @@ impl Exits {
         let rays = Directions::new(&views, width, height, false);
         let narrow = |direction: [i64; 3]| along(&solid, direction).map(|x| rays.narrow(x));
         let steps = [narrow(rays.across), narrow(rays.down)];
-        let eyes = [0, 1].map(|i: usize| {
+        let eye = |i: usize| {
             let origin = views[i].eye().map(|x| units(x, scale) as i32);
             let origin = match solid.map(|solid| solid.rule) {
                 Some(Rule::Repeated { .. }) => origin.map(|x| cropped(x, PERIOD)),
@@ -149,7 +149,9 @@ impl Exits {
                 start: solid.map_or_else(Start::default, |solid| Start::new(&solid, &eye.corners)),
                 ..eye
             }
-        });
+        };
+        let left = eye(0);
+        let eyes = [left, if stereo.is_some() { eye(1) } else { left }];
         let near = units(
             Q32_32::from_bits(i64::from(view.near().to_bits()) << 4),
             scale,
@@ -265,11 +267,16 @@ impl Start {
         let intervals = corners.map(|corner| solid.intervals(&corner, &[i32::MIN; AXES]));
         let is_away = intervals
             .map(|sides| [0, 1, 2, 3].map(|axis: usize| solid.is_above(axis, sides[axis])));
+        // Only an octahedron has a fourth axis.
+        let axes = match solid.rule {
+            Rule::Octahedron => AXES,
+            _ => AXES - 1,
+        };
         let mut exit = None;
         let mut borders = [[None; AXES]; 2];
-        for down in 0..1_usize << AXES {
+        for down in 0..1_usize << axes {
             let side = |axis: usize| down >> axis & 1;
-            if (0..AXES).any(|axis| is_away[side(axis)][axis]) {
+            if (0..axes).any(|axis| is_away[side(axis)][axis]) {
                 continue;
             }
             let place = solid.place(&[0, 1, 2, 3].map(|axis: usize| intervals[side(axis)][axis]));
@@ -277,7 +284,7 @@ impl Start {
                 return Self::default();
             };
             let mut is_same = *exit.get_or_insert(prism.exit) == prism.exit;
-            for axis in 0..AXES {
+            for axis in 0..axes {
                 let border = prism.borders[axis];
                 is_same &= *borders[side(axis)][axis].get_or_insert(border) == border;
             }
