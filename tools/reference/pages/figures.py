@@ -149,14 +149,14 @@ def cases(rates):
     return found
 
 
-# Scenes of fields that are drawn by exits: size, quality, required frames a second, and goal.
-SCENES = [("cubes", 640, "balanced", 150, 190), ("cubes", 1280, "exact", 30, 60), ("menger", 1280, "exact", 30, 60),
-          ("mesh-in-field", 1280, "exact", 30, 60)]
+# Scenes of fields that are drawn by exits: eyes, width and quality, required frames a second, and goal.
+SCENES = [("cubes", 1, 640, "balanced", 150, 190), ("poor-mans-vr", 2, 640, "balanced", 180, 250), ("cubes", 1, 1280, "exact", 30, 60),
+          ("menger", 1, 1280, "exact", 30, 60), ("mesh-in-field", 1, 1280, "exact", 30, 60), ("poor-mans-vr", 2, 1280, "exact", 30, 60)]
 
 
 def targets(rates, cycles, marching):
-    """Frames a second of fields that are drawn by exits: of the slowest view with marching rays, with marching rays that start at cones, and
-    with exits; None is not measured."""
+    """Frames a second of fields that are drawn by exits, of the slowest view: with marching rays, with marching rays that start at
+    cones, and with exits; None is not measured."""
 
     def slowest(frames):
         return CLOCK / frames.max() if len(frames) else None
@@ -172,9 +172,9 @@ def targets(rates, cycles, marching):
         if same.any():
             spent = max(view["cycles_frame"] for view in case["views"])
             yield row(case["name"], same, spent, case["at_least"], case["aim"])
-    for scene, width, quality, at_least, aim in SCENES:
+    for scene, eyes, width, quality, at_least, aim in SCENES:
         measured = cycles[(cycles.scene == scene) & (cycles.width == width) & (cycles.rays == quality)]
-        name = f"scene `{scene}` | 1 | {width}×{width * 9 // 16} | 2"
+        name = f"scene `{scene}` | {eyes} | {width}×{width * 9 // 16} | 2"
         yield row(name, (marching.scene == scene) & (marching.width == width), measured.cycles.iloc[0], at_least, aim)
 
 
@@ -185,10 +185,11 @@ def beside(pictures):
                                   left_on=["scene", "view", "width"], right_on=["marching_scene", "marching_view", "marching_width"])
 
 
-def worst(pictures):
-    """The largest errors of pictures."""
-    return {"undecided": pictures.undecided.sum(), "iou": pictures.iou.min(), "wrong_faces": pictures.wrong_faces.max(),
-            "depth_p99": pictures.depth_p99.max()}
+def worst(beside, prefix=""):
+    """The largest errors of pictures in the columns with a prefix."""
+    column = beside.filter(regex=f"^{prefix}").rename(columns=lambda name: name.removeprefix(prefix))
+    return {"undecided": int(column.undecided.sum()), "iou": column.iou.min(), "wrong_faces": column.wrong_faces.max(),
+            "depth_p99": column.depth_p99.max()}
 
 
 def best_clocks(clocks):

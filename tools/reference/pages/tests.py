@@ -58,7 +58,8 @@ class Raymarcher(unittest.TestCase):
     def test_targets_are_of_the_slowest_view(self):
         rates = tables.read(tables.COMMITTED, "raymarch-rates").iloc[:2].assign(view=["aside", "amid"], cycles_frame=[1e6, 2e6])
         marching = rates.drop(columns="commit").rename(columns={"field": "scene"}).assign(cones=False, cycles=[4e6, 3e6])
-        scenes = pd.DataFrame([(*scene[:3], 1e6) for scene in figures.SCENES], columns=["scene", "width", "rays", "cycles"])
+        scenes = pd.DataFrame([(name, width, rays, 1e6) for name, _, width, rays, *_ in figures.SCENES],
+                              columns=["scene", "width", "rays", "cycles"])
         found = list(figures.targets(rates, scenes, marching))
         self.assertEqual(len(found), 1 + len(figures.SCENES))
         of_rates = [figures.CLOCK / found[0][name] if found[0][name] else None for name in ("marching", "cones", "exits")]
