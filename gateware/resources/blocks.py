@@ -25,7 +25,8 @@ FLAT = "flat_build"
 
 ROWS = ("scanout", "i2c_engine", "flash_reader", *FLAT_PARTS, FLAT, "line_setup", "line_raster", "gesture_engine", "band_buffer",
         "triangle_engine", "triangle_engine_smooth", "field_menger", "field_box", "field_sphere", "exit_lane", "exit_lane_all",
-        "ring_lane", "ring_lane_all", "ray_generator", "round_light", "ray_paint", "raymarcher", "raymarcher_round", "raymarcher_faces", "raymarcher_sponge", SOC)
+        "ring_lane", "ring_lane_all", "ray_generator", "round_light", "ray_paint", "raymarcher", "raymarcher_round", "raymarcher_faces",
+        "raymarcher_sponge", SOC)
 """The blocks in the order of their rows in the tables. Other measured modules come after them."""
 
 FIELDS = tuple(sorted(path.stem for path in RTL.glob("raymarch/field_*.sv") if path.stem != "field_unit"))
