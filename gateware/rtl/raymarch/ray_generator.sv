@@ -11,9 +11,9 @@
 // a credit, only D and the position counters stop.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 26
-// clocks, 30 with ROUND; throughput one ray per clock. `busy` falls two clocks after the last ray has left. The output is a
-// valid/ready stream; a ray stays until its transfer. `out_ray` is valid for a frame of marching rays, `out_exit` for one of exits. `rst`
-// ends the frame.
+// clocks by exits, 27 of marching rays, 30 with ROUND; throughput one ray per clock. `busy` falls two clocks after the last ray has left.
+// The output is a valid/ready stream; a ray stays until its transfer. `out_ray` is valid for a frame of marching rays, `out_exit` for one
+// of exits. `rst` ends the frame.
 
 `default_nettype none
 
