@@ -75,7 +75,7 @@ MODULES = [
     Module(top="line_raster"),
     *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),
     Module(top="field_sphere", measured=("field_sphere",)),
-    Module(top="ray_generator", variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1}}, measured=("ray_generator",)),
+    Module(top="ray_generator", variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1}}),
     Module(top="ray_paint", variants={"ray_paint_march": {"MARCH": 1}, "ray_paint_all": _ALL_PAINT}),
     Module(top="round_light", measured=("round_light",)),
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
