@@ -86,6 +86,14 @@ impl Frequency {
         cycles / (self.hertz / 1000) as u64
     }
 
+    /// Converts clock cycles to seconds with 32 fraction bits, rounded down, modulo 2^32 seconds.
+    #[must_use]
+    pub const fn seconds(self, cycles: u64) -> u64 {
+        let hertz = self.hertz as u64;
+        // The remainder is below 2^28.
+        ((cycles / hertz) << 32) + ((cycles % hertz) << 32) / hertz
+    }
+
     /// Converts a duration to clock cycles, rounded up; saturates.
     #[must_use]
     pub const fn cycles(self, span: Duration) -> u64 {
@@ -141,6 +149,18 @@ mod tests {
                 let cycles = ((turn << 43) + 4) * u64::from(hertz / UNIT) / 4 - 1;
                 let cycles = cycles & ((1 << 54) - 1);
                 assert_eq!(frequency.microseconds(cycles), exact(cycles), "{hertz}");
+            }
+        }
+    }
+
+    #[test]
+    fn cycles_become_seconds() {
+        for hertz in FREQUENCIES {
+            let frequency = Frequency::new(hertz).unwrap();
+            let day = u64::from(hertz) * 86_400;
+            for cycles in [0, 1, day - 1, day, u64::from(u32::MAX) + 7, u64::MAX] {
+                let exact = (u128::from(cycles) << 32) / u128::from(hertz);
+                assert_eq!(frequency.seconds(cycles), exact as u64, "{hertz} {cycles}");
             }
         }
     }
