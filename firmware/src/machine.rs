@@ -5,7 +5,7 @@ use glint_hal::digits::Digits;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
 use glint_hal::timer::{Clock, Deadline};
-use glint_scene::Scene;
+use glint_scene::{Animator, Scene};
 use litex_pac::ctrl::Ctrl;
 
 use crate::arena::Loan;
@@ -74,6 +74,8 @@ pub struct Machine {
     pub terminal: Terminal,
     /// The scene: all state that determines the next picture.
     pub scene: Scene,
+    /// The time of the scene's animation.
+    pub animator: Animator,
     /// The last picture.
     pub picture: Picture,
     /// The meshes and wireframe program, built-in and uploaded, and the staging memory.
@@ -123,6 +125,7 @@ impl Machine {
             uart: &UART,
             terminal: Terminal::new(&UART, clock),
             scene,
+            animator: Animator::default(),
             picture: Picture::default(),
             models,
             flash: None,

@@ -9,7 +9,8 @@ use core::task::Poll;
 use core::time::Duration;
 
 use glint_core::calibration::SAMPLES;
-use glint_core::feature::{DEMO, GESTURE, IMU, WIREFRAME};
+use glint_core::feature::{ANIMATE, DEMO, GESTURE, IMU, WIREFRAME};
+use glint_core::fixed::U32_32;
 use glint_core::gesture::Pose;
 use glint_core::mpu6050::Stream;
 use glint_core::tasks::{self, Turn};
@@ -245,8 +246,30 @@ impl MainLoop {
         Turn::Again
     }
 
+    /// Moves the scene by its animation to the time of the frame that begins now. A command that waits for a picture gets the scene as it
+    /// was. The azimuth rests while sensor, hand or `orbit` move the camera.
+    fn animate(&mut self) {
+        let machine = &mut self.machine;
+        let is_awaited = self.job.as_ref().is_some_and(Job::awaits_picture);
+        if !ANIMATE.is_built || is_awaited || machine.renderer.display.back().is_none() {
+            return;
+        }
+        let is_steered = machine.imu.follow().is_some()
+            || (machine.gesture.as_ref()).is_some_and(|gesture| gesture.sensor().is_some())
+            || matches!(self.job, Some(Job::Orbit(_)))
+            || machine.demo.orbit.is_some();
+        let clock = machine.clock;
+        let now = || U32_32::from_bits(clock.frequency().seconds(clock.cycles()));
+        (machine.animator).advance(&mut machine.scene, now, !is_steered);
+    }
+
     /// Draws the scene if it has changed and a frame buffer is free.
     fn draw(&mut self) -> Turn {
+        // The scene must not change while the gateware draws.
+        let begins = !self.machine.renderer.is_busy();
+        if begins {
+            self.animate();
+        }
         let Machine {
             terminal,
             scene,
@@ -263,7 +286,6 @@ impl MainLoop {
             ..
         } = &mut self.machine;
         let job = &mut self.job;
-        let begins = !renderer.is_busy();
         if begins {
             if !picture.is_outdated(scene, models) {
                 return Turn::Wait;

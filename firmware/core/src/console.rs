@@ -5,6 +5,7 @@
 //! completion and the traits that the machine implements are generated from this table. For each setting of a scene, the table also states
 //! its key in scene files and its option on the command line of `glint`.
 
+mod animate;
 mod argument;
 mod command;
 mod completion;

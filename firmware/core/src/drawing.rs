@@ -1,5 +1,6 @@
-//! What a picture depends on besides meshes and fields: size, camera, colours, lights and objects.
+//! What a picture depends on besides meshes and fields: size, camera, colours, lights, objects and their motion.
 
+pub mod animation;
 pub mod appearance;
 pub mod camera;
 pub mod colour;

@@ -73,6 +73,8 @@ features! {
     STEREO = "stereo";
     /// Lights other than the default lights.
     LIGHT = "light";
+    /// Motion of the picture by the time: `animate`.
+    ANIMATE = "animate";
     /// The motion sensor.
     IMU = "imu";
     /// Replay of a log of the motion sensor.

@@ -64,6 +64,18 @@ impl Field {
         }
     }
 
+    /// The sphere on an orbit, alone or in a union; `None` for other fields.
+    pub const fn moving(&mut self) -> Option<&mut MovingSphere> {
+        let primitive = match self {
+            Self::Primitive(primitive) => primitive,
+            Self::Union(union) => union.round_mut(),
+        };
+        match primitive {
+            Primitive::Moving(sphere) if SPHERES.is_built => Some(sphere),
+            _ => None,
+        }
+    }
+
     /// Reads the text form of a field, such as `menger:4`.
     ///
     /// # Errors

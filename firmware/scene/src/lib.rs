@@ -9,11 +9,13 @@
 #[cfg(test)]
 extern crate std;
 
+mod animator;
 mod error;
 mod lines;
 mod scene;
 mod text;
 
+pub use animator::Animator;
 pub use error::{ObjectError, SettingError};
 pub use lines::{Line, LineError, Reason, lines};
 pub use scene::{

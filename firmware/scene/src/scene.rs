@@ -2,13 +2,14 @@
 
 use core::fmt;
 
+use glint_core::animation::{Animation, ObjectTurn, Rate};
 use glint_core::appearance::Appearance;
 use glint_core::block::Block;
 use glint_core::camera::{View, ViewError};
 use glint_core::console::{ObjectAction, Setting};
-use glint_core::feature::{FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, STEREO, WIREFRAME};
+use glint_core::feature::{ANIMATE, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, STEREO, WIREFRAME};
 use glint_core::field::Field;
-use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_core::fixed::{Q32_32, Turns, U8_28, U32_32};
 use glint_core::framing;
 use glint_core::matrix::{Axis, Matrix, MatrixError};
 use glint_core::mesh::{MAX_NAME, Mesh};
@@ -101,13 +102,38 @@ pub struct PlacedMesh {
     pub place: Place,
     /// The model matrix before the latest rotations, whose shape rotations keep.
     shape: Matrix,
+    /// The model matrix before the turn of an animation.
+    start: Matrix,
+    /// The angle by which the animation has turned the object since then.
+    turned: Turns,
 }
 
 impl PlacedMesh {
     /// Places a mesh.
     pub const fn new(mesh: Name, place: Place) -> Self {
-        let shape = place.matrix;
-        Self { mesh, place, shape }
+        let start = place.matrix;
+        Self {
+            mesh,
+            place,
+            shape: start,
+            start,
+            turned: Turns(0),
+        }
+    }
+
+    /// Turns the object about its own origin, as an animation does: many small turns about one axis give the matrix of a single
+    /// one. Another axis requires [`settle`](Self::settle) first.
+    fn turn(&mut self, axis: Axis, by: Turns) {
+        self.turned = self.turned.wrapping_add(by);
+        // An object whose matrix would be out of range at this angle keeps its last one.
+        let turned = self.start.turned(axis, self.turned);
+        self.place.matrix = turned.unwrap_or(self.place.matrix);
+    }
+
+    /// Makes the present placement the start of the next turn of an animation.
+    const fn settle(&mut self) {
+        self.start = self.place.matrix;
+        self.turned = Turns(0);
     }
 
     /// Applies `next` to the placement. Rotations keep the shape of the object, even many small ones.
@@ -121,6 +147,7 @@ impl PlacedMesh {
         } else {
             self.shape = self.place.matrix;
         }
+        self.settle();
         Ok(())
     }
 }
@@ -218,6 +245,8 @@ pub struct Scene {
     pub backend: Backend,
     /// Whether text is written over the picture.
     pub overlay: bool,
+    /// What moves by the time.
+    pub animation: Animation,
 }
 
 impl Scene {
@@ -243,6 +272,7 @@ impl Scene {
             options: MeshOptions::default(),
             backend,
             overlay: false,
+            animation: Animation::default(),
         })
     }
 
@@ -349,6 +379,12 @@ impl Scene {
                 self.edges = edges;
             }
             Setting::Overlay { on } => self.overlay = on,
+            Setting::Animate { animation } => {
+                if ANIMATE.is_built {
+                    self.objects.iter_mut().for_each(PlacedMesh::settle);
+                    self.animation = animation;
+                }
+            }
             // [`Setting::note`] states that it has no effect.
             Setting::Prepass { .. } => {}
         }
@@ -470,6 +506,43 @@ impl Scene {
         self.move_view(sphere.view()?);
         self.sphere = sphere;
         Ok(())
+    }
+
+    /// Moves what the picture shows by its [animation](Self::animation), from one point in time to another, in seconds since its start.
+    /// Steps from the start to a time give the same scene as a single one: no errors add up. The camera moves only with `moves_camera`.
+    // Not inlined, so that the firmware's main loop takes few lines of the instruction cache.
+    #[inline(never)]
+    pub fn animate(&mut self, from: U32_32, to: U32_32, moves_camera: bool) {
+        let Animation {
+            azimuth,
+            orbit,
+            turn,
+        } = self.animation;
+        let between = |rate: Rate| rate.angle(to).wrapping_add(-rate.angle(from));
+        let by = between(azimuth);
+        if moves_camera && by != Turns(0) && self.wireframe().is_none() {
+            let sphere = Sphere {
+                theta: self.sphere.theta.wrapping_add(by),
+                ..self.sphere
+            };
+            // Every azimuth is in range.
+            let _ = self.set_sphere(sphere);
+        }
+        if self.shows_field()
+            && let Some(moving) = self.field.as_mut().and_then(Field::moving)
+        {
+            moving.angle = moving.angle.wrapping_add(between(orbit));
+        }
+        if let Some(ObjectTurn { object, axis, rate }) = turn
+            && self.shows_objects()
+        {
+            let by = between(rate);
+            for (number, placed) in (1..).zip(&mut self.objects) {
+                if object.is_none_or(|object| object == number) {
+                    placed.turn(axis, by);
+                }
+            }
+        }
     }
 
     /// Whether text is written over the picture.

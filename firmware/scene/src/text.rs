@@ -4,6 +4,7 @@ use core::fmt::{self, Display, Write};
 
 use glint_core::choice::switch_name;
 use glint_core::console::OptionName;
+use glint_core::feature::ANIMATE;
 use glint_core::fixed::{Turns, U4_28};
 use glint_core::light::{HexColour, Rgb};
 use glint_core::picture::Size;
@@ -194,6 +195,9 @@ impl Scene {
             OptionName::Winding => self.put(name, from, out, |scene| scene.options.winding),
             OptionName::Edges => self.put(name, from, out, |scene| OrOff(scene.edges)),
             OptionName::Overlay => self.put(name, from, out, |scene| switch_name(scene.overlay)),
+            OptionName::Animate => {
+                ANIMATE.when_built(|| self.put(name, from, out, |scene| scene.animation))
+            }
             // The option has no effect, and the scene does not hold it.
             OptionName::Prepass => Ok(()),
         }

@@ -69,6 +69,7 @@ fn line() -> impl Strategy<Value = String> {
             "menger:3",
             "box:1,1,0.5",
             "union:menger:2+sphere:1",
+            "moving:0.3,1,30",
             "cubes:2,0.4"
         ])
         .prop_map(|field| format!("field {field}")),
@@ -129,6 +130,11 @@ fn line() -> impl Strategy<Value = String> {
         number(64, 11000).prop_map(|angle| format!("fov {angle}")),
         number(64, 6400).prop_map(|width| format!("orthographic {width}")),
         number(32, 128).prop_map(|factor| format!("zoom {factor}")),
+        (number(-640, 640), number(-640, 640))
+            .prop_map(|(x, y)| format!("animate azimuth {x} orbit {y}")),
+        (1..4, number(-640, 640))
+            .prop_map(|(object, y)| format!("animate orbit 1 turn {object} x {y}")),
+        word(&["animate off", "animate turn z 30"]).prop_map(str::to_owned),
     ]
 }
 

@@ -14,7 +14,7 @@ use crate::keys::names;
 const MOST_VIOLATIONS: usize = 20;
 
 /// A value of the file, and its location.
-type Value<'a> = Spanned<DeValue<'a>>;
+pub type Value<'a> = Spanned<DeValue<'a>>;
 
 /// The keys and values of a file, with the violations found so far. A value that violates the format counts as missing.
 pub struct File<'a> {

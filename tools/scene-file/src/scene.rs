@@ -4,12 +4,14 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use glint_core::animation::Animation;
 use glint_core::camera::ViewError;
 use glint_core::choice::Choice;
 use glint_core::console::{
     Command, GestureAction, ImuAction, LINE_MAX, MESHES, ObjectAction, Order, Row, Setting,
 };
 use glint_core::feature::{BASE, Feature};
+use glint_core::field::Field;
 use glint_core::fixed::Turns;
 use glint_core::framing;
 use glint_core::imu::Follow;
@@ -21,7 +23,7 @@ use glint_scene::{AnyBoard, Board, Line, Scene};
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source, quote, unknown};
-use crate::file::{File, such_as};
+use crate::file::{File, Value, such_as};
 use crate::keys::{BUDGET, commands};
 
 /// The camera of fields without one.
@@ -163,6 +165,9 @@ impl SceneFile {
         let lights = self.scene.appearance.lights.len();
         if let (Some(value), true, false) = (file.get("light"), lights > 1, file.has("field")) {
             file.refuse("light", value, "one light on meshes");
+        }
+        if let Some(value) = file.get("animate") {
+            check_animation(file, value, &self.scene);
         }
         let (steer, feature) = steer(file);
         self.steer = steer;
@@ -466,6 +471,27 @@ fn lanes(file: &File) -> Option<u8> {
         file.refuse("lanes", value, "the key only beside field or scenes");
     }
     lanes
+}
+
+/// Checks that the scene shows what its animation moves.
+fn check_animation(file: &File, value: &Value, scene: &Scene) {
+    let Animation {
+        azimuth,
+        orbit,
+        turn,
+    } = scene.animation;
+    let refuse = |expected| file.refuse("animate", value, expected);
+    if !azimuth.is_zero() && !file.has("camera") {
+        refuse("the key camera beside azimuth, whose distance it keeps");
+    }
+    let mut field = scene.field;
+    if !orbit.is_zero() && field.as_mut().and_then(Field::moving).is_none() {
+        refuse("a field moving:R,ORBIT,ANGLE beside orbit");
+    }
+    let least = turn.map_or(0, |turn| turn.object.unwrap_or(1));
+    if (scene.objects.len() as u32) < least {
+        refuse("as many objects as the number after turn, and at least one");
+    }
 }
 
 /// The control of the camera, and the part of the firmware that implements its command.

@@ -199,6 +199,8 @@ fn refused_files() {
             steer = "orbt 60" → line 4: steer: `"orbt 60"`: expected fixed, buttons, orbit FRAMES
             [budget]; lut = "3" → budget.lut: `"3"`: expected a number above 0
             orthographic = 2; stereo = "0.1,4" → stereo: expected only without orthographic, found it in line 4
+            animate = "turn z 30" → line 4: animate: `"turn z 30"`: expected as many objects as the number after turn
+            animate = "azimuth" → animate = `azimuth`: animate: RATE is missing: expected degrees a second, from -360 to 360
         "#,
         ),
         (
@@ -209,12 +211,14 @@ fn refused_files() {
             orthographic = 2 → orthographic: expected only beside model or object
             edges = "over" → edges: expected only beside model
             depth = "on" → depth: `"on"`: expected true or false
+            animate = "orbit 30" → line 4: animate: `"orbit 30"`: expected a field moving:R,ORBIT,ANGLE beside orbit
         "#,
         ),
         (
             PROGRAM,
             r#"
             stereo = "0.1,4" → stereo: expected only beside model or object or field
+            animate = "azimuth 3" → animate: expected only beside model or object or field
             camera = "3 30 60" → camera: expected only beside model or object or field
             steer = "gesture on" → expected fixed or buttons beside program
         "#,
@@ -387,6 +391,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         object = "torus"; light = "1,1,1" → light mesh object view
         model = "torus"; steer = "gesture on" → gesture mesh view
         field = "menger:3"; steer = "imu orbit" → field imu view
+        field = "menger:3"; animate = "azimuth 30" → animate field view
         field = "menger:2"; model = "torus" → field mesh mesh-in-field view
         field = "menger:2"; stereo = "0.1,4" → field stereo view
         field = "union:box:1,1,1+sphere:1"; fog = 0.1; prepass = true → field fog spheres view

@@ -38,7 +38,7 @@ const ONLY: &str = "only-";
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
 /// A command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
-const COMMANDS: [(Feature, &str); 19] = [
+const COMMANDS: [(Feature, &str); 20] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),
@@ -51,6 +51,7 @@ const COMMANDS: [(Feature, &str); 19] = [
     (feature::FOG, "fog"),
     (feature::MESH_IN_FIELD, "mesh"),
     (feature::LIGHT, "light"),
+    (feature::ANIMATE, "animate"),
     (feature::IMU, "imu"),
     (feature::REPLAY, "replay"),
     (feature::GESTURE, "gesture"),

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::animate::Animate;
 use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
 use super::forms::{FIELD, LIT, MESHES, Order, Row, key, option, switch};
@@ -131,11 +132,14 @@ commands! {
             => key(Order::Fit, "y").named("up").with(MESHES).without(&["field", "camera", "lookat", "view"]);
     }
 
-    /// Commands for camera motion.
+    /// Commands for motion.
     OrbitCommands {
         orbit Orbit(frames: Option<Whole<3_600>>) in VIEW: "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
-    options {}
+    options {
+        animate Animate(animation: Animate) or show in ANIMATE: "show or set what moves by the time: azimuth of the camera, orbit of a sphere, turn of objects"
+            => key(Order::Option, "azimuth 30").with(LIT);
+    }
 
     /// Commands of the motion sensor (IMU).
     ImuCommands {

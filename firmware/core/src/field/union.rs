@@ -68,6 +68,11 @@ impl Union {
         &self.round
     }
 
+    /// The round member of the union, for motion: a change must keep its kind and its extent.
+    pub(super) const fn round_mut(&mut self) -> &mut Primitive {
+        &mut self.round
+    }
+
     /// Width of the fillet in world units: the fillet covers points whose distances to the two members differ by at most this
     /// width. 0 means no fillet.
     pub const fn blend(&self) -> Q32_32 {

@@ -24,6 +24,8 @@ pub type Q8_24 = FixedI32<U24>;
 pub type Q2_30 = FixedI32<U30>;
 /// Format of positions in the world, such as an eye: units of 2^−32.
 pub type Q32_32 = FixedI64<U32>;
+/// Format of times in seconds: units of 2^−32, in [0, 2^32), which is 136 years.
+pub type U32_32 = FixedU64<U32>;
 /// Format of the near plane of a camera: units of 2^−28, in [0, 16).
 pub type U4_28 = FixedU32<U28>;
 /// Format of the half width of a camera: units of 2^−28, in [0, 256).

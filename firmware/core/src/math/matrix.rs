@@ -172,6 +172,23 @@ impl Matrix {
         )
     }
 
+    /// Returns this matrix turned by `angle` about the mesh's origin, which stays in its place, and about an axis of the world's
+    /// direction. The error of each entry is that of [`then`](Self::then) and [`rotation`](Self::rotation).
+    ///
+    /// # Errors
+    /// The result is out of range or singular.
+    pub fn turned(&self, axis: Axis, angle: Turns) -> Result<Self, MatrixError> {
+        let at_origin = Self {
+            translation: [Q8_24::ZERO; 3],
+            ..*self
+        };
+        let turned = at_origin.then(&Self::rotation(axis, angle))?;
+        Ok(Self {
+            translation: self.translation,
+            ..turned
+        })
+    }
+
     /// Whether the 3×3 matrix is a rotation, apart from the rounding of its entries.
     pub fn is_rotation(&self) -> bool {
         let [a, b, c] = self.linear.map(|row| row.map(Q8_24::to_bits));

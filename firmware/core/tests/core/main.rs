@@ -3,6 +3,7 @@
 //! All tests are in one program, because linking further programs takes time.
 
 mod allocator;
+mod animation;
 mod calibration;
 mod camera;
 mod console;

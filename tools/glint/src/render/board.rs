@@ -133,7 +133,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     }
 
     /// Uploads the meshes of a scene that are not built into the firmware, and returns the commands that show the scene with camera,
-    /// quality and size of `frame`, without the motion of the camera.
+    /// quality and size of `frame`, without motion.
     fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
             if !scene::is_shape(name) {
@@ -141,9 +141,14 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         let mut lines = vec!["scene default".to_owned()];
-        // The frame has the camera that shows all meshes.
+        // The frame has the camera that shows all meshes, and the start of an animation.
+        let is_left_out = |line: &String| {
+            ["fit ", "animate "]
+                .iter()
+                .any(|name| line.starts_with(name))
+        };
         let settings = scene.settings().iter();
-        lines.extend(settings.filter(|line| !line.starts_with("fit ")).cloned());
+        lines.extend(settings.filter(|line| !is_left_out(line)).cloned());
         let field = frame.subject.field_part();
         lines.extend(field.map(|field| format!("quality {}", field.quality)));
         lines.push(size_command(frame.size));

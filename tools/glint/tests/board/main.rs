@@ -4,6 +4,7 @@
 
 mod alone;
 mod alone_verilated;
+mod animation;
 mod attitudes;
 mod both;
 mod common;

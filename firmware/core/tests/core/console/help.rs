@@ -37,9 +37,10 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 54);
+    assert_eq!(list.lines().count(), 55);
     for (command, usage) in [
         ("object", "object [ACTION [OBJECT [PLACE]]]\n"),
+        ("animate", "animate [off|PART [RATE]]\n"),
         ("imu", "imu [ACTION [SAMPLES]]\n"),
         ("replay", "replay [BYTES CRC32]\n"),
         ("gesture", "gesture [ACTION]\n"),
