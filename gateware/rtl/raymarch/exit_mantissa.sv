@@ -1,0 +1,106 @@
+// Computes the reciprocal of a number, as a mantissa and an exponent of 2 (docs/raymarch-exits.md, "Formats").
+//
+//   magnitude ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to below 3/2, exponent
+//
+// `magnitude` is u0.24 and stands for the middle of its interval, so it is never 0. The mantissa has 22 fraction bits, rounded to nearest.
+// An entry of the table has the value at the end of its interval and the decrease over the interval. Latency 10 clocks, throughput one per
+// clock, no handshake.
+
+`default_nettype none
+
+module exit_mantissa (
+    input  wire         clk,
+    input  wire  [23:0] magnitude,
+    output logic [22:0] mantissa,
+    output logic [4:0]  exponent
+);
+    // The suffix of a name is the number of clocks after the magnitude. The shift is 8 times a number, plus twice a number, plus a bit, so
+    // that these are the bits of its sum.
+    logic [24:0] whole_0, whole_1, whole_2, whole_3;
+    logic [1:0]  eights_0, twos_1;
+    logic [4:0]  lead_3, lead_9;
+    logic [1:0]  eights_1;
+    logic [3:0]  lead_2;
+
+    assign whole_0 = {magnitude, 1'b1};
+
+    always_comb begin
+        if (whole_0[24:17] != '0)     eights_0 = 2'd0;
+        else if (whole_0[16:9] != '0) eights_0 = 2'd1;
+        else                          eights_0 = {1'b1, whole_0[8:1] == '0};
+        if (whole_1[24:23] != '0)      twos_1 = 2'd0;
+        else if (whole_1[22:21] != '0) twos_1 = 2'd1;
+        else                           twos_1 = {1'b1, whole_1[20:19] == '0};
+    end
+
+    always_ff @(posedge clk) begin
+        whole_1  <= whole_0 << {eights_0, 3'd0};
+        eights_1 <= eights_0;
+        whole_2  <= whole_1 << {twos_1, 1'b0};
+        lead_2   <= {eights_1, twos_1};
+        whole_3  <= whole_2[24] ? whole_2 : whole_2 << 1;
+        lead_3   <= {lead_2, !whole_2[24]};
+    end
+
+    // The value at the end of interval i is 2^34/(1025 + i), with 24 bits. Its first bit is 1; its second bit, 1 up to i = 340, follows from
+    // the index, so that an entry has the width of the block RAM.
+    localparam int unsigned LAST_HIGH = 340;
+
+    (* ram_style = "block" *) logic [35:0] entries [0:1023];
+
+    // Returns 2^34 / divisor, rounded to nearest.
+    function automatic logic [24:0] quotient(input int unsigned divisor);
+        quotient = 25'((64'd17179869184 + 64'(divisor / 2)) / 64'(divisor));
+    endfunction
+
+    initial
+        for (int i = 0; i < 1024; i++)
+            entries[i] = {22'(quotient(1025 + i)), 14'(quotient(1024 + i) - quotient(1025 + i))};
+
+    // A second port reads the value two clocks later, when the sum needs it.
+    logic [35:0] fall_4, fall_5, start_6, start_7;
+    logic [9:0]  index_4, index_5;
+    logic        high_6, high_7;
+    logic [14:0] left_4, left_5;
+
+    always_ff @(posedge clk) begin
+        fall_4  <= entries[whole_3[23:14]];
+        fall_5  <= fall_4;
+        // The part of the interval after the number.
+        left_4  <= 15'd16384 - {1'b0, whole_3[13:0]};
+        left_5  <= left_4;
+
+        index_4 <= whole_3[23:14];
+        index_5 <= index_4;
+        start_6 <= entries[index_5];
+        high_6  <= index_5 <= 10'(LAST_HIGH);
+        start_7 <= start_6;
+        high_7  <= high_6;
+    end
+
+    // The sum is rounded up: the decrease up to the number is rounded down.
+    logic signed [39:0] sum_8;
+    logic [24:0]        value_8;
+    logic [24:0]        half_9;
+    logic               low_8, low_9;
+
+    multiply_add #(.BITS(40)) interpolation (
+        .clk, .enable(1'b1), .a({11'd0, fall_5[13:0]}), .b({3'd0, left_5}), .c({3'd1, high_7, start_7[35:14], 14'h3FFF}), .p(sum_8)
+    );
+    assign value_8 = sum_8[38:14];
+    assign low_8   = !value_8[24] && value_8[23:22] != 2'b11;
+
+    delay #(.WIDTH(5), .CLOCKS(6)) lead_waits (.clk, .enable(1'b1), .in(lead_3), .out(lead_9));
+
+    // A value below 3/4 is doubled.
+    always_ff @(posedge clk) begin
+        low_9    <= low_8;
+        half_9   <= (low_8 ? value_8 : {1'b0, value_8[24:1]}) + 25'd1;
+        mantissa <= half_9[23] && half_9[22] ? 23'h5FFFFF : half_9[23:1];
+        exponent <= lead_9 + 5'(!low_9);
+    end
+
+    wire _unused = &{1'b0, sum_8[39], sum_8[13:0], half_9[24], half_9[0], whole_3[24], fall_5[35:14], start_7[13:0]};
+endmodule
+
+`default_nettype wire
