@@ -7,14 +7,14 @@
 //! A ray is o + T·D with the unscaled direction D, so T is a depth. Each axis along which a ray leads down is mirrored, as all solids here
 //! are symmetric about the origin: all rays lead up, and every exit is at the upper border of an interval.
 //!
-//! Spheres of a list are met before the flat solid, by their closest approach to the ray. Spheres of a lattice are met in the boxes about
+//! Spheres of a list are met before the flat solid, in the cones in which an eye sees them. Spheres of a lattice are met in the boxes about
 //! them.
 //!
 //! [`Exits`] has the constants of a frame, [`Exits::ray`] makes the ray of a pixel, [`Exits::follow`] finds its end, and [`Words`] has the
 //! word lengths.
 
-mod balls;
 mod code;
+mod cones;
 mod follow;
 mod intervals;
 mod lattice;
@@ -23,13 +23,15 @@ mod ray;
 mod rectangle;
 mod setup;
 mod spheres;
+mod vectors;
 mod words;
 
-pub use balls::{Ball, Sight};
 pub use code::CODE_BITS;
+pub use cones::{Ball, Cone, Cones, Linear};
 pub use follow::End;
 pub use intervals::{AXES, Border, Exit, Place, Prism, Rule, Solid};
 pub use ray::{Beam, Way};
 pub use rectangle::Rectangle;
 pub use setup::{Exits, Eye, Side, Start};
+pub use spheres::Met;
 pub use words::{Inverse, Words};

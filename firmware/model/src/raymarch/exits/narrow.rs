@@ -60,10 +60,15 @@ pub(super) fn root(x: i64) -> i64 {
     if x <= 0 {
         return 0;
     }
-    // An even shift brings the number to the range from 2^32 to 2^34.
+    let (root, shift) = normalised(x);
+    floor(i64::from(root), 2 + shift / 2)
+}
+
+/// A lower bound of 4·√(x·2^shift), from 2^18 to below 2^19 and too small by at most a relative 2^−18, and the even shift that brings x, at
+/// least 1, to the range from 2^32 to 2^34.
+pub(super) fn normalised(x: i64) -> (u32, i32) {
     let shift = 32 - (x.ilog2() as i32 & !1);
-    let root = i64::from(normalised_root(shifted(x, shift, 34) as u64));
-    floor(root, 2 + shift / 2)
+    (normalised_root(shifted(x, shift, 34) as u64), shift)
 }
 
 #[cfg(test)]

@@ -4,10 +4,13 @@ use glint_core::camera::View;
 use glint_core::field::units;
 use glint_core::fixed::{Q2_23, Q32_32};
 
+/// Columns of a group. Rectangles consist of whole groups: the gateware finds the spheres of a group at once.
+const GROUP: u32 = 8;
+
 /// Pixels from a first to a last column and row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rectangle {
-    /// First and last column; the first exceeds the last if no pixel sees the sphere.
+    /// First and last column, of whole groups of eight; the first exceeds the last if no pixel sees the sphere.
     pub columns: [u32; 2],
     /// First and last row.
     pub rows: [u32; 2],
@@ -18,6 +21,17 @@ impl Rectangle {
     pub const fn holds(&self, column: u32, row: u32) -> bool {
         let Self { columns, rows } = self;
         columns[0] <= column && column <= columns[1] && rows[0] <= row && row <= rows[1]
+    }
+
+    /// Whether there is no pixel in the rectangle.
+    pub const fn is_empty(&self) -> bool {
+        self.columns[0] > self.columns[1] || self.rows[0] > self.rows[1]
+    }
+
+    /// Column and row in the middle.
+    pub(super) const fn middle(&self) -> [u32; 2] {
+        let Self { columns, rows } = self;
+        [(columns[0] + columns[1]) / 2, (rows[0] + rows[1]) / 2]
     }
 
     /// All pixels of a picture of this size.
@@ -83,8 +97,9 @@ impl Rectangle {
             }
         };
         let shift = i64::from(view.shift().to_bits()) >> 16;
+        let [first, last] = range(slopes(along(view.u())).map(|slope| slope - shift), width);
         Self {
-            columns: range(slopes(along(view.u())).map(|slope| slope - shift), width),
+            columns: [first / GROUP * GROUP, last | (GROUP - 1)],
             rows: range(slopes(along(view.v())), height),
         }
     }

@@ -7,8 +7,9 @@ use glint_core::field::{
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::Stereo;
 
-use super::balls::Ball;
+use super::cones::{Ball, Cones, Sight};
 use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
+use super::narrow::floor;
 use super::rectangle::Rectangle;
 use super::words::Words;
 use crate::error::RenderError;
@@ -100,6 +101,8 @@ pub struct Exits {
     pub balls: [Ball; MAX_SPHERES],
     /// Number of spheres of the list.
     pub count: usize,
+    /// The cones in which each eye sees the spheres.
+    pub cones: [Cones; 2],
 }
 
 impl Exits {
@@ -171,6 +174,7 @@ impl Exits {
             solid,
             balls: [Ball::default(); MAX_SPHERES],
             count: 0,
+            cones: [Cones::default(); 2],
         };
         exits.place_spheres(field, &views);
         Ok(exits)
@@ -232,16 +236,25 @@ impl Exits {
         self.see_spheres(|_, _| Rectangle::all(size));
     }
 
-    /// Computes the constants of the spheres for each eye.
+    /// Computes the cones of the spheres for each eye.
     fn see_spheres(&mut self, rectangle: impl Fn(&Ball, usize) -> Rectangle) {
-        let world = |[x, y, z, _]: [i32; AXES]| [x, y, z];
+        let world = |[x, y, z, _]: [i32; AXES]| [x, y, z].map(i64::from);
         let [across, down] = self.steps.map(world);
-        for ball in &mut self.balls[..self.count] {
-            ball.sights = [0, 1].map(|eye: usize| {
-                let Eye { origin, first, .. } = self.eyes[eye];
-                ball.seen_from(origin, [world(first), across, down], rectangle(ball, eye))
-            });
-        }
+        // The bits of the parameter T that the constants use.
+        let near = floor(self.near, self.words.parameter as i32 - 14);
+        self.cones = [0, 1].map(|eye: usize| {
+            let Eye { origin, first, .. } = self.eyes[eye];
+            let sight = Sight {
+                origin,
+                directions: [world(first), across, down],
+                near,
+            };
+            let mut cones = Cones::default();
+            for (number, ball) in (0..).zip(&self.balls[..self.count]) {
+                cones.add(number, ball, &sight, rectangle(ball, eye));
+            }
+            cones
+        });
     }
 
     /// Whether an eye is inside the solid, and not on its surface: in the solid for rays that lead up, and for rays that lead down.

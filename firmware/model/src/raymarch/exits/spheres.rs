@@ -1,78 +1,84 @@
-//! Spheres of a list: a ray meets a sphere where its closest approach to the centre is below the radius.
-//!
-//! With q from a sphere's centre to the eye and a ray's direction D, the ray is at |q×D|/|D| from the centre. Both q×D and q·D are linear
-//! in the pixel's column and row, so their coefficients are constants of the frame. With X = q×D/r, the ray meets the sphere at
-//! (−q·D − r·√(|D|² − |X|²))/|D|². No difference of nearly equal numbers occurs, unless the ray only just meets the sphere.
+//! Spheres of a list: a ray meets a sphere if its direction is in the cone around the sphere.
 
-use glint_core::field::FRACTION;
-
-use super::balls::{Ball, ROOT};
-use super::narrow::{nearest, root, saturated, shifted, squared};
+use super::cones::{Cone, DISTANCE_OFFSET, FRACTION, SHARE};
+use super::narrow::{floor, normalised, squared};
 use super::ray::Beam;
 use super::setup::Exits;
+use super::words::Inverse;
+
+/// Fraction bits of c·D and of the root.
+const LENGTH: i32 = 22;
+/// Fraction bits of the square of the root.
+const SQUARE: i32 = 30;
+/// A ray meets a sphere if the square of the root exceeds 2 to the power of minus this number: a tangent misses, however its words are
+/// rounded.
+const LEAST: i32 = 20;
+/// Fraction bits of the mantissa of a reciprocal.
+const MANTISSA: i32 = 18;
 
 /// A sphere that a ray meets.
-#[derive(Clone, Copy)]
-pub(super) struct Met {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Met {
+    /// The parameter T, u14 with the fraction bits of `Words::parameter`.
     pub t: i64,
+    /// Number of the sphere.
     pub number: u8,
 }
 
 impl Exits {
-    /// The first sphere of the list that a ray meets, the first in the list of several at one parameter, and the number of tested spheres.
-    pub(super) fn meet(&self, beam: &Beam) -> (Option<Met>, u32) {
+    /// The first sphere of the list that a ray meets, the first in the list of several at one parameter, and the number of tested cones.
+    pub fn meet(&self, beam: &Beam) -> (Option<Met>, u32) {
         let mut best: Option<Met> = None;
         let mut tests = 0;
-        for (number, ball) in (0..).zip(self.balls.iter().take(self.count)) {
-            if !ball.sights[beam.eye].rectangle.holds(beam.column, beam.row) {
+        for cone in self.cones[beam.eye].list() {
+            if !cone.rectangle.holds(beam.column, beam.row) {
                 continue;
             }
             tests += 1;
-            if let Some(t) = self.meet_ball(beam, ball)
+            if let Some(t) = self.meet_cone(beam, cone)
                 && best.as_ref().is_none_or(|best| t < best.t)
             {
+                let number = cone.number;
                 best = Some(Met { t, number });
             }
         }
         (best, tests)
     }
 
-    /// The parameter at which a ray meets a sphere: that of the near plane, if the sphere's surface is before it.
-    fn meet_ball(&self, beam: &Beam, ball: &Ball) -> Option<i64> {
-        let sight = &ball.sights[beam.eye];
-        let fraction = self.words.cross as i32;
-        // X, narrowed to one integer bit by rounding to nearest, saturated.
-        let cross = sight.cross.map(|part| {
-            let x = part.at(beam.column, beam.row);
-            let bits = sight.cross_fraction - fraction;
-            saturated(
-                nearest(shifted(x, -bits.min(0), 62), bits.max(0)),
-                self.words.cross + 1,
-            )
-        });
-        // |D|² − |X|², with twice the fraction bits of X. The squares are without those of the bits after the first 18.
+    /// The parameter at which a ray in a cone meets the sphere, if this is not before the near plane.
+    fn meet_cone(&self, beam: &Beam, cone: &Cone) -> Option<i64> {
+        let (column, row) = (beam.column, beam.row);
+        let sides = cone.sides.map(|side| side.at(column, row, cone.shift));
+        let limit = 2 << FRACTION;
+        if sides.iter().any(|side| !(-limit..limit).contains(side)) {
+            return None;
+        }
+        let forward = cone.forward.at(column, row, 0);
+        // The squares are without those of the bits after the first 18.
+        let fraction = self.words.outline as i32;
         let cut = (fraction - 16).max(0) as u32;
-        let square: i64 = cross.map(|x| squared(x, cut)).iter().sum();
-        let rest = nearest(beam.square, 36 - 2 * fraction) - square;
-        if rest <= 0 && !sight.is_inside {
+        let square = |x| squared(floor(x, FRACTION as i32 - fraction), cut);
+        let rest = square(forward) - square(sides[0]) - square(sides[1]);
+        // Rounded down, and an integer to the one below.
+        let rest = floor(rest - 1, 2 * fraction - SQUARE);
+        if forward < 0 || rest >> (SQUARE - LEAST) <= 0 {
             return None;
         }
-        // The half chord times |D|²: the root is narrowed by rounding to nearest, the product by rounding down.
-        let root = nearest(root(rest.max(0)), fraction - ROOT as i32);
-        let bits = sight.fraction;
-        let chord = (i64::from(ball.radius) * root) >> (ROOT + FRACTION - bits);
-        let along = nearest(
-            sight.along.at(beam.column, beam.row),
-            sight.along_fraction - bits as i32,
+        let (root, shift) = normalised(rest);
+        let root = floor(i64::from(root), 2 + (shift + SQUARE) / 2 - LENGTH);
+        let forward = floor(forward, FRACTION as i32 - LENGTH);
+        // The divisor is below 4; it has 22 fraction bits, and stands for the middle of its interval. The root is rounded down, the divisor
+        // up.
+        let divisor = -((-(forward << SHARE) - cone.share * root) >> SHARE);
+        let inverse = Inverse::of(2 * divisor as u32 + 1, &self.words);
+        let mantissa = floor(
+            i64::from(inverse.mantissa),
+            self.words.inverse as i32 - MANTISSA,
         );
-        let at = |distance| self.words.divided(distance, bits, beam.inverse_square);
-        let (enters, leaves) = (-along - chord, at(-along + chord));
-        if leaves < self.near || !sight.is_inside && enters < 0 {
-            return None;
-        }
-        Some(match sight.is_inside {
-            true => self.near,
-            false => at(enters).max(self.near),
-        })
+        let (distance, exponent) = cone.distance;
+        // The reciprocal of a quarter of the divisor.
+        let bits = exponent as i32 - DISTANCE_OFFSET + inverse.exponent - 2 - MANTISSA;
+        let t = self.words.parameter_of(distance * mantissa, -bits);
+        (t >= self.near).then_some(t)
     }
 }

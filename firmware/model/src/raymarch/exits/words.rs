@@ -14,8 +14,8 @@ pub struct Words {
     pub inverse: u32,
     /// Fraction bits of the parameter T, 8 to 16.
     pub parameter: u32,
-    /// Fraction bits of q×D/r, for a sphere of a list with the radius r at q from the eye, 12 to 20.
-    pub cross: u32,
+    /// Fraction bits of the linear functions of a cone, for spheres of a list, 12 to 22.
+    pub outline: u32,
     /// Fraction bits of q·D, for a sphere of a lattice at q from the ray's point, 8 to 20.
     pub along: u32,
 }
@@ -26,19 +26,21 @@ impl Words {
         direction: 23,
         inverse: 22,
         parameter: 14,
-        cross: 20,
+        outline: 22,
         along: 14,
     };
 
     /// The parameter of a ray at a distance, with 25 bits and these `fraction` bits, times a reciprocal. Rounded down, saturated.
     pub(super) const fn divided(&self, distance: i64, fraction: u32, inverse: Inverse) -> i64 {
         let Inverse { mantissa, exponent } = inverse;
-        let bits = exponent + self.parameter as i32 - fraction as i32 - self.inverse as i32;
-        shifted(
-            distance * mantissa as i64,
-            bits,
-            PARAMETER_INTEGER + self.parameter,
-        )
+        let bits = fraction as i32 + self.inverse as i32 - exponent;
+        self.parameter_of(distance * mantissa as i64, bits)
+    }
+
+    /// The parameter x with these `fraction` bits. Rounded down, saturated.
+    pub(super) const fn parameter_of(&self, x: i64, fraction: i32) -> i64 {
+        let bits = self.parameter as i32 - fraction;
+        shifted(x, bits, PARAMETER_INTEGER + self.parameter)
     }
 }
 

@@ -102,6 +102,7 @@ fn leaving(parameters: &Parameters, register: ExitsRegister, [width, height]: [u
         solid: Some(solid),
         balls: Default::default(),
         count: 0,
+        cones: Default::default(),
     }
 }
 

@@ -32,8 +32,8 @@ pub struct Row {
     pub inverse: u32,
     /// Fraction bits of the parameter T.
     pub parameter: u32,
-    /// Fraction bits of q×D/r, for spheres of a list.
-    pub cross: u32,
+    /// Fraction bits of the linear functions of a cone, for spheres of a list.
+    pub outline: u32,
     /// Fraction bits of q·D, for spheres of a lattice.
     pub along: u32,
     /// Intersection over union of two sets: the pixels that hit in the picture, and the pixels that hit in the reference.
@@ -68,7 +68,7 @@ const WIDE: Words = Words {
     direction: 24,
     inverse: 24,
     parameter: 16,
-    cross: 20,
+    outline: 22,
     along: 20,
 };
 
@@ -90,8 +90,8 @@ fn families() -> Vec<Family> {
         parameter,
         ..WIDE
     });
-    vary("cross", &[12, 14, 16, 17, 18, 19], |cross| Words {
-        cross,
+    vary("outline", &[12, 14, 16, 17, 18, 20], |outline| Words {
+        outline,
         ..WIDE
     });
     vary("along", &[8, 10, 11, 12, 14, 16], |along| Words {
@@ -105,7 +105,7 @@ fn families() -> Vec<Family> {
 fn concerns(family: &str, scene: &str) -> bool {
     let list = scene.contains("sphere") || scene.contains("moving");
     match family {
-        "cross" => list,
+        "outline" => list,
         "along" => scene.starts_with("lattice"),
         "direction" => !list || scene.starts_with("union"),
         _ => true,
@@ -221,7 +221,7 @@ pub fn row(subject: &Subject, &(family, words): &Family) -> Row {
         direction: words.direction,
         inverse: words.inverse,
         parameter: words.parameter,
-        cross: words.cross,
+        outline: words.outline,
         along: words.along,
         iou: accuracy.iou,
         false_hits: accuracy.false_hit,
