@@ -81,6 +81,7 @@ MODULES = [
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="exit_lane", variants={"exit_lane_all": {"LEVELS": 6, "LIMITS": 1}}),
     Module(top="exit_reciprocal"),
+    Module(top="sphere_unit", variants={"sphere_unit_one_eye": {"STEREO": 0, "BLOCK": 1}}),
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},
            measured=("raymarcher_round", "raymarcher_faces")),

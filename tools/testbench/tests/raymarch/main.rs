@@ -6,3 +6,4 @@ mod generator;
 mod lane;
 mod paint;
 mod scenes;
+mod spheres;

@@ -1,0 +1,433 @@
+// Finds the first sphere of a list that a ray meets (docs/raymarch-exits.md, "Spheres of a list").
+//
+//   rays ─▶ place ─▶ FIFO ─────────────────────────────▶ a job for each cone around the pixel
+//             │                                                  ▲             │
+//             └─▶ group of 8 columns: a clock for each cone ─▶ masks           ▼
+//                                               forward·f, two sides ─▶ f² - a² - b² ─▶ root·share + f ─▶ exit_mantissa
+//                                                                                                              │
+//   met, T, number ◀─ FIFO ◀─ first of the ray's cones ◀─ shift ◀─ distance·reciprocal ◀───────────────────────┘
+//
+// The list of an eye has a cone for each sphere, and one more for each sphere that the near plane cuts. A ray takes one clock for each
+// cone whose rectangle holds its pixel, and at least one clock. The rectangles have whole groups of 8 columns: in the order of a picture's
+// lines, the cones of the next group are found while the rays of a group pass, if there are at most 8.
+//
+// The three linear functions of a pixel's column and row are computed with multipliers, of which the second side needs only one. Adding
+// `across` from pixel to pixel would need two sums of up to 46 bits for each function and cone, in LUT memory: some 600 LUTs in place of
+// five multipliers, and no pixel could be skipped.
+//
+// Without a sphere up to the far limit, `out_met` is low and `out_t` is the far limit. The payload of a ray passes along with it. Streams
+// are valid/ready: each item moves in a clock in which both are high, and payloads stay until then.
+//
+// The constants of the cones are written one at a time, in clocks with `write`, while no ray is in the unit. `address` is {eye, number of
+// the cone, constant}. All numbers start at bit 0 of `value`, in this order:
+//
+//   0   columns: groups of the first and the last column, 8 bits each      8   first of side a, the 14 highest bits
+//   1   rows: first and last, 10 bits each                                 9   first of side b, the 32 lowest bits
+//   2   across of side a                                                  10   first of side b, the 14 highest bits
+//   3   down of side a                                                    11   first of the forward function, s1.30
+//   4   down of side b                                                    12   share, u0.17
+//   5   across of the forward function                                    13   distance: mantissa of 24 bits, exponent of 4 bits
+//   6   down of the forward function                                      14   number of the sphere, 3 bits, and half the shift of
+//   7   first of side a, the 32 lowest bits                                    the sides' changes, 2 bits
+//
+// `across` and `down` have 25 bits with a sign. `last_cone` has the number of the last cone of each eye; an eye without cones has one with a
+// first column above the last. Rounding is that of the model. `near_limit`, `far_limit` and `last_cone` must hold while rays are in the
+// unit.
+//
+// Latency 60 clocks for the first ray of a group, if there are 8 cones. `rst` discards all rays.
+
+`default_nettype none
+
+module sphere_unit #(
+    parameter bit          STEREO  = 1'b1,
+    parameter int unsigned WIDTH   = 16,
+    // Whether payloads wait in block RAM.
+    parameter bit          BLOCK   = 1'b0
+) (
+    input  wire                                clk,
+    input  wire                                rst,
+    // Frame.
+    input  wire  [exit_pkg::T_BITS-1:0]        near_limit,
+    input  wire  [exit_pkg::T_BITS-1:0]        far_limit,
+    input  wire  [1:0][3:0]                    last_cone,
+    input  wire                                write,
+    input  wire  [8:0]                         address,
+    input  wire  [31:0]                        value,
+    // Rays.
+    input  wire                                in_valid,
+    output logic                               in_ready,
+    input  wire                                in_eye,
+    input  wire  [10:0]                        in_column,
+    input  wire  [9:0]                         in_row,
+    input  wire  [WIDTH-1:0]                   in_payload,
+    // Spheres.
+    output logic                               out_valid,
+    input  wire                                out_ready,
+    output logic                               out_met,
+    output logic [2:0]                         out_number,
+    output logic [exit_pkg::T_BITS-1:0]        out_t,
+    output logic [WIDTH-1:0]                   out_payload
+);
+    localparam int unsigned CONES      = 16;
+    localparam int unsigned ENTRIES    = STEREO ? 2 * CONES : CONES;
+    localparam int unsigned ENTRY_BITS = $clog2(ENTRIES);
+    localparam int unsigned PLACE_BITS = 1 + 10 + 11;
+    // Latency of the tests in clocks.
+    localparam int unsigned LAST       = 40;
+
+    // Constants of the cones, each in a LUT memory that is read in the clock in which the constant is used.
+    (* ram_style = "distributed" *) logic [15:0] columns      [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [19:0] rows         [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [24:0] across_a     [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [24:0] down_a       [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [24:0] down_b       [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [24:0] across_f     [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [24:0] down_f       [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [31:0] first_a_low  [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [13:0] first_a_high [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [31:0] first_b_low  [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [13:0] first_b_high [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [31:0] first_f      [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [16:0] shares       [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [27:0] distances    [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [2:0]  spheres      [0:ENTRIES-1];
+    (* ram_style = "distributed" *) logic [1:0]  shifts       [0:ENTRIES-1];
+
+    logic                  write_1;
+    logic [8:0]            address_1;
+    logic [31:0]           value_1;
+    logic [ENTRY_BITS-1:0] written;
+
+    assign written = address_1[4 +: ENTRY_BITS];
+
+    always_ff @(posedge clk) begin
+        write_1   <= write;
+        address_1 <= address;
+        value_1   <= value;
+        if (write_1) begin
+            if (address_1[3:0] == 4'd0)  columns[written]      <= value_1[15:0];
+            if (address_1[3:0] == 4'd1)  rows[written]         <= value_1[19:0];
+            if (address_1[3:0] == 4'd2)  across_a[written]     <= value_1[24:0];
+            if (address_1[3:0] == 4'd3)  down_a[written]       <= value_1[24:0];
+            if (address_1[3:0] == 4'd4)  down_b[written]       <= value_1[24:0];
+            if (address_1[3:0] == 4'd5)  across_f[written]     <= value_1[24:0];
+            if (address_1[3:0] == 4'd6)  down_f[written]       <= value_1[24:0];
+            if (address_1[3:0] == 4'd7)  first_a_low[written]  <= value_1;
+            if (address_1[3:0] == 4'd8)  first_a_high[written] <= value_1[13:0];
+            if (address_1[3:0] == 4'd9)  first_b_low[written]  <= value_1;
+            if (address_1[3:0] == 4'd10) first_b_high[written] <= value_1[13:0];
+            if (address_1[3:0] == 4'd11) first_f[written]      <= value_1;
+            if (address_1[3:0] == 4'd12) shares[written]       <= value_1[16:0];
+            if (address_1[3:0] == 4'd13) distances[written]    <= value_1[27:0];
+            if (address_1[3:0] == 4'd14) {shifts[written], spheres[written]} <= value_1[4:0];
+        end
+    end
+
+    // The last ray that has arrived, and whether its group differs from that of the ray before.
+    logic                  held_valid, held_new, known, leaves, place_ready, payload_ready, payload_valid, result_valid, starts;
+    logic [PLACE_BITS-1:0] held;
+
+    assign leaves   = held_valid && place_ready && !(held_new && walking && !walked);
+    assign starts   = leaves && held_new;
+    assign in_ready = (!held_valid || leaves) && payload_ready;
+
+    always_ff @(posedge clk) begin
+        held_valid <= in_valid && in_ready || held_valid && !leaves;
+        known      <= known && !write_1 || in_valid && in_ready;
+        if (in_valid && in_ready) begin
+            held     <= {STEREO && in_eye, in_row, in_column};
+            held_new <= !known || held[PLACE_BITS-1:3] != {STEREO && in_eye, in_row, in_column[10:3]};
+        end
+        if (rst) begin
+            held_valid <= 1'b0;
+            known      <= 1'b0;
+        end
+    end
+
+    // A walk through the cones of a new group, from the last to the first.
+    logic                  walking, walked, fresh, done, holds;
+    logic [3:0]            walk;
+    logic [PLACE_BITS-4:0] group;
+    logic [ENTRY_BITS-1:0] walk_entry;
+    logic [CONES-1:0]      mask;
+
+    assign walked     = walk == '0;
+    assign walk_entry = ENTRY_BITS'({group[PLACE_BITS-4], walk});
+    assign holds      = columns[walk_entry][7:0] <= group[7:0] && group[7:0] <= columns[walk_entry][15:8]
+                        && rows[walk_entry][9:0] <= group[17:8] && group[17:8] <= rows[walk_entry][19:10];
+
+    always_ff @(posedge clk) begin
+        done    <= walking && walked;
+        walking <= starts || walking && !walked;
+        fresh   <= starts;
+        walk    <= starts ? held[PLACE_BITS-1] ? last_cone[1] : last_cone[0] : walk - 4'd1;
+        mask    <= {fresh ? '0 : mask[CONES-2:0], holds};
+        if (starts) group <= held[PLACE_BITS-1:3];
+        if (rst) begin
+            walking <= 1'b0;
+            done    <= 1'b0;
+        end
+    end
+
+    // The FIFO of masks has an entry for each ray in the FIFO of places.
+    logic                  place_valid, place_new, mask_ready, mask_valid, loads;
+    logic [PLACE_BITS-1:0] place;
+    logic [CONES-1:0]      next_mask;
+
+    fifo #(.WIDTH(PLACE_BITS + 1), .DEPTH(16)) waiting (
+        .clk, .rst, .in_valid(leaves), .in_ready(place_ready), .in_data({held_new, held}),
+        .out_valid(place_valid), .out_ready(loads), .out_data({place_new, place})
+    );
+    fifo #(.WIDTH(CONES), .DEPTH(16)) masks (
+        .clk, .rst, .in_valid(done), .in_ready(mask_ready), .in_data(mask),
+        .out_valid(mask_valid), .out_ready(loads && place_new), .out_data(next_mask)
+    );
+
+    // The ray whose jobs are sent: its place, and the cones that are left, of which the first comes next.
+    logic                  busy, idle, credit, job_ends, sends;
+    logic [PLACE_BITS-1:0] now;
+    logic [CONES-1:0]      left, left_after, of_group, lowest;
+    logic                  first;
+
+    always_comb begin
+        logic found;
+        found = 1'b0;
+        for (int i = 0; i < CONES; i++) begin
+            left_after[i] = left[i] && found;
+            lowest[i]     = left[i] && !found;
+            found         = found || left[i];
+        end
+    end
+    assign job_ends   = left_after == '0;
+    assign sends      = busy && credit;
+    assign loads      = place_valid && (!place_new || mask_valid) && (!busy || sends && job_ends);
+
+    always_ff @(posedge clk) begin
+        busy <= loads || busy && !(sends && job_ends);
+        if (loads) begin
+            now      <= place;
+            left     <= place_new ? next_mask : of_group;
+            first    <= 1'b1;
+        end else if (sends) begin
+            left  <= left_after;
+            first <= 1'b0;
+        end
+        if (loads && place_new) of_group <= next_mask;
+        if (rst) busy <= 1'b0;
+    end
+
+    // A job: a cone and a place. The suffix of a name is the number of clocks after the job.
+    logic [LAST:0]         valid;
+    logic                  first_0, last_0, some_0, first_39, last_40, some_10;
+    logic [ENTRY_BITS-1:0] entry_0, entry_1, entry_2, entry_3, entry_4, entry_5, entry_19, entry_32, entry_37;
+    logic [10:0]           column_0, column_3;
+    logic [9:0]            row_0, row_4;
+    logic [16:0]           column_1, row_1, row_2, row_3;
+    logic [3:0]            number;
+
+    always_comb begin
+        number = '0;
+        for (int i = 0; i < CONES; i++) if (lowest[i]) number = number | 4'(i);
+    end
+
+    always_ff @(posedge clk) begin
+        valid   <= {valid[LAST-1:0], sends};
+        first_0 <= first;
+        last_0  <= job_ends;
+        some_0  <= left != '0;
+        entry_0 <= ENTRY_BITS'({now[PLACE_BITS-1], number});
+        {row_0, column_0} <= now[PLACE_BITS-2:0];
+        if (rst) valid <= '0;
+
+        {entry_5, entry_4, entry_3, entry_2, entry_1} <= {entry_4, entry_3, entry_2, entry_1, entry_0};
+        column_1 <= 17'(column_0) << {shifts[entry_0], 1'b0};
+        row_1    <= 17'(row_0) << {shifts[entry_0], 1'b0};
+        {row_3, row_2} <= {row_2, row_1};
+    end
+
+    delay #(.WIDTH(1), .CLOCKS(39)) first_waits (.clk, .enable(1'b1), .in(first_0), .out(first_39));
+    delay #(.WIDTH(1), .CLOCKS(40)) last_waits (.clk, .enable(1'b1), .in(last_0), .out(last_40));
+    delay #(.WIDTH(1), .CLOCKS(10)) some_waits (.clk, .enable(1'b1), .in(some_0), .out(some_10));
+    delay #(.WIDTH(11), .CLOCKS(3)) column_waits (.clk, .enable(1'b1), .in(column_0), .out(column_3));
+    delay #(.WIDTH(10), .CLOCKS(4)) row_waits (.clk, .enable(1'b1), .in(row_0), .out(row_4));
+    delay #(.WIDTH(ENTRY_BITS), .CLOCKS(14)) entry_to_19 (.clk, .enable(1'b1), .in(entry_5), .out(entry_19));
+    delay #(.WIDTH(ENTRY_BITS), .CLOCKS(13)) entry_to_32 (.clk, .enable(1'b1), .in(entry_19), .out(entry_32));
+    delay #(.WIDTH(ENTRY_BITS), .CLOCKS(5)) entry_to_37 (.clk, .enable(1'b1), .in(entry_32), .out(entry_37));
+
+    // The sides and the forward function, with 30 fraction bits.
+    logic signed [47:0] a_4, a_5, b_6, f_6, f_7;
+
+    multiply_add #(.BITS(48)) a_of_column (
+        .clk, .enable(1'b1), .a(across_a[entry_1]), .b({1'b0, column_1}),
+        .c({{2{first_a_high[entry_3][13]}}, first_a_high[entry_3], first_a_low[entry_3]}), .p(a_4)
+    );
+    multiply_add #(.BITS(48)) a_of_row (.clk, .enable(1'b1), .a(down_a[entry_2]), .b({1'b0, row_2}), .c(a_4), .p(a_5));
+    multiply_add #(.BITS(48)) b_of_row (
+        .clk, .enable(1'b1), .a(down_b[entry_3]), .b({1'b0, row_3}),
+        .c({{2{first_b_high[entry_5][13]}}, first_b_high[entry_5], first_b_low[entry_5]}), .p(b_6)
+    );
+    multiply_add #(.BITS(48)) f_of_column (
+        .clk, .enable(1'b1), .a(across_f[entry_3]), .b({7'd0, column_3}), .c(48'($signed(first_f[entry_5]))), .p(f_6)
+    );
+    multiply_add #(.BITS(48)) f_of_row (.clk, .enable(1'b1), .a(down_f[entry_4]), .b({8'd0, row_4}), .c(f_6), .p(f_7));
+
+    // A side of 2 or more is outside of the cone, and so is a pixel with a negative forward function.
+    logic over_6, over_7, out_8, out_10;
+
+    always_ff @(posedge clk) begin
+        over_6 <= a_5[47:31] != {17{a_5[31]}};
+        over_7 <= over_6 || b_6[47:31] != {17{b_6[31]}};
+        out_8  <= over_7 || f_7[31];
+    end
+    delay #(.WIDTH(1), .CLOCKS(2)) out_waits (.clk, .enable(1'b1), .in(out_8), .out(out_10));
+
+    // The square of the root, with 38 fraction bits and the other sign.
+    logic signed [42:0] square_8, square_9, square_10;
+
+    square_add square_a (.clk, .x(a_5[31:8]), .c('0), .p(square_8));
+    square_add square_b (.clk, .x(b_6[31:8]), .c(square_8), .p(square_9));
+    square_add #(.NEGATIVE(1'b1)) square_f (.clk, .x(f_7[31:8]), .c(square_9), .p(square_10));
+
+    // The square is shifted left by an even number of bits until one of the two highest bits is 1. It has 30 fraction bits. A square below
+    // 2^-20 counts as 0.
+    logic [31:0] rest_10, coarse_11;
+    logic [25:0] fine_12;
+    logic [1:0]  eights_10, eights_11, twos_11;
+    logic        hit_11, hit_38;
+    logic [3:0]  places_12, places_17;
+    logic [1:0]  places_18;
+
+    assign rest_10   = ~square_10[39:8];
+    assign eights_10 = rest_10[31:24] != '0 ? 2'd0 : rest_10[23:16] != '0 ? 2'd1 : 2'd2;
+    assign twos_11   = coarse_11[31:30] != '0 ? 2'd0 : coarse_11[29:28] != '0 ? 2'd1 : coarse_11[27:26] != '0 ? 2'd2 : 2'd3;
+
+    always_ff @(posedge clk) begin
+        hit_11    <= some_10 && !out_10 && square_10[42] && rest_10[31:10] != '0;
+        eights_11 <= eights_10;
+        coarse_11 <= rest_10 << {eights_10, 3'd0};
+        places_12 <= {eights_11, twos_11};
+        unique case (twos_11)
+            2'd0: fine_12 <= coarse_11[31:6];
+            2'd1: fine_12 <= coarse_11[29:4];
+            2'd2: fine_12 <= coarse_11[27:2];
+            2'd3: fine_12 <= coarse_11[25:0];
+        endcase
+    end
+    delay #(.WIDTH(1), .CLOCKS(27)) hit_waits (.clk, .enable(1'b1), .in(hit_11), .out(hit_38));
+    delay #(.WIDTH(4), .CLOCKS(5)) places_wait (.clk, .enable(1'b1), .in(places_12), .out(places_17));
+
+    // The root, a linear interpolation between two entries of the table, and shifted back, u1.22.
+    logic [17:0]        base_14, base_16;
+    logic [9:0]         slope_14;
+    logic [16:0]        rest_14;
+    logic signed [36:0] root_17;
+    logic [22:0]        root_18, root_19;
+
+    root_table roots (.clk, .index(fine_12[25:17]), .root(base_14), .slope(slope_14));
+    delay #(.WIDTH(17), .CLOCKS(2)) rest_waits (.clk, .enable(1'b1), .in(fine_12[16:0]), .out(rest_14));
+    delay #(.WIDTH(18), .CLOCKS(2)) base_waits (.clk, .enable(1'b1), .in(base_14), .out(base_16));
+    multiply_add #(.BITS(37)) between (
+        .clk, .enable(1'b1), .a({15'b0, slope_14}), .b({1'b0, rest_14}), .c({1'b0, 1'b1, base_16, 17'b0}), .p(root_17)
+    );
+
+    always_ff @(posedge clk) begin
+        root_18   <= {root_17[35:17], 4'd0} >> {places_17[3:2], 2'd0};
+        places_18 <= places_17[1:0];
+        root_19   <= root_18 >> places_18;
+    end
+
+    // The divisor, u2.22, and its reciprocal. It is rounded up, because the root is rounded down.
+    logic [23:0]                      f_21;
+    logic signed [43:0]               divisor_22;
+    logic [22:0]                      mantissa_32;
+    logic [4:0]                       scale_32;
+
+    delay #(.WIDTH(24), .CLOCKS(14)) f_waits (.clk, .enable(1'b1), .in(f_7[31:8]), .out(f_21));
+    multiply_add #(.BITS(44)) divisor (
+        .clk, .enable(1'b1), .a({2'b0, root_19}), .b({1'b0, shares[entry_19]}), .c({3'd0, f_21, 17'h1FFFF}), .p(divisor_22)
+    );
+    exit_mantissa reciprocal (.clk, .magnitude(divisor_22[40:17]), .mantissa(mantissa_32), .exponent(scale_32));
+
+    // T: the distance times the reciprocal of a quarter of the divisor. The mantissa less 1 has a sign.
+    logic [23:0]        distance_32, distance_34;
+    logic [3:0]         exponent_32;
+    logic [5:0]         exponent_33;
+    logic [4:0]         exponent_34, exponent_35;
+    logic signed [43:0] product_35;
+
+    assign {exponent_32, distance_32} = distances[entry_32];
+
+    always_ff @(posedge clk) begin
+        exponent_33 <= {1'b0, scale_32} + {2'b0, exponent_32};
+        exponent_34 <= exponent_33[4:0] | {5{exponent_33[5]}};
+        exponent_35 <= exponent_34;
+    end
+    delay #(.WIDTH(24), .CLOCKS(2)) distance_waits (.clk, .enable(1'b1), .in(distance_32), .out(distance_34));
+    multiply_add #(.BITS(44)) quotient (
+        .clk, .enable(1'b1), .a({1'b0, distance_32}), .b(mantissa_32[21:4]), .c({2'd0, distance_34, 18'd0}), .p(product_35)
+    );
+
+    // The product times 2^exponent, without its 30 lowest bits. Three clocks shift by multiples of 8, of 2, and by one bit; `over` says
+    // that T is too large.
+    logic [81:0]                 shifted;
+    logic [63:23]                middle;
+    logic [57:23]                coarse_36;
+    logic [57:29]                fine_37;
+    logic [2:0]                  exponent_36;
+    logic                        exponent_37, over_36, over_37, over_38;
+    logic [exit_pkg::T_BITS-1:0] t_38;
+
+    assign shifted = {39'd0, product_35[42:0]} << {exponent_35[4:3], 3'd0};
+    assign middle  = {6'd0, coarse_36} << {exponent_36[2:1], 1'b0};
+
+    always_ff @(posedge clk) begin
+        coarse_36   <= shifted[57:23];
+        over_36     <= shifted[81:58] != '0;
+        exponent_36 <= exponent_35[2:0];
+        fine_37     <= middle[57:29];
+        over_37     <= over_36 || middle[63:58] != '0;
+        exponent_37 <= exponent_36[0];
+        t_38        <= exponent_37 ? fine_37[56:29] : fine_37[57:30];
+        over_38     <= over_37 || exponent_37 && fine_37[57];
+    end
+
+    // The first of the ray's cones so far; of several at one T, that of the first job.
+    logic [2:0]                  number_38, number_39, best_number;
+    logic                        hit_39, best_met, from_met, better;
+    logic [exit_pkg::T_BITS-1:0] t_39, best_t, from_t;
+
+    assign from_met = best_met && !first_39;
+    assign from_t   = first_39 ? far_limit : best_t;
+    assign better   = hit_39 && {t_39, 1'b0} < {from_t, !from_met};
+
+    always_ff @(posedge clk) begin
+        number_38 <= spheres[entry_37];
+
+        number_39 <= number_38;
+        hit_39    <= hit_38 && !over_38 && t_38 >= near_limit;
+        t_39      <= t_38;
+
+        if (valid[39]) begin
+            best_met    <= better || from_met;
+            best_t      <= better ? t_39 : from_t;
+            best_number <= better ? number_39 : best_number;
+        end
+    end
+
+    credit_fifo #(.WIDTH(exit_pkg::T_BITS + 4), .DEPTH(64)) results (
+        .clk, .rst, .idle, .credit, .sent(busy && job_ends), .in_valid(valid[LAST] && last_40), .in_data({best_met, best_number, best_t}),
+        .out_valid(result_valid), .out_ready(out_ready && payload_valid), .out_data({out_met, out_number, out_t})
+    );
+    fifo #(.WIDTH(WIDTH), .DEPTH(64), .BLOCK(BLOCK)) payloads (
+        .clk, .rst, .in_valid(in_valid && (!held_valid || leaves)), .in_ready(payload_ready), .in_data(in_payload),
+        .out_valid(payload_valid), .out_ready(out_ready && result_valid), .out_data(out_payload)
+    );
+
+    assign out_valid = result_valid && payload_valid;
+
+    wire _unused = &{1'b0, idle, mask_ready, address_1[8:7], rows[walk_entry], f_7[47:32], a_5[7:0], b_6[7:0], f_7[7:0], square_10[41:40],
+                     square_10[7:0], root_17[36], root_17[16:0], divisor_22[43:41], divisor_22[16:0],
+                     mantissa_32[22], mantissa_32[3:0], product_35[43], shifted[22:0], middle[28:23]};
+endmodule
+
+`default_nettype wire
