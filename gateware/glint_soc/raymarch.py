@@ -47,8 +47,8 @@ class Fields:
 
     @property
     def has_exits(self):
-        """Whether rays of some fields leave empty prisms."""
-        return has_exits(self.flat)
+        """Whether rays of some fields leave empty prisms, or meet the spheres of a list."""
+        return self.round or has_exits(self.flat)
 
     @property
     def has_marching(self):
@@ -140,7 +140,9 @@ class Raymarcher(LiteXModule):
             CSRField("kind", size=KIND_BITS, offset=22,
                      values=[(str(number), flat.name, flat.text) for number, flat in enumerate(FLAT_FIELDS)],
                      description="Kind of the flat field."),
-        ], description="The solid of marching rays.")
+            CSRField("last_cone_left", size=4, offset=24, description="By exits, number of the left eye's last cone."),
+            CSRField("last_cone_right", size=4, offset=28, description="By exits, number of the right eye's last cone."),
+        ], description="The solid of marching rays, and the number of spheres and lights.")
         self._exits = Parameter(name="exits", fields=[
             CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances."),
             CSRField("rule", size=2, offset=1, values=_RULES, description="The solid."),
@@ -204,12 +206,17 @@ class Raymarcher(LiteXModule):
 
         self._sphere = Parameter(name="sphere", fields=[
             CSRField("value", size=24, offset=0, description="Value of the constant."),
-            CSRField("entry", size=6, offset=24, description="0 to 2: centre of a sphere, x, y, z, s9.12. 3: radius of the sphere, "
-                     "u9.12. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of "
+            CSRField("entry", size=6, offset=24, description="0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, "
+                     "u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of "
                      "the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes "
                      "the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: "
                      "colours of the faces 6 and 7 of a field with eight faces."),
         ], description="Writing sets a constant of spheres, lights or faces.")
+
+        self._cone_address = Parameter(9, name="cone_address", description="Address of the next write to `cone_value`: the eye in bit 8, the "
+                                       "number of a cone in bits 4 to 7, and of its constant in bits 0 to 3 (rtl/raymarch/sphere_unit.sv).")
+        self._cone_value = Parameter(32, name="cone_value", description="Writing sets a constant of the cone in which an eye sees a sphere, "
+                                     "and increases the address by 1.")
 
         self.counters = Counters(self, {
             "cycles_busy": "Clock cycles in which a field was drawn.",
@@ -230,6 +237,7 @@ class Raymarcher(LiteXModule):
         error = self._status.fields.error
         solid, exits, tuning = self._solid.fields, self._exits.fields, self._tuning.fields
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
+        cone_write, cone_address = self._cones(fields)
         # Kind 0, the sponge, is accepted by every build: without levels it is an empty field, which a frame of spheres alone
         # selects.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
@@ -308,6 +316,10 @@ class Raymarcher(LiteXModule):
             i_sphere_number  = number,
             i_sphere         = sphere.value,
             i_lights         = lights.value,
+            i_last_cone      = Cat(solid.last_cone_left, solid.last_cone_right),
+            i_cone_write     = cone_write,
+            i_cone_address   = cone_address,
+            i_cone_value     = self._cone_value.storage,
             i_tuning         = limits.value,
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,
@@ -332,7 +344,7 @@ class Raymarcher(LiteXModule):
         """Decodes writes to the register `sphere`. Returns whether a sphere is written, its number, the sphere, the lights, and
         the fillet's width and its inverse."""
         value, entry = self._sphere.fields.value, self._sphere.fields.entry
-        centre, radius, inverse = [Signal(22) for _ in range(3)], Signal(21), Signal(22)
+        centre, radius, inverse = [Signal(23) for _ in range(3)], Signal(21), Signal(22)
         directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
         ambient, blend = Signal(24), [Signal(17), Signal(17)]
         write = Signal()
@@ -349,6 +361,17 @@ class Raymarcher(LiteXModule):
             "directions to the lights, s1.16.", {
             "last_light": last_light, "ambient": ambient, "colours": colours, "directions": directions})
         return write, entry[:3], sphere, lights, blend
+
+    def _cones(self, fields):
+        """Returns the strobe of a write to `cone_value`, and the address that it writes."""
+        write, address, following = Signal(), Signal(9), Signal(9)
+        if fields.round:
+            self.sync += [
+                write.eq(self._cone_value.re),
+                If(self._cone_value.re, address.eq(following), following.eq(following + 1)),
+                If(self._cone_address.re, following.eq(self._cone_address.storage)),
+            ]
+        return write, address
 
     def _octants(self, fields):
         """Returns the colours of faces 6 and 7, set by writes to `sphere`, or constants in builds without such faces."""

@@ -2,13 +2,14 @@
 
 use core::fmt;
 
+use glint_core::feature::SPHERES;
 use glint_core::field::{FixedSpheres, FlatConstants, Solid as Marched};
 use glint_core::stereo::Tint;
 use glint_hal::raymarch::{
     self as driver, Capabilities, Control, Counters, DepthScale, Exit, Field, Kind, Raymarcher,
     Solid, Start, Stereo, Tables, Tuning, colour,
 };
-use glint_model::raymarch::exits::{self, AXES, Exits, Rule};
+use glint_model::raymarch::exits::{self, AXES, Cone, Exits, Rule};
 use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Form, Lights, Marching, Palette};
 
 /// A feature that a frame needs and this build of the raymarcher lacks.
@@ -58,10 +59,10 @@ impl Missing {
         if kind as u8 != 0 && capabilities.flat >> kind as u8 & 1 == 0 {
             return Err(Self::Flat(kind));
         }
+        if setup.spheres().is_some() && !capabilities.round {
+            return Err(Self::Round);
+        }
         if let Form::Marching(marching) = &setup.form {
-            if marching.is_round() && !capabilities.round {
-                return Err(Self::Round);
-            }
             if marching.blend().width != 0 && !capabilities.blend {
                 return Err(Self::Blend);
             }
@@ -117,11 +118,16 @@ pub fn set_field(
         Some(Tint::RedCyan) => Stereo::RedCyan,
     };
     let (kind, levels) = kind(setup);
-    let solid = Solid::default().with_kind(kind).with_levels(levels);
+    let solid = with_spheres(
+        raymarcher,
+        setup,
+        &palette.lights,
+        Solid::default().with_kind(kind).with_levels(levels),
+    );
     let axes = |[x, y, z, _]: [i32; AXES]| [x, y, z];
     let (solid, half, form, limits, eyes, steps) = match &setup.form {
         Form::Exits(exits) => (
-            solid,
+            with_cones(raymarcher, exits, solid, setup.stereo.is_some()),
             exits
                 .solid
                 .unwrap_or_default()
@@ -133,7 +139,7 @@ pub fn set_field(
             exits.steps.map(axes),
         ),
         Form::Marching(marching) => (
-            with_spheres(raymarcher, marching, &palette.lights, solid),
+            with_flat(marching, solid),
             constants(&marching.solid).half,
             march_form(marching),
             [marching.tuning.far, marching.near],
@@ -215,30 +221,58 @@ fn march_form(marching: &Marching) -> driver::Form<'_> {
     }
 }
 
-/// The solid of marching rays. Also writes the constants of its spheres.
-fn with_spheres(
-    raymarcher: &Raymarcher,
-    marching: &Marching,
-    lights: &Lights,
-    solid: Solid,
-) -> Solid {
+/// The solid of marching rays with its flat part.
+fn with_flat(marching: &Marching, solid: Solid) -> Solid {
     let flat = constants(&marching.solid);
-    let solid = solid
+    solid
         .with_has(flat.has)
         .with_room(flat.room)
         .with_repeated(flat.repeated)
-        .with_flat_too(marching.beside.is_some());
-    match marching.spheres() {
-        Some(spheres) => {
-            set_spheres(raymarcher, spheres, &marching.blend(), lights);
-            solid
-                .with_is_round(true)
-                .with_spheres_repeated(spheres.repeated)
-                .with_last_sphere((spheres.count - 1) as u8)
-                .with_last_light((lights.count - 1) as u8)
-        }
-        None => solid,
+        .with_flat_too(marching.beside.is_some())
+}
+
+/// The solid with its spheres. Also writes their constants.
+fn with_spheres(
+    raymarcher: &Raymarcher,
+    setup: &FieldSetup,
+    lights: &Lights,
+    solid: Solid,
+) -> Solid {
+    let Some(spheres) = setup.spheres() else {
+        return solid;
+    };
+    let blend = setup
+        .marching()
+        .map_or_else(Blend::default, Marching::blend);
+    set_spheres(raymarcher, spheres, &blend, lights);
+    solid
+        .with_is_round(true)
+        .with_spheres_repeated(spheres.repeated)
+        .with_last_sphere((spheres.count - 1) as u8)
+        .with_last_light((lights.count - 1) as u8)
+}
+
+/// The solid with the cones in which the eyes see the spheres. Also writes the cones.
+fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool) -> Solid {
+    if !SPHERES.is_built || !raymarcher.capabilities().round {
+        return solid;
     }
+    let eyes = if stereo { 2 } else { 1 };
+    let mut last = [0; 2];
+    for (eye, last) in (0..eyes).zip(&mut last) {
+        let mut number = 0;
+        exits.each_cone(eye.into(), &mut |cone| {
+            raymarcher.set_cone(eye, number, &cone.words());
+            number += 1;
+        });
+        if number == 0 {
+            raymarcher.set_cone(eye, 0, &Cone::unseen());
+        }
+        *last = number.saturating_sub(1) as u8;
+    }
+    solid
+        .with_last_cone_left(last[0])
+        .with_last_cone_right(last[1])
 }
 
 /// Writes the constants of the spheres, their fillet with the flat solid, and their lights.
@@ -270,7 +304,9 @@ fn kind(setup: &FieldSetup) -> (Kind, u8) {
     match &setup.form {
         Form::Exits(exits) => match exits.solid.map(|solid| solid.rule) {
             Some(rule @ Rule::Sponge { .. }) => (Kind::Menger, (1_u32 << rule.levels()) as u8 - 1),
-            _ => (Kind::Box, 0),
+            Some(_) => (Kind::Box, 0),
+            // Every build accepts a sponge without levels.
+            None => (Kind::Menger, 0),
         },
         Form::Marching(marching) => {
             let flat = constants(&marching.solid);

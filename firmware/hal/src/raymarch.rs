@@ -264,6 +264,15 @@ impl Raymarcher {
         self.registers.sphere().write(constant);
     }
 
+    /// Writes the words of a cone in which an eye sees a sphere (docs/registers.md, `cone_value`).
+    pub fn set_cone(&self, eye: u16, number: u16, words: &[u32]) {
+        let registers = &self.registers;
+        registers.cone_address().write(eye << 8 | number << 4);
+        for &word in words {
+            registers.cone_value().write(word);
+        }
+    }
+
     /// Whether the raymarcher's tables already have this content. The comparison takes longer than writing the registers of a
     /// frame.
     #[must_use]

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x6c92_5843;
+pub const BUILD_ID: u32 = 0xf29e_e94c;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4963,7 +4963,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 24 bits: The solid of marching rays. Reads as 0.
+        /// `solid`, 32 bits: The solid of marching rays, and the number of spheres and lights. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -5523,12 +5523,28 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5930) }
         }
 
+        /// `cone_address`, 9 bits: Address of the next write to `cone_value`: the eye in bit 8, the number of a cone in bits 4 to 7, and of its constant in bits 0 to 3 (rtl/raymarch/sphere_unit.sv). Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn cone_address(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5934) }
+        }
+
+        /// `cone_value`, 32 bits: Writing sets a constant of the cone in which an eye sees a sphere, and increases the address by 1. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn cone_value(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5938) }
+        }
+
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5934) }
+            unsafe { Register::at(0xf000_593c) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
@@ -5536,7 +5552,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5938) }
+            unsafe { Register::at(0xf000_5940) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -5544,7 +5560,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_593c) }
+            unsafe { Register::at(0xf000_5944) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, counted for each eye, modulo 2^32.
@@ -5552,7 +5568,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5940) }
+            unsafe { Register::at(0xf000_5948) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
@@ -5560,7 +5576,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5944) }
+            unsafe { Register::at(0xf000_594c) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: occupied slots of the lanes, modulo 2^32.
@@ -5568,7 +5584,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5948) }
+            unsafe { Register::at(0xf000_5950) }
         }
 
         /// `hits`, 32 bits: Rays that hit, modulo 2^32.
@@ -5576,7 +5592,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_594c) }
+            unsafe { Register::at(0xf000_5954) }
         }
 
         /// `misses`, 32 bits: Rays that missed, modulo 2^32.
@@ -5584,7 +5600,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5950) }
+            unsafe { Register::at(0xf000_5958) }
         }
 
         /// `undecided`, 32 bits: Undecided rays, modulo 2^32.
@@ -5592,7 +5608,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5954) }
+            unsafe { Register::at(0xf000_595c) }
         }
     }
 
@@ -5752,24 +5768,28 @@ pub mod raymarch {
         pub const TABLE: u32 = 0x12c;
         /// `sphere`.
         pub const SPHERE: u32 = 0x130;
+        /// `cone_address`.
+        pub const CONE_ADDRESS: u32 = 0x134;
+        /// `cone_value`.
+        pub const CONE_VALUE: u32 = 0x138;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0x134;
+        pub const CYCLES_BUSY: u32 = 0x13c;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0x138;
+        pub const CYCLES_STALLED: u32 = 0x140;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0x13c;
+        pub const ITEMS_IN: u32 = 0x144;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0x140;
+        pub const ITEMS_OUT: u32 = 0x148;
         /// `cycles_idle`.
-        pub const CYCLES_IDLE: u32 = 0x144;
+        pub const CYCLES_IDLE: u32 = 0x14c;
         /// `evaluations`.
-        pub const EVALUATIONS: u32 = 0x148;
+        pub const EVALUATIONS: u32 = 0x150;
         /// `hits`.
-        pub const HITS: u32 = 0x14c;
+        pub const HITS: u32 = 0x154;
         /// `misses`.
-        pub const MISSES: u32 = 0x150;
+        pub const MISSES: u32 = 0x158;
         /// `undecided`.
-        pub const UNDECIDED: u32 = 0x154;
+        pub const UNDECIDED: u32 = 0x15c;
     }
 
     /// A value of `caps`.
@@ -6204,6 +6224,34 @@ pub mod raymarch {
         pub const fn with_kind(self, value: Kind) -> Self {
             Self(self.0 & !(0x3 << 22) | (value as u32 & 0x3) << 22)
         }
+
+        /// `last_cone_left`, bits 27 to 24: By exits, number of the left eye's last cone.
+        #[inline]
+        #[must_use]
+        pub const fn last_cone_left(self) -> u8 {
+            ((self.0 >> 24) & 0xf) as u8
+        }
+
+        /// This value with another `last_cone_left`: the low 4 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last_cone_left(self, value: u8) -> Self {
+            Self(self.0 & !(0xf << 24) | (value as u32 & 0xf) << 24)
+        }
+
+        /// `last_cone_right`, bits 31 to 28: By exits, number of the right eye's last cone.
+        #[inline]
+        #[must_use]
+        pub const fn last_cone_right(self) -> u8 {
+            ((self.0 >> 28) & 0xf) as u8
+        }
+
+        /// This value with another `last_cone_right`: the low 4 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last_cone_right(self, value: u8) -> Self {
+            Self(self.0 & !(0xf << 28) | (value as u32 & 0xf) << 28)
+        }
     }
 
     /// A value of `exits`.
@@ -6467,7 +6515,7 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s9.12. 3: radius of the sphere, u9.12. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces.
+        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {

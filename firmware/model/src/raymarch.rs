@@ -23,6 +23,7 @@ mod palette;
 mod ray;
 mod render;
 mod setup;
+mod tracer;
 
 pub use blend::{Beside, Blend};
 pub use end::{RayEnd, State};
@@ -35,3 +36,4 @@ pub use palette::Palette;
 pub use ray::{ROUND_INVERSE, Ray, RayResult};
 pub use render::{FieldStats, render_field, render_rows, rgb565};
 pub use setup::{FieldSetup, Form};
+pub use tracer::Tracer;

@@ -23,8 +23,8 @@ module exit_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1,
     parameter bit          STEREO = 1'b1,
-    // Whether each ray has a limit of its own, as that of a ray that meets a sphere. Otherwise `far_t` is the limit of every ray.
-    parameter bit          LIMITS = 1'b0,
+    // Whether rays may meet spheres. Each ray then has a limit of its own; otherwise `far_t` is the limit of every ray.
+    parameter bit          ROUND  = 1'b0,
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = 32
 ) (
@@ -149,26 +149,45 @@ module exit_lane #(
         {t_22, axis_22, steps_22, over_22} <= {t_21, axis_21, steps_21, over_21};
     end
 
-    // The limit, and T of an end: without a hit, the limit.
+    // The limit, and T of an end: without a hit, the limit. The light on a sphere needs the ray's direction.
     logic [exit_pkg::T_BITS-1:0] limit_21, end_t_22;
+    exit_pkg::meeting_t          sphere_22;
+    logic [2:0][exit_pkg::DIRECTION_BITS-1:0] direction_22;
 
-    if (LIMITS) begin : own_limits
-        (* ram_style = "distributed" *) logic [exit_pkg::T_BITS-1:0] limits [0:2**SLOT_BITS-1];
-        logic [exit_pkg::T_BITS-1:0] limit_22;
+    if (ROUND) begin : own_limits
+        localparam int unsigned SIZE_BITS = exit_pkg::DIRECTION_BITS - 1;
 
-        assign limit_21 = limits[slot_21];
-        assign end_t_22 = end_in.hit ? t_22 : limit_22;
+        (* ram_style = "distributed" *) logic [exit_pkg::MEETING_BITS-1:0] spheres [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [3*SIZE_BITS-1:0]            sizes   [0:2**SLOT_BITS-1];
+        exit_pkg::meeting_t        sphere_21;
+        logic [2:0][SIZE_BITS-1:0] size_22, in_size;
+
+        assign sphere_21 = spheres[slot_21];
+        assign limit_21  = sphere_21.t;
+        assign end_t_22  = end_in.hit ? t_22 : sphere_22.t;
+        assign size_22   = sizes[slot_22];
+
+        always_comb
+            for (int i = 0; i < 3; i++) begin
+                in_size[i]      = in_ray.speed[i][exit_pkg::SPEED_BITS-1 -: SIZE_BITS];
+                direction_22[i] = {1'b0, size_22[i]} ^ {exit_pkg::DIRECTION_BITS{down_22[i]}};
+            end
 
         always_ff @(posedge clk) begin
-            if (!again) limits[slot_22] <= in_ray.limit;
-            limit_22 <= limit_21;
+            if (!again) begin
+                spheres[slot_22] <= in_ray.sphere;
+                sizes[slot_22]   <= in_size;
+            end
+            sphere_22 <= sphere_21;
         end
         wire _unused = &{1'b0, far_t};
     end else begin : one_limit
-        assign limit_21 = far_t;
-        assign end_t_22 = t_22;
+        assign limit_21     = far_t;
+        assign end_t_22     = t_22;
+        assign sphere_22    = '0;
+        assign direction_22 = '0;
 
-        wire _unused = &{1'b0, in_ray.limit};
+        wire _unused = &{1'b0, in_ray.sphere, sphere_22.t};
     end
 
     delay #(.WIDTH(4), .CLOCKS(4)) signs (.clk, .enable(1'b1), .in({eye_0, down_0}), .out({eye_4, down_4}));
@@ -282,13 +301,21 @@ module exit_lane #(
     assign end_in.positive = down_22[axis_22];
     assign end_in.steps    = steps_22;
     assign end_in.height   = height_22;
+    assign end_in.met       = sphere_22.met;
+    assign end_in.number    = sphere_22.number;
+    assign end_in.direction = direction_22;
+
+    localparam int unsigned KEPT_BITS = ROUND ? exit_pkg::END_BITS : exit_pkg::FLAT_END_BITS;
+
+    logic [KEPT_BITS-1:0] kept;
 
     // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
-    fifo #(.WIDTH(exit_pkg::END_BITS), .DEPTH(PLACES)) ends (
-        .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(end_in), .out_valid, .out_ready, .out_data(out_end)
+    fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) ends (
+        .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(KEPT_BITS'(end_in)), .out_valid, .out_ready, .out_data(kept)
     );
+    assign out_end = $bits(out_end)'(kept);
 
-    wire _unused = &{1'b0, end_ready};
+    wire _unused = &{1'b0, end_ready, end_in};
 endmodule
 
 `default_nettype wire

@@ -14,8 +14,9 @@ package exit_pkg;
     localparam int unsigned HALF_BITS   = 21;
     localparam int unsigned BORDER_BITS = 22;
     localparam int unsigned SPEED_BITS  = 23;
-    // Width of a raymarch_pkg::place_t. Yosys accepts no name of another package here.
-    localparam int unsigned PLACE_BITS  = 19;
+    // Widths of a raymarch_pkg::place_t and of a component of a direction there. Yosys accepts no name of another package here.
+    localparam int unsigned PLACE_BITS     = 19;
+    localparam int unsigned DIRECTION_BITS = 18;
 
     // Width of an exit: T, and a bit before it that is set if the exit exceeds the range of T. Its other bits are then arbitrary.
     localparam int unsigned EXIT_BITS = T_BITS + 1;
@@ -51,12 +52,22 @@ package exit_pkg;
     localparam int unsigned SCALE_BITS   = 2;
     localparam int unsigned INVERSE_BITS = SCALE_BITS + FACTOR_BITS;
 
-    // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start`
-    // is its T, `limit` the largest T of a hit where rays have limits of their own, `axis` the axis of the last plane that it has crossed,
-    // and `reached` has the intervals that it has reached, 0 where it has crossed no plane. `height` is that of sky_height. A ray with
-    // `over` misses without an evaluation; other rays start within their limit.
+    // The first sphere that a ray meets: whether there is one (`met`), its number, and T at the sphere, or the far limit.
     typedef struct packed {
-        logic [T_BITS-1:0]             limit;
+        logic              met;
+        logic [2:0]        number;
+        logic [T_BITS-1:0] t;
+    } meeting_t;
+
+    localparam int unsigned MEETING_BITS = 1 + 3 + T_BITS;
+
+    // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start`
+    // is its T, `axis` the axis of the last plane that it has crossed,
+    // and `reached` has the intervals that it has reached, 0 where it has crossed no plane. `height` is that of sky_height. A ray with
+    // `over` hits no flat solid; it ends without an evaluation. Other rays start within their limit. In a build with spheres, `sphere` is
+    // the first one that the ray meets, and its T is the limit.
+    typedef struct packed {
+        meeting_t                      sphere;
         logic                          over;
         logic [PLACE_BITS-1:0]         place;
         logic [T_BITS-1:0]             start;
@@ -68,12 +79,16 @@ package exit_pkg;
         logic [2:0][INVERSE_BITS-1:0]  inverse;
     } ray_t;
 
-    // Width of a ray without its limit.
+    // Width of a ray without `sphere`.
     localparam int unsigned RAY_BITS = 1 + PLACE_BITS + T_BITS + 2 + 3 * INTERVAL_BITS + 3 + 8 + 3 * SPEED_BITS + 3 * INVERSE_BITS;
 
     // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit if rays have limits of their own, and any T
-    // otherwise), the axis and the sign of the face's outward normal, the number of evaluations, and the ray's `height`.
+    // otherwise), the axis and the sign of the face's outward normal, the number of evaluations, and the ray's `height`. In a build with
+    // spheres, `met` and `number` are those of the sphere that the ray meets at its limit, and `direction` is the ray's, s1.17.
     typedef struct packed {
+        logic [2:0][DIRECTION_BITS-1:0] direction;
+        logic                  met;
+        logic [2:0]            number;
         logic [PLACE_BITS-1:0] place;
         logic                  hit;
         logic [T_BITS-1:0]     t;
@@ -83,7 +98,9 @@ package exit_pkg;
         logic [7:0]            height;
     } end_t;
 
-    localparam int unsigned END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
+    // Width of an end without spheres, and with spheres.
+    localparam int unsigned FLAT_END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
+    localparam int unsigned END_BITS      = FLAT_END_BITS + 4 + 3 * DIRECTION_BITS;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

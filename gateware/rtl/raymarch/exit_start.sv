@@ -140,7 +140,7 @@ module exit_start #(
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(22)) place_waits (.clk, .enable(1'b1), .in(in_place), .out(place_22));
 
     assign out_valid = valid[LAST];
-    assign out_ray   = {exit_pkg::T_BITS'(0), over_22, place_22, start_22, axis_22, reached_22, down_22, height_22, speed_22, inverse_22};
+    assign out_ray   = {exit_pkg::MEETING_BITS'(0), over_22, place_22, start_22, axis_22, reached_22, down_22, height_22, speed_22, inverse_22};
 endmodule
 
 `default_nettype wire

@@ -34,7 +34,7 @@ module field_sphere (
 
     always_ff @(posedge clk) begin
         if (sphere_write) begin
-            centres[sphere_number] <= sphere.centre;
+            for (int i = 0; i < 3; i++) centres[sphere_number][22*i +: 22] <= sphere.centre[i][21:0];
             radii[sphere_number]   <= sphere.radius;
         end
         centre_0  <= centres[number];

@@ -1,11 +1,13 @@
 // Generates the rays of a frame, one per clock.
 //
 //                ┌─▶ march_start ─┐
-//   ray_pixels ──┤                ├─▶ FIFO ─▶ rays
-//                └─▶ exit_start ──┘
+//   ray_pixels ──┤                ├─▶ FIFO ─┬─▶ rays
+//                └─▶ exit_start ──┘         │
+//                    sphere_unit ───────────┘
 //
 // MARCH builds the starts of rays that march by distances, EXITS those of rays that leave empty prisms; in a build with both, `exits`
-// selects one for the frame. Bands, lines and eyes follow each other as in ray_pixels.
+// selects one for the frame. Bands, lines and eyes follow each other as in ray_pixels. With ROUND, sphere_unit finds the first sphere of
+// each ray by exits. A ray that starts beyond its sphere hits no flat solid (`over`).
 //
 // The pipelines cannot be stopped: valid bits travel with the rays, and credit_fifo at their end limits the number of rays inside. Without
 // a credit, only D and the position counters stop.
@@ -33,6 +35,7 @@ module ray_generator #(
     input  wire  [10:0]               last_column,
     input  wire  [5:0]                last_line,
     input  wire  [5:0]                last_band,
+    input  wire  [9:0]                last_row,
     input  wire                       stereo,
     input  wire                       exits,
     input  wire  [1:0][2:0][31:0]     first,
@@ -52,6 +55,11 @@ module ray_generator #(
     input  wire  [1:0][1:0][2:0]      away,
     input  wire  [1:0][1:0][2:0]      last,
     input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0] nexts,
+    // Constants of sphere_unit.
+    input  wire  [1:0][3:0]           last_cone,
+    input  wire                       cone_write,
+    input  wire  [8:0]                cone_address,
+    input  wire  [31:0]               cone_value,
     // Rays.
     output logic                      out_valid,
     input  wire                       out_ready,
@@ -97,7 +105,7 @@ module ray_generator #(
 
     localparam int unsigned KEPT_BITS = EXITS ? exit_pkg::RAY_BITS : raymarch_pkg::RAY_BITS;
 
-    logic                 by_exits;
+    logic                 by_exits, kept_valid, kept_ready;
     logic [KEPT_BITS-1:0] kept;
 
     assign by_exits = EXITS && (!MARCH || exits);
@@ -105,11 +113,39 @@ module ray_generator #(
     credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) leaving_rays (
         .clk, .rst, .idle(empty), .credit, .sent(running),
         .in_valid(by_exits ? exit_valid : march_valid), .in_data(by_exits ? KEPT_BITS'(exit_ray) : KEPT_BITS'(march_ray)),
-        .out_valid, .out_ready, .out_data(kept)
+        .out_valid(kept_valid), .out_ready(kept_ready), .out_data(kept)
     );
 
-    assign out_ray  = $bits(out_ray)'(kept);
-    assign out_exit = $bits(out_exit)'(kept);
+    assign out_ray = $bits(out_ray)'(kept);
+
+    if (EXITS && ROUND) begin : round_fields
+        logic               met_valid;
+        exit_pkg::meeting_t met;
+        exit_pkg::ray_t     ray;
+
+        assign ray = $bits(ray)'(kept);
+
+        sphere_unit #(.STEREO(STEREO)) meet (
+            .clk, .rst, .start(start && by_exits), .last_group(last_column[10:3]), .last_row, .stereo, .near_limit, .far_limit, .last_cone,
+            .write(cone_write), .address(cone_address), .value(cone_value),
+            .out_valid(met_valid), .out_ready(by_exits && out_ready && kept_valid), .out_meeting(met)
+        );
+
+        assign out_valid  = kept_valid && (met_valid || !by_exits);
+        assign kept_ready = out_ready && (met_valid || !by_exits);
+
+        always_comb begin
+            out_exit        = ray;
+            out_exit.sphere = met;
+            out_exit.over   = ray.over || ray.start > met.t;
+        end
+    end else begin : flat_fields
+        assign out_valid  = kept_valid;
+        assign kept_ready = out_ready;
+        assign out_exit   = $bits(out_exit)'(kept);
+
+        wire _unused = &{1'b0, last_row, last_cone, cone_write, cone_address, cone_value};
+    end
 
     wire _unused = &{1'b0, exits, march_ray, exit_ray};
 endmodule

@@ -174,7 +174,7 @@ module ray_paint #(
     logic [23:0] lit_colour_8;
 
     if (ROUND) begin : lit
-        delay #(.WIDTH(25), .CLOCKS(FIRST + 8)) light_waits (
+        delay #(.WIDTH(25), .CLOCKS(FIRST + 8 - BEGIN)) light_waits (
             .clk, .enable(1'b1), .in({in_end.round && in_end.state == raymarch_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
         );
     end else begin : unlit

@@ -32,7 +32,7 @@ package raymarch_registers_pkg;
         logic [4:0] shift;
         logic [16:0] inverse;
         logic [20:0] radius;
-        logic [2:0][21:0] centre;
+        logic [2:0][22:0] centre;
     } sphere_t;
 
     // Light on spheres: number of the last light, ambient light, colours of the lights, and directions to the lights, s1.16.

@@ -22,8 +22,9 @@
 // clock. A long ring holds enough rays to keep the lane busy during this time; a ring_lane with a short ring has a queue of rays for this
 // purpose.
 //
-// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. round_light then precedes ray_paint,
-// and takes one clock per light for a pixel on a sphere or fillet.
+// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Rays by exits meet the spheres of a
+// list in the generator, before they enter a lane. round_light then precedes ray_paint, and takes one clock per light for a pixel on a
+// sphere or fillet.
 //
 // Each lane makes one evaluation of the field per clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
 // whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
@@ -77,6 +78,11 @@ module raymarcher #(
     input  wire  [2:0]                sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire raymarch_registers_pkg::lights_t lights,
+    // Cones in which the eyes see the spheres (sphere_unit), for rays by exits.
+    input  wire  [1:0][3:0]           last_cone,
+    input  wire                       cone_write,
+    input  wire  [8:0]                cone_address,
+    input  wire  [31:0]               cone_value,
     // Scale of the depth codes, fog and colours of the pixels: inputs of ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
@@ -104,8 +110,9 @@ module raymarcher #(
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    // Fields that are drawn by exits when there are no spheres, and whether the build has each kind of rays.
-    localparam bit          EXITS      = (FIELDS & fields_pkg::EXITS) != 0;
+    // Whether the build has flat fields that are drawn by exits, and each kind of rays.
+    localparam bit          LEAVES     = (FIELDS & fields_pkg::EXITS) != 0;
+    localparam bit          EXITS      = LEAVES || ROUND;
     localparam bit          MARCH      = ROUND || (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(MARCH, ROUND, BLEND);
 
@@ -135,21 +142,23 @@ module raymarcher #(
     raymarch_pkg::ray_t    ray;
     exit_pkg::ray_t        exit_ray;
 
-    // Numbers of the last column and of the last line of a band, counted from 0.
+    // Numbers of the last column, of the last line of a band and of the last row of the frame, counted from 0.
     logic [10:0] column_ends;
     logic [5:0]  line_ends;
+    logic [9:0]  row_ends;
 
     always_ff @(posedge clk) begin
         column_ends <= {stride, 3'd0} - 11'd1;
         line_ends   <= lines - 6'd1;
+        row_ends    <= (10'd180 << size) - 10'd1;
     end
 
     assign by_exits = EXITS && (!MARCH || exits);
 
     ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .STEREO(STEREO)) generator (
-        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .stereo, .exits,
+        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends), .stereo, .exits,
         .first, .across, .down, .near_limit, .round(solid.is_round), .origins, .outside, .far_limit, .choice, .distances,
-        .there, .away, .last, .nexts, .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
+        .there, .away, .last, .nexts, .last_cone, .cone_write, .cone_address, .cone_value, .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
     );
 
     assign ray_odd     = by_exits ? exit_ray.place[raymarch_pkg::PLACE_BITS-1] : ray.place.odd;
@@ -199,22 +208,52 @@ module raymarcher #(
         if (EXITS) begin : leaving
             exit_pkg::end_t found;
 
-            exit_lane #(
-                .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0), .STEREO(STEREO)
-            ) lane (
-                .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
-                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
-                .out_valid(exit_valid), .out_ready(end_taken[i] && by_exits), .out_end(found),
-                .evaluates(exit_evaluates), .waits(exit_waits)
-            );
+            if (LEAVES) begin : solid
+                exit_lane #(
+                    .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0), .STEREO(STEREO),
+                    .ROUND(ROUND)
+                ) lane (
+                    .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
+                    .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
+                    .out_valid(exit_valid), .out_ready(end_taken[i] && by_exits), .out_end(found),
+                    .evaluates(exit_evaluates), .waits(exit_waits)
+                );
+            end else begin : spheres_alone
+                // Without a flat solid, a ray ends where it meets a sphere.
+                exit_pkg::end_t ending;
+
+                always_comb begin
+                    ending        = '0;
+                    ending.place  = exit_ray.place;
+                    ending.t      = exit_ray.sphere.t;
+                    ending.height = exit_ray.height;
+                    ending.met    = exit_ray.sphere.met;
+                    ending.number = exit_ray.sphere.number;
+                    for (int axis = 0; axis < 3; axis++)
+                        ending.direction[axis] = {1'b0, exit_ray.speed[axis][exit_pkg::SPEED_BITS-1 -: exit_pkg::DIRECTION_BITS-1]}
+                                                 ^ {exit_pkg::DIRECTION_BITS{exit_ray.down[axis]}};
+                end
+
+                skid_buffer #(.WIDTH(exit_pkg::END_BITS)) passing (
+                    .clk, .rst(reset), .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_data(ending),
+                    .out_valid(exit_valid), .out_ready(end_taken[i] && by_exits), .out_data(found)
+                );
+                assign {exit_evaluates, exit_waits} = '0;
+
+                wire _unused = &{1'b0, rule, levels, halves, borders};
+            end
 
             always_comb begin
-                exit_end         = '0;
-                exit_end.place   = found.place;
-                exit_end.t       = found.hit ? found.t : raymarch_pkg::END_T_BITS'(found.height);
-                exit_end.steps   = found.steps;
-                exit_end.state   = found.hit ? raymarch_pkg::HIT : raymarch_pkg::MISS;
-                exit_end.surface = {found.axis, found.positive};
+                exit_end           = '0;
+                exit_end.place     = found.place;
+                exit_end.t         = found.hit || found.met ? found.t : raymarch_pkg::END_T_BITS'(found.height);
+                exit_end.steps     = found.steps;
+                exit_end.state     = found.hit || found.met ? raymarch_pkg::HIT : raymarch_pkg::MISS;
+                exit_end.surface   = found.hit ? {found.axis, found.positive} : found.number;
+                exit_end.round     = !found.hit;
+                exit_end.direction = found.direction;
+                // A pure sphere.
+                exit_end.share     = '1;
             end
         end else begin : no_leaving
             assign {exit_ready, exit_valid, exit_evaluates, exit_waits} = '0;
@@ -300,7 +339,7 @@ module raymarcher #(
 
     if (ROUND) begin : light
         round_light #(.BLEND(BLEND), .STEREO(STEREO)) shine (
-            .clk, .rst(reset), .origins, .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]), .sphere_write, .sphere_number, .sphere,
+            .clk, .rst(reset), .origins, .exits(by_exits), .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]), .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
             .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
         );

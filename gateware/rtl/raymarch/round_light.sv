@@ -16,8 +16,9 @@ module round_light #(
 ) (
     input  wire                      clk,
     input  wire                      rst,
-    // Frame.
+    // Frame. `exits` states the format of t: u14.14 of rays by exits, u11.12 of marching rays.
     input  wire  [1:0][2:0][24:0]    origins,
+    input  wire                      exits,
     input  wire                      repeated,
     input  wire raymarch_registers_pkg::lights_t lights,
     input  wire  [5:0][23:0]         palette,
@@ -37,7 +38,7 @@ module round_light #(
     localparam int unsigned LAST = BLEND ? 26 : 22;
     localparam int unsigned KEPT_BITS = raymarch_pkg::MARCH_END_BITS + 1;
 
-    (* ram_style = "distributed" *) logic [65:0] centres [0:7];
+    (* ram_style = "distributed" *) logic [68:0] centres [0:7];
     (* ram_style = "distributed" *) logic [4:0]  shifts [0:7];
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
@@ -70,7 +71,7 @@ module round_light #(
 
     // Constants of the sphere. Each constant is read from its memory just before the clock in which it is used.
     logic [2:0]       number_2, number_8, number_11, number_18;
-    logic [2:0][21:0] centre_3;
+    logic [2:0][22:0] centre_3;
     logic [4:0]       shift_9;
     logic [16:0]      inverse_12;
     logic [23:0]      material_19;
@@ -123,16 +124,21 @@ module round_light #(
     delay #(.WIDTH(2), .CLOCKS(11)) light_to_14 (.clk, .enable, .in(light_3), .out(light_14));
     delay #(.WIDTH(1), .CLOCKS(3)) first_to_17 (.clk, .enable, .in(light_14 == '0), .out(first_17));
 
+    // 10 of t's fraction bits are used.
+    logic [23:0] t;
+
+    assign t = exits ? held.t[27:4] : {3'b0, held.t[22:2]};
+
     for (genvar i = 0; i < 3; i++) begin : axes
-        logic signed [raymarch_pkg::WIDE_BITS+16:0] sum;
+        logic signed [raymarch_pkg::WIDE_BITS+14:0] sum;
         logic [raymarch_pkg::WIDE_BITS-1:0]         origin;
         logic [22:0]                             apart;
 
         assign origin = eye_2 ? origins[1][i] : origins[0][i];
-        multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 17)) place (
-            .clk, .enable, .a({2'b0, held.t[raymarch_pkg::T_BITS-1:0]}), .b(held.direction[i]), .c({origin, 17'b0}), .p(sum)
+        multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 15)) place (
+            .clk, .enable, .a({1'b0, t}), .b(held.direction[i]), .c({origin, 15'b0}), .p(sum)
         );
-        assign apart = sum[39:17] - {centre_3[i][21], centre_3[i]};
+        assign apart = sum[37:15] - centre_3[i];
 
         always_ff @(posedge clk) begin
             if (enable) begin
@@ -141,7 +147,7 @@ module round_light #(
             end
         end
 
-        wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+16:40], sum[16:0]};
+        wire _unused = &{1'b0, sum[raymarch_pkg::WIDE_BITS+14:38], sum[14:0]};
     end
 
     // The suffix of a name is the signal's clock: 9 for the scalar product of the light's direction and the vector from the sphere's
@@ -167,7 +173,7 @@ module round_light #(
 
     always_ff @(posedge clk) begin
         if (enable) begin
-            // The shift is 6 to 20. A light behind the surface contributes 0.
+            // The shift is 6 to 21. A light behind the surface contributes 0.
             unique case (shift_9[4:2])
                 3'd1:    by_fours <= product_9[40:4];
                 3'd2:    by_fours <= 37'(product_9[40:8]);

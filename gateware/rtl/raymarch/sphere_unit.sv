@@ -1,24 +1,28 @@
-// Finds the first sphere of a list that a ray meets (docs/raymarch-exits.md, "Spheres of a list").
+// Finds the first sphere of a list that the ray of each pixel of a frame meets (docs/raymarch-exits.md, "Spheres of a list").
 //
-//   rays ─▶ place ─▶ FIFO ─────────────────────────────▶ a job for each cone around the pixel
-//             │                                                  ▲             │
-//             └─▶ group of 8 columns: a clock for each cone ─▶ masks           ▼
+//   groups of 8 columns ─▶ a clock for each cone ─▶ FIFO of masks ─▶ a job for each cone around a pixel
+//                                                                                    │
+//                                                                                    ▼
 //                                               forward·f, two sides ─▶ f² - a² - b² ─▶ root·share + f ─▶ exit_mantissa
 //                                                                                                              │
-//   met, T, number ◀─ FIFO ◀─ first of the ray's cones ◀─ shift ◀─ distance·reciprocal ◀───────────────────────┘
+//   meetings ◀─ FIFO ◀─ first of the pixel's cones ◀─ shift ◀─ distance·reciprocal ◀───────────────────────────┘
 //
-// The list of an eye has a cone for each sphere, and one more for each sphere that the near plane cuts. A ray takes one clock for each
-// cone whose rectangle holds its pixel, and at least one clock. The rectangles have whole groups of 8 columns: in the order of a picture's
-// lines, the cones of the next group are found while the rays of a group pass, if there are at most 8.
+// The list of an eye has a cone for each sphere, and one more for each sphere that the near plane cuts. A pixel takes one clock for each
+// cone whose rectangle holds it, and at least one clock. The rectangles have whole groups of 8 columns: the cones of the next group are
+// found while the pixels of a group pass, if there are at most 8.
+//
+// The pixels of a line come from the left. With `stereo` each line comes first for the left eye, then for the right eye. A ray needs no
+// place of its own to be found: the rays of ray_pixels come in the same order.
 //
 // The three linear functions of a pixel's column and row are computed with multipliers, of which the second side needs only one. Adding
 // `across` from pixel to pixel would need two sums of up to 46 bits for each function and cone, in LUT memory: some 600 LUTs in place of
 // five multipliers, and no pixel could be skipped.
 //
-// Without a sphere up to the far limit, `out_met` is low and `out_t` is the far limit. The payload of a ray passes along with it. Streams
-// are valid/ready: each item moves in a clock in which both are high, and payloads stay until then.
+// `start` (one clock) begins the frame, after the last meeting of the frame before it has left. A ray that meets no sphere up to the far
+// limit has the far limit as its T. The output is a valid/ready stream: each item moves in a clock in which both are high, and payloads
+// stay until then.
 //
-// The constants of the cones are written one at a time, in clocks with `write`, while no ray is in the unit. `address` is {eye, number of
+// The constants of the cones are written one at a time, in clocks with `write`, between frames. `address` is {eye, number of
 // the cone, constant}. All numbers start at bit 0 of `value`, in this order:
 //
 //   0   columns: groups of the first and the last column, 8 bits each      8   first of side a, the 14 highest bits
@@ -31,47 +35,37 @@
 //   7   first of side a, the 32 lowest bits                                    the sides' changes, 2 bits
 //
 // `across` and `down` have 25 bits with a sign. `last_cone` has the number of the last cone of each eye; an eye without cones has one with a
-// first column above the last. Rounding is that of the model. `near_limit`, `far_limit` and `last_cone` must hold while rays are in the
-// unit.
+// first column above the last. Rounding is that of the model. The other parameters must hold until the frame has ended.
 //
-// Latency 60 clocks for the first ray of a group, if there are 8 cones. `rst` discards all rays.
+// Latency 58 clocks for the first pixel of a group, if there are 8 cones. `rst` ends the frame.
 
 `default_nettype none
 
 module sphere_unit #(
-    parameter bit          STEREO  = 1'b1,
-    parameter int unsigned WIDTH   = 16,
-    // Whether payloads wait in block RAM.
-    parameter bit          BLOCK   = 1'b0
+    parameter bit STEREO = 1'b1
 ) (
     input  wire                                clk,
     input  wire                                rst,
-    // Frame.
+    input  wire                                start,
+    // Frame: numbers of its last group of 8 columns and of its last row, counted from 0.
+    input  wire  [7:0]                         last_group,
+    input  wire  [9:0]                         last_row,
+    input  wire                                stereo,
     input  wire  [exit_pkg::T_BITS-1:0]        near_limit,
     input  wire  [exit_pkg::T_BITS-1:0]        far_limit,
     input  wire  [1:0][3:0]                    last_cone,
     input  wire                                write,
     input  wire  [8:0]                         address,
     input  wire  [31:0]                        value,
-    // Rays.
-    input  wire                                in_valid,
-    output logic                               in_ready,
-    input  wire                                in_eye,
-    input  wire  [10:0]                        in_column,
-    input  wire  [9:0]                         in_row,
-    input  wire  [WIDTH-1:0]                   in_payload,
-    // Spheres.
+    // Meetings.
     output logic                               out_valid,
     input  wire                                out_ready,
-    output logic                               out_met,
-    output logic [2:0]                         out_number,
-    output logic [exit_pkg::T_BITS-1:0]        out_t,
-    output logic [WIDTH-1:0]                   out_payload
+    output exit_pkg::meeting_t                 out_meeting
 );
     localparam int unsigned CONES      = 16;
     localparam int unsigned ENTRIES    = STEREO ? 2 * CONES : CONES;
     localparam int unsigned ENTRY_BITS = $clog2(ENTRIES);
-    localparam int unsigned PLACE_BITS = 1 + 10 + 11;
+    localparam int unsigned GROUP_BITS = 1 + 10 + 8;
     // Latency of the tests in clocks.
     localparam int unsigned LAST       = 40;
 
@@ -123,69 +117,63 @@ module sphere_unit #(
         end
     end
 
-    // The last ray that has arrived, and whether its group differs from that of the ray before.
-    logic                  held_valid, held_new, known, leaves, place_ready, payload_ready, payload_valid, result_valid, starts;
-    logic [PLACE_BITS-1:0] held;
-
-    assign leaves   = held_valid && place_ready && !(held_new && walking && !walked);
-    assign starts   = leaves && held_new;
-    assign in_ready = (!held_valid || leaves) && payload_ready;
-
-    always_ff @(posedge clk) begin
-        held_valid <= in_valid && in_ready || held_valid && !leaves;
-        known      <= known && !write_1 || in_valid && in_ready;
-        if (in_valid && in_ready) begin
-            held     <= {STEREO && in_eye, in_row, in_column};
-            held_new <= !known || held[PLACE_BITS-1:3] != {STEREO && in_eye, in_row, in_column[10:3]};
-        end
-        if (rst) begin
-            held_valid <= 1'b0;
-            known      <= 1'b0;
-        end
-    end
-
-    // A walk through the cones of a new group, from the last to the first.
-    logic                  walking, walked, fresh, done, holds;
+    // The next group of the frame. Its walk through the cones, from the last to the first, begins when that of the group before ends and
+    // the FIFO of masks has an entry for it.
+    logic                  more, begins, room, walking, walked, fresh, done, holds, ends_line, ends_row;
+    logic                  next_eye;
+    logic [9:0]            next_row;
+    logic [7:0]            next_column;
     logic [3:0]            walk;
-    logic [PLACE_BITS-4:0] group;
+    logic [GROUP_BITS-1:0] group, done_group;
     logic [ENTRY_BITS-1:0] walk_entry;
     logic [CONES-1:0]      mask;
 
+    assign begins     = more && room && (!walking || walked);
+    assign ends_line  = next_column == last_group;
+    assign ends_row   = ends_line && (!STEREO || !stereo || next_eye);
     assign walked     = walk == '0;
-    assign walk_entry = ENTRY_BITS'({group[PLACE_BITS-4], walk});
+    assign walk_entry = ENTRY_BITS'({group[GROUP_BITS-1], walk});
     assign holds      = columns[walk_entry][7:0] <= group[7:0] && group[7:0] <= columns[walk_entry][15:8]
                         && rows[walk_entry][9:0] <= group[17:8] && group[17:8] <= rows[walk_entry][19:10];
 
     always_ff @(posedge clk) begin
-        done    <= walking && walked;
-        walking <= starts || walking && !walked;
-        fresh   <= starts;
-        walk    <= starts ? held[PLACE_BITS-1] ? last_cone[1] : last_cone[0] : walk - 4'd1;
-        mask    <= {fresh ? '0 : mask[CONES-2:0], holds};
-        if (starts) group <= held[PLACE_BITS-1:3];
+        if (begins) begin
+            next_column <= ends_line ? '0 : next_column + 1'b1;
+            if (ends_line) next_eye <= !ends_row;
+            if (ends_row) next_row <= next_row + 1'b1;
+            if (ends_row && next_row == last_row) more <= 1'b0;
+            group <= {next_eye, next_row, next_column};
+        end
+        if (start) {more, next_eye, next_row, next_column} <= {1'b1, 19'd0};
+
+        walking    <= begins || walking && !walked;
+        fresh      <= begins;
+        walk       <= begins ? STEREO && next_eye ? last_cone[1] : last_cone[0] : walk - 4'd1;
+        mask       <= {fresh ? '0 : mask[CONES-2:0], holds};
+        done       <= walking && walked;
+        done_group <= group;
         if (rst) begin
+            more    <= 1'b0;
             walking <= 1'b0;
             done    <= 1'b0;
         end
     end
 
-    // The FIFO of masks has an entry for each ray in the FIFO of places.
-    logic                  place_valid, place_new, mask_ready, mask_valid, loads;
-    logic [PLACE_BITS-1:0] place;
+    logic                  group_valid, takes;
+    logic [GROUP_BITS-1:0] next_group;
     logic [CONES-1:0]      next_mask;
 
-    fifo #(.WIDTH(PLACE_BITS + 1), .DEPTH(16)) waiting (
-        .clk, .rst, .in_valid(leaves), .in_ready(place_ready), .in_data({held_new, held}),
-        .out_valid(place_valid), .out_ready(loads), .out_data({place_new, place})
+    /* verilator lint_off PINCONNECTEMPTY */
+    credit_fifo #(.WIDTH(GROUP_BITS + CONES), .DEPTH(4)) masks (
+        .clk, .rst, .idle(), .credit(room), .sent(more && (!walking || walked)), .in_valid(done), .in_data({done_group, mask}),
+        .out_valid(group_valid), .out_ready(takes), .out_data({next_group, next_mask})
     );
-    fifo #(.WIDTH(CONES), .DEPTH(16)) masks (
-        .clk, .rst, .in_valid(done), .in_ready(mask_ready), .in_data(mask),
-        .out_valid(mask_valid), .out_ready(loads && place_new), .out_data(next_mask)
-    );
+    /* verilator lint_on PINCONNECTEMPTY */
 
-    // The ray whose jobs are sent: its place, and the cones that are left, of which the first comes next.
-    logic                  busy, idle, credit, job_ends, sends;
-    logic [PLACE_BITS-1:0] now;
+    // The pixel whose jobs are sent, and the cones that are left, of which the first comes next.
+    logic                  busy, credit, job_ends, sends, pixel_ends, group_ends;
+    logic [GROUP_BITS-1:0] now;
+    logic [2:0]            column;
     logic [CONES-1:0]      left, left_after, of_group, lowest;
     logic                  first;
 
@@ -200,23 +188,25 @@ module sphere_unit #(
     end
     assign job_ends   = left_after == '0;
     assign sends      = busy && credit;
-    assign loads      = place_valid && (!place_new || mask_valid) && (!busy || sends && job_ends);
+    assign pixel_ends = sends && job_ends;
+    assign group_ends = pixel_ends && column == '1;
+    assign takes      = group_valid && (!busy || group_ends);
 
     always_ff @(posedge clk) begin
-        busy <= loads || busy && !(sends && job_ends);
-        if (loads) begin
-            now      <= place;
-            left     <= place_new ? next_mask : of_group;
-            first    <= 1'b1;
-        end else if (sends) begin
-            left  <= left_after;
-            first <= 1'b0;
+        busy  <= takes || busy && !group_ends;
+        first <= takes || pixel_ends || first && !sends;
+        if (pixel_ends) column <= column + 1'b1;
+        if (sends)      left   <= pixel_ends ? of_group : left_after;
+        if (takes) begin
+            now      <= next_group;
+            of_group <= next_mask;
+            left     <= next_mask;
+            column   <= '0;
         end
-        if (loads && place_new) of_group <= next_mask;
         if (rst) busy <= 1'b0;
     end
 
-    // A job: a cone and a place. The suffix of a name is the number of clocks after the job.
+    // A job: a cone and a pixel. The suffix of a name is the number of clocks after the job.
     logic [LAST:0]         valid;
     logic                  first_0, last_0, some_0, first_39, last_40, some_10;
     logic [ENTRY_BITS-1:0] entry_0, entry_1, entry_2, entry_3, entry_4, entry_5, entry_19, entry_32, entry_37;
@@ -235,8 +225,8 @@ module sphere_unit #(
         first_0 <= first;
         last_0  <= job_ends;
         some_0  <= left != '0;
-        entry_0 <= ENTRY_BITS'({now[PLACE_BITS-1], number});
-        {row_0, column_0} <= now[PLACE_BITS-2:0];
+        entry_0 <= ENTRY_BITS'({now[GROUP_BITS-1], number});
+        {row_0, column_0} <= {now[GROUP_BITS-2:0], column};
         if (rst) valid <= '0;
 
         {entry_5, entry_4, entry_3, entry_2, entry_1} <= {entry_4, entry_3, entry_2, entry_1, entry_0};
@@ -414,18 +404,14 @@ module sphere_unit #(
         end
     end
 
-    credit_fifo #(.WIDTH(exit_pkg::T_BITS + 4), .DEPTH(64)) results (
-        .clk, .rst, .idle, .credit, .sent(busy && job_ends), .in_valid(valid[LAST] && last_40), .in_data({best_met, best_number, best_t}),
-        .out_valid(result_valid), .out_ready(out_ready && payload_valid), .out_data({out_met, out_number, out_t})
+    /* verilator lint_off PINCONNECTEMPTY */
+    credit_fifo #(.WIDTH(exit_pkg::MEETING_BITS), .DEPTH(64)) results (
+        .clk, .rst, .idle(), .credit, .sent(busy && job_ends), .in_valid(valid[LAST] && last_40), .in_data({best_met, best_number, best_t}),
+        .out_valid, .out_ready, .out_data(out_meeting)
     );
-    fifo #(.WIDTH(WIDTH), .DEPTH(64), .BLOCK(BLOCK)) payloads (
-        .clk, .rst, .in_valid(in_valid && (!held_valid || leaves)), .in_ready(payload_ready), .in_data(in_payload),
-        .out_valid(payload_valid), .out_ready(out_ready && result_valid), .out_data(out_payload)
-    );
+    /* verilator lint_on PINCONNECTEMPTY */
 
-    assign out_valid = result_valid && payload_valid;
-
-    wire _unused = &{1'b0, idle, mask_ready, address_1[8:7], rows[walk_entry], f_7[47:32], a_5[7:0], b_6[7:0], f_7[7:0], square_10[41:40],
+    wire _unused = &{1'b0, address_1[8:7], rows[walk_entry], f_7[47:32], a_5[7:0], b_6[7:0], f_7[7:0], square_10[41:40],
                      square_10[7:0], root_17[36], root_17[16:0], divisor_22[43:41], divisor_22[16:0],
                      mantissa_32[22], mantissa_32[3:0], product_35[43], shifted[22:0], middle[28:23]};
 endmodule

@@ -2,7 +2,7 @@
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
-use glint_model::raymarch::exits::{Beam, Exit, Exits, Eye, Inverse, Rule, Side};
+use glint_model::raymarch::exits::{Beam, Cone, Cones, Exit, Exits, Eye, Inverse, Rule, Side};
 use glint_model::raymarch::{
     FieldSetup, Form, Lights, Marching, Palette, Ray, RayEnd, RayResult, State, paint, rgb565,
 };
@@ -54,16 +54,30 @@ pub fn ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     record.bits()
 }
 
-/// Packs a ray by exits, before its first evaluation, as an `exit_pkg::ray_t`.
-///
-/// # Panics
-/// If the frame has no flat solid.
-pub fn exit_ray(layout: &Layout, exits: &Exits, place: RayPlace, beam: &Beam) -> Bits {
-    let solid = exits.solid.expect("a solid");
+/// Packs a ray by exits, before its first evaluation, as an `exit_pkg::ray_t`: in a build with spheres with the one that it meets in
+/// its `cones`.
+pub fn exit_ray(
+    layout: &Layout,
+    exits: &Exits,
+    place: RayPlace,
+    beam: &Beam,
+    cones: Option<&[Cones; 2]>,
+) -> Bits {
+    let solid = exits.solid.unwrap_or_default();
     let mut record = layout.record();
     record.set("place", place.bits());
     let start = &beam.start;
-    let is_over = exits.misses_at_start(beam);
+    let met = cones.and_then(|cones| exits.meet(cones, beam).0);
+    let round = cones.is_some();
+    let limit = met.map_or(exits.far, |met| met.t);
+    let is_over = exits.ends_at_start(beam, limit);
+    if round {
+        record.set("sphere.t", limit as u64);
+        if let Some(met) = met {
+            record.set("sphere.met", 1);
+            record.set("sphere.number", met.number);
+        }
+    }
     record.set("over", is_over);
     record.set("height", beam.height());
     let down = (0..3).filter(|&axis| beam.down[axis]);
@@ -91,14 +105,17 @@ pub fn reciprocal(inverse: Inverse) -> u64 {
     scale << 30 | u64::from(mantissa) << (exponent % 8)
 }
 
-/// Clears the start of a ray that is over, which has no meaning.
+/// Clears what has no meaning: the start of a ray that is over, and the number of no sphere.
 #[must_use]
-pub fn without_start(record: &Record) -> Bits {
+pub fn with_meaning(record: &Record) -> Bits {
     let mut record = record.clone();
     if record.is_set("over") {
         for name in ["start", "axis", "reached[0]", "reached[1]", "reached[2]"] {
             record.set(name, 0);
         }
+    }
+    if !record.is_set("sphere.met") {
+        record.set("sphere.number", 0);
     }
     record.bits()
 }
@@ -339,7 +356,7 @@ pub fn rule(rule: Rule) -> (&'static str, u64, u32) {
 
 /// Drives the solid of a raymarcher's rays by exits.
 fn set_solid(module: &mut Module, exits: &Exits) {
-    let solid = exits.solid.expect("a solid");
+    let solid = exits.solid.unwrap_or_default();
     let (_, number, levels) = rule(solid.rule);
     module.drive("rule", number);
     module.drive("levels", levels);
@@ -347,9 +364,38 @@ fn set_solid(module: &mut Module, exits: &Exits) {
     module.drive_all("borders", solid.borders());
 }
 
+/// Writes the cones of both eyes, each changed by `change`, to the ports whose names begin with `prefix`.
+pub fn set_cones(module: &mut Module, prefix: &str, exits: &Exits, change: impl Fn(&Cone) -> Cone) {
+    let cones = exits.cones();
+    let last = |eye: usize| cones[eye].list().len().saturating_sub(1) as i64;
+    module.drive_all("last_cone", [last(0), last(1)]);
+    let [write, address, value] =
+        ["write", "address", "value"].map(|name| module.port(&format!("{prefix}{name}")));
+    module.set(write, 1);
+    for (eye, cones) in cones.iter().enumerate() {
+        let mut words: Vec<_> = cones
+            .list()
+            .iter()
+            .map(|cone| change(cone).words())
+            .collect();
+        if words.is_empty() {
+            words.push(Cone::unseen());
+        }
+        for (number, words) in words.iter().enumerate() {
+            for (constant, &word) in words.iter().enumerate() {
+                module.set(address, (eye << 8 | number << 4 | constant) as u64);
+                module.set(value, u64::from(word));
+                module.clock();
+            }
+        }
+    }
+    module.set(write, 0);
+    module.clock();
+}
+
 /// Drives the prisms around the eyes.
 fn set_starts(module: &mut Module, exits: &Exits) {
-    let solid = exits.solid.expect("a solid");
+    let solid = exits.solid.unwrap_or_default();
     for (number, Eye { start, .. }) in exits.eyes.iter().enumerate() {
         let choice: u32 = match start.exit {
             Exit::Second => 0,
@@ -378,7 +424,9 @@ fn set_starts(module: &mut Module, exits: &Exits) {
 pub fn set_raymarcher(module: &mut Module, setup: &FieldSetup) {
     match &setup.form {
         Form::Exits(exits) => {
-            let solid = module.record("solid");
+            let solid = module
+                .record("solid")
+                .with("spheres_repeated", exits.spheres.repeated);
             module.drive_bits("solid", solid);
             set_solid(module, exits);
         }
@@ -393,6 +441,7 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
         ("last_column", setup.width - 1),
         ("last_line", band_lines - 1),
         ("last_band", setup.height / band_lines - 1),
+        ("last_row", setup.height - 1),
     ] {
         module.drive(name, value);
     }
@@ -414,6 +463,7 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
             module.drive_all("down", axes(exits.steps[1]));
             drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
             set_starts(module, exits);
+            set_cones(module, "cone_", exits, |cone| *cone);
         }
         Form::Marching(marching) => {
             let eyes = marching.eyes;
@@ -433,7 +483,7 @@ pub fn exit_end(layout: &Layout, place: RayPlace, end: &RayEnd) -> Bits {
     let (kind, surface, t) = match end.state {
         State::Hit(surface) => (
             Kind::Hit,
-            surface.face().unwrap_or_default(),
+            surface.face().or(surface.number()).unwrap_or_default(),
             end.depth >> 7,
         ),
         _ => (Kind::Miss, 0, end.height.into()),

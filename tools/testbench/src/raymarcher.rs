@@ -104,6 +104,7 @@ impl Raymarcher {
         let mut sink = Sink::new(&self.module, "group", &Pixel::PAYLOAD, stalls);
         let done = self.module.port("band_done");
         let mut stats = FieldStats::default();
+        let tracer = setup.tracer();
         self.pulse("start");
         for band in 0..setup.height / lines {
             let mut expected = HashMap::new();
@@ -115,7 +116,7 @@ impl Raymarcher {
                         column: x,
                         eye: eye as usize,
                     };
-                    let end = setup.trace(place.eye, x, band * lines + y);
+                    let end = tracer.trace(place.eye, x, band * lines + y);
                     stats.count(&end);
                     expected.insert(
                         (eye.into(), y.into(), x.into()),

@@ -14,6 +14,7 @@
 //! word lengths.
 
 mod code;
+mod cone_words;
 mod cones;
 mod follow;
 mod intervals;
@@ -27,7 +28,7 @@ mod vectors;
 mod words;
 
 pub use code::CODE_BITS;
-pub use cones::{Ball, Cone, Cones, Linear};
+pub use cones::{Cone, Cones, Linear};
 pub use follow::End;
 pub use intervals::{AXES, Border, Exit, Place, Prism, Rule, Solid};
 pub use ray::{Beam, Way};

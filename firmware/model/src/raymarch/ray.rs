@@ -261,14 +261,14 @@ impl Marching {
         }
     }
 
-    /// The vector from the centre of the sphere that was hit to the hit; `None` if the ray hit no sphere or fillet.
+    /// The vector from the centre of the sphere that was hit to the hit; `None` if the ray hit no sphere or fillet. t has 10 fraction bits.
     fn normal(&self, ray: &Ray, end: &RayResult) -> Option<[i32; 3]> {
         let State::Hit(surface) = end.state else {
             return None;
         };
         let (spheres, number) = (self.spheres()?, surface.number()?);
         let sphere = spheres.list.get(usize::from(number))?;
-        Some(spheres.from(sphere, self.point(ray, end.t)))
+        Some(spheres.from(sphere, self.point(ray, end.t & !3)))
     }
 
     /// Depth along the camera's forward axis n of a ray's point at t, in field units times 2^e with the exponent e of this

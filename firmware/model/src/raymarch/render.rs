@@ -4,6 +4,7 @@ use super::end::{RayEnd, State};
 use super::paint::paint;
 use super::palette::Palette;
 use super::setup::FieldSetup;
+use super::tracer::Tracer;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::reciprocal::Reciprocal;
@@ -63,23 +64,31 @@ pub fn render_field(
     target.check()?;
     target.check_size((setup.width, setup.height))?;
     let (colour, depth) = (&mut *target.colour, &mut *target.depth);
-    Ok(render_rows(setup, palette, 0, colour, depth, show))
+    Ok(render_rows(
+        &setup.tracer(),
+        palette,
+        0,
+        colour,
+        depth,
+        show,
+    ))
 }
 
 /// Draws the rows of a field from `first` on, as many as `colour` and `depth` have, as [`render_field`] does.
 #[inline(always)]
 pub fn render_rows(
-    setup: &FieldSetup,
+    tracer: &Tracer,
     palette: &Palette,
     first: u32,
     colour: &mut [u16],
     depth: &mut [u32],
     show: &mut dyn FnMut(u32, u32, &RayEnd),
 ) -> FieldStats {
+    let setup = tracer.setup;
     let width = setup.width;
     let mut stats = FieldStats::default();
     let mut look = |eye, x, y| {
-        let end = setup.trace(eye, x, y);
+        let end = tracer.trace(eye, x, y);
         stats.count(&end);
         show(x, y, &end);
         (paint(setup, palette, &end), setup.depth_code(&end))

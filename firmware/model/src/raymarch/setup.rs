@@ -1,16 +1,16 @@
 //! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
 use glint_core::camera::View;
-use glint_core::feature::STEREO;
+use glint_core::feature::{SPHERES, STEREO};
 use glint_core::field::{Field, FixedSpheres};
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::Tint;
 
 use super::directions::{Directions, check};
-use super::end::RayEnd;
 use super::exits::{Exits, Words};
 use super::marching::{Marching, placed};
 use super::options::FieldOptions;
+use super::tracer::Tracer;
 use crate::depth::DepthScale;
 use crate::error::RenderError;
 
@@ -88,18 +88,10 @@ impl FieldSetup {
         })
     }
 
-    /// Finds the end of the ray of pixel (x, y) for an eye.
-    pub fn trace(&self, eye: usize, x: u32, y: u32) -> RayEnd {
-        match &self.form {
-            Form::Exits(exits) => {
-                let beam = exits.ray(eye, x, y);
-                exits.seen(&beam, &exits.follow(&beam))
-            }
-            Form::Marching(marching) => {
-                let ray = marching.ray(eye, x, y);
-                marching.seen(&ray, &marching.march(&ray))
-            }
-        }
+    /// What finds the ends of the frame's rays.
+    pub fn tracer(&self) -> Tracer<'_> {
+        let cones = self.exits().map(Exits::cones).unwrap_or_default();
+        Tracer::new(self, cones)
     }
 
     /// The constants of marching rays; `None` if rays go by exits.
@@ -118,9 +110,14 @@ impl FieldSetup {
         }
     }
 
-    /// The spheres that rays march to, if any.
+    /// The spheres, if any.
     pub fn spheres(&self) -> Option<&FixedSpheres> {
-        self.marching().and_then(Marching::spheres)
+        match &self.form {
+            Form::Exits(Exits { spheres, .. }) => {
+                (SPHERES.is_built && spheres.count > 0).then_some(spheres)
+            }
+            Form::Marching(marching) => marching.spheres(),
+        }
     }
 
     /// Whether an eye is in a solid, so that each of its rays ends at once.

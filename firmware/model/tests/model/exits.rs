@@ -8,7 +8,7 @@ use glint_core::field::{Field, Surface};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::stereo::Stereo;
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{CODE_BITS, Exits, Words};
+use glint_model::raymarch::exits::{CODE_BITS, Cones, End, Exits, Words};
 use rand::RngExt as _;
 use rand_pcg::Pcg64Mcg;
 
@@ -37,9 +37,14 @@ fn frame(field: &str, eye: [i32; 3], direction: [i32; 3]) -> Exits {
     exits
 }
 
+/// The end of the ray of a frame with a single ray.
+fn end_of(exits: &Exits) -> End {
+    exits.end(&exits.cones(), &exits.ray(0, 0, 0))
+}
+
 /// The surface that a ray meets and its parameter in units of 2^−12, or `miss`.
 fn seen(exits: &Exits) -> String {
-    let end = exits.follow(&exits.ray(0, 0, 0));
+    let end = end_of(exits);
     let t = end.t >> (exits.words.parameter - 12);
     match end.state {
         State::Hit(Surface::Face { axis, positive }) => {
@@ -531,20 +536,12 @@ fn the_far_limit_is_the_last_parameter() {
         ("cubes:2,0.25", [32 * UNIT - 1, 0, 0]),
     ] {
         let mut exits = frame(field, eye, [ONE, 0, 0]);
-        let there = exits.follow(&exits.ray(0, 0, 0));
+        let there = end_of(&exits);
         assert!(matches!(there.state, State::Hit(_)), "{field}");
         exits.far = there.t;
-        assert_eq!(
-            exits.follow(&exits.ray(0, 0, 0)).state,
-            there.state,
-            "{field}"
-        );
+        assert_eq!(end_of(&exits).state, there.state, "{field}");
         exits.far -= 1;
-        assert_eq!(
-            exits.follow(&exits.ray(0, 0, 0)).state,
-            State::Miss,
-            "{field}"
-        );
+        assert_eq!(end_of(&exits).state, State::Miss, "{field}");
     }
 }
 
@@ -582,7 +579,7 @@ fn mirrored_rays_have_mirrored_ends() {
         for _ in 0..300 {
             let (eye, direction) = stiff(&mut random);
             let exits = frame(field, eye, direction);
-            let end = exits.follow(&exits.ray(0, 0, 0));
+            let end = end_of(&exits);
             steps = steps.max(end.steps);
             let axis = random.random_range(0..3);
             let (mut there, mut towards) = (eye, direction);
@@ -592,7 +589,7 @@ fn mirrored_rays_have_mirrored_ends() {
                 continue;
             }
             let exits = frame(field, there, towards);
-            let mirrored = exits.follow(&exits.ray(0, 0, 0));
+            let mirrored = end_of(&exits);
             assert_eq!(
                 (mirrored.t, mirrored.steps),
                 (end.t, end.steps),
@@ -638,11 +635,15 @@ fn rectangles_hold_all_pixels_that_see_a_sphere() {
         let view = view.with_half_width(half_width).expect("a half width");
         let stereo = (frame % 3 == 0).then(|| Stereo::parse("0.2,2").expect("two eyes"));
         let exits = Exits::new(&field, &view, (320, 180), stereo, Words::CHOSEN).expect("a frame");
-        let mut wide = exits;
-        for cone in wide.cones.iter_mut().flat_map(|cones| cones.list_mut()) {
-            cone.rectangle.columns = [0, 319];
-            cone.rectangle.rows = [0, 179];
-        }
+        let cones = exits.cones();
+        let wide = cones.each_ref().map(|cones| {
+            Cones::of(cones.list().iter().map(|cone| {
+                let mut cone = *cone;
+                cone.rectangle.columns = [0, 319];
+                cone.rectangle.rows = [0, 179];
+                cone
+            }))
+        });
         for _ in 0..4000 {
             let eye = usize::from(stereo.is_some() && random.random());
             let ray = exits.ray(
@@ -650,7 +651,7 @@ fn rectangles_hold_all_pixels_that_see_a_sphere() {
                 random.random_range(0..320),
                 random.random_range(0..180),
             );
-            let (end, all) = (exits.follow(&ray), wide.follow(&ray));
+            let [end, all] = [&cones, &wide].map(|cones| exits.end(cones, &ray));
             assert_eq!(
                 (end.state, end.t),
                 (all.state, all.t),
@@ -722,7 +723,7 @@ fn a_start_in_codes_makes_the_same_rays() {
             let [before, after] = [exits, coded].map(|mut exits| {
                 exits.aim(direction);
                 let beam = exits.ray(0, 0, 0);
-                (beam, exits.follow(&beam))
+                (beam, end_of(&exits))
             });
             assert_eq!(before, after, "{field} {eye:?}");
         }

@@ -1,11 +1,13 @@
 //! The raymarcher: draws distance fields into the frames of the triangle engine (docs/raymarch.md), with all features.
 
+mod cones;
 mod rows;
 mod setup;
 mod spheres;
 
 use glint_core::picture::Size;
 use glint_model::FrameBuffer;
+use glint_model::raymarch::Tracer;
 use litex_pac::raymarch::{
     Caps, Control, Counters, Error, EvPending, Kind, Raymarch, Solid, Status, Table, offset,
 };
@@ -15,6 +17,7 @@ use crate::engines::parameters::Parameters;
 use crate::engines::pass::{Growth, Pass, add};
 use crate::{Device, Events, MainMemory};
 
+use cones::ConeWords;
 use setup::{Tables, field_setup, palette};
 use spheres::Spheres;
 
@@ -45,6 +48,7 @@ pub struct Raymarcher {
     parameters: Parameters,
     control: Control,
     spheres: Spheres,
+    cones: ConeWords,
     tables: Box<Tables>,
     events: Events,
     running: Option<Pass<COUNTERS>>,
@@ -58,6 +62,7 @@ impl Raymarcher {
             parameters: Parameters::new(),
             control: Control::default(),
             spheres: Spheres::new(),
+            cones: ConeWords::default(),
             tables: Box::new([[0; 256]; 2]),
             events: Events::default(),
             running: None,
@@ -73,8 +78,10 @@ impl Raymarcher {
     /// Draws the field into a picture that already contains its triangles, starting at the cycle `now`.
     pub(crate) fn draw(&mut self, size: Size, target: &mut FrameBuffer, now: u64) -> Field {
         let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
+        let solid = Solid::from_bits(self.parameters.word(offset::SOLID));
+        let cones = self.cones.of(solid);
         let palette = palette(&self.parameters, &self.spheres, &self.tables);
-        let (stats, hidden) = rows::render(&setup, &palette, target);
+        let (stats, hidden) = rows::render(&Tracer::new(&setup, cones), &palette, target);
         let eyes = 1 + u32::from(setup.stereo.is_some());
         let work = (stats.evaluations / LANES).max(stats.rays.into());
         let cycles = work + LATENCY;
@@ -190,6 +197,8 @@ impl Device for Raymarcher {
                 }
             }
             offset::SPHERE => self.spheres.set(value),
+            offset::CONE_ADDRESS => self.cones.address(value),
+            offset::CONE_VALUE => self.cones.set(value),
             _ => self.parameters.set(offset, value),
         }
     }

@@ -5,7 +5,7 @@ use glint_core::colour::Shading;
 use glint_core::field::Surface;
 use glint_core::light::MeshLighting;
 use glint_core::mesh::Rgb565;
-use glint_model::raymarch::{FieldSetup, State};
+use glint_model::raymarch::{State, Tracer};
 use glint_model::triangle::raster;
 use glint_model::{Frame, MeshSubject, Object, Projected, Subject};
 use glint_vectors::Picture;
@@ -54,11 +54,12 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
     let constants = frame.constants()?;
     if let Some(field) = constants.field() {
         let setup = &field.setup;
+        let tracer = setup.tracer();
         let eyes = 1 + usize::from(setup.stereo.is_some());
         let places = (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (x, y)));
         for (place, (x, y)) in places.enumerate() {
             for (eye, seen) in seen[place].iter_mut().enumerate().take(eyes) {
-                let (surface, code) = surface(setup, eye, x, y);
+                let (surface, code) = surface(&tracer, eye, x, y);
                 // At equal depths, the field is in front of the triangle.
                 if code >= buffer.depth[place] && surface != Seen::Background {
                     *seen = surface;
@@ -73,8 +74,8 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
 }
 
 /// End of a ray of a field, and its depth code.
-fn surface(setup: &FieldSetup, eye: usize, x: u32, y: u32) -> (Seen, u32) {
-    let end = setup.trace(eye, x, y);
+fn surface(tracer: &Tracer, eye: usize, x: u32, y: u32) -> (Seen, u32) {
+    let end = tracer.trace(eye, x, y);
     let State::Hit(surface) = end.state else {
         return (Seen::Background, 0);
     };
@@ -89,7 +90,10 @@ fn surface(setup: &FieldSetup, eye: usize, x: u32, y: u32) -> (Seen, u32) {
         Surface::Round { .. } | Surface::Blended { .. } => Face::Round,
     };
     let sphere = surface.number().unwrap_or(0).into();
-    (Seen::Surface { face, sphere }, setup.depth_code(&end))
+    (
+        Seen::Surface { face, sphere },
+        tracer.setup.depth_code(&end),
+    )
 }
 
 /// Draws the triangles of a frame. The colour of a triangle is its index in the returned list, counted from 1.

@@ -8,16 +8,17 @@ use crate::camera::Vector;
 
 /// Draws the picture of one eye, row by row. With each ray, returns the number of tested spheres.
 pub fn picture(exits: &Exits, eye: usize) -> Vec<(RenderedRay, u32)> {
+    let cones = exits.cones();
     (0..exits.width * exits.height)
         .map(|i| {
             let beam = exits.ray(eye, i % exits.width, i / exits.width);
-            let end = exits.follow(&beam);
+            let end = exits.end(&cones, &beam);
             let ray = RenderedRay {
                 outcome: outcome(exits, &beam, &end),
                 coded: None,
                 steps: end.steps,
             };
-            (ray, end.tests)
+            (ray, exits.meet(&cones, &beam).1)
         })
         .collect()
 }

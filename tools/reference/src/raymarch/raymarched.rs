@@ -26,8 +26,9 @@ pub fn marching() -> FieldOptions {
 
 /// Draws the picture of one eye with the model, row by row. Eye 0 is the left or only eye.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
+    let tracer = setup.tracer();
     pixels(setup)
-        .map(|(x, y)| rendered_ray(setup, &setup.trace(eye, x, y)))
+        .map(|(x, y)| rendered_ray(setup, &tracer.trace(eye, x, y)))
         .collect()
 }
 

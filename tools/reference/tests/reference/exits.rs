@@ -55,6 +55,7 @@ fn rays_away_from_edges_see_the_exact_surface() {
         let sizes = glint_model::SIZES;
         let size = sizes[random.random_range(0..sizes.len())];
         let exits = Exits::new(&scene, &view, size, stereo, Words::CHOSEN).expect("a frame");
+        let cones = exits.cones();
         let (width, height) = size;
         let ray = |eye: usize, pixel| match stereo {
             None => camera.ray(pixel, Size { width, height }),
@@ -103,7 +104,7 @@ fn rays_away_from_edges_see_the_exact_surface() {
                 continue;
             }
             let beam = exits.ray(eye, x, y);
-            let end = exits.follow(&beam);
+            let end = exits.end(&cones, &beam);
             compared += 1;
             steps = steps.max(end.steps);
             let is_right = match (exact, exited::outcome(&exits, &beam, &end)) {

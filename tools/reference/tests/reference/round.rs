@@ -60,11 +60,12 @@ fn spheres_are_lit_as_they_should_be() {
         });
         let subject = Subject::new("above", &scene.to_string(), &camera, (320, 180));
         let setup = subject.setup(&FieldOptions::of(&scene));
+        let tracer = setup.tracer();
         let pixels = (0..180).flat_map(|y| (0..320).map(move |x| (x, y)));
         let mut most: f64 = 0.0;
         for ((x, y), expected) in pixels.zip(&subject.expected) {
             let Some(hit) = expected.hit else { continue };
-            let found = paint(&setup, &palette, &setup.trace(0, x, y));
+            let found = paint(&setup, &palette, &tracer.trace(0, x, y));
             for (i, found) in found.into_iter().enumerate() {
                 let mut light = f64::from(lights.ambient[i]);
                 for one in &lights.list[..2] {

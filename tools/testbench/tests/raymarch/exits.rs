@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glint_core::field::{Field, Surface};
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{Beam, Exits, Eye, Inverse, Words};
+use glint_model::raymarch::exits::{Exits, Eye, Inverse, Words};
 use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
 use glint_testbench::{Bits, Layout, Module, Pipe};
 use glint_vectors::Random;
@@ -39,13 +39,15 @@ struct End {
     is_hit: bool,
     t: u64,
     face: Option<(u64, bool)>,
+    /// The number of the sphere, and the ray's direction.
+    sphere: Option<(u64, [i32; 3])>,
     steps: u64,
     height: u64,
 }
 
 /// Drives the constants of a frame.
 fn set_lane(module: &mut Module, exits: &Exits) {
-    let solid = exits.solid.expect("a solid");
+    let solid = exits.solid.unwrap_or_default();
     let (name, _, levels) = rule(solid.rule);
     let mut record = module.record("solid").with("levels", levels);
     record.set_name("rule", name);
@@ -56,14 +58,6 @@ fn set_lane(module: &mut Module, exits: &Exits) {
     for (eye, Eye { origin, .. }) in exits.eyes.iter().enumerate() {
         module.drive_all(&format!("origins[{eye}]"), origin.iter().copied());
     }
-}
-
-/// Packs a ray as a `ray_t`. `end` is its end in the model, which determines its limit.
-fn pack(layout: &Layout, exits: &Exits, place: RayPlace, beam: &Beam, end: &End) -> Bits {
-    let mut record = layout.record_of(exit_ray(layout, exits, place, beam));
-    record.set("over", end.steps == 0);
-    record.set("limit", if end.is_hit { exits.far as u64 } else { end.t });
-    record.bits()
 }
 
 /// A sent ray and its expected end.
@@ -78,8 +72,10 @@ fn some_rays(
     layout: &Layout,
     exits: &Exits,
     eyes: usize,
+    round: bool,
 ) -> HashMap<u32, Sent> {
     let mut all = HashMap::new();
+    let cones = exits.cones();
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(exits.width) - 1) as u32;
         let y = random.integer(0, i64::from(exits.height) - 1) as u32;
@@ -91,22 +87,26 @@ fn some_rays(
             eye,
         };
         let beam = exits.ray(eye, x, y);
-        let found = exits.follow(&beam);
-        let (face, t) = match found.state {
+        let found = exits.end(&cones, &beam);
+        let (face, sphere, t) = match found.state {
             State::Hit(Surface::Face { axis, positive }) => {
-                (Some((axis.into(), positive)), found.t)
+                (Some((axis.into(), positive)), None, found.t)
             }
-            State::Hit(_) => (None, found.t),
-            _ => (None, exits.far),
+            State::Hit(surface) => {
+                let number = surface.number().unwrap_or_default();
+                (None, Some((number.into(), beam.direction())), found.t)
+            }
+            _ => (None, None, exits.far),
         };
         let end = End {
             is_hit: face.is_some(),
             t: t as u64,
             face,
+            sphere,
             steps: found.steps.into(),
             height: beam.height().into(),
         };
-        let item = pack(layout, exits, place, &beam, &end);
+        let item = exit_ray(layout, exits, place, &beam, Some(&cones).filter(|_| round));
         all.insert(place.bits(), Sent { item, end });
     }
     all
@@ -154,6 +154,11 @@ impl Bench {
                     exits.far as u64
                 },
                 face: is_hit.then(|| (record.get("axis"), record.is_set("positive"))),
+                sphere: (!is_hit && record.is_set("met")).then(|| {
+                    let direction =
+                        [0, 1, 2].map(|axis| record.signed(&format!("direction[{axis}]")));
+                    (record.get("number"), direction.map(|part| part as i32))
+                }),
                 steps: record.get("steps"),
                 height: record.get("height"),
             };
@@ -215,7 +220,7 @@ fn random_rays(name: &str, fields: &[&str]) {
         let (view, size) = (camera(&mut random), size(&mut random));
         let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
         let eyes = if stereo.is_some() { 2 } else { 1 };
-        let rays = some_rays(&mut random, &layout, &exits, eyes);
+        let rays = some_rays(&mut random, &layout, &exits, eyes, name == "exit_lane_all");
         benches[frame / fields.len() % 4].check(&exits, rays);
     }
 }

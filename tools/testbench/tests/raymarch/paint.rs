@@ -52,7 +52,7 @@ fn ending(random: &mut Random, marching: &Marching, start: &Ray) -> RayResult {
 
 /// Makes an end of a ray by exits: the model's, or a random end with a depth above 0, even if no ray of the scene can produce it.
 fn exit_ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayEnd {
-    let end = setup.trace(place.eye, place.column, place.line);
+    let end = setup.tracer().trace(place.eye, place.column, place.line);
     if random.coin() {
         return end;
     }

@@ -8,22 +8,22 @@ use crate::field::surface::{FieldSample, Surface, magnitude};
 /// A sphere with lengths in field units, which have 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedSphere {
-    /// The centre, s9.12.
+    /// The centre, s10.12.
     pub centre: [i32; 3],
-    /// The radius, u9.12: from 2^6 to 2^21 − 1 units of 2^−12.
+    /// The radius, u10.12: from 2^6 to 2^22 − 1 units of 2^−12; below 2^21 if rays march.
     pub radius: i32,
-    /// Reciprocal of the radius: 2^37 over the radius, which is first shifted left until it has 21 bits. The quotient is rounded
+    /// Reciprocal of the radius: 2^37 over the radius, which is first shifted until it has 21 bits. The quotient is rounded
     /// to nearest and saturates to 17 bits.
     pub inverse: u32,
-    /// The right shift (6 to 20) by which the product of the radius and a number with 16 fraction bits is reduced to 17 bits.
+    /// The right shift (6 to 21) by which the product of the radius and a number with 16 fraction bits is reduced to 17 bits.
     pub shift: u32,
 }
 
 impl FixedSphere {
-    /// Makes a sphere from its centre and its radius, which is from 2^6 to 2^21 − 1 units of 2^−12.
+    /// Makes a sphere from its centre and its radius, which is from 2^6 to 2^22 − 1 units of 2^−12.
     pub fn new(centre: [i32; 3], radius: i32) -> Self {
-        let lead = radius.max(1).ilog2().clamp(6, 20);
-        let shifted = (radius.max(1) as u64) << (20 - lead);
+        let lead = radius.max(1).ilog2().clamp(6, 21);
+        let shifted = (radius.max(1) as u64) << (21 - lead) >> 1;
         let inverse = (((1 << 37) + shifted / 2) / shifted).min((1 << 17) - 1) as u32;
         Self {
             centre,

@@ -11,7 +11,8 @@
 //! All of these are linear in a pixel's column and row. The vector b is perpendicular to the direction's change per column, so that b·D
 //! depends on the row only.
 
-use glint_core::field::MAX_SPHERES;
+use glint_core::feature::SPHERES;
+use glint_core::field::{FixedSphere, MAX_SPHERES};
 
 use super::narrow::{nearest, saturated};
 use super::rectangle::Rectangle;
@@ -36,19 +37,13 @@ pub(super) const DISTANCE_OFFSET: i32 = 24;
 /// Exponents of a cone's distance: 0 to this number.
 const MOST_DISTANCE: i32 = 15;
 
-/// A sphere of a list.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ball {
-    /// The centre in field units, s9.12.
-    pub centre: [i32; 3],
-    /// The radius in field units, u9.12.
-    pub radius: i32,
-}
+/// Largest number of cones: two for each sphere.
+const MAX_CONES: usize = if SPHERES.is_built { 2 * MAX_SPHERES } else { 0 };
 
 /// The cones in which an eye sees the spheres of a list, in the order of the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cones {
-    list: [Cone; 2 * MAX_SPHERES],
+    list: [Cone; MAX_CONES],
     count: usize,
 }
 
@@ -58,29 +53,11 @@ impl Cones {
         &self.list[..self.count]
     }
 
-    /// The cones, to be changed.
-    pub fn list_mut(&mut self) -> &mut [Cone] {
-        &mut self.list[..self.count]
-    }
-
-    /// Adds the cones of a sphere, each of which a pixel sees only in a rectangle.
-    pub(super) fn add(&mut self, number: u8, ball: &Ball, sight: &Sight, rectangle: Rectangle) {
-        if rectangle.is_empty() {
-            return;
-        }
-        let cones = [
-            sight.outline(ball, &rectangle),
-            sight.disc(ball, &rectangle),
-        ];
-        for cone in cones.into_iter().flatten() {
-            if let Some(place) = self.list.get_mut(self.count) {
-                *place = Cone {
-                    number,
-                    rectangle,
-                    ..cone
-                };
-                self.count += 1;
-            }
+    /// Adds a cone, if the list is not full.
+    pub(super) fn push(&mut self, cone: Cone) {
+        if let Some(place) = self.list.get_mut(self.count) {
+            *place = cone;
+            self.count += 1;
         }
     }
 }
@@ -123,24 +100,81 @@ impl Linear {
     }
 }
 
-/// What an eye sees: its position in field units, s13.12, the directions D of its first ray and their changes per column and row, s2.30,
-/// and the parameter T of the near plane, u14.14.
+/// What an eye sees.
 pub(super) struct Sight {
-    pub origin: [i32; 3],
-    pub directions: [Vector; 3],
-    pub near: i64,
+    /// Position in field units, s13.12.
+    origin: [i32; 3],
+    /// Direction D of the first ray, and its changes per column and row, s2.30.
+    directions: [Vector; 3],
+    /// The parameter T of the near plane, u14.14, slightly behind it: a sphere's hit that is rounded to before the plane is in the disc.
+    near: i64,
+    /// T for the hits in a disc: that of the near plane, or larger by at most 2^−16.
+    disc: Scaled,
+    /// The near plane's normal, and two axes in it; the second is perpendicular to the change per column.
+    plane: [Vector; 3],
+    /// The first ray's point in the near plane, from the eye, with 16 fraction bits.
+    point: Vector,
 }
 
 impl Sight {
+    /// What an eye at `origin` sees, with the near plane at the parameter `near`, u14.14.
+    pub(super) fn new(origin: [i32; 3], directions: [Vector; 3], near: i64) -> Self {
+        let [first, step, down] = directions;
+        // A picture of a single ray has no such axes.
+        let normal = match across(step, down) {
+            [0, 0, 0] => unit(first),
+            normal => unit(normal),
+        };
+        let a = match step {
+            [0, 0, 0] => unit(across(normal, smallest_axis(normal))),
+            step => unit(step),
+        };
+        let b = unit(across(normal, a));
+        let behind = near + (near >> 16);
+        let margin = Scaled::new((1 << 17) + 1, -17);
+        Self {
+            origin,
+            directions,
+            near: behind,
+            disc: Scaled::new(near, -14).by(margin),
+            plane: [normal, a, b],
+            point: first.map(|part| nearest(behind * part, 28)),
+        }
+    }
+
+    /// Computes the cones of a sphere, each of which a pixel sees only in a rectangle.
+    pub(super) fn cones(
+        &self,
+        number: u8,
+        sphere: &FixedSphere,
+        rectangle: Rectangle,
+        take: &mut dyn FnMut(Cone),
+    ) {
+        if rectangle.is_empty() {
+            return;
+        }
+        let cones = [
+            self.outline(sphere, &rectangle),
+            self.disc(sphere, &rectangle),
+        ];
+        for cone in cones.into_iter().flatten() {
+            take(Cone {
+                number,
+                rectangle,
+                ..cone
+            });
+        }
+    }
+
     /// The vector from a sphere's centre to the eye.
-    fn place(&self, ball: &Ball) -> Vector {
-        [0, 1, 2].map(|i: usize| i64::from(self.origin[i]) - i64::from(ball.centre[i]))
+    fn place(&self, sphere: &FixedSphere) -> Vector {
+        [0, 1, 2].map(|i: usize| i64::from(self.origin[i]) - i64::from(sphere.centre[i]))
     }
 
     /// The cone around a sphere; `None` for an eye inside.
-    fn outline(&self, ball: &Ball, rectangle: &Rectangle) -> Option<Cone> {
-        let q = self.place(ball);
-        let radius = i64::from(ball.radius.max(1));
+    fn outline(&self, sphere: &FixedSphere, rectangle: &Rectangle) -> Option<Cone> {
+        let q = self.place(sphere);
+        let radius = i64::from(sphere.radius.max(1));
         let beyond = dot(q, q) - radius * radius;
         if beyond < 0 {
             return None;
@@ -168,24 +202,12 @@ impl Sight {
     }
 
     /// The disc that is the part of a sphere in the near plane; `None` if the plane does not cut the sphere.
-    fn disc(&self, ball: &Ball, rectangle: &Rectangle) -> Option<Cone> {
-        let [first, step, down] = self.directions;
-        // The plane's axes; b is perpendicular to the change per column. A picture of a single ray has no such axes.
-        let normal = match across(step, down) {
-            [0, 0, 0] => unit(first),
-            normal => unit(normal),
-        };
-        let a = match step {
-            [0, 0, 0] => unit(across(normal, smallest_axis(normal))),
-            step => unit(step),
-        };
-        let b = unit(across(normal, a));
-        // A disc slightly behind the plane: a sphere's hit that is rounded to before the plane is in the disc.
-        let near = self.near + (self.near >> 16);
+    fn disc(&self, sphere: &FixedSphere, rectangle: &Rectangle) -> Option<Cone> {
+        let [normal, a, b] = self.plane;
         // From the centre to the eye, and to the first ray's point in the plane, with 16 fraction bits.
-        let q = self.place(ball).map(|part| part << 4);
-        let point = [0, 1, 2].map(|i: usize| q[i] + nearest(near * first[i], 28));
-        let radius = i64::from(ball.radius) << 4;
+        let q = self.place(sphere).map(|part| part << 4);
+        let point = [0, 1, 2].map(|i: usize| q[i] + self.point[i]);
+        let radius = i64::from(sphere.radius) << 4;
         let depth = along(point, normal);
         if depth.abs() >= radius {
             return None;
@@ -197,18 +219,17 @@ impl Sight {
             let size = Scaled::new(offset.abs(), -16).over(radius);
             size.fixed(FRACTION) * offset.signum()
         });
-        let factor = Scaled::new(near, -14).over(radius);
+        let factor = Scaled::new(self.near, -14).over(radius);
         let (cone, halvings) = self.cone(rectangle, [a, b], factor, offsets);
         let forward = Linear {
             first: 1 << (FRACTION - halvings),
             ..Linear::default()
         };
-        // All rays have one divisor, 2^22 and a half if there are no halvings. T is that of the near plane, or larger by at most 2^−16.
+        // All rays have one divisor, 2^22 and a half if there are no halvings.
         let divisor = Scaled::new((1 << (23 - halvings)) + 1, -23);
-        let margin = Scaled::new((1 << 17) + 1, -17);
         Some(Cone {
             forward,
-            distance: distance(Scaled::new(self.near, -14).by(divisor).by(margin)),
+            distance: distance(self.disc.by(divisor)),
             ..cone
         })
     }

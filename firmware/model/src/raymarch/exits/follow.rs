@@ -1,12 +1,14 @@
 //! The way of a ray through the empty prisms of a solid, to its end.
 
-use glint_core::field::{Surface, cropped};
+use glint_core::field::Surface;
 
-use super::intervals::{PERIOD, Place};
+use super::cones::Cones;
+use super::intervals::Place;
 use super::lattice;
 use super::narrow::floor;
 use super::ray::Beam;
 use super::setup::Exits;
+use super::spheres::Met;
 use crate::raymarch::{RayEnd, State};
 
 /// The end of a ray.
@@ -18,24 +20,20 @@ pub struct End {
     pub t: i64,
     /// Number of evaluations of the flat solid or the lattice.
     pub steps: u32,
-    /// Number of spheres of a list that were tested.
-    pub tests: u32,
 }
 
 impl Exits {
-    /// Follows a ray to its end.
+    /// The end of a ray, with the [cones](Self::cones) of the frame.
+    pub fn end(&self, cones: &[Cones; 2], beam: &Beam) -> End {
+        self.follow(beam, self.meet(cones, beam).0)
+    }
+
+    /// Follows a ray to its end. `met` is the sphere of a list that it meets.
     ///
     /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
-    pub fn follow(&self, beam: &Beam) -> End {
-        let (met, tests) = self.meet(beam);
-        let met = met.filter(|met| met.t <= self.far);
+    fn follow(&self, beam: &Beam, met: Option<Met>) -> End {
         let limit = met.map_or(self.far, |met| met.t);
-        let end = |state, t, steps| End {
-            state,
-            t,
-            steps,
-            tests,
-        };
+        let end = |state, t, steps| End { state, t, steps };
         // The end of a ray that meets nothing but possibly a sphere of the list.
         let beyond = |t, steps| match met {
             Some(met) => end(
@@ -88,33 +86,22 @@ impl Exits {
             steps: end.steps,
             evaluations: end.steps,
             height: beam.height(),
-            normal: self
-                .normal(beam, end)
-                .map(|normal| normal.map(|part| part as i32)),
+            normal: self.normal(beam, end),
         }
     }
 
     /// The vector from the centre of the sphere that was hit to the hit, in field units with 12 fraction bits; `None` if the ray hit no
-    /// sphere. It is about as long as the radius.
-    pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i64; 3]> {
+    /// sphere. It is about as long as the radius. T has 10 fraction bits.
+    pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i32; 3]> {
         let State::Hit(surface) = end.state else {
             return None;
         };
-        let number = surface.number()?;
-        // The direction with 18 fraction bits, and the way to the hit, rounded down.
-        let way = |axis: usize| {
-            let speed = i64::from(beam.speed[axis] >> 7 | 1);
-            floor(end.t * speed, self.words.parameter as i32 + 6)
-        };
-        let eye = &self.eyes[beam.eye];
-        let upward = |axis: usize, x: i64| if beam.down[axis] { -x } else { x };
-        Some([0, 1, 2].map(|axis: usize| {
-            let place = i64::from(eye.origin[axis]) + upward(axis, way(axis));
-            match self.balls[..self.count].get(usize::from(number)) {
-                Some(ball) => place - i64::from(ball.centre[axis]),
-                // The nearest centre of a lattice.
-                None => i64::from(cropped(place as i32, PERIOD)),
-            }
-        }))
+        let sphere = self.spheres.list.get(usize::from(surface.number()?))?;
+        let t = floor(end.t, self.words.parameter as i32 - 10);
+        let direction = beam.direction();
+        let origin = &self.eyes[beam.eye].origin;
+        let place =
+            [0, 1, 2].map(|i: usize| origin[i] + floor(t * i64::from(direction[i]), 15) as i32);
+        Some(self.spheres.from(sphere, place))
     }
 }

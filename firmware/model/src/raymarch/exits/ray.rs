@@ -45,6 +45,14 @@ pub struct Way {
 }
 
 impl Beam {
+    /// The direction D, s1.17, rounded down, for a solid whose axes are x, y and z.
+    pub fn direction(&self) -> [i32; 3] {
+        [0, 1, 2].map(|axis: usize| {
+            let size = (self.speed[axis] >> 8) as i32;
+            if self.down[axis] { !size } else { size }
+        })
+    }
+
     /// How far up the ray leads ([`RayEnd::height`](crate::raymarch::RayEnd::height)), for a solid whose axes are x, y and z: the first ten
     /// bits of the component along z, divided by those of the largest component and one more.
     pub fn height(&self) -> u8 {
@@ -106,9 +114,9 @@ impl Exits {
         }
     }
 
-    /// Whether a ray misses without an evaluation.
-    pub fn misses_at_start(&self, beam: &Beam) -> bool {
-        let has_left = |solid: &Solid| beam.start.has_left(solid, self.far);
+    /// Whether a ray ends without an evaluation: it hits no flat solid up to the parameter `limit`.
+    pub fn ends_at_start(&self, beam: &Beam, limit: i64) -> bool {
+        let has_left = |solid: &Solid| beam.start.has_left(solid, limit);
         beam.is_away || self.solid.as_ref().is_none_or(has_left)
     }
 

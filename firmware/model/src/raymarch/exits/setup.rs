@@ -1,19 +1,24 @@
 //! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
 use glint_core::camera::View;
+use glint_core::feature::SPHERES;
 use glint_core::field::{
-    FRACTION, Field, FixedSpheres, MAX_SPHERES, Placed, Primitive, Solid as Kind, cropped, units,
+    FRACTION, Field, FixedSphere, FixedSpheres, MAX_SPHERES, Placed, Primitive, Solid as Kind,
+    cropped, units,
 };
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::Stereo;
 
-use super::cones::{Ball, Cones, Sight};
+use super::cones::{Cone, Cones, Sight};
 use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
 use super::narrow::floor;
 use super::rectangle::Rectangle;
 use super::words::Words;
 use crate::error::RenderError;
 use crate::raymarch::directions::{Directions, check};
+
+/// Largest number of spheres that are met in cones.
+const SEEN_SPHERES: usize = if SPHERES.is_built { MAX_SPHERES } else { 0 };
 
 /// Far limit, as an exponent of the depth in field units.
 const FAR: u32 = 11;
@@ -97,26 +102,21 @@ pub struct Exits {
     pub far: i64,
     /// The flat solid or the lattice; `None` for a list of spheres alone.
     pub solid: Option<Solid>,
-    /// The spheres of a list.
-    pub balls: [Ball; MAX_SPHERES],
-    /// Number of spheres of the list.
-    pub count: usize,
-    /// The cones in which each eye sees the spheres.
-    pub cones: [Cones; 2],
+    /// The spheres: those of a list, that of a lattice, or none.
+    pub spheres: FixedSpheres,
+    /// The pixels by which each eye may see each sphere of a list.
+    pub rectangles: [[Rectangle; SEEN_SPHERES]; 2],
 }
 
 impl Exits {
     /// Whether pictures of a field are drawn by exits. Rays march in all other fields.
-    pub const fn draws(field: &Field) -> bool {
-        matches!(
-            field,
-            Field::Primitive(
-                Primitive::Menger(_)
-                    | Primitive::Box(_)
-                    | Primitive::Cubes(_)
-                    | Primitive::Planes(_)
-            )
-        )
+    pub fn draws(field: &Field) -> bool {
+        match field {
+            Field::Primitive(primitive) => {
+                !matches!(primitive, Primitive::Octahedron(_) | Primitive::Lattice(_))
+            }
+            Field::Union(union) => union.blend() == Q32_32::ZERO,
+        }
     }
 
     /// Computes the constants for a field, a camera and one of the [`SIZES`](crate::SIZES). A smooth union is drawn as a sharp one.
@@ -149,7 +149,7 @@ impl Exits {
             let eye = Eye::at(origin, &solid);
             Eye {
                 first: first(&rays, i, [width / 2, height / 2], &steps, narrow),
-                start: solid.map_or_else(Start::default, |solid| Start::new(&solid, &eye.corners)),
+                start: solid.map_or_else(Start::away, |solid| Start::new(&solid, &eye.corners)),
                 ..eye
             }
         };
@@ -172,11 +172,15 @@ impl Exits {
             // A saturated parameter is beyond the far limit.
             far: (1 << (FAR + rays.exponent + fraction)) - 2,
             solid,
-            balls: [Ball::default(); MAX_SPHERES],
-            count: 0,
-            cones: [Cones::default(); 2],
+            spheres: FixedSpheres {
+                list: [FixedSphere::default(); MAX_SPHERES],
+                count: 0,
+                repeated: false,
+            },
+            rectangles: [[Rectangle::default(); SEEN_SPHERES]; 2],
         };
-        exits.place_spheres(field, &views);
+        let eyes = if stereo.is_some() { 2 } else { 1 };
+        exits.place_spheres(field, &views[..eyes]);
         Ok(exits)
     }
 
@@ -191,38 +195,40 @@ impl Exits {
         })
     }
 
-    /// Computes the constants of the spheres of a field. `views` are the cameras of the two eyes.
-    fn place_spheres(&mut self, field: &Field, views: &[View; 2]) {
+    /// Computes the constants of the spheres of a field. `views` are the cameras of the eyes.
+    fn place_spheres(&mut self, field: &Field, views: &[View]) {
         let round = match field {
             Field::Primitive(primitive) => primitive,
             Field::Union(union) => union.round(),
         };
         let Placed {
-            solid:
-                Kind::Spheres(FixedSpheres {
-                    list,
-                    count,
-                    repeated: false,
-                }),
+            solid: Kind::Spheres(spheres),
             scale,
             ..
         } = round.placed()
         else {
             return;
         };
+        if !SPHERES.is_built {
+            return;
+        }
         // Scaled as the flat member of a union. Scales have four fraction bits.
         let own = self.scale;
         let [to, from] = [own, scale].map(|scale| scale.to_bits() >> 28);
         let rescaled = |x: i32| (2 * i64::from(x) * to + from).div_euclid(2 * from) as i32;
-        self.count = count;
-        for (ball, sphere) in self.balls.iter_mut().zip(&list[..count]) {
-            ball.centre = sphere.centre.map(rescaled);
-            ball.radius = rescaled(sphere.radius);
-        }
+        self.spheres = FixedSpheres {
+            list: spheres.list.map(|sphere| {
+                FixedSphere::new(sphere.centre.map(rescaled), rescaled(sphere.radius))
+            }),
+            ..spheres
+        };
         let size = [self.width, self.height];
-        self.see_spheres(|ball, eye| {
-            Rectangle::around(ball.centre, ball.radius, &views[eye], own, size)
-        });
+        for (rectangles, view) in self.rectangles.iter_mut().zip(views) {
+            let spheres = self.spheres.list.iter().take(spheres.count);
+            for (rectangle, sphere) in rectangles.iter_mut().zip(spheres) {
+                *rectangle = Rectangle::around(sphere.centre, sphere.radius, view, own, size);
+            }
+        }
     }
 
     /// Replaces the rays of all pixels by one ray with the direction D, s2.30.
@@ -233,38 +239,52 @@ impl Exits {
             eye.first = direction;
         }
         let size = [self.width, self.height];
-        self.see_spheres(|_, _| Rectangle::all(size));
+        self.rectangles = [[Rectangle::all(size); SEEN_SPHERES]; 2];
     }
 
-    /// Computes the cones of the spheres for each eye.
-    fn see_spheres(&mut self, rectangle: impl Fn(&Ball, usize) -> Rectangle) {
+    /// The cones in which each eye sees the spheres of a list.
+    pub fn cones(&self) -> [Cones; 2] {
+        [0, 1].map(|eye| {
+            let mut cones = Cones::default();
+            self.each_cone(eye, &mut |cone| cones.push(cone));
+            cones
+        })
+    }
+
+    /// Computes the cones in which an eye sees the spheres of a list, in the order of the list.
+    pub fn each_cone(&self, eye: usize, take: &mut dyn FnMut(Cone)) {
+        if self.spheres.repeated || self.spheres.count == 0 {
+            return;
+        }
         let world = |[x, y, z, _]: [i32; AXES]| [x, y, z].map(i64::from);
         let [across, down] = self.steps.map(world);
+        let Eye { origin, first, .. } = self.eyes[eye];
         // The bits of the parameter T that the constants use.
         let near = floor(self.near, self.words.parameter as i32 - 14);
-        self.cones = [0, 1].map(|eye: usize| {
-            let Eye { origin, first, .. } = self.eyes[eye];
-            let sight = Sight {
-                origin,
-                directions: [world(first), across, down],
-                near,
-            };
-            let mut cones = Cones::default();
-            for (number, ball) in (0..).zip(&self.balls[..self.count]) {
-                cones.add(number, ball, &sight, rectangle(ball, eye));
-            }
-            cones
-        });
+        let sight = Sight::new(origin, [world(first), across, down], near);
+        let spheres = self.spheres.list.iter().take(self.spheres.count);
+        for ((number, sphere), rectangle) in (0..).zip(spheres).zip(&self.rectangles[eye]) {
+            sight.cones(number, sphere, *rectangle, take);
+        }
     }
 
-    /// Whether an eye is inside the solid, and not on its surface: in the solid for rays that lead up, and for rays that lead down.
+    /// Whether an eye is inside a sphere or the flat solid, and not on its surface: in the solid for rays that lead up, and for rays that
+    /// lead down.
     pub(in crate::raymarch) fn is_inside(&self, eye: usize) -> bool {
-        self.solid.is_some_and(|solid| {
-            self.eyes[eye].corners.iter().all(|corner| {
+        let eye = &self.eyes[eye];
+        let in_solid = |solid: &Solid| {
+            eye.corners.iter().all(|corner| {
                 let intervals = solid.intervals(corner, &[i32::MIN; AXES]);
                 solid.place(&intervals) == Place::Solid
             })
-        })
+        };
+        let in_sphere = |sphere: &FixedSphere| {
+            let apart = |i: usize| i64::from(eye.origin[i]) - i64::from(sphere.centre[i]);
+            let square: i64 = (0..3).map(|i| apart(i).pow(2)).sum();
+            square < i64::from(sphere.radius).pow(2)
+        };
+        let mut spheres = self.spheres.list.iter().take(self.spheres.count);
+        self.solid.as_ref().is_some_and(in_solid) || spheres.any(in_sphere)
     }
 
     /// Depth along the camera's forward axis n at the parameter `t`, in field units times 2^e, u19.21.
@@ -274,6 +294,18 @@ impl Exits {
 }
 
 impl Start {
+    /// Without a flat solid, all rays lead away.
+    fn away() -> Self {
+        let side = Side {
+            is_away: true,
+            ..Side::default()
+        };
+        Self {
+            exit: Exit::default(),
+            sides: [[side; AXES]; 2],
+        }
+    }
+
     /// The empty prism around an eye at `corners`, if it is the same for all rays that do not lead away from the solid: for each of the
     /// ways to mirror the axes, the borders along an axis depend only on this axis.
     fn new(solid: &Solid, corners: &[[i64; AXES]; 2]) -> Self {

@@ -1,6 +1,6 @@
 //! Spheres of a list: a ray meets a sphere if its direction is in the cone around the sphere.
 
-use super::cones::{Cone, DISTANCE_OFFSET, FRACTION, SHARE};
+use super::cones::{Cone, Cones, DISTANCE_OFFSET, FRACTION, SHARE};
 use super::narrow::{floor, normalised, squared};
 use super::ray::Beam;
 use super::setup::Exits;
@@ -26,11 +26,12 @@ pub struct Met {
 }
 
 impl Exits {
-    /// The first sphere of the list that a ray meets, the first in the list of several at one parameter, and the number of tested cones.
-    pub fn meet(&self, beam: &Beam) -> (Option<Met>, u32) {
+    /// The first sphere of the list that a ray meets up to the far limit, the first in the list of several at one parameter, and the number
+    /// of tested cones.
+    pub fn meet(&self, cones: &[Cones; 2], beam: &Beam) -> (Option<Met>, u32) {
         let mut best: Option<Met> = None;
         let mut tests = 0;
-        for cone in self.cones[beam.eye].list() {
+        for cone in cones[beam.eye].list() {
             if !cone.rectangle.holds(beam.column, beam.row) {
                 continue;
             }
@@ -42,7 +43,7 @@ impl Exits {
                 best = Some(Met { t, number });
             }
         }
-        (best, tests)
+        (best.filter(|met| met.t <= self.far), tests)
     }
 
     /// The parameter at which a ray in a cone meets the sphere, if this is not before the near plane.

@@ -28,8 +28,9 @@ pub(super) fn unit(vector: Vector) -> Vector {
     }
     // The largest component has 30 bits.
     let scaled = vector.map(|part| nearest(part, most.ilog2() as i32 + 1 - UNIT as i32));
-    let length = dot(scaled, scaled).isqrt();
-    scaled.map(|part| (part << UNIT) / length)
+    // One division: its quotient has 33 bits at most, and a component 30.
+    let inverse = (1 << 62) / dot(scaled, scaled).isqrt();
+    scaled.map(|part| nearest(part * inverse, 32))
 }
 
 /// A number of at least 0: a mantissa of 31 bits, rounded down, and an exponent of 2. The mantissa 0 is the number 0.

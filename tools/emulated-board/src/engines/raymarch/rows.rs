@@ -4,18 +4,14 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use glint_model::FrameBuffer;
-use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayEnd, render_rows};
+use glint_model::raymarch::{FieldStats, Palette, RayEnd, Tracer, render_rows};
 
 /// Number of rows of a strip.
 const ROWS: usize = 16;
 
 /// Draws a field into a picture that already contains its triangles. Returns the counts of its rays, and the number of pixels
 /// that triangles hide.
-pub fn render(
-    setup: &FieldSetup,
-    palette: &Palette,
-    target: &mut FrameBuffer,
-) -> (FieldStats, u32) {
+pub fn render(tracer: &Tracer, palette: &Palette, target: &mut FrameBuffer) -> (FieldStats, u32) {
     let pixels = ROWS * target.width as usize;
     let strips = target.colour.chunks_mut(pixels);
     let strips = strips.zip(target.depth.chunks_mut(pixels));
@@ -27,7 +23,7 @@ pub fn render(
             let Some((first, (colour, depth))) = next else {
                 return;
             };
-            let (stats, hidden) = strip(setup, palette, first, colour, depth);
+            let (stats, hidden) = strip(tracer, palette, first, colour, depth);
             let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
             sums.0.add(&stats);
             sums.1 += hidden;
@@ -45,7 +41,7 @@ pub fn render(
 
 /// Draws the rows from row `first` on.
 fn strip(
-    setup: &FieldSetup,
+    tracer: &Tracer,
     palette: &Palette,
     first: u32,
     colour: &mut [u16],
@@ -53,6 +49,7 @@ fn strip(
 ) -> (FieldStats, u32) {
     // At pixels with triangles, the ray's depth test is repeated here, because the model does not count the rays that fail this test.
     let before = depth.to_vec();
+    let setup = tracer.setup;
     let mut hidden = 0;
     let mut show = |x, y, end: &RayEnd| {
         let stored = before.get(((y - first) * setup.width + x) as usize);
@@ -61,6 +58,6 @@ fn strip(
             hidden += u32::from(setup.depth_code(end) < stored);
         }
     };
-    let stats = render_rows(setup, palette, first, colour, depth, &mut show);
+    let stats = render_rows(tracer, palette, first, colour, depth, &mut show);
     (stats, hidden)
 }

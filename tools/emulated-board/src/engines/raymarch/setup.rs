@@ -45,7 +45,7 @@ pub fn field_setup(
     };
     let exits = ExitsRegister::from_bits(parameters.word(offset::EXITS));
     let form = if exits.enable() {
-        Form::Exits(leaving(parameters, exits, [width, height]))
+        Form::Exits(leaving(parameters, exits, spheres, [width, height]))
     } else {
         Form::Marching(marching(parameters, spheres))
     };
@@ -63,7 +63,13 @@ pub fn field_setup(
 }
 
 /// The constants of rays by exits.
-fn leaving(parameters: &Parameters, register: ExitsRegister, [width, height]: [u32; 2]) -> Exits {
+fn leaving(
+    parameters: &Parameters,
+    register: ExitsRegister,
+    spheres: &Spheres,
+    [width, height]: [u32; 2],
+) -> Exits {
+    let field = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let rule = match register.rule() {
         RuleRegister::Planes => Rule::Planes,
         RuleRegister::Sponge => Rule::sponge(register.depth().into()),
@@ -100,9 +106,8 @@ fn leaving(parameters: &Parameters, register: ExitsRegister, [width, height]: [u
         near: parameters.unsigned(offset::NEAR, 28).into(),
         far: parameters.unsigned(offset::FAR, 28).into(),
         solid: Some(solid),
-        balls: Default::default(),
-        count: 0,
-        cones: Default::default(),
+        spheres: round(field, spheres),
+        rectangles: Default::default(),
     }
 }
 
@@ -174,11 +179,7 @@ fn eye(parameters: &Parameters, first: u32) -> Eye {
 /// The solid; for a union, the flat solid and the spheres that are united with it.
 fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
-    let round = FixedSpheres {
-        list: spheres.list,
-        count: usize::from(register.last_sphere()) + 1,
-        repeated: register.spheres_repeated(),
-    };
+    let round = round(register, spheres);
     if register.is_round() && !register.flat_too() {
         return (Solid::Spheres(round), None);
     }
@@ -199,6 +200,15 @@ fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) 
         blend: spheres.blend,
     });
     (flat, beside)
+}
+
+/// The spheres.
+fn round(register: SolidRegister, spheres: &Spheres) -> FixedSpheres {
+    FixedSpheres {
+        list: spheres.list,
+        count: usize::from(register.last_sphere()) + 1,
+        repeated: register.spheres_repeated(),
+    }
 }
 
 /// The colours and tables for the pixels of the field.

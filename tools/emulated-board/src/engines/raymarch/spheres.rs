@@ -39,7 +39,7 @@ impl Spheres {
         let (entry, value) = (usize::from(register.entry()), register.value());
         let signed = |bits: u32| (value << (32 - bits)) as i32 >> (32 - bits);
         match entry {
-            0..=2 => self.next.centre[entry] = signed(22),
+            0..=2 => self.next.centre[entry] = signed(23),
             3 => self.next.radius = (value & 0x1F_FFFF) as i32,
             4 => {
                 self.next.inverse = value & 0x1_FFFF;

@@ -56,9 +56,10 @@ fn picture(input: Seen) -> Result<Outcome> {
         Err(error) => return Ok(Outcome::Refused(error.to_string())),
     };
     let mut stats = FieldStats::default();
+    let tracer = setup.tracer();
     for eye in 0..if setup.stereo.is_some() { 2 } else { 1 } {
         for i in 0..SIZE.0 * SIZE.1 {
-            stats.count(&setup.trace(eye, i % SIZE.0, i / SIZE.0));
+            stats.count(&tracer.trace(eye, i % SIZE.0, i / SIZE.0));
         }
     }
     let inside = match setup.has_eye_inside() {

@@ -46,6 +46,7 @@ impl Picture {
         let constants = frame.constants().unwrap();
         let field = constants.field().unwrap();
         let setup = &field.setup;
+        let tracer = setup.tracer();
         let eyes = if tint.is_some() { 2 } else { 1 };
         let lines = band_rows(setup.width);
         let mut bands = vec![vec![]; (setup.height / lines) as usize];
@@ -57,7 +58,7 @@ impl Picture {
                     column: x,
                     eye,
                 };
-                let pixel = pixel(setup, &field.palette, place, &setup.trace(eye, x, y));
+                let pixel = pixel(setup, &field.palette, place, &tracer.trace(eye, x, y));
                 bands[(y / lines) as usize].push(pixel);
             }
         }

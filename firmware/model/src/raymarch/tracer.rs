@@ -1,0 +1,34 @@
+//! Finds the ends of the rays of a frame.
+
+use super::end::RayEnd;
+use super::exits::Cones;
+use super::setup::{FieldSetup, Form};
+
+/// The constants of a frame, with the cones in which the eyes see its spheres. They are large, so the constants alone do not have them.
+#[derive(Clone, Copy, Debug)]
+pub struct Tracer<'a> {
+    /// The constants.
+    pub setup: &'a FieldSetup,
+    cones: [Cones; 2],
+}
+
+impl<'a> Tracer<'a> {
+    /// The constants of a frame, with the cones of its spheres.
+    pub const fn new(setup: &'a FieldSetup, cones: [Cones; 2]) -> Self {
+        Self { setup, cones }
+    }
+
+    /// Finds the end of the ray of pixel (x, y) for an eye.
+    pub fn trace(&self, eye: usize, x: u32, y: u32) -> RayEnd {
+        match &self.setup.form {
+            Form::Exits(exits) => {
+                let beam = exits.ray(eye, x, y);
+                exits.seen(&beam, &exits.end(&self.cones, &beam))
+            }
+            Form::Marching(marching) => {
+                let ray = marching.ray(eye, x, y);
+                marching.seen(&ray, &marching.march(&ray))
+            }
+        }
+    }
+}

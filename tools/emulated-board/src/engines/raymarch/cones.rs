@@ -1,0 +1,39 @@
+//! The registers `cone_address` and `cone_value`: the constants of the cones in which the eyes see the spheres.
+
+use glint_core::field::MAX_SPHERES;
+use glint_model::raymarch::exits::{Cone, Cones};
+use litex_pac::raymarch::Solid;
+
+/// Number of places for constants of a cone; the last one is unused.
+const PLACES: usize = 16;
+
+/// The constants that writes to the registers have set, by eye and cone.
+#[derive(Default)]
+pub struct ConeWords {
+    words: [[[u32; PLACES]; 2 * MAX_SPHERES]; 2],
+    address: u32,
+}
+
+impl ConeWords {
+    /// Sets the address of the next constant.
+    pub fn address(&mut self, address: u32) {
+        self.address = address;
+    }
+
+    /// Sets the next constant.
+    pub fn set(&mut self, value: u32) {
+        let words = self.words.as_flattened_mut().as_flattened_mut();
+        let place = self.address as usize % words.len();
+        words[place] = value;
+        self.address = self.address.wrapping_add(1);
+    }
+
+    /// The cones of each eye, up to the last ones of the register `solid`.
+    pub fn of(&self, solid: Solid) -> [Cones; 2] {
+        let last = [solid.last_cone_left(), solid.last_cone_right()];
+        [0, 1].map(|eye: usize| {
+            let cones = self.words[eye].iter().take(usize::from(last[eye]) + 1);
+            Cones::of(cones.filter_map(|words| words.first_chunk().map(Cone::of_words)))
+        })
+    }
+}
