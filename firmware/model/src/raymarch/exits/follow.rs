@@ -62,15 +62,13 @@ impl Exits {
                 }
                 Place::Gone => break,
                 Place::Empty(prism) => prism,
-                Place::Box(prism) => {
-                    match lattice::meet(self, solid, beam, way.t, &point, &intervals) {
-                        Some(t) if t <= limit => {
-                            return end(State::Hit(Surface::Round { number: 0 }), t, steps);
-                        }
-                        Some(_) => break,
-                        None => prism,
+                Place::Box(prism) => match lattice::meet(self, solid, beam, way.t, &point) {
+                    Some(t) if t <= limit => {
+                        return end(State::Hit(Surface::Round { number: 0 }), t, steps);
                     }
-                }
+                    Some(_) => break,
+                    None => prism,
+                },
             };
             way.reached = intervals;
             way = self.left(beam, &way, &prism);

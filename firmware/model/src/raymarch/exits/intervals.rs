@@ -58,6 +58,11 @@ impl Rule {
         }
     }
 
+    /// Whether the solid consists of spheres.
+    pub const fn is_lattice(&self) -> bool {
+        matches!(self, Self::Repeated { round: true })
+    }
+
     /// Number of levels of a sponge; 0 for other solids.
     pub const fn levels(&self) -> u32 {
         match *self {

@@ -1,47 +1,67 @@
 //! Spheres of a lattice: a ray in the box about a sphere meets the sphere, or leaves the box.
+//!
+//! The direction D is doubled until its length is from 1 to 2, so that short numbers are as exact for all cameras.
 
 use super::intervals::{AXES, PERIOD, Solid};
-use super::narrow::{floor, root, saturated, squared};
+use super::narrow::{floor, nearest, normalised, squared};
 use super::ray::Beam;
 use super::setup::Exits;
 
-/// Bits of a coordinate from the centre of a sphere: at most half the period of 64 field units.
-const LOCAL: u32 = PERIOD - 1;
+/// Fraction bits of |q|² − r².
+const BEYOND: u32 = 13;
+/// Fraction bits of |D|².
+const SQUARE: u32 = 15;
+/// Fraction bits of the square of the root, before and after it is narrowed.
+const REST: u32 = 26;
+const SHORT_REST: u32 = 20;
+/// Fraction bits of the root, and of its difference from −q·D.
+const ROOT: u32 = 15;
+/// Fraction bits of the mantissa of 1/|D|².
+const MANTISSA: i32 = 18;
 
-/// The parameter at which a ray in a sphere's box meets the sphere. `point` is the ray's point at the parameter `t`, and `intervals` has its
-/// intervals.
+/// The parameter at which a ray in a sphere's box meets the sphere. `point` is the ray's point at the parameter `t`.
 pub(super) fn meet(
     exits: &Exits,
     solid: &Solid,
     beam: &Beam,
     t: i64,
     point: &[i64; AXES],
-    intervals: &[i32; AXES],
 ) -> Option<i64> {
     let words = &exits.words;
-    // The point from the sphere's centre, s5.13: an odd number, the middle of the interval of the rounded point.
+    let (side, radius) = (solid.side[0], solid.side[0] / 2);
+    // The point from the sphere's centre, s5.12. Rounding may place the point before the box; it then counts as on the box.
     let q = [0, 1, 2].map(|axis: usize| {
-        let centre = (i64::from(intervals[axis] >> 1) << PERIOD) + solid.side[axis] / 2;
-        2 * saturated(point[axis] - centre, LOCAL) + 1
+        let within = point[axis] & ((1 << PERIOD) - 1);
+        (if within >= side { 0 } else { within }) - radius
     });
-    let radius = solid.side[0];
-    // |q|² − r², with 14 of its 26 fraction bits, rounded down.
-    let beyond = (q.map(|x| x * x).iter().sum::<i64>() - radius * radius) >> 12;
+    // |q|² − r², of which 24 fraction bits are computed, rounded down.
+    let beyond = (q.map(|x| x * x).iter().sum::<i64>() - radius * radius) >> (24 - BEYOND);
     if beyond < 0 {
         return Some(t);
     }
-    // q·D: 38 fraction bits, narrowed by rounding down.
-    let along: i64 = (0..3).map(|i| q[i] * i64::from(beam.speed[i])).sum();
-    let along = floor(along, 38 - words.along as i32);
-    // (q·D)² − |D|²·(|q|² − r²), 30 fraction bits. The first square is without that of the bits after the first 18; |D|² has 16 of its 36
-    // bits, rounded down.
-    let square = squared(along, words.along.saturating_sub(11));
-    let square = floor(square, 2 * words.along as i32 - 30);
-    let rest = square - (beam.square >> 20) * beyond;
-    if along >= 0 || rest <= 0 {
+    // q·D with the doubled direction, rounded down.
+    let along: i64 = (0..3).map(|axis| q[axis] * exits.speed(beam, axis)).sum();
+    let fraction = 13 + words.direction - beam.doublings;
+    let along = floor(along, fraction as i32 - words.along as i32);
+    // (q·D)² − |D|²·(|q|² − r²), an integer to the one below. The first square is without that of the bits after the first 18, and |D|² is
+    // rounded to nearest.
+    let square = squared(along, words.along.saturating_sub(10));
+    let square = floor(square, 2 * words.along as i32 - REST as i32);
+    let product = nearest(beam.square, 23 - SQUARE as i32) * beyond;
+    let rest = square - (product >> (SQUARE + BEYOND - REST)) - 1;
+    if along >= 0 || rest < 0 {
         return None;
     }
-    // Both terms have 15 fraction bits.
-    let distance = -floor(along, words.along as i32 - 15) - root(rest);
-    Some(t + words.divided(distance.max(0), 15, beam.inverse_square))
+    // A root of 0 counts as one of 1.
+    let (root, shift) = normalised((rest >> (REST - SHORT_REST)).max(1));
+    let root = floor(
+        i64::from(root),
+        2 + (shift + SHORT_REST as i32) / 2 - ROOT as i32,
+    );
+    // At least 0, as the root is rounded down.
+    let distance = -floor(along, words.along as i32 - ROOT as i32) - root;
+    let inverse = beam.inverse_square;
+    let mantissa = floor(i64::from(inverse.mantissa), words.inverse as i32 - MANTISSA);
+    let bits = ROOT as i32 + MANTISSA - inverse.exponent;
+    Some(t + words.parameter_of(distance * mantissa, bits))
 }

@@ -3,7 +3,7 @@
 use glint_core::field::{FRACTION, magnitude};
 
 use super::intervals::{AXES, Exit, Prism, Solid};
-use super::narrow::{floor, squared};
+use super::narrow::{floor, nearest, squared};
 use super::setup::Exits;
 use super::words::Inverse;
 
@@ -23,9 +23,11 @@ pub struct Beam {
     pub speed: [u32; AXES],
     /// Reciprocals of `speed`.
     pub inverse: [Inverse; AXES],
-    /// The square of the direction's length, u2.36, rounded down.
+    /// The number of doublings, 0 to 3, that brings the direction's length to between 1 and 2.
+    pub doublings: u32,
+    /// The square of the doubled direction's length, u2.23, rounded down.
     pub square: i64,
-    /// The reciprocal of `square`.
+    /// The reciprocal of `square`, times 2^`doublings`.
     pub inverse_square: Inverse,
     /// Where the ray leaves the empty prism around the eye.
     pub start: Way,
@@ -81,9 +83,13 @@ impl Exits {
         let speed = direction.map(|part| 2 * magnitude(part) + 1);
         // The square is that of 23 bits, without the square of the lowest 6.
         let [x, y, z, _] = speed.map(|speed| squared(i64::from(speed >> 2), 6));
-        let square = (x + y + z) >> 10;
+        let square = x + y + z;
+        // No direction that a camera can have is shorter than 1/8.
+        let doublings = (0..3).find(|&doublings| square >> (46 - 2 * doublings) != 0);
+        let doublings = doublings.unwrap_or(3);
+        let square = square >> (23 - 2 * doublings);
         // A quarter of the square is below 1.
-        let quarter = Inverse::of((square >> 13) as u32, &self.words);
+        let quarter = Inverse::of(square as u32, &self.words);
         let beam = Beam {
             eye,
             column,
@@ -91,9 +97,10 @@ impl Exits {
             down,
             speed,
             inverse: speed.map(|speed| Inverse::of(speed, &self.words)),
+            doublings,
             square,
             inverse_square: Inverse {
-                exponent: quarter.exponent - 2,
+                exponent: quarter.exponent + doublings as i32 - 2,
                 ..quarter
             },
             // The face of a ray that starts in the solid is perpendicular to the z axis.
@@ -155,15 +162,26 @@ impl Exits {
         }
     }
 
-    /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12, rounded down.
+    /// The magnitude of a direction's component in products with it, with one fraction bit more than `Words::direction`: an odd number, the
+    /// middle of the interval of the truncated magnitude.
+    pub(super) fn speed(&self, beam: &Beam, axis: usize) -> i64 {
+        let cut = 24 - self.words.direction;
+        i64::from((beam.speed[axis] >> 1 >> cut) << 1 | 1)
+    }
+
+    /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12: rounded down, and in a
+    /// lattice to nearest.
     pub(super) fn point(&self, beam: &Beam, t: i64) -> [i64; AXES] {
         let corner = self.eyes[beam.eye].corner(&beam.down);
-        let cut = 24 - self.words.direction;
         let bits = (self.words.parameter + self.words.direction + 1) as i32 - 12;
+        let is_lattice = (self.solid).is_some_and(|solid| solid.rule.is_lattice());
         [0, 1, 2, 3].map(|axis: usize| {
-            // The magnitude loses its lowest bits, and again stands for the middle of its interval.
-            let speed = i64::from((beam.speed[axis] >> 1 >> cut) << 1 | 1);
-            corner[axis] + floor(t * speed, bits)
+            let way = t * self.speed(beam, axis);
+            corner[axis]
+                + match is_lattice {
+                    true => nearest(way, bits),
+                    false => floor(way, bits),
+                }
         })
     }
 }
