@@ -8,7 +8,8 @@
 
 module exit_borders #(
     parameter int unsigned LEVELS = 4,
-    parameter bit          BOXES  = 1'b1
+    parameter bit          BOXES  = 1'b1,
+    parameter bit          LATTICE = 1'b0
 ) (
     input  wire                                      clk,
     input  wire exit_pkg::solid_t                    solid,
@@ -20,7 +21,8 @@ module exit_borders #(
     output logic [2:0]                               above,
     output logic                                     hit,
     output logic                                     gone,
-    output logic [2:0][exit_pkg::PLANE_BITS-1:0]     at
+    output logic [2:0][exit_pkg::PLANE_BITS-1:0]     at,
+    output logic [2:0]                               over
 );
     localparam int unsigned LOWEST = exit_pkg::DIGIT_BITS - 8;
 
@@ -34,7 +36,7 @@ module exit_borders #(
     assign hit  = crossed_7 ? tag_7 : any_hit;
     assign gone = crossed_7 ? !tag_7 : any_gone;
     assign next[0] = {1'b1, {exit_pkg::DIGIT_BITS - LOWEST - 2{1'b0}}, 1'b1, tag_7, {LOWEST{1'b0}}};
-    assign {next[2:1], there, choice, above, at} = '0;
+    assign {next[2:1], there, choice, above, at, over} = '0;
 endmodule
 
 module exit_choice (

@@ -20,12 +20,12 @@ IDENT = int.from_bytes(b"MARC", "big")
 
 _ERRORS = [
     ("0", "none", "all requested features are built"),
-    ("1", "field", "the flat field, the depth of the sponge, spheres or fillets are not built"),
+    ("1", "field", "the flat field, the depth of the sponge, spheres, a lattice or fillets are not built"),
     ("2", "stereo", "two eyes are not built"),
 ]
 
 _RULES = [("0", "box", "inside of a box"), ("1", "planes", "outside of the slab between two planes"),
-          ("2", "sponge", "Menger sponge"), ("3", "cubes", "cubes, repeated every 64 field units")]
+          ("2", "sponge", "Menger sponge"), ("3", "cubes", "cubes, repeated every 64 field units, or spheres in such cubes")]
 
 _EXITS = [("0", "second", "the second of three"), ("1", "first", "the first"), ("2", "last", "the last")]
 
@@ -36,24 +36,30 @@ INTERVAL_BITS = 13
 @dataclass(frozen=True)
 class Fields:
     """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
-    include the sponge if it has levels), spheres, fillets, two eyes."""
+    include the sponge if it has levels), spheres of a list, spheres of a lattice, fillets between spheres and flat fields, two eyes."""
 
     lanes: int = 2
     levels: int = 6
     flat: tuple = NAMES
     round: bool = True
+    lattice: bool = True
     blend: bool = True
     stereo: bool = True
 
     @property
     def has_exits(self):
         """Whether rays of some fields leave empty prisms, or meet the spheres of a list."""
-        return self.round or has_exits(self.flat)
+        return self.has_spheres or has_exits(self.flat)
+
+    @property
+    def has_spheres(self):
+        """Whether some fields have spheres."""
+        return self.round or self.lattice
 
     @property
     def has_marching(self):
         """Whether rays of some fields march by distances."""
-        return self.round or has_octants(self.flat)
+        return self.blend or has_octants(self.flat)
 
     def parameters(self):
         """Returns the parameters of the module by name."""
@@ -63,20 +69,20 @@ class Fields:
 
 BUILDS = {
     "all": Fields(),
-    "round": Fields(levels=4, flat=("menger", "box"), blend=False),
-    "faces": Fields(levels=4, flat=("menger", "box"), round=False, blend=False),
-    "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, blend=False),
+    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False),
+    "faces": Fields(levels=4, flat=("menger", "box"), round=False, lattice=False, blend=False),
+    "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, lattice=False, blend=False),
 }
 """Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
 
-_FEATURES = {"spheres": "round", "fillets": "blend", "stereo": "stereo"}
+_FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo"}
 
 
 def build(text, lanes=None):
     """Returns the build options that `text` names, with the number of `lanes` if it is given.
 
     `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
-    fields, `spheres`, `fillets`, `stereo`.
+    fields, `spheres`, `lattice`, `fillets`, `stereo`.
     """
     if text in BUILDS:
         fields = BUILDS[text]
@@ -106,8 +112,9 @@ class Raymarcher(LiteXModule):
             CSRField("lanes", size=3, offset=0, reset=fields.lanes, description="Lanes: evaluations of the field per clock."),
             CSRField("levels", size=3, offset=4, reset=fields.levels, description="Largest depth of a sponge; 0 without sponges."),
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
-            CSRField("round", offset=10, reset=int(fields.round), description="Spheres, alone and in unions."),
+            CSRField("round", offset=10, reset=int(fields.round), description="Spheres of a list, alone and in unions."),
             CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between spheres and flat fields."),
+            CSRField("lattice", offset=12, reset=int(fields.lattice), description="Spheres of a lattice."),
             CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if the flat field of kind k in "
                                                            "`solid` is built."),
         ], description="What this block can do.")
@@ -146,7 +153,7 @@ class Raymarcher(LiteXModule):
         self._exits = Parameter(name="exits", fields=[
             CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances."),
             CSRField("rule", size=2, offset=1, values=_RULES, description="The solid."),
-            CSRField("depth", size=3, offset=4, description="Levels of the sponge."),
+            CSRField("depth", size=3, offset=4, description="Levels of the sponge; 1 for spheres in place of cubes."),
             *(CSRField(f"{eye}_exit", size=2, offset=8 + 2 * number, values=_EXITS,
                        description=f"By which of its planes a ray leaves the prism around the {eye} eye.")
               for number, eye in enumerate(("left", "right"))),
@@ -243,7 +250,8 @@ class Raymarcher(LiteXModule):
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
         no_rays = (exits.enable & int(not fields.has_exits)) | (~exits.enable & int(not fields.has_marching))
-        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (solid.is_round & int(not fields.round)) |
+        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (solid.is_round & ~solid.spheres_repeated & int(not fields.round)) |
+                                  (exits.enable & (exits.rule == 3) & exits.depth[0] & int(not fields.lattice)) |
                                   (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
         constants = Struct("solid_t", "The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and "
@@ -348,7 +356,7 @@ class Raymarcher(LiteXModule):
         directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
         ambient, blend = Signal(24), [Signal(17), Signal(17)]
         write = Signal()
-        if fields.round:
+        if fields.has_spheres:
             places = {**dict(enumerate([*centre, radius, inverse, ambient, *blend])),
                       **{16 + 4*light + axis: part for light, direction in enumerate(directions) for axis, part in enumerate(direction)},
                       **{19 + 4*light: colour for light, colour in enumerate(colours)}}

@@ -19,8 +19,10 @@ pub enum Missing {
     Levels(u8),
     /// Flat fields (fields with plane faces) of this kind.
     Flat(Kind),
-    /// Spheres.
+    /// The spheres of a list.
     Round,
+    /// The spheres of a lattice.
+    Lattice,
     /// Fillets between spheres and flat fields.
     Blend,
     /// Two eyes.
@@ -36,6 +38,7 @@ impl fmt::Display for Missing {
             Self::Levels(levels) => write!(f, "sponges of depth {levels} at most"),
             Self::Flat(kind) => write!(f, "no {}", kind.text()),
             Self::Round => f.write_str("no spheres"),
+            Self::Lattice => f.write_str("no lattices"),
             Self::Blend => f.write_str("no smooth unions"),
             Self::Stereo => f.write_str("no stereo"),
             Self::Marching => f.write_str("no marching rays for this field"),
@@ -59,14 +62,18 @@ impl Missing {
         if kind as u8 != 0 && capabilities.flat >> kind as u8 & 1 == 0 {
             return Err(Self::Flat(kind));
         }
-        if setup.spheres().is_some() && !capabilities.round {
-            return Err(Self::Round);
+        if let Some(spheres) = setup.spheres() {
+            match spheres.repeated {
+                true if !capabilities.lattice => return Err(Self::Lattice),
+                false if !capabilities.round => return Err(Self::Round),
+                _ => (),
+            }
         }
         if let Form::Marching(marching) = &setup.form {
             if marching.blend().width != 0 && !capabilities.blend {
                 return Err(Self::Blend);
             }
-            if !capabilities.round && kind != Kind::Octahedron {
+            if !capabilities.blend && kind != Kind::Octahedron {
                 return Err(Self::Marching);
             }
         }
@@ -304,9 +311,9 @@ fn kind(setup: &FieldSetup) -> (Kind, u8) {
     match &setup.form {
         Form::Exits(exits) => match exits.solid.map(|solid| solid.rule) {
             Some(rule @ Rule::Sponge { .. }) => (Kind::Menger, (1_u32 << rule.levels()) as u8 - 1),
-            Some(_) => (Kind::Box, 0),
             // Every build accepts a sponge without levels.
-            None => (Kind::Menger, 0),
+            Some(Rule::Repeated { round: true }) | None => (Kind::Menger, 0),
+            Some(_) => (Kind::Box, 0),
         },
         Form::Marching(marching) => {
             let flat = constants(&marching.solid);

@@ -23,8 +23,10 @@ pub struct Capabilities {
     pub flat: u8,
     /// Whether this build draws stereo pictures.
     pub stereo: bool,
-    /// Whether this build draws spheres.
+    /// Whether this build draws the spheres of a list.
     pub round: bool,
+    /// Whether this build draws the spheres of a lattice.
+    pub lattice: bool,
     /// Whether this build draws fillets between spheres and flat fields.
     pub blend: bool,
 }
@@ -132,6 +134,7 @@ impl Raymarcher {
             flat: caps.flat(),
             stereo: caps.stereo(),
             round: caps.round(),
+            lattice: caps.lattice(),
             blend: caps.blend(),
         };
         Ok(Self {

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xf29e_e94c;
+pub const BUILD_ID: u32 = 0xc27a_c4bc;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -5849,7 +5849,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
         }
 
-        /// `round`, bit 10: Spheres, alone and in unions.
+        /// `round`, bit 10: Spheres of a list, alone and in unions.
         #[inline]
         #[must_use]
         pub const fn round(self) -> bool {
@@ -5875,6 +5875,20 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_blend(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+        }
+
+        /// `lattice`, bit 12: Spheres of a lattice.
+        #[inline]
+        #[must_use]
+        pub const fn lattice(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
+
+        /// This value with another `lattice`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lattice(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
         }
 
         /// `flat`, bits 23 to 16: Bit k is set if the flat field of kind k in `solid` is built.
@@ -6297,7 +6311,7 @@ pub mod raymarch {
             Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
         }
 
-        /// `depth`, bits 6 to 4: Levels of the sponge.
+        /// `depth`, bits 6 to 4: Levels of the sponge; 1 for spheres in place of cubes.
         #[inline]
         #[must_use]
         pub const fn depth(self) -> u8 {
@@ -6585,7 +6599,7 @@ pub mod raymarch {
     pub enum Error {
         /// All requested features are built.
         None = 0,
-        /// The flat field, the depth of the sponge, spheres or fillets are not built.
+        /// The flat field, the depth of the sponge, spheres, a lattice or fillets are not built.
         Field = 1,
         /// Two eyes are not built.
         Stereo = 2,
@@ -6622,7 +6636,7 @@ pub mod raymarch {
         pub const fn text(self) -> &'static str {
             match self {
                 Self::None => "all requested features are built",
-                Self::Field => "the flat field, the depth of the sponge, spheres or fillets are not built",
+                Self::Field => "the flat field, the depth of the sponge, spheres, a lattice or fillets are not built",
                 Self::Stereo => "two eyes are not built",
             }
         }
@@ -6687,7 +6701,7 @@ pub mod raymarch {
         Planes = 1,
         /// Menger sponge.
         Sponge = 2,
-        /// Cubes, repeated every 64 field units.
+        /// Cubes, repeated every 64 field units, or spheres in such cubes.
         Cubes = 3,
     }
 
@@ -6725,7 +6739,7 @@ pub mod raymarch {
                 Self::Box => "inside of a box",
                 Self::Planes => "outside of the slab between two planes",
                 Self::Sponge => "Menger sponge",
-                Self::Cubes => "cubes, repeated every 64 field units",
+                Self::Cubes => "cubes, repeated every 64 field units, or spheres in such cubes",
             }
         }
     }

@@ -12,15 +12,20 @@
 // prism between the planes of these two cells, which goes through the whole sponge. The interval of a cube's cell ends with a digit that
 // is 1 in the gap, so that the same rule gives the next interval.
 //
-// Latency 7 clocks from `point` to `next`, `there`, `choice`, `above`, `hit` and `gone`, and 8 clocks to `at`; `reached_3` is an input of
-// clock 3. Throughput one point per clock, no handshake. `solid` must hold.
+// Spheres of a lattice are in such cubes: `hit` then says that the point is in the box about a sphere, from which the planes of the box lead
+// by the first exit. `over` says that a coordinate, within its cell, is above the cube.
+//
+// Latency 7 clocks from `point` to `next`, `there`, `choice`, `above`, `hit` and `gone`, 8 clocks to `at`, and 1 clock to `over`; `reached_3` is an
+// input of clock 3. Throughput one point per clock, no handshake. `solid` must hold.
 
 `default_nettype none
 
 module exit_borders #(
     // Levels of a sponge, 0 without sponges, and whether there are boxes, planes and cubes.
     parameter int unsigned LEVELS = 4,
-    parameter bit          BOXES  = 1'b1
+    parameter bit          BOXES  = 1'b1,
+    // Whether there are spheres of a lattice, with BOXES.
+    parameter bit          LATTICE = 1'b0
 ) (
     input  wire                                      clk,
     input  wire exit_pkg::solid_t                    solid,
@@ -32,7 +37,8 @@ module exit_borders #(
     output logic [2:0]                               above,
     output logic                                     hit,
     output logic                                     gone,
-    output logic [2:0][exit_pkg::PLANE_BITS-1:0]     at
+    output logic [2:0][exit_pkg::PLANE_BITS-1:0]     at,
+    output logic [2:0]                               over
 );
     // The digits of an interval that a build uses, and the widths of an interval with them and of the number of a cell. LAST is the digit
     // of a cube's gap.
@@ -44,7 +50,7 @@ module exit_borders #(
     localparam int unsigned CELL_BITS = DEEP ? 10 : 7;
 
     // Registered, as they have many loads.
-    logic is_sponge, is_cubes, is_planes, is_deep;
+    logic is_sponge, is_cubes, is_planes, is_deep, is_lattice;
     logic [DIGITS-1:0] levels;
 
     always_ff @(posedge clk) begin
@@ -52,6 +58,7 @@ module exit_borders #(
         is_cubes  <= BOXES && solid.rule == exit_pkg::CUBES;
         is_planes <= BOXES && solid.rule == exit_pkg::PLANES;
         is_deep   <= DEEP && solid.levels > 3'd4;
+        is_lattice <= LATTICE && solid.rule == exit_pkg::CUBES && solid.levels[0];
         for (int level = 0; level < DIGITS; level++)
             levels[level] <= LEVELS != 0 && (!BOXES || solid.rule == exit_pkg::SPONGE) && 3'(level) < solid.levels;
     end
@@ -81,6 +88,7 @@ module exit_borders #(
         logic [BITS-1:0]      interval_3, reached;
 
         assign reached = reached_3[i][exit_pkg::INTERVAL_BITS-1:UNUSED];
+        assign over[i] = over_1;
 
         always_ff @(posedge clk) begin
             // Cubes are repeated: only the coordinate within the cell is compared with the side. The side is even.
@@ -102,6 +110,9 @@ module exit_borders #(
             interval_4[i] <= interval_3 > reached ? interval_3 : reached;
 
             interval_5[i] <= interval_4[i];
+            // After a gap is the next cell.
+            if (LATTICE && is_cubes)
+                interval_5[i][BITS-2 -: 8] <= {interval_4[i][BITS-2 -: 6] + 6'(interval_4[i][BITS-8]), 1'b0, interval_4[i][BITS-9]};
             below_5[i]    <= !interval_4[i][BITS-1];
             above_5[i]    <= interval_4[i][BITS-1:BITS-2] == '1 && (is_cubes || interval_4[i][BITS-3]);
             for (int level = 0; level < DIGITS; level++)
@@ -141,12 +152,13 @@ module exit_borders #(
     // The first level at which two digits are 1, as a bit and as those of the levels before it, and the axes whose digit is 1 there.
     logic [DIGITS-1:0] holes_5, first_5, first_6, before_6;
     logic [2:0] middle_6;
-    logic       outside_5, in_hole_5;
+    logic       outside_5, in_hole_5, in_box_5, in_box_6, in_box_7;
 
     assign holes_5   = two_5 & levels;
     assign first_5   = holes_5 & ~(holes_5 - 1'b1);
     assign outside_5 = !is_cubes && !is_planes && below_5 != '0;
     assign in_hole_5 = holes_5 != '0 && !outside_5;
+    assign in_box_5  = is_lattice && middle_5[LAST] == '0;
 
     logic [1:0] choice_6;
     logic [2:0] there_6;
@@ -154,21 +166,22 @@ module exit_borders #(
 
     always_ff @(posedge clk) begin
         interval_6 <= interval_5;
+        in_box_6   <= in_box_5;
         first_6    <= is_cubes ? DIGITS'(1 << LAST) : first_5;
         before_6   <= is_cubes ? DIGITS'((1 << LAST) - 1) : first_5 - 1'b1;
         for (int i = 0; i < 3; i++) begin
             logic [DIGITS-1:0] middles;
             for (int level = 0; level < DIGITS; level++) middles[level] = middle_5[level][i];
-            middle_6[i] <= is_cubes ? middles[LAST] && !below_5[i] : !outside_5 && (first_5 & middles) != '0;
+            middle_6[i] <= is_cubes ? (middles[LAST] || in_box_5) && !below_5[i] : !outside_5 && (first_5 & middles) != '0;
         end
-        choice_6 <= {is_cubes || outside_5, !is_cubes && !outside_5 && (three_5 & first_5) == '0};
-        there_6  <= is_cubes ? middle_5[LAST] : outside_5 ? below_5 : is_planes ? 3'b100 : 3'b111;
+        choice_6 <= {is_cubes && !in_box_5 || outside_5, in_box_5 || !is_cubes && !outside_5 && (three_5 & first_5) == '0};
+        there_6  <= is_cubes ? middle_5[LAST] | {3{in_box_5}} : outside_5 ? below_5 : is_planes ? 3'b100 : 3'b111;
         gone_6   <= !is_planes && above_5 != '0;
         hit_6    <= is_planes ? below_5[2] || above_5[2]
                               : above_5 == '0 && !outside_5 && !in_hole_5 && !(is_cubes && middle_5[LAST] != '0);
     end
 
-    // The next interval has the digits before the first middle digit, this digit plus one, and zeros. Below the solid it is the lowest one,
+    // The next interval has the digits before the first middle digit, this digit plus one, and zeros; from a box, the digit 1. Below the solid it is the lowest one,
     // and without a middle digit the plane is the upper one of the solid.
     logic [2:0] below_7;
 
@@ -178,16 +191,17 @@ module exit_borders #(
         gone   <= gone_6;
         hit    <= hit_6;
         next   <= '0;
+        in_box_7 <= in_box_6;
         for (int i = 0; i < 3; i++) begin
             next[i][exit_pkg::INTERVAL_BITS-1] <= 1'b1;
             for (int level = 0; level < DIGITS; level++) begin
                 next[i][exit_pkg::INTERVAL_BITS-2-2*level] <=
-                    middle_6[i] ? before_6[level] && interval_6[i][BITS-2-2*level] || first_6[level]
+                    middle_6[i] ? before_6[level] && interval_6[i][BITS-2-2*level] || first_6[level] && !in_box_6
                                 : level == 0 && interval_6[i][BITS-1];
                 next[i][exit_pkg::INTERVAL_BITS-3-2*level] <=
-                    middle_6[i] ? before_6[level] && interval_6[i][BITS-3-2*level] : level == 0 && interval_6[i][BITS-1];
+                    middle_6[i] ? before_6[level] && interval_6[i][BITS-3-2*level] || first_6[level] && in_box_6 : level == 0 && interval_6[i][BITS-1];
             end
-            above[i]   <= !is_planes && interval_6[i][BITS-1] && (is_cubes ? interval_6[i][BITS-3 -: 5] == '1 : !middle_6[i]);
+            above[i]   <= !is_planes && interval_6[i][BITS-1] && (is_cubes ? interval_6[i][BITS-3 -: 5] == '1 && !in_box_6 : !middle_6[i]);
             below_7[i] <= !interval_6[i][BITS-1];
         end
     end
@@ -220,7 +234,7 @@ module exit_borders #(
         logic [SUM_BITS-1:0]                   high, middle, low, sum;
 
         assign digits = next[i][exit_pkg::DIGIT_BITS-1:0];
-        assign border = exit_pkg::PLANE_BITS'($signed(solid.border[i]));
+        assign border = in_box_7 ? exit_pkg::PLANE_BITS'(solid.half[i]) : exit_pkg::PLANE_BITS'($signed(solid.border[i]));
 
         always_comb begin
             low = '0;

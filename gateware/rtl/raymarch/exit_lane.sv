@@ -13,6 +13,9 @@
 // FIFO has PLACES entries, and each ray in the ring reserves one. `evaluates` is high in clocks in which a ray begins an evaluation,
 // `waits` in clocks in which an empty slot cannot receive a ray because the FIFO has no free entry.
 //
+// With LATTICE, spheres may be repeated in place of cubes. In the box about a sphere a ray meets the sphere if the quadratic equation for T
+// has solutions (`meets`); the end of a ray that does has the equation's terms, and exit_landing computes T.
+//
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
 // registers. Parameters hold while rays are in the ring. `origins` has each eye's position from the solid's centre. `rst` discards all
 // rays.
@@ -23,8 +26,10 @@ module exit_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1,
     parameter bit          STEREO = 1'b1,
-    // Whether rays may meet spheres. Each ray then has a limit of its own; otherwise `far_t` is the limit of every ray.
+    // Whether rays may meet spheres of a list. Each ray then has a limit of its own; otherwise `far_t` is the limit of every ray.
     parameter bit          ROUND  = 1'b0,
+    // Whether there may be spheres of a lattice, with BOXES.
+    parameter bit          LATTICE = 1'b0,
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = 32
 ) (
@@ -54,6 +59,10 @@ module exit_lane #(
     logic [LAST:0]         occupied;
     logic [COUNT_BITS-1:0] places;
     logic                  enter, finished, again, ended, end_ready, gone_out;
+
+    // Spheres of a lattice: whether the solid consists of them, and whether and how a ray in the box about one meets it.
+    logic               is_lattice, meets_21, lands_22;
+    exit_pkg::equation_t equation_22;
 
     // State of a ray: T and the axis of the last plane that it has crossed, and the number of evaluations, with that of this round.
     logic [exit_pkg::T_BITS-1:0] t_0, t_21, t_22;
@@ -149,23 +158,41 @@ module exit_lane #(
         {t_22, axis_22, steps_22, over_22} <= {t_21, axis_21, steps_21, over_21};
     end
 
-    // The limit, and T of an end: without a hit, the limit. The light on a sphere needs the ray's direction.
+    // The limit, and T of an end: without a hit, the limit.
     logic [exit_pkg::T_BITS-1:0] limit_21, end_t_22;
     exit_pkg::meeting_t          sphere_22;
-    logic [2:0][exit_pkg::DIRECTION_BITS-1:0] direction_22;
 
     if (ROUND) begin : own_limits
-        localparam int unsigned SIZE_BITS = exit_pkg::DIRECTION_BITS - 1;
+        (* ram_style = "distributed" *) logic [exit_pkg::MEETING_BITS-1:0] meetings [0:2**SLOT_BITS-1];
+        exit_pkg::meeting_t sphere_21;
 
-        (* ram_style = "distributed" *) logic [exit_pkg::MEETING_BITS-1:0] spheres [0:2**SLOT_BITS-1];
-        (* ram_style = "distributed" *) logic [3*SIZE_BITS-1:0]            sizes   [0:2**SLOT_BITS-1];
-        exit_pkg::meeting_t        sphere_21;
-        logic [2:0][SIZE_BITS-1:0] size_22, in_size;
-
-        assign sphere_21 = spheres[slot_21];
+        assign sphere_21 = meetings[slot_21];
         assign limit_21  = sphere_21.t;
         assign end_t_22  = end_in.hit ? t_22 : sphere_22.t;
-        assign size_22   = sizes[slot_22];
+
+        always_ff @(posedge clk) begin
+            if (!again) meetings[slot_22] <= in_ray.sphere;
+            sphere_22 <= sphere_21;
+        end
+        wire _unused = &{1'b0, far_t};
+    end else begin : one_limit
+        assign limit_21  = far_t;
+        assign end_t_22  = t_22;
+        assign sphere_22 = '0;
+
+        wire _unused = &{1'b0, in_ray.sphere, sphere_22.t};
+    end
+
+    // The light on a sphere needs the ray's direction.
+    logic [2:0][exit_pkg::DIRECTION_BITS-1:0] direction_22;
+
+    if (ROUND || LATTICE) begin : directions
+        localparam int unsigned SIZE_BITS = exit_pkg::DIRECTION_BITS - 1;
+
+        (* ram_style = "distributed" *) logic [3*SIZE_BITS-1:0] sizes [0:2**SLOT_BITS-1];
+        logic [2:0][SIZE_BITS-1:0] size_22, in_size;
+
+        assign size_22 = sizes[slot_22];
 
         always_comb
             for (int i = 0; i < 3; i++) begin
@@ -173,28 +200,16 @@ module exit_lane #(
                 direction_22[i] = {1'b0, size_22[i]} ^ {exit_pkg::DIRECTION_BITS{down_22[i]}};
             end
 
-        always_ff @(posedge clk) begin
-            if (!again) begin
-                spheres[slot_22] <= in_ray.sphere;
-                sizes[slot_22]   <= in_size;
-            end
-            sphere_22 <= sphere_21;
-        end
-        wire _unused = &{1'b0, far_t};
-    end else begin : one_limit
-        assign limit_21     = far_t;
-        assign end_t_22     = t_22;
-        assign sphere_22    = '0;
+        always_ff @(posedge clk) if (!again) sizes[slot_22] <= in_size;
+    end else begin : no_directions
         assign direction_22 = '0;
-
-        wire _unused = &{1'b0, in_ray.sphere, sphere_22.t};
     end
 
     delay #(.WIDTH(4), .CLOCKS(4)) signs (.clk, .enable(1'b1), .in({eye_0, down_0}), .out({eye_4, down_4}));
     delay #(.WIDTH(4), .CLOCKS(9)) signs_wait (.clk, .enable(1'b1), .in({eye_4, down_4}), .out({eye_13, down_13}));
 
-    // The point O + T·D, from two products for each axis. O is the sum of half the side and the eye's position with a sign; in the sums, a
-    // bit after the point completes the complement.
+    // The point O + T·D, from two products for each axis, rounded down, and in a lattice to nearest. O is the sum of half the side and the
+    // eye's position with a sign; in the sums, a bit after the point completes the complement.
     logic [10:0] t_high_1;
     logic [2:0][exit_pkg::POINT_BITS-1:0] point_5;
 
@@ -212,7 +227,7 @@ module exit_lane #(
         assign origin_4 = {STEREO && eye_4 ? origins[1][i] : origins[0][i], 1'b0} ^ {exit_pkg::PLANE_BITS + 1{down_4[i]}};
 
         multiply_add low_part (
-            .clk, .enable(1'b1), .a({1'b0, speed_0[i], 1'b1}), .b({1'b0, t_0[16:0]}), .c({1'b0, solid.half[i], 26'd0}), .p(low_3)
+            .clk, .enable(1'b1), .a({1'b0, speed_0[i], 1'b1}), .b({1'b0, t_0[16:0]}), .c({1'b0, solid.half[i], is_lattice, 25'd0}), .p(low_3)
         );
         multiply_add #(.BITS(43)) high_part (
             .clk, .enable(1'b1), .a({1'b0, speed_1[i], 1'b1}), .b({7'd0, t_high_1}), .c({12'd0, low_3[47:17]}), .p(high_4)
@@ -225,19 +240,69 @@ module exit_lane #(
 
     // The planes around the point.
     logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_8, next_12;
-    logic [2:0] there_12, there_19, above_12, above_21;
+    logic [2:0] over_6, there_12, there_19, above_12, above_21;
     logic [1:0] choice_12, choice_19;
     logic       hit_12, hit_21, gone_12, gone_21;
     logic [2:0][exit_pkg::PLANE_BITS-1:0] at_13, distance_14;
     logic [2:0][exit_pkg::EXIT_BITS-1:0]  exit_19;
 
-    exit_borders #(.LEVELS(LEVELS), .BOXES(BOXES)) borders (
+    exit_borders #(.LEVELS(LEVELS), .BOXES(BOXES), .LATTICE(LATTICE)) borders (
         .clk, .solid, .point(point_5), .reached_3(reached_8), .next(next_12), .there(there_12), .choice(choice_12), .above(above_12),
-        .hit(hit_12), .gone(gone_12), .at(at_13)
+        .hit(hit_12), .gone(gone_12), .at(at_13), .over(over_6)
     );
 
     delay #(.WIDTH(5), .CLOCKS(7)) choice_waits (.clk, .enable(1'b1), .in({there_12, choice_12}), .out({there_19, choice_19}));
     delay #(.WIDTH(5), .CLOCKS(9)) ends_wait (.clk, .enable(1'b1), .in({above_12, hit_12, gone_12}), .out({above_21, hit_21, gone_21}));
+
+    // Spheres of a lattice. Each axis has a memory of its own for its speed, as the axes follow each other.
+    if (LATTICE) begin : lattice
+        (* ram_style = "distributed" *) logic [exit_pkg::SPEED_BITS-1:0]          speeds_x  [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [exit_pkg::SPEED_BITS-1:0]          speeds_y  [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [exit_pkg::SPEED_BITS-1:0]          speeds_z  [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [exit_pkg::LENGTH_BITS-1:0]         lengths   [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [exit_pkg::INVERSE_SQUARE_BITS-1:0] quotients [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [exit_pkg::ALONG_BITS-1:0]          alongs    [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [exit_pkg::REST_BITS:0]             rests     [0:2**SLOT_BITS-1];
+
+        logic [SLOT_BITS-1:0]            slot_7, slot_9, slot_15, slot_16;
+        logic [exit_pkg::ALONG_BITS-1:0] along_13;
+        logic [exit_pkg::REST_BITS-1:0]  rest_16;
+        logic                            starts_16, meets_17;
+
+        exit_sphere sphere (
+            .clk, .half(solid.half[0]), .point(point_5), .over_1(over_6), .speed_x_2(speeds_x[slot_7]), .speed_y_3(speeds_y[slot_8]),
+            .speed_z_4(speeds_z[slot_9]), .length_7(lengths[slot_12]), .along(along_13), .rest(rest_16), .starts(starts_16),
+            .meets(meets_17)
+        );
+        delay #(.WIDTH(1), .CLOCKS(4)) meets_waits (.clk, .enable(1'b1), .in(meets_17), .out(meets_21));
+
+        always_ff @(posedge clk) begin
+            is_lattice <= solid.rule == exit_pkg::CUBES && solid.levels[0];
+            slot_7     <= following(slot_7);
+            slot_9     <= slot_8;
+            slot_15    <= slot_14;
+            slot_16    <= slot_15;
+            if (rst) begin
+                {slot_7, slot_9}   <= {SLOT_BITS'(SLOTS - 7), SLOT_BITS'(SLOTS - 9)};
+                {slot_15, slot_16} <= {SLOT_BITS'(SLOTS - 15), SLOT_BITS'(SLOTS - 16)};
+            end
+            if (!again) speeds_x[slot_22]  <= in_ray.speed[0];
+            if (!again) speeds_y[slot_22]  <= in_ray.speed[1];
+            if (!again) speeds_z[slot_22]  <= in_ray.speed[2];
+            if (!again) lengths[slot_22]   <= in_ray.length;
+            if (!again) quotients[slot_22] <= in_ray.inverse_square;
+            alongs[slot_13] <= along_13;
+            rests[slot_16]  <= {!starts_16, rest_16};
+        end
+
+        assign equation_22.inverse_square   = quotients[slot_22];
+        assign equation_22.along            = alongs[slot_22];
+        assign {lands_22, equation_22.rest} = rests[slot_22];
+    end else begin : no_lattice
+        assign {is_lattice, meets_21, lands_22, equation_22} = '0;
+
+        wire _unused = &{1'b0, in_ray.length, in_ray.inverse_square, over_6};
+    end
 
     // The intervals that a ray has reached. Those of a point without a crossed plane need no memory: the ray's later points are not below
     // it. Only sponges of more than four levels have all digits.
@@ -287,25 +352,28 @@ module exit_lane #(
         exit_axis_22 <= exit_axis_21;
         crossed_22   <= crossed_21;
         later_22     <= exit_21 > {1'b0, t_21};
-        hit_22       <= hit_21;
+        hit_22       <= hit_21 && (!is_lattice || meets_21);
         left_22      <= gone_21 || exit_21 > {1'b0, limit_21} || (above_21 & crossed_21) != '0;
     end
 
     assign finished = over_22 || hit_22 || left_22;
 
     // At a hit, the ray ends at the plane that it had crossed before this evaluation.
-    assign end_in.place    = place_22;
-    assign end_in.hit      = hit_22 && !over_22;
-    assign end_in.t        = end_t_22;
-    assign end_in.axis     = axis_22;
-    assign end_in.positive = down_22[axis_22];
-    assign end_in.steps    = steps_22;
-    assign end_in.height   = height_22;
+    assign end_in.place     = place_22;
+    assign end_in.hit       = hit_22 && !over_22;
+    assign end_in.t         = end_t_22;
+    assign end_in.axis      = axis_22;
+    assign end_in.positive  = down_22[axis_22];
+    assign end_in.steps     = steps_22;
+    assign end_in.height    = height_22;
+    assign end_in.round     = is_lattice;
+    assign end_in.lands     = lands_22;
+    assign end_in.equation  = equation_22;
     assign end_in.met       = sphere_22.met;
     assign end_in.number    = sphere_22.number;
     assign end_in.direction = direction_22;
 
-    localparam int unsigned KEPT_BITS = ROUND ? exit_pkg::END_BITS : exit_pkg::FLAT_END_BITS;
+    localparam int unsigned KEPT_BITS = LATTICE ? exit_pkg::LAND_END_BITS : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS;
 
     logic [KEPT_BITS-1:0] kept;
 

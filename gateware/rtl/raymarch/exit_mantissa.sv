@@ -1,8 +1,8 @@
 // Computes the reciprocal of a number, as a mantissa and an exponent of 2 (docs/raymarch-exits.md, "Formats").
 //
-//   magnitude ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to below 3/2, exponent
+//   whole ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to below 3/2, exponent
 //
-// `magnitude` is u0.24 and stands for the middle of its interval, so it is never 0. The mantissa has 22 fraction bits, rounded to nearest.
+// `whole` is u0.25, at least 2^-25; that of a magnitude of 24 bits ends with a 1, the middle of its interval. The mantissa has 22 fraction bits, rounded to nearest.
 // An entry of the table has the value at the end of its interval and the decrease over the interval. Latency 10 clocks, throughput one per
 // clock, no handshake.
 
@@ -10,31 +10,29 @@
 
 module exit_mantissa (
     input  wire         clk,
-    input  wire  [23:0] magnitude,
+    input  wire  [24:0] whole,
     output logic [22:0] mantissa,
     output logic [4:0]  exponent
 );
-    // The suffix of a name is the number of clocks after the magnitude. The shift is 8 times a number, plus twice a number, plus a bit, so
+    // The suffix of a name is the number of clocks after the number. The shift is 8 times a number, plus twice a number, plus a bit, so
     // that these are the bits of its sum.
-    logic [24:0] whole_0, whole_1, whole_2, whole_3;
+    logic [24:0] whole_1, whole_2, whole_3;
     logic [1:0]  eights_0, twos_1;
     logic [4:0]  lead_3, lead_9;
     logic [1:0]  eights_1;
     logic [3:0]  lead_2;
 
-    assign whole_0 = {magnitude, 1'b1};
-
     always_comb begin
-        if (whole_0[24:17] != '0)     eights_0 = 2'd0;
-        else if (whole_0[16:9] != '0) eights_0 = 2'd1;
-        else                          eights_0 = {1'b1, whole_0[8:1] == '0};
+        if (whole[24:17] != '0)     eights_0 = 2'd0;
+        else if (whole[16:9] != '0) eights_0 = 2'd1;
+        else                          eights_0 = {1'b1, whole[8:1] == '0};
         if (whole_1[24:23] != '0)      twos_1 = 2'd0;
         else if (whole_1[22:21] != '0) twos_1 = 2'd1;
         else                           twos_1 = {1'b1, whole_1[20:19] == '0};
     end
 
     always_ff @(posedge clk) begin
-        whole_1  <= whole_0 << {eights_0, 3'd0};
+        whole_1  <= whole << {eights_0, 3'd0};
         eights_1 <= eights_0;
         whole_2  <= whole_1 << {twos_1, 1'b0};
         lead_2   <= {eights_1, twos_1};

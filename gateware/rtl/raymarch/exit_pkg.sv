@@ -22,12 +22,12 @@ package exit_pkg;
     localparam int unsigned EXIT_BITS = T_BITS + 1;
 
     // The solids. BOX is the inside of a box, PLANES the outside of the slab between two planes perpendicular to z, SPONGE the Menger
-    // sponge, and CUBES are cubes repeated every 64 units.
+    // sponge, and CUBES are cubes repeated every 64 units, or spheres in such cubes.
     typedef enum logic [1:0] {BOX = 2'd0, PLANES = 2'd1, SPONGE = 2'd2, CUBES = 2'd3} rule_t;
 
-    // A solid: its rule, the number of levels of a sponge, half its side along each axis, for cubes that of a cube, and the coordinate of a
-    // plane perpendicular to each axis: of a box and of a sponge the lower plane, of PLANES the upper one, and of cubes the lower plane of
-    // the cube after the middle one, all below 2^21 - 2^15.
+    // A solid: its rule, the number of levels of a sponge, and of CUBES 1 if they are spheres; half its side along each axis, for cubes that
+    // of a cube; and the coordinate of a plane perpendicular to each axis: of a box and of a sponge the lower plane, of PLANES the upper
+    // one, and of cubes the lower plane of the cube after the middle one, all below 2^21 - 2^15.
     typedef struct packed {
         rule_t                              rule;
         logic [2:0]                         levels;
@@ -52,6 +52,27 @@ package exit_pkg;
     localparam int unsigned SCALE_BITS   = 2;
     localparam int unsigned INVERSE_BITS = SCALE_BITS + FACTOR_BITS;
 
+    // The square of a direction's length, of a lattice of spheres: the direction is doubled, `doublings` times, until its length is from 1 to
+    // 2. `square` is the square of this length, u2.15. The reciprocal of this square, times 2^doublings, is
+    // (1 + mantissa·2^-18)·2^(exponent - 2), the mantissa with a sign.
+    localparam int unsigned DOUBLINGS_BITS = 2;
+    localparam int unsigned SQUARE_BITS    = 17;
+    localparam int unsigned MANTISSA_BITS  = 18;
+    localparam int unsigned EXPONENT_BITS  = 3;
+
+    typedef struct packed {
+        logic [DOUBLINGS_BITS-1:0] doublings;
+        logic [SQUARE_BITS-1:0]    square;
+    } length_t;
+
+    typedef struct packed {
+        logic [EXPONENT_BITS-1:0] exponent;
+        logic [MANTISSA_BITS-1:0] mantissa;
+    } inverse_square_t;
+
+    localparam int unsigned LENGTH_BITS         = DOUBLINGS_BITS + SQUARE_BITS;
+    localparam int unsigned INVERSE_SQUARE_BITS = EXPONENT_BITS + MANTISSA_BITS;
+
     // The first sphere that a ray meets: whether there is one (`met`), its number, and T at the sphere, or the far limit.
     typedef struct packed {
         logic              met;
@@ -62,12 +83,14 @@ package exit_pkg;
     localparam int unsigned MEETING_BITS = 1 + 3 + T_BITS;
 
     // A ray before its first evaluation; `place` is a raymarch_pkg::place_t. Axes along which it leads down are mirrored (`down`). `start`
-    // is its T, `axis` the axis of the last plane that it has crossed,
-    // and `reached` has the intervals that it has reached, 0 where it has crossed no plane. `height` is that of sky_height. A ray with
-    // `over` hits no flat solid; it ends without an evaluation. Other rays start within their limit. In a build with spheres, `sphere` is
-    // the first one that the ray meets, and its T is the limit.
+    // is its T, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that it has reached, 0 where it has
+    // crossed no plane. `height` is that of sky_height. A ray with `over` hits no flat solid; it ends without an evaluation. Other rays
+    // start within their limit. In a build with spheres, `sphere` is the first one that the ray meets, and its T is the limit. Only rays in
+    // a lattice have `inverse_square` and `length`.
     typedef struct packed {
         meeting_t                      sphere;
+        inverse_square_t               inverse_square;
+        length_t                       length;
         logic                          over;
         logic [PLACE_BITS-1:0]         place;
         logic [T_BITS-1:0]             start;
@@ -79,16 +102,35 @@ package exit_pkg;
         logic [2:0][INVERSE_BITS-1:0]  inverse;
     } ray_t;
 
-    // Width of a ray without `sphere`.
+    // Width of a ray without `sphere`, in a flat solid and in a lattice.
     localparam int unsigned RAY_BITS = 1 + PLACE_BITS + T_BITS + 2 + 3 * INTERVAL_BITS + 3 + 8 + 3 * SPEED_BITS + 3 * INVERSE_BITS;
+    localparam int unsigned LATTICE_RAY_BITS = RAY_BITS + LENGTH_BITS + INVERSE_SQUARE_BITS;
+
+    // The terms of the quadratic equation of a ray in the box about a sphere of a lattice: -q·D with the doubled direction, less 2^-14, u7.14;
+    // the square of the root, u12.20; and the reciprocal of the square of D.
+    localparam int unsigned ALONG_BITS = 21;
+    localparam int unsigned REST_BITS  = 32;
+
+    typedef struct packed {
+        inverse_square_t         inverse_square;
+        logic [ALONG_BITS-1:0]   along;
+        logic [REST_BITS-1:0]    rest;
+    } equation_t;
+
+    localparam int unsigned EQUATION_BITS = INVERSE_SQUARE_BITS + ALONG_BITS + REST_BITS;
 
     // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit if rays have limits of their own, and any T
     // otherwise), the axis and the sign of the face's outward normal, the number of evaluations, and the ray's `height`. In a build with
-    // spheres, `met` and `number` are those of the sphere that the ray meets at its limit, and `direction` is the ray's, s1.17.
+    // spheres, `met` and `number` are those of the sphere that the ray meets at its limit, and `direction` is the ray's, s1.17. A hit on a
+    // sphere of a lattice is `round`; its axis and sign have no meaning. Where the ray `lands`, T is that of the box about the sphere, and
+    // `equation` determines that of the sphere: exit_landing adds the difference.
     typedef struct packed {
+        equation_t             equation;
+        logic                  lands;
         logic [2:0][DIRECTION_BITS-1:0] direction;
         logic                  met;
         logic [2:0]            number;
+        logic                  round;
         logic [PLACE_BITS-1:0] place;
         logic                  hit;
         logic [T_BITS-1:0]     t;
@@ -98,9 +140,10 @@ package exit_pkg;
         logic [7:0]            height;
     } end_t;
 
-    // Width of an end without spheres, and with spheres.
-    localparam int unsigned FLAT_END_BITS = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
-    localparam int unsigned END_BITS      = FLAT_END_BITS + 4 + 3 * DIRECTION_BITS;
+    // Width of an end on a flat solid, of one on any solid, and of one that may land.
+    localparam int unsigned FLAT_END_BITS  = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
+    localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 4 + 3 * DIRECTION_BITS;
+    localparam int unsigned LAND_END_BITS  = ROUND_END_BITS + 1 + EQUATION_BITS;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

@@ -3,6 +3,8 @@
 //   D ─┬─▶ signs, magnitudes ─▶ exit_reciprocal for each axis ─▶ exit_quotient ─▶ exit_choice ─▶ largest of the exit and the near plane
 //      └─▶ sky_height
 //
+// With LATTICE, for spheres of a lattice, a ray also has the square of D's length and its reciprocal.
+//
 // The prism is a constant of the frame: for each eye, and for each axis as it is and mirrored, the distance of the plane that bounds it,
 // whether there is one, the interval above this plane, whether this interval is above the solid, and whether a ray along the axis leads away
 // from the solid. `choice`, for each eye,
@@ -13,7 +15,8 @@
 `default_nettype none
 
 module exit_start #(
-    parameter bit STEREO = 1'b1
+    parameter bit STEREO  = 1'b1,
+    parameter bit LATTICE = 1'b0
 ) (
     input  wire                                                   clk,
     input  wire                                                   rst,
@@ -135,12 +138,64 @@ module exit_start #(
     sky_height sky (.clk, .magnitude(part_1), .down(down_1[2]), .height(height_10));
     delay #(.WIDTH(8), .CLOCKS(12)) height_waits (.clk, .enable(1'b1), .in(height_10), .out(height_22));
 
+    // The square of D's length: D is doubled until its length is from 1 to 2.
+    exit_pkg::length_t         length_22;
+    exit_pkg::inverse_square_t inverse_square_22;
+
+    if (LATTICE) begin : lattice
+        logic [22:0]        y_2, z_2, z_3;
+        logic signed [42:0] square_4, square_5, square_6;
+        logic [41:0]        square_7;
+        logic [24:0]        square_8;
+        logic [16:0]        short_9;
+        logic [1:0]         doublings_7, doublings_8, doublings_9, doublings_18;
+        logic [22:0]        mantissa_18;
+        logic [4:0]         exponent_18;
+        exit_pkg::inverse_square_t inverse_19;
+
+        square_add square_x (.clk, .x({1'b0, speed_1[0]}), .c('0), .p(square_4));
+        square_add square_y (.clk, .x({1'b0, y_2}), .c(square_4), .p(square_5));
+        square_add square_z (.clk, .x({1'b0, z_3}), .c(square_5), .p(square_6));
+
+        always_ff @(posedge clk) begin
+            y_2         <= speed_1[1];
+            z_2         <= speed_1[2];
+            z_3         <= z_2;
+            // Of 40 fraction bits; with the doublings, 23 are left.
+            square_7    <= square_6[41:0];
+            doublings_7 <= square_6[41:40] != '0 ? 2'd0 : square_6[39:38] != '0 ? 2'd1 : square_6[37:36] != '0 ? 2'd2 : 2'd3;
+            unique case (doublings_7)
+                2'd0: square_8 <= square_7[41:17];
+                2'd1: square_8 <= square_7[39:15];
+                2'd2: square_8 <= square_7[37:13];
+                2'd3: square_8 <= square_7[35:11];
+            endcase
+            doublings_8 <= doublings_7;
+            // Rounded to nearest, but below 4.
+            short_9     <= square_8[24:8] + 17'(square_8[7] && square_8[24:8] != '1);
+            doublings_9 <= doublings_8;
+            inverse_19  <= {3'(exponent_18[1:0]) + 3'(doublings_18), mantissa_18[21:4]};
+        end
+
+        exit_mantissa reciprocal (.clk, .whole(square_8), .mantissa(mantissa_18), .exponent(exponent_18));
+        delay #(.WIDTH(2), .CLOCKS(9)) doublings_wait (.clk, .enable(1'b1), .in(doublings_9), .out(doublings_18));
+        wide_delay #(.WIDTH(exit_pkg::LENGTH_BITS), .CLOCKS(13)) length_waits (.clk, .in({doublings_9, short_9}), .out(length_22));
+        delay #(.WIDTH(exit_pkg::INVERSE_SQUARE_BITS), .CLOCKS(3)) reciprocal_waits (
+            .clk, .enable(1'b1), .in(inverse_19), .out(inverse_square_22)
+        );
+
+        wire _unused = &{1'b0, square_6[42], square_7[10:0], mantissa_18[22], mantissa_18[3:0], exponent_18[4:2]};
+    end else begin : no_lattice
+        assign {length_22, inverse_square_22} = '0;
+    end
+
     raymarch_pkg::place_t place_22;
 
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(22)) place_waits (.clk, .enable(1'b1), .in(in_place), .out(place_22));
 
     assign out_valid = valid[LAST];
-    assign out_ray   = {exit_pkg::MEETING_BITS'(0), over_22, place_22, start_22, axis_22, reached_22, down_22, height_22, speed_22, inverse_22};
+    assign out_ray   = {exit_pkg::MEETING_BITS'(0), inverse_square_22, length_22, over_22, place_22, start_22, axis_22, reached_22, down_22,
+                        height_22, speed_22, inverse_22};
 endmodule
 
 `default_nettype wire

@@ -13,7 +13,7 @@
 // a credit, only D and the position counters stop.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 26
-// clocks by exits, 27 of marching rays, 30 with ROUND; throughput one ray per clock. `busy` falls two clocks after the last ray has left.
+// clocks by exits, 27 of marching rays, 30 with BLEND; throughput one ray per clock. `busy` falls two clocks after the last ray has left.
 // The output is a valid/ready stream; a ray stays until its transfer. `out_ray` is valid for a frame of marching rays, `out_exit` for one
 // of exits. `rst` ends the frame.
 
@@ -23,7 +23,11 @@ module ray_generator #(
     parameter bit EXITS  = 1'b1,
     parameter bit MARCH  = 1'b0,
     parameter bit ROUND  = 1'b0,
+    // Whether marching rays may meet spheres.
+    parameter bit BLEND  = 1'b0,
     parameter bit STEREO = 1'b1,
+    // Whether rays by exits have the square of D's length.
+    parameter bit LATTICE = 1'b0,
     // Depth of the FIFO of rays after the pipeline.
     parameter int unsigned PLACES = 32
 ) (
@@ -82,7 +86,7 @@ module ray_generator #(
     exit_pkg::ray_t      exit_ray;
 
     if (MARCH) begin : marching
-        march_start #(.ROUND(ROUND), .STEREO(STEREO)) starts (
+        march_start #(.ROUND(BLEND), .STEREO(STEREO)) starts (
             .clk, .rst, .round, .near_limit(near_limit[raymarch_pkg::T_BITS-1:0]), .origins, .outside,
             .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(march_valid), .out_ray(march_ray)
         );
@@ -93,7 +97,7 @@ module ray_generator #(
     end
 
     if (EXITS) begin : leaving
-        exit_start #(.STEREO(STEREO)) starts (
+        exit_start #(.STEREO(STEREO), .LATTICE(LATTICE)) starts (
             .clk, .rst, .near_limit, .far_limit, .choice, .distances, .there, .away, .last, .nexts,
             .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(exit_valid), .out_ray(exit_ray)
         );
@@ -103,7 +107,7 @@ module ray_generator #(
         wire _unused = &{1'b0, near_limit, far_limit, choice, distances, there, away, last, nexts};
     end
 
-    localparam int unsigned KEPT_BITS = EXITS ? exit_pkg::RAY_BITS : raymarch_pkg::RAY_BITS;
+    localparam int unsigned KEPT_BITS = !EXITS ? raymarch_pkg::RAY_BITS : LATTICE ? exit_pkg::LATTICE_RAY_BITS : exit_pkg::RAY_BITS;
 
     logic                 by_exits, kept_valid, kept_ready;
     logic [KEPT_BITS-1:0] kept;

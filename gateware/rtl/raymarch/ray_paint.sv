@@ -25,6 +25,8 @@ module ray_paint #(
     parameter bit EXITS   = 1'b1,
     parameter bit MARCH   = 1'b0,
     parameter bit ROUND   = 1'b0,
+    // Whether marching rays may meet spheres.
+    parameter bit BLEND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0,
     // Depth of the FIFO of pixels after the pipeline.
@@ -109,7 +111,7 @@ module ray_paint #(
         inverse_table length_inverse (
             .clk, .index_a(ending.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
         );
-        if (ROUND) begin : by_squares
+        if (BLEND) begin : by_squares
             logic [16:0] round_inverse_2;
             round_inverse inverse_of_square (.clk, .index(ending.length), .inverse(round_inverse_2));
             assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
@@ -294,7 +296,7 @@ module ray_paint #(
 
     assign out_mask = 8'b1 << number;
 
-    wire _unused = &{1'b0, ending, depth_5[39:21], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, round, ending, depth_5[39:21], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

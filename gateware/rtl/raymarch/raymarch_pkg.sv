@@ -39,18 +39,18 @@ package raymarch_pkg;
 
     // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `t` is T, u14.14, of a ray that leaves empty
     // prisms, and u11.12 of a marching ray. `surface` is {axis, positive} of a face, or the number of a sphere. For a miss, `t` is the sine
-    // of the ray's elevation in 8 bits, 0 below the horizon. The other fields belong to marching rays: `gap` is the distance from the point
-    // at `t` to the face, `slope` is the component of the direction along the inward normal of the face, and `length` as in ray_t. Only
-    // the light on spheres uses `direction`. `round` marks an end on a sphere or a fillet. On a fillet, `face` is the face's {axis,
+    // of the ray's elevation in 8 bits, 0 below the horizon. `round` marks an end on a sphere or a fillet; only the light on spheres uses
+    // `direction`. The other fields belong to marching rays: `gap` is the distance from the point at `t` to the face, `slope` is the
+    // component of the direction along the inward normal of the face, and `length` as in ray_t. On a fillet, `face` is the face's {axis,
     // positive} and `share` is the sphere's weight, u0.8.
     typedef struct packed {
         logic [2:0]        face;
         logic [7:0]        share;
-        logic [2:0][DIRECTION_BITS-1:0] direction;
-        logic              round;
         logic [9:0]        length;
         logic [11:0]       gap;
         logic [9:0]        slope;
+        logic [2:0][DIRECTION_BITS-1:0] direction;
+        logic              round;
         place_t            place;
         logic [END_T_BITS-1:0] t;
         logic [7:0]        steps;
@@ -58,9 +58,9 @@ package raymarch_pkg;
         logic [2:0]        surface;
     } end_t;
     localparam int unsigned EXIT_END_BITS  = PLACE_BITS + END_T_BITS + 8 + 2 + 3;
-    localparam int unsigned MARCH_END_BITS = EXIT_END_BITS + 10 + 12 + 10;
-    localparam int unsigned ROUND_END_BITS = MARCH_END_BITS + 1 + 3 * DIRECTION_BITS;
-    localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
+    localparam int unsigned ROUND_END_BITS = EXIT_END_BITS + 1 + 3 * DIRECTION_BITS;
+    localparam int unsigned MARCH_END_BITS = ROUND_END_BITS + 10 + 12 + 10;
+    localparam int unsigned END_BITS       = MARCH_END_BITS + 8 + 3;
 
     // The nearest sphere among the spheres evaluated so far for a point: its distance and its number.
     typedef struct packed {
@@ -115,7 +115,7 @@ package raymarch_pkg;
     // Returns the number of low bits of an end_t that a build uses, which depends on whether it has marching rays (`march`), spheres
     // (`round`) and fillets (`blend`).
     function automatic int unsigned end_bits(input bit march, input bit round, input bit blend);
-        end_bits = blend ? END_BITS : round ? ROUND_END_BITS : march ? MARCH_END_BITS : EXIT_END_BITS;
+        end_bits = blend ? END_BITS : march ? MARCH_END_BITS : round ? ROUND_END_BITS : EXIT_END_BITS;
     endfunction
 
     // Returns the number of clocks from a point to its distance. Arguments: levels of the sponge, bit mask of the flat fields,

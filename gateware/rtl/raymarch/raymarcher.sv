@@ -23,7 +23,7 @@
 // purpose.
 //
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Rays by exits meet the spheres of a
-// list in the generator, before they enter a lane. round_light then precedes ray_paint, and takes one clock per light for a pixel on a
+// list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes ray_paint, and takes one clock per light for a pixel on a
 // sphere or fillet.
 //
 // Each lane makes one evaluation of the field per clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
@@ -35,10 +35,11 @@ module raymarcher #(
     parameter int unsigned LANES  = 2,
     parameter int unsigned LEVELS = 6,
     parameter int unsigned FIELDS = fields_pkg::ALL,
-    parameter bit          ROUND  = 1'b1,
-    parameter bit          BLEND  = 1'b1,
+    parameter bit          ROUND   = 1'b1,
+    parameter bit          LATTICE = 1'b1,
+    parameter bit          BLEND   = 1'b1,
     parameter bit          STEREO  = 1'b1,
-    parameter int unsigned EARLY  = ROUND ? 1024 : 512
+    parameter int unsigned EARLY   = BLEND ? 1024 : 512
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -110,11 +111,12 @@ module raymarcher #(
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    // Whether the build has flat fields that are drawn by exits, and each kind of rays.
-    localparam bit          LEAVES     = (FIELDS & fields_pkg::EXITS) != 0;
+    // Whether the build has solids with empty prisms, each kind of rays, and light on spheres.
+    localparam bit          LEAVES     = (FIELDS & fields_pkg::EXITS) != 0 || LATTICE;
     localparam bit          EXITS      = LEAVES || ROUND;
-    localparam bit          MARCH      = ROUND || (FIELDS & fields_pkg::OCTANTS) != 0;
-    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(MARCH, ROUND, BLEND);
+    localparam bit          MARCH      = BLEND || (FIELDS & fields_pkg::OCTANTS) != 0;
+    localparam bit          LIT        = ROUND || LATTICE;
+    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(MARCH, LIT, BLEND);
 
     // Values derived from `size`: the number of the last band, and the numbers of lines of a band, of columns (eight pixels wide) of a
     // line, of rows (of eight pixels) of a band, and of rays of a band.
@@ -155,7 +157,7 @@ module raymarcher #(
 
     assign by_exits = EXITS && (!MARCH || exits);
 
-    ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .STEREO(STEREO)) generator (
+    ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .BLEND(BLEND), .STEREO(STEREO)) generator (
         .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends), .stereo, .exits,
         .first, .across, .down, .near_limit, .round(solid.is_round), .origins, .outside, .far_limit, .choice, .distances,
         .there, .away, .last, .nexts, .last_cone, .cone_write, .cone_address, .cone_value, .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
@@ -192,79 +194,66 @@ module raymarcher #(
     end
 
     // Sends a ray to the first lane that can accept a ray.
-    logic [LANES-1:0]   lane_ready, lane_valid, end_valid, end_taken, idles, evaluates, waits;
-    logic [LANES-1:0][raymarch_pkg::END_BITS-1:0] end_of;
+    logic [LANES-1:0] lane_ready, lane_valid, idles, evaluates, waits;
 
     always_comb
         for (int i = 0; i < LANES; i++)
             lane_valid[i] = ray_valid && may_enter && (lane_ready & ((LANES'(1) << i) - 1'b1)) == '0;
     assign ray_ready = may_enter && lane_ready != '0;
 
+    // The ends of the rays by exits and of the marching rays.
+    exit_pkg::end_t     [LANES-1:0] found;
+    raymarch_pkg::end_t [LANES-1:0] ring_end;
+    logic [LANES-1:0]               exit_valid, exit_taken, ring_valid, ring_taken;
+
     for (genvar i = 0; i < LANES; i++) begin : lanes
         // Signals of the exit_lane and of the ring_lane.
-        logic               exit_ready, exit_valid, exit_evaluates, exit_waits, ring_ready, ring_valid, ring_idles, ring_evaluates, ring_waits;
-        raymarch_pkg::end_t exit_end, ring_end;
+        logic exit_ready, exit_evaluates, exit_waits, ring_ready, ring_idles, ring_evaluates, ring_waits;
 
-        if (EXITS) begin : leaving
-            exit_pkg::end_t found;
-
-            if (LEAVES) begin : solid
-                exit_lane #(
-                    .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0), .STEREO(STEREO),
-                    .ROUND(ROUND)
-                ) lane (
-                    .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
-                    .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
-                    .out_valid(exit_valid), .out_ready(end_taken[i] && by_exits), .out_end(found),
-                    .evaluates(exit_evaluates), .waits(exit_waits)
-                );
-            end else begin : spheres_alone
-                // Without a flat solid, a ray ends where it meets a sphere.
-                exit_pkg::end_t ending;
-
-                always_comb begin
-                    ending        = '0;
-                    ending.place  = exit_ray.place;
-                    ending.t      = exit_ray.sphere.t;
-                    ending.height = exit_ray.height;
-                    ending.met    = exit_ray.sphere.met;
-                    ending.number = exit_ray.sphere.number;
-                    for (int axis = 0; axis < 3; axis++)
-                        ending.direction[axis] = {1'b0, exit_ray.speed[axis][exit_pkg::SPEED_BITS-1 -: exit_pkg::DIRECTION_BITS-1]}
-                                                 ^ {exit_pkg::DIRECTION_BITS{exit_ray.down[axis]}};
-                end
-
-                skid_buffer #(.WIDTH(exit_pkg::END_BITS)) passing (
-                    .clk, .rst(reset), .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_data(ending),
-                    .out_valid(exit_valid), .out_ready(end_taken[i] && by_exits), .out_data(found)
-                );
-                assign {exit_evaluates, exit_waits} = '0;
-
-                wire _unused = &{1'b0, rule, levels, halves, borders};
-            end
+        if (LEAVES) begin : leaving
+            exit_lane #(
+                .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0 || LATTICE), .STEREO(STEREO),
+                .ROUND(ROUND), .LATTICE(LATTICE)
+            ) lane (
+                .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
+                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
+                .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(found[i]),
+                .evaluates(exit_evaluates), .waits(exit_waits)
+            );
+        end else if (ROUND) begin : passing
+            // Without a flat solid, a ray ends where it meets a sphere.
+            exit_pkg::end_t                      ending;
+            logic [exit_pkg::ROUND_END_BITS-1:0] kept;
 
             always_comb begin
-                exit_end           = '0;
-                exit_end.place     = found.place;
-                exit_end.t         = found.hit || found.met ? found.t : raymarch_pkg::END_T_BITS'(found.height);
-                exit_end.steps     = found.steps;
-                exit_end.state     = found.hit || found.met ? raymarch_pkg::HIT : raymarch_pkg::MISS;
-                exit_end.surface   = found.hit ? {found.axis, found.positive} : found.number;
-                exit_end.round     = !found.hit;
-                exit_end.direction = found.direction;
-                // A pure sphere.
-                exit_end.share     = '1;
+                ending        = '0;
+                ending.place  = exit_ray.place;
+                ending.t      = exit_ray.sphere.t;
+                ending.height = exit_ray.height;
+                ending.met    = exit_ray.sphere.met;
+                ending.number = exit_ray.sphere.number;
+                for (int axis = 0; axis < 3; axis++)
+                    ending.direction[axis] = {1'b0, exit_ray.speed[axis][exit_pkg::SPEED_BITS-1 -: exit_pkg::DIRECTION_BITS-1]}
+                                             ^ {exit_pkg::DIRECTION_BITS{exit_ray.down[axis]}};
             end
+
+            skid_buffer #(.WIDTH(exit_pkg::ROUND_END_BITS)) waiting (
+                .clk, .rst(reset), .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_data(exit_pkg::ROUND_END_BITS'(ending)),
+                .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_data(kept)
+            );
+            assign found[i] = exit_pkg::LAND_END_BITS'(kept);
+            wire _unused = &{1'b0, ending};
+            assign {exit_evaluates, exit_waits} = '0;
         end else begin : no_leaving
-            assign {exit_ready, exit_valid, exit_evaluates, exit_waits} = '0;
-            assign exit_end = '0;
+            assign {exit_ready, exit_valid[i], exit_evaluates, exit_waits} = '0;
+            assign found[i] = '0;
         end
 
         if (MARCH) begin : marching
-            // Unions of spheres and flat fields march, and so do fields with faces perpendicular to the diagonals.
-            localparam int unsigned MARCHED = ROUND ? FIELDS : FIELDS & fields_pkg::OCTANTS;
+            // Fields with fillets march, and so do fields with faces perpendicular to the diagonals.
+            localparam int unsigned MARCHED = BLEND ? FIELDS : FIELDS & fields_pkg::OCTANTS;
             // Depth of the queue before a lane; 0 for no queue.
-            localparam int unsigned QUEUE   = raymarch_pkg::has_short_rings(LEVELS, MARCHED, ROUND, BLEND) ? 32 : 0;
+            localparam int unsigned QUEUE   = raymarch_pkg::has_short_rings(LEVELS, MARCHED, BLEND, BLEND) ? 32 : 0;
 
             logic               entry_valid, entry_ready;
             raymarch_pkg::ray_t entry;
@@ -280,20 +269,18 @@ module raymarcher #(
 
             assign ring_idles = entry_ready && !entry_valid;
 
-            ring_lane #(.LEVELS(LEVELS), .FIELDS(MARCHED), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO)) lane (
+            ring_lane #(.LEVELS(LEVELS), .FIELDS(MARCHED), .ROUND(BLEND), .BLEND(BLEND), .STEREO(STEREO)) lane (
                 .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write, .sphere_number, .sphere,
                 .in_valid(entry_valid), .in_ready(entry_ready), .in_ray(entry),
-                .out_valid(ring_valid), .out_ready(end_taken[i] && !by_exits), .out_end(ring_end),
+                .out_valid(ring_valid[i]), .out_ready(ring_taken[i]), .out_end(ring_end[i]),
                 .evaluates(ring_evaluates), .waits(ring_waits)
             );
         end else begin : no_marching
-            assign {ring_ready, ring_valid, ring_idles, ring_evaluates, ring_waits} = '0;
-            assign ring_end = '0;
+            assign {ring_ready, ring_valid[i], ring_idles, ring_evaluates, ring_waits} = '0;
+            assign ring_end[i] = '0;
         end
 
         assign lane_ready[i] = by_exits ? exit_ready : ring_ready;
-        assign end_valid[i]  = by_exits ? exit_valid : ring_valid;
-        assign end_of[i]     = by_exits ? exit_end : ring_end;
         assign idles[i]      = by_exits ? exit_ready && !lane_valid[i] : ring_idles;
         assign evaluates[i]  = by_exits ? exit_evaluates : ring_evaluates;
         assign waits[i]      = by_exits ? exit_waits : ring_waits;
@@ -309,8 +296,39 @@ module raymarcher #(
 
     always_ff @(posedge clk) turn <= reset || turn == TURN_BITS'(LANES - 1) ? '0 : turn + 1'b1;
 
-    assign next_end   = end_of[turn];
-    assign next_valid = end_valid[turn];
+    // The next end by exits: exit_landing completes those on spheres of a lattice.
+    exit_pkg::end_t     landed;
+    raymarch_pkg::end_t exit_end;
+    logic               found_taken, landed_valid, landed_taken;
+
+    assign landed_taken = next_taken && by_exits;
+
+    if (LATTICE) begin : landing
+        exit_landing land (
+            .clk, .rst(reset), .far_t(far_limit), .in_valid(exit_valid[turn]), .in_ready(found_taken), .in_end(found[turn]),
+            .out_valid(landed_valid), .out_ready(landed_taken), .out_end(landed)
+        );
+    end else begin : no_landing
+        assign landed       = found[turn];
+        assign landed_valid = exit_valid[turn];
+        assign found_taken  = landed_taken;
+    end
+
+    always_comb begin
+        exit_end           = '0;
+        exit_end.place     = landed.place;
+        exit_end.t         = landed.hit || landed.met ? landed.t : raymarch_pkg::END_T_BITS'(landed.height);
+        exit_end.steps     = landed.steps;
+        exit_end.state     = landed.hit || landed.met ? raymarch_pkg::HIT : raymarch_pkg::MISS;
+        exit_end.surface   = !landed.hit ? landed.number : landed.round ? '0 : {landed.axis, landed.positive};
+        exit_end.round     = !landed.hit || landed.round;
+        exit_end.direction = landed.direction;
+        // A pure sphere.
+        exit_end.share     = '1;
+    end
+
+    assign next_end   = by_exits ? exit_end : ring_end[turn];
+    assign next_valid = by_exits ? landed_valid : ring_valid[turn];
 
     // Ends that have waited in the FIFO are painted first. An end of the next band is stored in the FIFO, which is never full, because at
     // most EARLY rays of the next band enter the lanes.
@@ -323,8 +341,10 @@ module raymarcher #(
     assign paint_end     = waiting_now ? waiting_end : next_end;
 
     always_comb begin
-        end_taken       = '0;
-        end_taken[turn] = next_taken;
+        exit_taken       = '0;
+        ring_taken       = '0;
+        exit_taken[turn] = found_taken;
+        ring_taken[turn] = next_taken && !by_exits;
     end
 
     fifo #(.WIDTH(KEPT_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
@@ -337,7 +357,7 @@ module raymarcher #(
     raymarch_pkg::end_t lit_end;
     logic [23:0]     lit_colour;
 
-    if (ROUND) begin : light
+    if (LIT) begin : light
         round_light #(.BLEND(BLEND), .STEREO(STEREO)) shine (
             .clk, .rst(reset), .origins, .exits(by_exits), .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]), .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
@@ -351,7 +371,7 @@ module raymarcher #(
         wire _unused = &{1'b0, lights};
     end
 
-    ray_paint #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
+    ray_paint #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(LIT), .BLEND(BLEND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
         .clk, .rst(reset), .stereo, .exits, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
@@ -381,7 +401,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, ray, exit_ray, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
+    wire _unused = &{1'b0, generating, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end, last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 
 `default_nettype wire

@@ -347,8 +347,8 @@ module ring_lane #(
     end
 
     assign end_in = {
-        face_end, share_end, last_cargo.direction, last_round, last_cargo.length, last_round ? 12'd0 : face_gap,
-        last_round ? 10'h3FF : slope, last_cargo.place, raymarch_pkg::END_T_BITS'(end_t), steps_end, last_state, last_surface
+        face_end, share_end, last_cargo.length, last_round ? 12'd0 : face_gap, last_round ? 10'h3FF : slope, last_cargo.direction,
+        last_round, last_cargo.place, raymarch_pkg::END_T_BITS'(end_t), steps_end, last_state, last_surface
     };
 
     delay #(.WIDTH(11), .CLOCKS(2)) blended (.clk, .enable(1'b1), .in({face, share}), .out({face_end, share_end}));

@@ -36,7 +36,10 @@ module round_light #(
     output logic [23:0]              out_colour
 );
     localparam int unsigned LAST = BLEND ? 26 : 22;
-    localparam int unsigned KEPT_BITS = raymarch_pkg::MARCH_END_BITS + 1;
+    // Ends without the direction.
+    localparam int unsigned ROUND_BITS = raymarch_pkg::EXIT_END_BITS + 1;
+    localparam int unsigned MARCH_BITS = BLEND ? 10 + 12 + 10 : 0;
+    localparam int unsigned KEPT_BITS  = MARCH_BITS + ROUND_BITS;
 
     (* ram_style = "distributed" *) logic [68:0] centres [0:7];
     (* ram_style = "distributed" *) logic [4:0]  shifts [0:7];
@@ -281,16 +284,19 @@ module round_light #(
 
     logic [KEPT_BITS-1:0] kept_last, kept;
 
-    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(held[KEPT_BITS-1:0]), .out(kept_last));
+    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(KEPT_BITS'({held.length, held.gap, held.slope, held[ROUND_BITS-1:0]})), .out(kept_last));
 
     skid_buffer #(.WIDTH(KEPT_BITS + 24)) leaving (
         .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({kept_last, colour_last}),
         .out_valid, .out_ready, .out_data({kept, out_colour})
     );
 
-    assign out_end = raymarch_pkg::END_BITS'(kept);
+    always_comb begin
+        out_end = raymarch_pkg::END_BITS'(kept[ROUND_BITS-1:0]);
+        if (BLEND) {out_end.length, out_end.gap, out_end.slope} = 32'(kept >> ROUND_BITS);
+    end
 
-    wire _unused = &{1'b0, sphere.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
+    wire _unused = &{1'b0, held.length, held.gap, held.slope, sphere.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
 endmodule
 
 `default_nettype wire

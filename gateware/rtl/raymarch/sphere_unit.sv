@@ -278,53 +278,17 @@ module sphere_unit #(
     square_add square_b (.clk, .x(b_6[31:8]), .c(square_8), .p(square_9));
     square_add #(.NEGATIVE(1'b1)) square_f (.clk, .x(f_7[31:8]), .c(square_9), .p(square_10));
 
-    // The square is shifted left by an even number of bits until one of the two highest bits is 1. It has 30 fraction bits. A square below
-    // 2^-20 counts as 0.
-    logic [31:0] rest_10, coarse_11;
-    logic [25:0] fine_12;
-    logic [1:0]  eights_10, eights_11, twos_11;
+    // The root, u1.22, of a square with 30 fraction bits. A square below 2^-20 counts as 0.
+    logic [31:0] rest_10;
+    logic [22:0] root_19;
     logic        hit_11, hit_38;
-    logic [3:0]  places_12, places_17;
-    logic [1:0]  places_18;
 
-    assign rest_10   = ~square_10[39:8];
-    assign eights_10 = rest_10[31:24] != '0 ? 2'd0 : rest_10[23:16] != '0 ? 2'd1 : 2'd2;
-    assign twos_11   = coarse_11[31:30] != '0 ? 2'd0 : coarse_11[29:28] != '0 ? 2'd1 : coarse_11[27:26] != '0 ? 2'd2 : 2'd3;
+    assign rest_10 = ~square_10[39:8];
 
-    always_ff @(posedge clk) begin
-        hit_11    <= some_10 && !out_10 && square_10[42] && rest_10[31:10] != '0;
-        eights_11 <= eights_10;
-        coarse_11 <= rest_10 << {eights_10, 3'd0};
-        places_12 <= {eights_11, twos_11};
-        unique case (twos_11)
-            2'd0: fine_12 <= coarse_11[31:6];
-            2'd1: fine_12 <= coarse_11[29:4];
-            2'd2: fine_12 <= coarse_11[27:2];
-            2'd3: fine_12 <= coarse_11[25:0];
-        endcase
-    end
+    always_ff @(posedge clk) hit_11 <= some_10 && !out_10 && square_10[42] && rest_10[31:10] != '0;
+
+    exit_root rooting (.clk, .square(rest_10), .root(root_19));
     delay #(.WIDTH(1), .CLOCKS(27)) hit_waits (.clk, .enable(1'b1), .in(hit_11), .out(hit_38));
-    delay #(.WIDTH(4), .CLOCKS(5)) places_wait (.clk, .enable(1'b1), .in(places_12), .out(places_17));
-
-    // The root, a linear interpolation between two entries of the table, and shifted back, u1.22.
-    logic [17:0]        base_14, base_16;
-    logic [9:0]         slope_14;
-    logic [16:0]        rest_14;
-    logic signed [36:0] root_17;
-    logic [22:0]        root_18, root_19;
-
-    root_table roots (.clk, .index(fine_12[25:17]), .root(base_14), .slope(slope_14));
-    delay #(.WIDTH(17), .CLOCKS(2)) rest_waits (.clk, .enable(1'b1), .in(fine_12[16:0]), .out(rest_14));
-    delay #(.WIDTH(18), .CLOCKS(2)) base_waits (.clk, .enable(1'b1), .in(base_14), .out(base_16));
-    multiply_add #(.BITS(37)) between (
-        .clk, .enable(1'b1), .a({15'b0, slope_14}), .b({1'b0, rest_14}), .c({1'b0, 1'b1, base_16, 17'b0}), .p(root_17)
-    );
-
-    always_ff @(posedge clk) begin
-        root_18   <= {root_17[35:17], 4'd0} >> {places_17[3:2], 2'd0};
-        places_18 <= places_17[1:0];
-        root_19   <= root_18 >> places_18;
-    end
 
     // The divisor, u2.22, and its reciprocal. It is rounded up, because the root is rounded down.
     logic [23:0]                      f_21;
@@ -336,7 +300,7 @@ module sphere_unit #(
     multiply_add #(.BITS(44)) divisor (
         .clk, .enable(1'b1), .a({2'b0, root_19}), .b({1'b0, shares[entry_19]}), .c({3'd0, f_21, 17'h1FFFF}), .p(divisor_22)
     );
-    exit_mantissa reciprocal (.clk, .magnitude(divisor_22[40:17]), .mantissa(mantissa_32), .exponent(scale_32));
+    exit_mantissa reciprocal (.clk, .whole({divisor_22[40:17], 1'b1}), .mantissa(mantissa_32), .exponent(scale_32));
 
     // T: the distance times the reciprocal of a quarter of the divisor. The mantissa less 1 has a sign.
     logic [23:0]        distance_32, distance_34;
@@ -412,7 +376,7 @@ module sphere_unit #(
     /* verilator lint_on PINCONNECTEMPTY */
 
     wire _unused = &{1'b0, address_1[8:7], rows[walk_entry], f_7[47:32], a_5[7:0], b_6[7:0], f_7[7:0], square_10[41:40],
-                     square_10[7:0], root_17[36], root_17[16:0], divisor_22[43:41], divisor_22[16:0],
+                     square_10[7:0], divisor_22[43:41], divisor_22[16:0],
                      mantissa_32[22], mantissa_32[3:0], product_35[43], shifted[22:0], middle[28:23]};
 endmodule
 

@@ -26,8 +26,10 @@ pub struct Fields {
     pub levels: u8,
     /// Names of the flat fields except the sponge.
     pub flat: BTreeSet<&'static str>,
-    /// Spheres.
+    /// Spheres of a list.
     pub spheres: bool,
+    /// Spheres of a lattice.
+    pub lattice: bool,
     /// Fillets between spheres and flat fields.
     pub fillets: bool,
     /// Two eyes.
@@ -186,6 +188,7 @@ impl Fields {
             levels: 0,
             flat: BTreeSet::new(),
             spheres: false,
+            lattice: false,
             fillets: false,
             stereo: false,
         };
@@ -200,6 +203,7 @@ impl Fields {
 
     fn and(mut self, primitive: &Primitive) -> Self {
         match primitive.placed().solid {
+            Solid::Spheres(spheres) if spheres.repeated => self.lattice = true,
             Solid::Spheres(_) => self.spheres = true,
             Solid::Flat(flat) => self.add(&flat),
         }
@@ -229,6 +233,7 @@ impl Fields {
             levels: self.levels.max(other.levels),
             flat: &self.flat | &other.flat,
             spheres: self.spheres || other.spheres,
+            lattice: self.lattice || other.lattice,
             fillets: self.fillets || other.fillets,
             stereo: self.stereo || other.stereo,
         }
@@ -243,6 +248,7 @@ impl Fields {
         names.extend(self.flat.iter().map(|name| (*name).to_owned()));
         let features = [
             ("spheres", self.spheres),
+            ("lattice", self.lattice),
             ("fillets", self.fillets),
             ("stereo", self.stereo),
         ];

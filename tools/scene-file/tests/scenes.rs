@@ -358,6 +358,7 @@ fn needs_follow_from_the_keys() {
         field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2
         model = "cube"; stereo = "0.1,4" → --blocks scanout triangle
         model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --fields octahedron --lanes 2
+        field = "lattice:2,0.5" → --blocks scanout raymarch --no-depths --fields lattice --lanes 2
         field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres --lanes 2
         field = "smooth:0.3,box:1,1,0.2+sphere:1" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
         field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --fields menger:2 --lanes 2

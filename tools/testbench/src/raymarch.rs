@@ -86,6 +86,9 @@ pub fn exit_ray(
         record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 2);
         record.set(&format!("inverse[{axis}]"), reciprocal(beam.inverse[axis]));
     }
+    if solid.rule.is_lattice() {
+        set_length(&mut record, beam);
+    }
     // A ray that is over has no start.
     if !is_over {
         record.set("start", start.t);
@@ -97,6 +100,16 @@ pub fn exit_ray(
     record.bits()
 }
 
+/// Sets the square of the direction's length and its reciprocal, which a ray in a lattice has.
+fn set_length(record: &mut Record, beam: &Beam) {
+    let short = (beam.square + (1 << 7)) >> 8;
+    record.set("length.square", short.min((1 << 17) - 1));
+    record.set("length.doublings", beam.doublings);
+    let Inverse { mantissa, exponent } = beam.inverse_square;
+    record.set("inverse_square.exponent", exponent + 2);
+    record.set("inverse_square.mantissa", mantissa >> 4 & ((1 << 18) - 1));
+}
+
 /// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
 #[must_use]
 pub fn reciprocal(inverse: Inverse) -> u64 {
@@ -105,9 +118,9 @@ pub fn reciprocal(inverse: Inverse) -> u64 {
     scale << 30 | u64::from(mantissa) << (exponent % 8)
 }
 
-/// Clears what has no meaning: the start of a ray that is over, and the number of no sphere.
+/// Clears what has no meaning: the start of a ray that is over, the number of no sphere, and the length of a direction outside of lattices.
 #[must_use]
-pub fn with_meaning(record: &Record) -> Bits {
+pub fn with_meaning(record: &Record, exits: &Exits) -> Bits {
     let mut record = record.clone();
     if record.is_set("over") {
         for name in ["start", "axis", "reached[0]", "reached[1]", "reached[2]"] {
@@ -116,6 +129,16 @@ pub fn with_meaning(record: &Record) -> Bits {
     }
     if !record.is_set("sphere.met") {
         record.set("sphere.number", 0);
+    }
+    if !exits.solid.is_some_and(|solid| solid.rule.is_lattice()) {
+        for name in [
+            "length.square",
+            "length.doublings",
+            "inverse_square.exponent",
+            "inverse_square.mantissa",
+        ] {
+            record.set(name, 0);
+        }
     }
     record.bits()
 }
@@ -364,15 +387,21 @@ fn set_solid(module: &mut Module, exits: &Exits) {
     module.drive_all("borders", solid.borders());
 }
 
-/// Writes the cones of both eyes, each changed by `change`, to the ports whose names begin with `prefix`.
-pub fn set_cones(module: &mut Module, prefix: &str, exits: &Exits, change: impl Fn(&Cone) -> Cone) {
+/// Writes the cones of one eye or of two, each changed by `change`, to the ports whose names begin with `prefix`.
+pub fn set_cones(
+    module: &mut Module,
+    prefix: &str,
+    exits: &Exits,
+    eyes: usize,
+    change: impl Fn(&Cone) -> Cone,
+) {
     let cones = exits.cones();
     let last = |eye: usize| cones[eye].list().len().saturating_sub(1) as i64;
     module.drive_all("last_cone", [last(0), last(1)]);
     let [write, address, value] =
         ["write", "address", "value"].map(|name| module.port(&format!("{prefix}{name}")));
     module.set(write, 1);
-    for (eye, cones) in cones.iter().enumerate() {
+    for (eye, cones) in cones.iter().take(eyes).enumerate() {
         let mut words: Vec<_> = cones
             .list()
             .iter()
@@ -380,6 +409,11 @@ pub fn set_cones(module: &mut Module, prefix: &str, exits: &Exits, change: impl 
             .collect();
         if words.is_empty() {
             words.push(Cone::unseen());
+        }
+        for cone in cones.list() {
+            let cone = change(cone);
+            // Only bits that the gateware does not read may be lost.
+            assert_eq!(Cone::of_words(&cone.words()), cone);
         }
         for (number, words) in words.iter().enumerate() {
             for (constant, &word) in words.iter().enumerate() {
@@ -463,7 +497,8 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
             module.drive_all("down", axes(exits.steps[1]));
             drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
             set_starts(module, exits);
-            set_cones(module, "cone_", exits, |cone| *cone);
+            let count = 1 + usize::from(setup.stereo.is_some());
+            set_cones(module, "cone_", exits, count, |cone| *cone);
         }
         Form::Marching(marching) => {
             let eyes = marching.eyes;

@@ -42,13 +42,13 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
     run::program("glint-reference", "report", name, arguments)
 }
 
-/// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for spheres, and the
+/// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
 /// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
-            let spheres = ["--fields", "spheres,stereo", "--lanes", "4"];
-            gateware::build_beside("spheres-4", &spheres, Library::Quick)?;
+            let lattice = ["--fields", "lattice,stereo", "--lanes", "4"];
+            gateware::build_beside("lattice-4", &lattice, Library::Quick)?;
             model("raymarcher")
         }
         "gouraud" => model("triangle_raster"),
@@ -146,7 +146,7 @@ fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     ];
     if !quick {
         files.extend([
-            "gateware/virtual-spheres-4/libglint_soc.so",
+            "gateware/virtual-lattice-4/libglint_soc.so",
             "gateware/virtual-smooth/libglint_soc.so",
             "gateware/models/raymarcher.so",
         ]);

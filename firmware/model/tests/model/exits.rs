@@ -483,8 +483,8 @@ fn each_stiff_ray_has_its_outcome() {
             "lattice:1,0.25",
             [32 * UNIT - 1, 16 * UNIT - 1, 0],
             [ONE, 0, 0],
-            "sphere 0 at 130711",
-            "inside of the tangent by a unit",
+            "sphere 0 at 130668",
+            "inside of the tangent by a unit; exactly 130711",
         ),
         (
             "lattice:1,0.25",

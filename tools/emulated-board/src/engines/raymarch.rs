@@ -165,6 +165,7 @@ impl Device for Raymarcher {
                 .with_levels(LEVELS)
                 .with_stereo(true)
                 .with_round(true)
+                .with_lattice(true)
                 .with_blend(true)
                 .with_flat((1 << Kind::ALL.len()) - 1)
                 .bits(),

@@ -3,7 +3,9 @@
 
 use std::collections::HashMap;
 
+use glint_core::camera::View;
 use glint_core::field::{Field, Surface};
+use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::State;
 use glint_model::raymarch::exits::{Exits, Eye, Inverse, Words};
 use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
@@ -26,21 +28,37 @@ fn fields() -> Vec<&'static str> {
 fn all_fields() -> Vec<&'static str> {
     let is_union = |field: &&str| field.starts_with("union:");
     let unions = UNIONS.into_iter().filter(is_union);
-    [&SPONGES[..], &FIELDS]
+    [&SPONGES[..], &FIELDS, &LATTICES]
         .concat()
         .into_iter()
         .chain(unions)
         .collect()
 }
 
-/// End of a ray. A miss has no face, and the ray's limit as its parameter: the far limit, or the parameter at a sphere.
+/// Lattices of spheres: typical ones, and the smallest and the largest radius.
+const LATTICES: [&str; 6] = [
+    "lattice:1,0.3",
+    "lattice:2,0.5",
+    "lattice:0.25,0.124",
+    "lattice:16,0.01",
+    "lattice:16,7.9999",
+    "lattice:1,0.01",
+];
+
+/// The surface that a ray hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Seen {
+    /// A face perpendicular to an axis, and whether its normal is positive.
+    Face(u64, bool),
+    /// A sphere of a list or of a lattice, with the ray's direction.
+    Sphere(u64, [i32; 3]),
+}
+
+/// End of a ray. A miss has no surface, and the ray's limit as its parameter: the far limit, or the parameter at a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct End {
-    is_hit: bool,
     t: u64,
-    face: Option<(u64, bool)>,
-    /// The number of the sphere, and the ray's direction.
-    sphere: Option<(u64, [i32; 3])>,
+    surface: Option<Seen>,
     steps: u64,
     height: u64,
 }
@@ -66,6 +84,42 @@ struct Sent {
     end: End,
 }
 
+/// Makes a frame in which all rays start at one place and have one direction, both among the stiffest: on borders and beside them, with
+/// components of 0 and 1 ulp. The near plane is at the eye.
+fn stiff_frame(random: &mut Random, text: &str) -> Exits {
+    const ONE: i64 = (1 << 24) - 1;
+    let field = Field::parse(text).expect("a field");
+    let exits = |view: &View| {
+        let words = Words::CHOSEN;
+        Exits::new(&field, view, (320, 180), None, words).expect("a frame")
+    };
+    let old = camera(random);
+    let before = exits(&old);
+    let half = i64::from(before.solid.expect("a solid").half()[0]);
+    let place = [0; 3].map(|_| {
+        let border = random.integer(-2, 2) * [1 << 17, half, 1 << 12][random.bits() as usize % 3];
+        (border + random.integer(-1, 1)) as f64 / 4096.0 / before.scale.to_num::<f64>()
+    });
+    let place = place.map(Q32_32::from_num);
+    let near = U4_28::from_num(0.01);
+    let view = View::new_checked(place, old.u(), old.v(), old.n(), old.half_width(), near);
+    let mut exits = exits(&view.expect("an eye within its range"));
+    let mut direction = [0; 3].map(|_| match random.bits() % 4 {
+        0 => random.integer(-2, 1),
+        1 => [ONE, !ONE, ONE - 1, ONE / 3][random.bits() as usize % 4],
+        _ => random.integer(!ONE, ONE),
+    });
+    // No direction of a camera is shorter than 1/8.
+    let axis = random.bits() as usize % 3;
+    let least = random.integer(1 << 21, ONE);
+    if direction[axis].abs() < 1 << 21 {
+        direction[axis] = if random.coin() { least } else { !least };
+    }
+    exits.near = 0;
+    exits.aim(direction.map(|part| (part << 6) as i32));
+    exits
+}
+
 /// Makes random rays of a frame, with their expected ends, by place.
 fn some_rays(
     random: &mut Random,
@@ -73,10 +127,11 @@ fn some_rays(
     exits: &Exits,
     eyes: usize,
     round: bool,
+    count: usize,
 ) -> HashMap<u32, Sent> {
     let mut all = HashMap::new();
     let cones = exits.cones();
-    while all.len() < RAYS {
+    while all.len() < count {
         let x = random.integer(0, i64::from(exits.width) - 1) as u32;
         let y = random.integer(0, i64::from(exits.height) - 1) as u32;
         let eye = random.bits() as usize % eyes;
@@ -88,21 +143,19 @@ fn some_rays(
         };
         let beam = exits.ray(eye, x, y);
         let found = exits.end(&cones, &beam);
-        let (face, sphere, t) = match found.state {
+        let (surface, t) = match found.state {
             State::Hit(Surface::Face { axis, positive }) => {
-                (Some((axis.into(), positive)), None, found.t)
+                (Some(Seen::Face(axis.into(), positive)), found.t)
             }
             State::Hit(surface) => {
                 let number = surface.number().unwrap_or_default();
-                (None, Some((number.into(), beam.direction())), found.t)
+                (Some(Seen::Sphere(number.into(), beam.direction())), found.t)
             }
-            _ => (None, None, exits.far),
+            _ => (None, exits.far),
         };
         let end = End {
-            is_hit: face.is_some(),
             t: t as u64,
-            face,
-            sphere,
+            surface,
             steps: found.steps.into(),
             height: beam.height().into(),
         };
@@ -114,22 +167,33 @@ fn some_rays(
 
 struct Bench {
     pipe: Pipe,
+    /// The unit after the lane that computes the parameters of hits on spheres of a lattice.
+    landing: Option<Pipe>,
     /// Whether rays have limits of their own; otherwise the parameter of a miss has no meaning.
     has_limits: bool,
 }
+
+/// A build of the lane with all kinds of solids.
+const ALL: &str = "exit_lane_all";
 
 impl Bench {
     fn new(name: &str, seed: u32, stalls: [f64; 2]) -> Self {
         let (rays, ends) = (("in", &["ray"][..]), ("out", &["end"][..]));
         Self {
             pipe: Pipe::new(name, seed, rays, ends, stalls),
-            has_limits: name == "exit_lane_all",
+            landing: (name != "exit_lane")
+                .then(|| Pipe::new("exit_landing", seed, ("in", &["end"]), ends, stalls)),
+            has_limits: name == ALL,
         }
     }
 
     /// Sends rays of a frame through the lane, and compares their ends with the expected ends.
     fn check(&mut self, exits: &Exits, mut expected: HashMap<u32, Sent>) {
-        let Self { pipe, has_limits } = self;
+        let Self {
+            pipe,
+            landing,
+            has_limits,
+        } = self;
         set_lane(&mut pipe.module, exits);
         let layout = pipe.module.packed_type("exit_pkg::end_t").clone();
         let count = expected.len();
@@ -141,24 +205,38 @@ impl Bench {
             pipe.sink.items().len() == count
         });
         pipe.module.clock();
-        for item in pipe.sink.take() {
+        let mut ends = pipe.sink.take();
+        if let Some(landing) = landing {
+            landing.module.drive("far_t", exits.far);
+            for end in ends {
+                landing.source.push(end);
+            }
+            landing.run(100_000, |landing| landing.sink.items().len() == count);
+            landing.module.clock();
+            ends = landing.sink.take();
+        }
+        for item in ends {
             let record = layout.record_of(item[0]);
             let place = record.get("place") as u32;
             let is_hit = record.is_set("hit");
             let has_t = is_hit || *has_limits;
+            let direction = || {
+                let part = |axis| record.signed(&format!("direction[{axis}]")) as i32;
+                [0, 1, 2].map(part)
+            };
+            let surface = match (is_hit, record.is_set("round"), record.is_set("met")) {
+                (true, true, _) => Some(Seen::Sphere(0, direction())),
+                (true, false, _) => Some(Seen::Face(record.get("axis"), record.is_set("positive"))),
+                (false, _, true) => Some(Seen::Sphere(record.get("number"), direction())),
+                (false, _, false) => None,
+            };
             let found = End {
-                is_hit,
                 t: if has_t {
                     record.get("t")
                 } else {
                     exits.far as u64
                 },
-                face: is_hit.then(|| (record.get("axis"), record.is_set("positive"))),
-                sphere: (!is_hit && record.is_set("met")).then(|| {
-                    let direction =
-                        [0, 1, 2].map(|axis| record.signed(&format!("direction[{axis}]")));
-                    (record.get("number"), direction.map(|part| part as i32))
-                }),
+                surface,
                 steps: record.get("steps"),
                 height: record.get("height"),
             };
@@ -220,7 +298,7 @@ fn random_rays(name: &str, fields: &[&str]) {
         let (view, size) = (camera(&mut random), size(&mut random));
         let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
         let eyes = if stereo.is_some() { 2 } else { 1 };
-        let rays = some_rays(&mut random, &layout, &exits, eyes, name == "exit_lane_all");
+        let rays = some_rays(&mut random, &layout, &exits, eyes, name == ALL, RAYS);
         benches[frame / fields.len() % 4].check(&exits, rays);
     }
 }
@@ -232,5 +310,28 @@ fn random_rays_in_flat_solids() {
 
 #[test]
 fn random_rays_with_limits() {
-    random_rays("exit_lane_all", &all_fields());
+    random_rays(ALL, &all_fields());
+}
+
+#[test]
+fn random_rays_in_lattices() {
+    random_rays("exit_lane_lattice", &LATTICES);
+}
+
+#[test]
+fn stiff_rays_in_lattices() {
+    let mut random = Random(9);
+    let mut bench = Bench::new("exit_lane_lattice", 1, [0.0, 0.0]);
+    let layout = bench.pipe.module.packed_type("exit_pkg::ray_t").clone();
+    for frame in 0..20 * frames() {
+        let exits = stiff_frame(&mut random, LATTICES[frame % LATTICES.len()]);
+        let rays = some_rays(&mut random, &layout, &exits, 1, false, 1);
+        bench.check(&exits, rays);
+    }
+}
+
+/// A lane for lattices draws flat solids as one without.
+#[test]
+fn random_rays_in_flat_solids_beside_lattices() {
+    random_rays("exit_lane_lattice", &fields());
 }

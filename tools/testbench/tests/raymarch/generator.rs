@@ -1,11 +1,11 @@
 //! Tests of the ray generator: its rays equal the model's rays of a frame, in order.
 
-use glint_model::raymarch::exits::Exits;
 use glint_model::raymarch::{FieldSetup, Form, Marching};
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
 use crate::scenes::{FIELDS, ROUND, marching_setup, setup};
+use glint_model::raymarch::exits::Exits;
 use glint_testbench::raymarch::{RayPlace, exit_ray, ray, set_generator, with_meaning};
 use glint_vectors::Random;
 
@@ -77,8 +77,8 @@ fn check(bench: &mut Bench, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u
     let rays = expected(&layout, setup, lines, *round);
     let (taken, clocks) = run(module, port, rays.len(), stalls);
     for (number, (item, wanted)) in taken.iter().zip(rays).enumerate() {
-        let found = match setup.form {
-            Form::Exits(_) => with_meaning(&layout.record_of(*item)),
+        let found = match &setup.form {
+            Form::Exits(exits) => with_meaning(&layout.record_of(*item), exits),
             Form::Marching(_) => *item,
         };
         assert_eq!(found, wanted, "ray {number} of {setup:?}");

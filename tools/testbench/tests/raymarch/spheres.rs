@@ -122,7 +122,7 @@ impl Bench {
         module.drive("last_group", window.size[0] / 8 - 1);
         module.drive("last_row", window.size[1] - 1);
         module.drive("stereo", eyes == 2);
-        set_cones(module, "", exits, |cone| window.shifted(cone));
+        set_cones(module, "", exits, eyes, |cone| window.shifted(cone));
         let mut sink = Sink::new(
             module,
             "out",

@@ -63,9 +63,10 @@ impl Rule {
         matches!(self, Self::Repeated { round: true })
     }
 
-    /// Number of levels of a sponge; 0 for other solids.
+    /// Number of levels of a sponge; of spheres in place of cubes 1, by which the gateware tells them apart; 0 for other solids.
     pub const fn levels(&self) -> u32 {
         match *self {
+            Self::Repeated { round } => round as u32,
             Self::Sponge { cells, last, .. } if last > 0 => (cells / last).ilog(3),
             _ => 0,
         }

@@ -47,7 +47,8 @@ pub(super) fn meet(
     // rounded to nearest.
     let square = squared(along, words.along.saturating_sub(10));
     let square = floor(square, 2 * words.along as i32 - REST as i32);
-    let product = nearest(beam.square, 23 - SQUARE as i32) * beyond;
+    let length = nearest(beam.square, 23 - SQUARE as i32).min((4 << SQUARE) - 1);
+    let product = length * beyond;
     let rest = square - (product >> (SQUARE + BEYOND - REST)) - 1;
     if along >= 0 || rest < 0 {
         return None;
@@ -58,8 +59,9 @@ pub(super) fn meet(
         i64::from(root),
         2 + (shift + SHORT_REST as i32) / 2 - ROOT as i32,
     );
-    // At least 0, as the root is rounded down.
+    // Only a root of 0 is too large.
     let distance = -floor(along, words.along as i32 - ROOT as i32) - root;
+    let distance = distance.max(0);
     let inverse = beam.inverse_square;
     let mantissa = floor(i64::from(inverse.mantissa), words.inverse as i32 - MANTISSA);
     let bits = ROOT as i32 + MANTISSA - inverse.exponent;

@@ -17,6 +17,12 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
+    /// No pixel.
+    pub(super) const NONE: Self = Self {
+        columns: [1, 0],
+        rows: [1, 0],
+    };
+
     /// Whether a pixel is in the rectangle.
     pub const fn holds(&self, column: u32, row: u32) -> bool {
         let Self { columns, rows } = self;
@@ -64,10 +70,7 @@ impl Rectangle {
         if depth <= radius {
             // The sphere reaches the plane of the eye, or is behind it.
             return match depth < -radius {
-                true => Self {
-                    columns: [1, 0],
-                    rows: [1, 0],
-                },
+                true => Self::NONE,
                 false => Self::all([width, height]),
             };
         }

@@ -104,7 +104,7 @@ pub struct Exits {
     pub solid: Option<Solid>,
     /// The spheres: those of a list, that of a lattice, or none.
     pub spheres: FixedSpheres,
-    /// The pixels by which each eye may see each sphere of a list.
+    /// The pixels by which each eye may see each sphere of a list; none for the right eye without stereo.
     pub rectangles: [[Rectangle; SEEN_SPHERES]; 2],
 }
 
@@ -112,9 +112,7 @@ impl Exits {
     /// Whether pictures of a field are drawn by exits. Rays march in all other fields.
     pub fn draws(field: &Field) -> bool {
         match field {
-            Field::Primitive(primitive) => {
-                !matches!(primitive, Primitive::Octahedron(_) | Primitive::Lattice(_))
-            }
+            Field::Primitive(primitive) => !matches!(primitive, Primitive::Octahedron(_)),
             Field::Union(union) => union.blend() == Q32_32::ZERO,
         }
     }
@@ -177,7 +175,7 @@ impl Exits {
                 count: 0,
                 repeated: false,
             },
-            rectangles: [[Rectangle::default(); SEEN_SPHERES]; 2],
+            rectangles: [[Rectangle::NONE; SEEN_SPHERES]; 2],
         };
         let eyes = if stereo.is_some() { 2 } else { 1 };
         exits.place_spheres(field, &views[..eyes]);

@@ -73,7 +73,9 @@ fn leaving(
     let rule = match register.rule() {
         RuleRegister::Planes => Rule::Planes,
         RuleRegister::Sponge => Rule::sponge(register.depth().into()),
-        RuleRegister::Cubes => Rule::Repeated { round: false },
+        RuleRegister::Cubes => Rule::Repeated {
+            round: register.depth() & 1 == 1,
+        },
         RuleRegister::Box => Rule::Box,
     };
     let axes = |[x, y, z]: [i32; 3]| [x, y, z, 0];

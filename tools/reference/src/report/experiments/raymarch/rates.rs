@@ -32,8 +32,8 @@ const FIELDS: Build = Build {
     folder: "virtual",
     lanes: 2,
 };
-const SPHERES: Build = Build {
-    folder: "virtual-spheres-4",
+const FOUR_LANES: Build = Build {
+    folder: "virtual-lattice-4",
     lanes: 4,
 };
 
@@ -95,8 +95,8 @@ const LATTICE: Case = Case {
     field: "lattice:1,0.3",
     cameras: of_the_lattice,
     path: still,
-    at_least: 57.0,
-    aim: None,
+    at_least: 180.0,
+    aim: Some(250.0),
     ..STEREO_SPONGE
 };
 
@@ -106,7 +106,7 @@ pub const CASES: [Case; 4] = [
     LARGE_SPONGE,
     LATTICE,
     Case {
-        build: SPHERES,
+        build: FOUR_LANES,
         ..LATTICE
     },
 ];
