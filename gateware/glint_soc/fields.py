@@ -40,7 +40,7 @@ FLAT_FIELDS = (
               ports={"is_box": "solid.kind == 2'd1", "levels": "solid.levels[LEVELS-1:0]", "cube_half": "solid.cube_half", **_BOX},
               exits=True),
     FlatField("box", "boxes, cubes and planes", clocks="3", ports=_BOX, exits=True, inside="menger"),
-    FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True),
+    FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True, exits=True),
 )
 """All flat fields, by their numbers in `solid.kind`. Field 0 is the sponge; the build sets its number of levels."""
 

@@ -24,7 +24,7 @@ _ERRORS = [
     ("2", "stereo", "two eyes are not built"),
 ]
 
-_RULES = [("0", "box", "inside of a box"), ("1", "planes", "outside of the slab between two planes"),
+_RULES = [("0", "box", "inside of a box, or of an octahedron: a box along diagonals"), ("1", "planes", "outside of the slab between two planes"),
           ("2", "sponge", "Menger sponge"), ("3", "cubes", "cubes, repeated every 64 field units, or spheres in such cubes")]
 
 _EXITS = [("0", "second", "the second of three"), ("1", "first", "the first"), ("2", "last", "the last")]
@@ -59,7 +59,7 @@ class Fields:
     @property
     def has_marching(self):
         """Whether rays of some fields march by distances."""
-        return self.blend or has_octants(self.flat)
+        return self.blend
 
     def parameters(self):
         """Returns the parameters of the module by name."""
@@ -153,7 +153,7 @@ class Raymarcher(LiteXModule):
         self._exits = Parameter(name="exits", fields=[
             CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances."),
             CSRField("rule", size=2, offset=1, values=_RULES, description="The solid."),
-            CSRField("depth", size=3, offset=4, description="Levels of the sponge; 1 for spheres in place of cubes."),
+            CSRField("depth", size=3, offset=4, description="Levels of the sponge; 1 for spheres in place of cubes, and for an octahedron."),
             *(CSRField(f"{eye}_exit", size=2, offset=8 + 2 * number, values=_EXITS,
                        description=f"By which of its planes a ray leaves the prism around the {eye} eye.")
               for number, eye in enumerate(("left", "right"))),
@@ -175,7 +175,7 @@ class Raymarcher(LiteXModule):
         self._far = Parameter(28, name="far", description="Far limit: of T, u14.14, by exits; of t, u11.12, of marching rays.")
         self._near = Parameter(28, name="near", description="Near limit: by exits the near plane's T, u14.14; of marching rays the depth of "
                                "the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12.")
-        origins, outside, first, starts, nexts = [], [], [], [], []
+        origins, outside, first, starts, sums, nexts = [], [], [], [], [], []
         for eye in ("left", "right"):
             for axis in "xyz":
                 origins.append(self._register(f"origin_{eye}_{axis}", 25, f"Position of the {eye} eye, {axis}, s13.12."))
@@ -191,6 +191,8 @@ class Raymarcher(LiteXModule):
                                                  f"{eye} eye along the {text}{axis} axis: its distance in bits 0 to 24, u12.12; "
                                                  "bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit "
                                                  "27 if it has left the solid beyond the plane."))
+                sums.append(self._register(f"start_{eye}_{way}sum", 27, f"The same along the {text}fourth axis of an octahedron, without "
+                                           "bit 27."))
         bounds = [self._register(f"bounds_{axis}", 24, f"Half the side of the bounding box along {axis}, u12.12.")
                   for axis in "xyz"]
         across = [self._register(f"across_{axis}", 32, f"Change of D per column, {axis}, s2.30.") for axis in "xyz"]
@@ -273,6 +275,8 @@ class Raymarcher(LiteXModule):
                      self._horizon, self._fog_shift]
         if fields.has_exits:
             registers += [*border, *starts[:6*eyes], *nexts[:3*eyes]]
+        if has_octants(fields.flat):
+            registers += sums[:2*eyes]
         if fields.has_marching:
             registers += [self._cube_half, self._tuning, *outside[:3*eyes], *bounds]
         self.parameters = PassParameters(registers)
@@ -314,6 +318,9 @@ class Raymarcher(LiteXModule):
             i_there          = Cat(*(start.storage[25] for start in starts)),
             i_away           = Cat(*(start.storage[26] for start in starts)),
             i_last           = Cat(*(start.storage[27] for start in starts)),
+            i_sum_distances  = Cat(*(start.storage[:25] for start in sums)),
+            i_sum_there      = Cat(*(start.storage[25] for start in sums)),
+            i_sum_away       = Cat(*(start.storage[26] for start in sums)),
             i_nexts          = Cat(*(after.storage[way:way + INTERVAL_BITS] for pair in (nexts[:3], nexts[3:]) for way in (0, 16)
                                      for after in pair)),
             i_origins        = Cat(*_contents(origins)),

@@ -73,7 +73,7 @@ impl Missing {
             if marching.blend().width != 0 && !capabilities.blend {
                 return Err(Self::Blend);
             }
-            if !capabilities.blend && kind != Kind::Octahedron {
+            if !capabilities.blend {
                 return Err(Self::Marching);
             }
         }
@@ -142,7 +142,7 @@ pub fn set_field(
                 .map(|half| half as u32),
             exit_form(exits),
             [exits.far as u32, exits.near as u32],
-            exits.eyes.map(|eye| [eye.origin, axes(eye.first)]),
+            exits.eyes.map(|eye| [eye.place(), axes(eye.first)]),
             exits.steps.map(axes),
         ),
         Form::Marching(marching) => (
@@ -199,7 +199,7 @@ fn exit_form(exits: &Exits) -> driver::Form<'_> {
         },
     };
     let prism = |eye: &exits::Eye| {
-        let axes = |[x, y, z, _]: &[exits::Side; AXES]| [start(x), start(y), start(z)];
+        let axes = |sides: &[exits::Side; AXES]| sides.each_ref().map(start);
         eye.start.sides.each_ref().map(axes)
     };
     let [left, right] = &exits.eyes;
@@ -313,6 +313,7 @@ fn kind(setup: &FieldSetup) -> (Kind, u8) {
             Some(rule @ Rule::Sponge { .. }) => (Kind::Menger, (1_u32 << rule.levels()) as u8 - 1),
             // Every build accepts a sponge without levels.
             Some(Rule::Repeated { round: true }) | None => (Kind::Menger, 0),
+            Some(Rule::Octahedron) => (Kind::Octahedron, 0),
             Some(_) => (Kind::Box, 0),
         },
         Form::Marching(marching) => {

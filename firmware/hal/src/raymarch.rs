@@ -31,8 +31,8 @@ pub struct Capabilities {
     pub blend: bool,
 }
 
-/// The planes of the prism around an eye, along each axis and along each mirrored axis.
-pub type Prism = [[Start; 3]; 2];
+/// The planes of the prism around an eye, along each axis and along each mirrored axis; the fourth axis is that of an octahedron.
+pub type Prism = [[Start; 4]; 2];
 
 /// A plane of the prism around an eye, along an axis or a mirrored axis.
 #[derive(Clone, Copy, Default)]
@@ -253,9 +253,15 @@ impl Raymarcher {
         registers
             .start_right_mirrored_z()
             .write(right[1][2].plane());
+        registers.start_left_sum().write(left[0][3].sum());
+        registers.start_left_mirrored_sum().write(left[1][3].sum());
         registers.next_left_x().write(next(left, 0));
         registers.next_left_y().write(next(left, 1));
         registers.next_left_z().write(next(left, 2));
+        registers.start_right_sum().write(right[0][3].sum());
+        registers
+            .start_right_mirrored_sum()
+            .write(right[1][3].sum());
         registers.next_right_x().write(next(right, 0));
         registers.next_right_y().write(next(right, 1));
         registers.next_right_z().write(next(right, 2));
@@ -321,6 +327,11 @@ impl Start {
     const fn plane(self) -> u32 {
         let flags = self.there as u32 | (self.away as u32) << 1 | (self.last as u32) << 2;
         self.distance & 0x1FF_FFFF | flags << 25
+    }
+
+    /// The plane as the value of a register of the fourth axis.
+    const fn sum(self) -> u32 {
+        self.plane() & 0x7FF_FFFF
     }
 }
 

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xc27a_c4bc;
+pub const BUILD_ID: u32 = 0x6bff_daec;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -5179,12 +5179,20 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5884) }
         }
 
+        /// `start_left_sum`, 27 bits: The same along the fourth axis of an octahedron, without bit 27. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_sum(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5888) }
+        }
+
         /// `start_left_mirrored_x`, 28 bits: Plane of the empty prism around the left eye along the mirrored x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn start_left_mirrored_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5888) }
+            unsafe { Register::at(0xf000_588c) }
         }
 
         /// `start_left_mirrored_y`, 28 bits: Plane of the empty prism around the left eye along the mirrored y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5192,7 +5200,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_mirrored_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_588c) }
+            unsafe { Register::at(0xf000_5890) }
         }
 
         /// `start_left_mirrored_z`, 28 bits: Plane of the empty prism around the left eye along the mirrored z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5200,7 +5208,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_mirrored_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5890) }
+            unsafe { Register::at(0xf000_5894) }
+        }
+
+        /// `start_left_mirrored_sum`, 27 bits: The same along the mirrored fourth axis of an octahedron, without bit 27. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_left_mirrored_sum(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5898) }
         }
 
         /// `origin_right_x`, 25 bits: Position of the right eye, x, s13.12. Reads as 0.
@@ -5208,7 +5224,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5894) }
+            unsafe { Register::at(0xf000_589c) }
         }
 
         /// `outside_right_x`, 24 bits: Distance of the right eye outside of the bounding box along x, u12.12. Reads as 0.
@@ -5216,7 +5232,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5898) }
+            unsafe { Register::at(0xf000_58a0) }
         }
 
         /// `first_right_x`, 32 bits: D of the right eye's first ray, x, s2.30. Reads as 0.
@@ -5224,7 +5240,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_589c) }
+            unsafe { Register::at(0xf000_58a4) }
         }
 
         /// `next_right_x`, 29 bits: Intervals above the planes of the prism around the right eye along x (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5232,7 +5248,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a0) }
+            unsafe { Register::at(0xf000_58a8) }
         }
 
         /// `origin_right_y`, 25 bits: Position of the right eye, y, s13.12. Reads as 0.
@@ -5240,7 +5256,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a4) }
+            unsafe { Register::at(0xf000_58ac) }
         }
 
         /// `outside_right_y`, 24 bits: Distance of the right eye outside of the bounding box along y, u12.12. Reads as 0.
@@ -5248,7 +5264,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a8) }
+            unsafe { Register::at(0xf000_58b0) }
         }
 
         /// `first_right_y`, 32 bits: D of the right eye's first ray, y, s2.30. Reads as 0.
@@ -5256,7 +5272,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ac) }
+            unsafe { Register::at(0xf000_58b4) }
         }
 
         /// `next_right_y`, 29 bits: Intervals above the planes of the prism around the right eye along y (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5264,7 +5280,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b0) }
+            unsafe { Register::at(0xf000_58b8) }
         }
 
         /// `origin_right_z`, 25 bits: Position of the right eye, z, s13.12. Reads as 0.
@@ -5272,7 +5288,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b4) }
+            unsafe { Register::at(0xf000_58bc) }
         }
 
         /// `outside_right_z`, 24 bits: Distance of the right eye outside of the bounding box along z, u12.12. Reads as 0.
@@ -5280,7 +5296,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn outside_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b8) }
+            unsafe { Register::at(0xf000_58c0) }
         }
 
         /// `first_right_z`, 32 bits: D of the right eye's first ray, z, s2.30. Reads as 0.
@@ -5288,7 +5304,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58bc) }
+            unsafe { Register::at(0xf000_58c4) }
         }
 
         /// `next_right_z`, 29 bits: Intervals above the planes of the prism around the right eye along z (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5296,7 +5312,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c0) }
+            unsafe { Register::at(0xf000_58c8) }
         }
 
         /// `start_right_x`, 28 bits: Plane of the empty prism around the right eye along the x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5304,7 +5320,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c4) }
+            unsafe { Register::at(0xf000_58cc) }
         }
 
         /// `start_right_y`, 28 bits: Plane of the empty prism around the right eye along the y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5312,7 +5328,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c8) }
+            unsafe { Register::at(0xf000_58d0) }
         }
 
         /// `start_right_z`, 28 bits: Plane of the empty prism around the right eye along the z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5320,7 +5336,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58cc) }
+            unsafe { Register::at(0xf000_58d4) }
+        }
+
+        /// `start_right_sum`, 27 bits: The same along the fourth axis of an octahedron, without bit 27. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_sum(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58d8) }
         }
 
         /// `start_right_mirrored_x`, 28 bits: Plane of the empty prism around the right eye along the mirrored x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5328,7 +5352,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d0) }
+            unsafe { Register::at(0xf000_58dc) }
         }
 
         /// `start_right_mirrored_y`, 28 bits: Plane of the empty prism around the right eye along the mirrored y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5336,7 +5360,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d4) }
+            unsafe { Register::at(0xf000_58e0) }
         }
 
         /// `start_right_mirrored_z`, 28 bits: Plane of the empty prism around the right eye along the mirrored z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5344,7 +5368,15 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d8) }
+            unsafe { Register::at(0xf000_58e4) }
+        }
+
+        /// `start_right_mirrored_sum`, 27 bits: The same along the mirrored fourth axis of an octahedron, without bit 27. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn start_right_mirrored_sum(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_58e8) }
         }
 
         /// `bounds_x`, 24 bits: Half the side of the bounding box along x, u12.12. Reads as 0.
@@ -5352,7 +5384,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn bounds_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58dc) }
+            unsafe { Register::at(0xf000_58ec) }
         }
 
         /// `bounds_y`, 24 bits: Half the side of the bounding box along y, u12.12. Reads as 0.
@@ -5360,7 +5392,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn bounds_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e0) }
+            unsafe { Register::at(0xf000_58f0) }
         }
 
         /// `bounds_z`, 24 bits: Half the side of the bounding box along z, u12.12. Reads as 0.
@@ -5368,7 +5400,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn bounds_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e4) }
+            unsafe { Register::at(0xf000_58f4) }
         }
 
         /// `across_x`, 32 bits: Change of D per column, x, s2.30. Reads as 0.
@@ -5376,7 +5408,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e8) }
+            unsafe { Register::at(0xf000_58f8) }
         }
 
         /// `across_y`, 32 bits: Change of D per column, y, s2.30. Reads as 0.
@@ -5384,7 +5416,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ec) }
+            unsafe { Register::at(0xf000_58fc) }
         }
 
         /// `across_z`, 32 bits: Change of D per column, z, s2.30. Reads as 0.
@@ -5392,7 +5424,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f0) }
+            unsafe { Register::at(0xf000_5900) }
         }
 
         /// `down_x`, 32 bits: Change of D per line, x, s2.30. Reads as 0.
@@ -5400,7 +5432,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f4) }
+            unsafe { Register::at(0xf000_5904) }
         }
 
         /// `down_y`, 32 bits: Change of D per line, y, s2.30. Reads as 0.
@@ -5408,7 +5440,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f8) }
+            unsafe { Register::at(0xf000_5908) }
         }
 
         /// `down_z`, 32 bits: Change of D per line, z, s2.30. Reads as 0.
@@ -5416,7 +5448,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58fc) }
+            unsafe { Register::at(0xf000_590c) }
         }
 
         /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent. Reads as 0.
@@ -5424,7 +5456,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5900) }
+            unsafe { Register::at(0xf000_5910) }
         }
 
         /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5432,7 +5464,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5904) }
+            unsafe { Register::at(0xf000_5914) }
         }
 
         /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5440,7 +5472,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5908) }
+            unsafe { Register::at(0xf000_5918) }
         }
 
         /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5448,7 +5480,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_590c) }
+            unsafe { Register::at(0xf000_591c) }
         }
 
         /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5456,7 +5488,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5910) }
+            unsafe { Register::at(0xf000_5920) }
         }
 
         /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5464,7 +5496,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5914) }
+            unsafe { Register::at(0xf000_5924) }
         }
 
         /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5472,7 +5504,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5918) }
+            unsafe { Register::at(0xf000_5928) }
         }
 
         /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5480,7 +5512,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_591c) }
+            unsafe { Register::at(0xf000_592c) }
         }
 
         /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5488,7 +5520,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5920) }
+            unsafe { Register::at(0xf000_5930) }
         }
 
         /// `horizon`, 24 bits: Colour of the horizon, and of the fog. Reads as 0.
@@ -5496,7 +5528,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn horizon(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5924) }
+            unsafe { Register::at(0xf000_5934) }
         }
 
         /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e. Reads as 0.
@@ -5504,7 +5536,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5928) }
+            unsafe { Register::at(0xf000_5938) }
         }
 
         /// `table`, 17 bits: Writing sets an entry of the tables of fog and light. Reads as 0.
@@ -5512,7 +5544,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_592c) }
+            unsafe { Register::at(0xf000_593c) }
         }
 
         /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces. Reads as 0.
@@ -5520,7 +5552,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5930) }
+            unsafe { Register::at(0xf000_5940) }
         }
 
         /// `cone_address`, 9 bits: Address of the next write to `cone_value`: the eye in bit 8, the number of a cone in bits 4 to 7, and of its constant in bits 0 to 3 (rtl/raymarch/sphere_unit.sv). Reads as 0.
@@ -5528,7 +5560,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cone_address(&self) -> Register<u16, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5934) }
+            unsafe { Register::at(0xf000_5944) }
         }
 
         /// `cone_value`, 32 bits: Writing sets a constant of the cone in which an eye sees a sphere, and increases the address by 1. Reads as 0.
@@ -5536,7 +5568,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cone_value(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5938) }
+            unsafe { Register::at(0xf000_5948) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
@@ -5544,7 +5576,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_593c) }
+            unsafe { Register::at(0xf000_594c) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
@@ -5552,7 +5584,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5940) }
+            unsafe { Register::at(0xf000_5950) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -5560,7 +5592,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5944) }
+            unsafe { Register::at(0xf000_5954) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, counted for each eye, modulo 2^32.
@@ -5568,7 +5600,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5948) }
+            unsafe { Register::at(0xf000_5958) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
@@ -5576,7 +5608,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_594c) }
+            unsafe { Register::at(0xf000_595c) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: occupied slots of the lanes, modulo 2^32.
@@ -5584,7 +5616,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5950) }
+            unsafe { Register::at(0xf000_5960) }
         }
 
         /// `hits`, 32 bits: Rays that hit, modulo 2^32.
@@ -5592,7 +5624,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5954) }
+            unsafe { Register::at(0xf000_5964) }
         }
 
         /// `misses`, 32 bits: Rays that missed, modulo 2^32.
@@ -5600,7 +5632,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5958) }
+            unsafe { Register::at(0xf000_5968) }
         }
 
         /// `undecided`, 32 bits: Undecided rays, modulo 2^32.
@@ -5608,7 +5640,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_595c) }
+            unsafe { Register::at(0xf000_596c) }
         }
     }
 
@@ -5682,114 +5714,122 @@ pub mod raymarch {
         pub const START_LEFT_Y: u32 = 0x80;
         /// `start_left_z`.
         pub const START_LEFT_Z: u32 = 0x84;
+        /// `start_left_sum`.
+        pub const START_LEFT_SUM: u32 = 0x88;
         /// `start_left_mirrored_x`.
-        pub const START_LEFT_MIRRORED_X: u32 = 0x88;
+        pub const START_LEFT_MIRRORED_X: u32 = 0x8c;
         /// `start_left_mirrored_y`.
-        pub const START_LEFT_MIRRORED_Y: u32 = 0x8c;
+        pub const START_LEFT_MIRRORED_Y: u32 = 0x90;
         /// `start_left_mirrored_z`.
-        pub const START_LEFT_MIRRORED_Z: u32 = 0x90;
+        pub const START_LEFT_MIRRORED_Z: u32 = 0x94;
+        /// `start_left_mirrored_sum`.
+        pub const START_LEFT_MIRRORED_SUM: u32 = 0x98;
         /// `origin_right_x`.
-        pub const ORIGIN_RIGHT_X: u32 = 0x94;
+        pub const ORIGIN_RIGHT_X: u32 = 0x9c;
         /// `outside_right_x`.
-        pub const OUTSIDE_RIGHT_X: u32 = 0x98;
+        pub const OUTSIDE_RIGHT_X: u32 = 0xa0;
         /// `first_right_x`.
-        pub const FIRST_RIGHT_X: u32 = 0x9c;
+        pub const FIRST_RIGHT_X: u32 = 0xa4;
         /// `next_right_x`.
-        pub const NEXT_RIGHT_X: u32 = 0xa0;
+        pub const NEXT_RIGHT_X: u32 = 0xa8;
         /// `origin_right_y`.
-        pub const ORIGIN_RIGHT_Y: u32 = 0xa4;
+        pub const ORIGIN_RIGHT_Y: u32 = 0xac;
         /// `outside_right_y`.
-        pub const OUTSIDE_RIGHT_Y: u32 = 0xa8;
+        pub const OUTSIDE_RIGHT_Y: u32 = 0xb0;
         /// `first_right_y`.
-        pub const FIRST_RIGHT_Y: u32 = 0xac;
+        pub const FIRST_RIGHT_Y: u32 = 0xb4;
         /// `next_right_y`.
-        pub const NEXT_RIGHT_Y: u32 = 0xb0;
+        pub const NEXT_RIGHT_Y: u32 = 0xb8;
         /// `origin_right_z`.
-        pub const ORIGIN_RIGHT_Z: u32 = 0xb4;
+        pub const ORIGIN_RIGHT_Z: u32 = 0xbc;
         /// `outside_right_z`.
-        pub const OUTSIDE_RIGHT_Z: u32 = 0xb8;
+        pub const OUTSIDE_RIGHT_Z: u32 = 0xc0;
         /// `first_right_z`.
-        pub const FIRST_RIGHT_Z: u32 = 0xbc;
+        pub const FIRST_RIGHT_Z: u32 = 0xc4;
         /// `next_right_z`.
-        pub const NEXT_RIGHT_Z: u32 = 0xc0;
+        pub const NEXT_RIGHT_Z: u32 = 0xc8;
         /// `start_right_x`.
-        pub const START_RIGHT_X: u32 = 0xc4;
+        pub const START_RIGHT_X: u32 = 0xcc;
         /// `start_right_y`.
-        pub const START_RIGHT_Y: u32 = 0xc8;
+        pub const START_RIGHT_Y: u32 = 0xd0;
         /// `start_right_z`.
-        pub const START_RIGHT_Z: u32 = 0xcc;
+        pub const START_RIGHT_Z: u32 = 0xd4;
+        /// `start_right_sum`.
+        pub const START_RIGHT_SUM: u32 = 0xd8;
         /// `start_right_mirrored_x`.
-        pub const START_RIGHT_MIRRORED_X: u32 = 0xd0;
+        pub const START_RIGHT_MIRRORED_X: u32 = 0xdc;
         /// `start_right_mirrored_y`.
-        pub const START_RIGHT_MIRRORED_Y: u32 = 0xd4;
+        pub const START_RIGHT_MIRRORED_Y: u32 = 0xe0;
         /// `start_right_mirrored_z`.
-        pub const START_RIGHT_MIRRORED_Z: u32 = 0xd8;
+        pub const START_RIGHT_MIRRORED_Z: u32 = 0xe4;
+        /// `start_right_mirrored_sum`.
+        pub const START_RIGHT_MIRRORED_SUM: u32 = 0xe8;
         /// `bounds_x`.
-        pub const BOUNDS_X: u32 = 0xdc;
+        pub const BOUNDS_X: u32 = 0xec;
         /// `bounds_y`.
-        pub const BOUNDS_Y: u32 = 0xe0;
+        pub const BOUNDS_Y: u32 = 0xf0;
         /// `bounds_z`.
-        pub const BOUNDS_Z: u32 = 0xe4;
+        pub const BOUNDS_Z: u32 = 0xf4;
         /// `across_x`.
-        pub const ACROSS_X: u32 = 0xe8;
+        pub const ACROSS_X: u32 = 0xf8;
         /// `across_y`.
-        pub const ACROSS_Y: u32 = 0xec;
+        pub const ACROSS_Y: u32 = 0xfc;
         /// `across_z`.
-        pub const ACROSS_Z: u32 = 0xf0;
+        pub const ACROSS_Z: u32 = 0x100;
         /// `down_x`.
-        pub const DOWN_X: u32 = 0xf4;
+        pub const DOWN_X: u32 = 0x104;
         /// `down_y`.
-        pub const DOWN_Y: u32 = 0xf8;
+        pub const DOWN_Y: u32 = 0x108;
         /// `down_z`.
-        pub const DOWN_Z: u32 = 0xfc;
+        pub const DOWN_Z: u32 = 0x10c;
         /// `depth_scale`.
-        pub const DEPTH_SCALE: u32 = 0x100;
+        pub const DEPTH_SCALE: u32 = 0x110;
         /// `colour_0`.
-        pub const COLOUR_0: u32 = 0x104;
+        pub const COLOUR_0: u32 = 0x114;
         /// `colour_1`.
-        pub const COLOUR_1: u32 = 0x108;
+        pub const COLOUR_1: u32 = 0x118;
         /// `colour_2`.
-        pub const COLOUR_2: u32 = 0x10c;
+        pub const COLOUR_2: u32 = 0x11c;
         /// `colour_3`.
-        pub const COLOUR_3: u32 = 0x110;
+        pub const COLOUR_3: u32 = 0x120;
         /// `colour_4`.
-        pub const COLOUR_4: u32 = 0x114;
+        pub const COLOUR_4: u32 = 0x124;
         /// `colour_5`.
-        pub const COLOUR_5: u32 = 0x118;
+        pub const COLOUR_5: u32 = 0x128;
         /// `colour_6`.
-        pub const COLOUR_6: u32 = 0x11c;
+        pub const COLOUR_6: u32 = 0x12c;
         /// `colour_7`.
-        pub const COLOUR_7: u32 = 0x120;
+        pub const COLOUR_7: u32 = 0x130;
         /// `horizon`.
-        pub const HORIZON: u32 = 0x124;
+        pub const HORIZON: u32 = 0x134;
         /// `fog_shift`.
-        pub const FOG_SHIFT: u32 = 0x128;
+        pub const FOG_SHIFT: u32 = 0x138;
         /// `table`.
-        pub const TABLE: u32 = 0x12c;
+        pub const TABLE: u32 = 0x13c;
         /// `sphere`.
-        pub const SPHERE: u32 = 0x130;
+        pub const SPHERE: u32 = 0x140;
         /// `cone_address`.
-        pub const CONE_ADDRESS: u32 = 0x134;
+        pub const CONE_ADDRESS: u32 = 0x144;
         /// `cone_value`.
-        pub const CONE_VALUE: u32 = 0x138;
+        pub const CONE_VALUE: u32 = 0x148;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0x13c;
+        pub const CYCLES_BUSY: u32 = 0x14c;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0x140;
+        pub const CYCLES_STALLED: u32 = 0x150;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0x144;
+        pub const ITEMS_IN: u32 = 0x154;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0x148;
+        pub const ITEMS_OUT: u32 = 0x158;
         /// `cycles_idle`.
-        pub const CYCLES_IDLE: u32 = 0x14c;
+        pub const CYCLES_IDLE: u32 = 0x15c;
         /// `evaluations`.
-        pub const EVALUATIONS: u32 = 0x150;
+        pub const EVALUATIONS: u32 = 0x160;
         /// `hits`.
-        pub const HITS: u32 = 0x154;
+        pub const HITS: u32 = 0x164;
         /// `misses`.
-        pub const MISSES: u32 = 0x158;
+        pub const MISSES: u32 = 0x168;
         /// `undecided`.
-        pub const UNDECIDED: u32 = 0x15c;
+        pub const UNDECIDED: u32 = 0x16c;
     }
 
     /// A value of `caps`.
@@ -6311,7 +6351,7 @@ pub mod raymarch {
             Self(self.0 & !(0x3 << 1) | (value as u32 & 0x3) << 1)
         }
 
-        /// `depth`, bits 6 to 4: Levels of the sponge; 1 for spheres in place of cubes.
+        /// `depth`, bits 6 to 4: Levels of the sponge; 1 for spheres in place of cubes, and for an octahedron.
         #[inline]
         #[must_use]
         pub const fn depth(self) -> u8 {
@@ -6695,7 +6735,7 @@ pub mod raymarch {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     #[repr(u8)]
     pub enum Rule {
-        /// Inside of a box.
+        /// Inside of a box, or of an octahedron: a box along diagonals.
         Box = 0,
         /// Outside of the slab between two planes.
         Planes = 1,
@@ -6736,7 +6776,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn text(self) -> &'static str {
             match self {
-                Self::Box => "inside of a box",
+                Self::Box => "inside of a box, or of an octahedron: a box along diagonals",
                 Self::Planes => "outside of the slab between two planes",
                 Self::Sponge => "Menger sponge",
                 Self::Cubes => "cubes, repeated every 64 field units, or spheres in such cubes",

@@ -16,6 +16,9 @@
 // With LATTICE, spheres may be repeated in place of cubes. In the box about a sphere a ray meets the sphere if the quadratic equation for T
 // has solutions (`meets`); the end of a ray that does has the equation's terms, and exit_landing computes T.
 //
+// With OCTAHEDRON, a box may have a fourth pair of faces, perpendicular to the sum of its axes. A ray enters its slab with the prism around
+// the eye (exit_start), so only its upper border is compared.
+//
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
 // registers. Parameters hold while rays are in the ring. `origins` has each eye's position from the solid's centre. `rst` discards all
 // rays.
@@ -30,6 +33,8 @@ module exit_lane #(
     parameter bit          ROUND  = 1'b0,
     // Whether there may be spheres of a lattice, with BOXES.
     parameter bit          LATTICE = 1'b0,
+    // Whether there may be an octahedron, with BOXES.
+    parameter bit          OCTAHEDRON = 1'b0,
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = 32
 ) (
@@ -63,6 +68,9 @@ module exit_lane #(
     // Spheres of a lattice: whether the solid consists of them, and whether and how a ray in the box about one meets it.
     logic               is_lattice, meets_21, lands_22;
     exit_pkg::equation_t equation_22;
+
+    // An octahedron: whether the point is above the fourth slab, and whether the ray leads down along its axis.
+    logic beyond_21, down_sum_22;
 
     // State of a ray: T and the axis of the last plane that it has crossed, and the number of evaluations, with that of this round.
     logic [exit_pkg::T_BITS-1:0] t_0, t_21, t_22;
@@ -304,6 +312,32 @@ module exit_lane #(
         wire _unused = &{1'b0, in_ray.length, in_ray.inverse_square, over_6};
     end
 
+    // The fourth slab of an octahedron. The point along its axis is the sum of the three others, from their centres, and with their signs.
+    if (OCTAHEDRON) begin : diagonals
+        (* ram_style = "distributed" *) logic down_sums [0:2**SLOT_BITS-1];
+
+        logic [2:0] down_5;
+        logic       is_octahedron, down_sum_6, beyond_9;
+
+        exit_diagonal diagonal (
+            .clk, .half(solid.half[0]), .point(point_5), .down(down_5), .down_sum_1(down_sum_6), .beyond(beyond_9)
+        );
+        delay #(.WIDTH(1), .CLOCKS(6)) sign_waits (.clk, .enable(1'b1), .in(down_sums[slot_0]), .out(down_sum_6));
+        delay #(.WIDTH(1), .CLOCKS(12)) beyond_waits (.clk, .enable(1'b1), .in(is_octahedron && beyond_9), .out(beyond_21));
+
+        always_ff @(posedge clk) begin
+            is_octahedron <= solid.rule == exit_pkg::BOX && solid.levels[0];
+            down_5        <= down_4;
+            if (!again) down_sums[slot_22] <= in_ray.down_sum;
+        end
+
+        assign down_sum_22 = down_sums[slot_22];
+    end else begin : no_diagonals
+        assign {beyond_21, down_sum_22} = '0;
+
+        wire _unused = &{1'b0, in_ray.down_sum};
+    end
+
     // The intervals that a ray has reached. Those of a point without a crossed plane need no memory: the ray's later points are not below
     // it. Only sponges of more than four levels have all digits.
     localparam int unsigned UNUSED    = LEVELS > 4 ? 0 : 4;
@@ -352,8 +386,8 @@ module exit_lane #(
         exit_axis_22 <= exit_axis_21;
         crossed_22   <= crossed_21;
         later_22     <= exit_21 > {1'b0, t_21};
-        hit_22       <= hit_21 && (!is_lattice || meets_21);
-        left_22      <= gone_21 || exit_21 > {1'b0, limit_21} || (above_21 & crossed_21) != '0;
+        hit_22       <= hit_21 && (!is_lattice || meets_21) && !beyond_21;
+        left_22      <= gone_21 || hit_21 && beyond_21 || exit_21 > {1'b0, limit_21} || (above_21 & crossed_21) != '0;
     end
 
     assign finished = over_22 || hit_22 || left_22;
@@ -363,7 +397,7 @@ module exit_lane #(
     assign end_in.hit       = hit_22 && !over_22;
     assign end_in.t         = end_t_22;
     assign end_in.axis      = axis_22;
-    assign end_in.positive  = down_22[axis_22];
+    assign end_in.positive  = OCTAHEDRON && axis_22 == 2'd3 ? down_sum_22 : down_22[axis_22];
     assign end_in.steps     = steps_22;
     assign end_in.height    = height_22;
     assign end_in.round     = is_lattice;

@@ -21,11 +21,11 @@ package exit_pkg;
     // Width of an exit: T, and a bit before it that is set if the exit exceeds the range of T. Its other bits are then arbitrary.
     localparam int unsigned EXIT_BITS = T_BITS + 1;
 
-    // The solids. BOX is the inside of a box, PLANES the outside of the slab between two planes perpendicular to z, SPONGE the Menger
+    // The solids. BOX is the inside of a box, or of an octahedron, which is a box along its four diagonals, PLANES the outside of the slab between two planes perpendicular to z, SPONGE the Menger
     // sponge, and CUBES are cubes repeated every 64 units, or spheres in such cubes.
     typedef enum logic [1:0] {BOX = 2'd0, PLANES = 2'd1, SPONGE = 2'd2, CUBES = 2'd3} rule_t;
 
-    // A solid: its rule, the number of levels of a sponge, and of CUBES 1 if they are spheres; half its side along each axis, for cubes that
+    // A solid: its rule, the number of levels of a sponge, of BOX 1 for an octahedron, and of CUBES 1 if they are spheres; half its side along each axis, for cubes that
     // of a cube; and the coordinate of a plane perpendicular to each axis: of a box and of a sponge the lower plane, of PLANES the upper
     // one, and of cubes the lower plane of the cube after the middle one, all below 2^21 - 2^15.
     typedef struct packed {
@@ -86,11 +86,13 @@ package exit_pkg;
     // is its T, `axis` the axis of the last plane that it has crossed, and `reached` has the intervals that it has reached, 0 where it has
     // crossed no plane. `height` is that of sky_height. A ray with `over` hits no flat solid; it ends without an evaluation. Other rays
     // start within their limit. In a build with spheres, `sphere` is the first one that the ray meets, and its T is the limit. Only rays in
-    // a lattice have `inverse_square` and `length`.
+    // a lattice have `inverse_square` and `length`. In an octahedron, the axes are the diagonals (-1, 1, 1), (1, -1, 1) and (1, 1, -1), each
+    // divided by 4; the fourth, axis 3, is their sum, and `down_sum` says whether the ray leads down along it.
     typedef struct packed {
         meeting_t                      sphere;
         inverse_square_t               inverse_square;
         length_t                       length;
+        logic                          down_sum;
         logic                          over;
         logic [PLACE_BITS-1:0]         place;
         logic [T_BITS-1:0]             start;
@@ -102,9 +104,10 @@ package exit_pkg;
         logic [2:0][INVERSE_BITS-1:0]  inverse;
     } ray_t;
 
-    // Width of a ray without `sphere`, in a flat solid and in a lattice.
+    // Width of a ray without `sphere`, with faces perpendicular to axes, in an octahedron, and in a lattice.
     localparam int unsigned RAY_BITS = 1 + PLACE_BITS + T_BITS + 2 + 3 * INTERVAL_BITS + 3 + 8 + 3 * SPEED_BITS + 3 * INVERSE_BITS;
-    localparam int unsigned LATTICE_RAY_BITS = RAY_BITS + LENGTH_BITS + INVERSE_SQUARE_BITS;
+    localparam int unsigned DIAGONAL_RAY_BITS = RAY_BITS + 1;
+    localparam int unsigned LATTICE_RAY_BITS  = DIAGONAL_RAY_BITS + LENGTH_BITS + INVERSE_SQUARE_BITS;
 
     // The terms of the quadratic equation of a ray in the box about a sphere of a lattice: -q·D with the doubled direction, less 2^-14, u7.14;
     // the square of the root, u12.20; and the reciprocal of the square of D.
@@ -144,6 +147,12 @@ package exit_pkg;
     localparam int unsigned FLAT_END_BITS  = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
     localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 4 + 3 * DIRECTION_BITS;
     localparam int unsigned LAND_END_BITS  = ROUND_END_BITS + 1 + EQUATION_BITS;
+
+    // The code of an octahedron's face, as in raymarch_pkg::end_t: bit i is set if component i of the outward normal is positive. `axis` is
+    // that of an end, and `positive` is set if the normal leads up along it.
+    function automatic logic [2:0] octant(input logic [1:0] axis, input logic positive);
+        octant = {axis == 2'd2, axis == 2'd1, axis == 2'd0} ^ {3{positive}};
+    endfunction
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

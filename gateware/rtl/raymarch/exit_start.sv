@@ -3,6 +3,9 @@
 //   D ─┬─▶ signs, magnitudes ─▶ exit_reciprocal for each axis ─▶ exit_quotient ─▶ exit_choice ─▶ largest of the exit and the near plane
 //      └─▶ sky_height
 //
+// With OCTAHEDRON, in a frame with `diagonals` the axes are three diagonals of an octahedron, and a fourth axis is their sum. A ray is in its
+// slab too when it leaves the prism, by the last of all exits.
+//
 // With LATTICE, for spheres of a lattice, a ray also has the square of D's length and its reciprocal.
 //
 // The prism is a constant of the frame: for each eye, and for each axis as it is and mirrored, the distance of the plane that bounds it,
@@ -16,7 +19,8 @@
 
 module exit_start #(
     parameter bit STEREO  = 1'b1,
-    parameter bit LATTICE = 1'b0
+    parameter bit LATTICE = 1'b0,
+    parameter bit OCTAHEDRON = 1'b0
 ) (
     input  wire                                                   clk,
     input  wire                                                   rst,
@@ -28,6 +32,11 @@ module exit_start #(
     input  wire  [1:0][1:0][2:0]                                  away,
     input  wire  [1:0][1:0][2:0]                                  last,
     input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0]     nexts,
+    // Used with OCTAHEDRON: whether the solid is one, and the constants of its fourth axis.
+    input  wire                                                   diagonals,
+    input  wire  [1:0][1:0][exit_pkg::PLANE_BITS-1:0]            sum_distances,
+    input  wire  [1:0][1:0]                                       sum_there,
+    input  wire  [1:0][1:0]                                       sum_away,
     // Pixels.
     input  wire                                                   in_valid,
     input  wire raymarch_pkg::place_t                             in_place,
@@ -104,7 +113,7 @@ module exit_start #(
     logic [exit_pkg::T_BITS-1:0] exit_21, start_22;
     logic [1:0] axis_21, axis_22;
     logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_21, reached_22;
-    logic       later_21, beyond_21, over_22;
+    logic       later_21, beyond_21, over_22, sum_away_21, down_sum_22;
 
     always_ff @(posedge clk) begin
         next_19 <= next_18;
@@ -116,10 +125,6 @@ module exit_start #(
         last_19 <= last_18;
         last_20 <= last_19;
 
-        exit_21   <= exit_20[exit_pkg::T_BITS-1:0];
-        later_21  <= some_20 && exit_20 > {1'b0, near_limit};
-        beyond_21 <= some_20 && exit_20 > {1'b0, far_limit};
-        axis_21   <= some_20 ? axis_20 : 2'd2;
         away_21   <= away_20;
         above_21  <= last_20 & crossed_20;
         for (int i = 0; i < 3; i++) reached_21[i] <= crossed_20[i] ? next_20[i] : '0;
@@ -127,15 +132,87 @@ module exit_start #(
         start_22   <= later_21 ? exit_21 : near_limit;
         axis_22    <= axis_21;
         reached_22 <= reached_21;
-        over_22    <= away_21 != '0 || beyond_21 || above_21 != '0;
+        over_22    <= away_21 != '0 || beyond_21 || above_21 != '0 || sum_away_21;
     end
 
+    // The last exit and its axis, and the direction for the sky. Of equal exits, that of the fourth axis is the last one.
+    logic            sky_down_1;
     logic [2:0][9:0] part_1;
     logic [7:0]      height_10, height_22;
 
-    always_comb for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][23:14];
+    if (OCTAHEDRON) begin : octahedron
+        logic signed [24:0] x_0, y_0, z_0, z_1, sum_2;
+        logic signed [25:0] sum_1;
+        logic [23:0]        magnitude_3;
+        logic               eye_14, eye_20, down_3, down_14, down_20, there_20, later_20, some_21;
+        logic signed [11:0] half_x_1, half_y_1, half_z_1;
+        logic [exit_pkg::PLANE_BITS-1:0]   distance_15;
+        logic [exit_pkg::INVERSE_BITS-1:0] inverse_15;
+        logic [exit_pkg::EXIT_BITS-1:0]    sum_exit_20, last_21;
 
-    sky_height sky (.clk, .magnitude(part_1), .down(down_1[2]), .height(height_10));
+        assign {z_0, y_0, x_0} = in_direction;
+
+        // The three halves of the components make the sum of three integers smaller by one than that of the middles. The sum of two
+        // diagonals is half a component along an axis.
+        always_ff @(posedge clk) begin
+            sum_1       <= 26'(x_0) + 26'(y_0) + 26'sd1;
+            z_1         <= z_0;
+            sum_2       <= sum_1[24:0] + z_1;
+            down_3      <= sum_2[24];
+            magnitude_3 <= sum_2[23:0] ^ {24{sum_2[24]}};
+            distance_15 <= eye_14 ? down_14 ? sum_distances[1][1] : sum_distances[1][0] : down_14 ? sum_distances[0][1] : sum_distances[0][0];
+            half_x_1    <= 12'($signed(y_0[24:14])) + 12'($signed(z_0[24:14]));
+            half_y_1    <= 12'($signed(x_0[24:14])) + 12'($signed(z_0[24:14]));
+            half_z_1    <= 12'($signed(x_0[24:14])) + 12'($signed(y_0[24:14]));
+        end
+
+        exit_reciprocal reciprocal (.clk, .magnitude(magnitude_3), .inverse(inverse_15));
+        exit_quotient quotient (.clk, .distance(distance_15), .inverse(inverse_15), .t(sum_exit_20));
+        delay #(.WIDTH(1), .CLOCKS(2)) eye_waits (.clk, .enable(1'b1), .in(eye_12), .out(eye_14));
+        delay #(.WIDTH(1), .CLOCKS(2)) eye_goes (.clk, .enable(1'b1), .in(eye_18), .out(eye_20));
+        delay #(.WIDTH(1), .CLOCKS(11)) down_waits (.clk, .enable(1'b1), .in(down_3), .out(down_14));
+        delay #(.WIDTH(1), .CLOCKS(6)) down_goes (.clk, .enable(1'b1), .in(down_14), .out(down_20));
+        delay #(.WIDTH(1), .CLOCKS(2)) down_leaves (.clk, .enable(1'b1), .in(diagonals && down_20), .out(down_sum_22));
+
+        assign there_20 = eye_20 ? sum_there[1][down_20] : sum_there[0][down_20];
+        assign later_20 = there_20 && (!some_20 || sum_exit_20 >= exit_20);
+
+        always_ff @(posedge clk) begin
+            last_21     <= later_20 ? sum_exit_20 : exit_20;
+            axis_21     <= later_20 ? 2'd3 : some_20 ? axis_20 : 2'd2;
+            some_21     <= some_20 || there_20;
+            sum_away_21 <= eye_20 ? sum_away[1][down_20] : sum_away[0][down_20];
+        end
+
+        assign exit_21    = last_21[exit_pkg::T_BITS-1:0];
+        assign later_21   = some_21 && last_21 > {1'b0, near_limit};
+        assign beyond_21  = some_21 && last_21 > {1'b0, far_limit};
+        assign sky_down_1 = diagonals ? half_z_1[11] : down_1[2];
+
+        always_comb begin
+            for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][23:14];
+            if (diagonals) begin
+                part_1[0] = half_x_1[9:0] ^ {10{half_x_1[11]}};
+                part_1[1] = half_y_1[9:0] ^ {10{half_y_1[11]}};
+                part_1[2] = half_z_1[9:0] ^ {10{half_z_1[11]}};
+            end
+        end
+        wire _unused = &{1'b0, sum_1[25], half_x_1[10], half_y_1[10], half_z_1[10]};
+    end else begin : no_octahedron
+        always_ff @(posedge clk) begin
+            exit_21   <= exit_20[exit_pkg::T_BITS-1:0];
+            later_21  <= some_20 && exit_20 > {1'b0, near_limit};
+            beyond_21 <= some_20 && exit_20 > {1'b0, far_limit};
+            axis_21   <= some_20 ? axis_20 : 2'd2;
+        end
+        assign {sum_away_21, down_sum_22} = '0;
+        assign sky_down_1 = down_1[2];
+        always_comb for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][23:14];
+
+        wire _unused = &{1'b0, diagonals, sum_distances, sum_there, sum_away};
+    end
+
+    sky_height sky (.clk, .magnitude(part_1), .down(sky_down_1), .height(height_10));
     delay #(.WIDTH(8), .CLOCKS(12)) height_waits (.clk, .enable(1'b1), .in(height_10), .out(height_22));
 
     // The square of D's length: D is doubled until its length is from 1 to 2.
@@ -194,8 +271,8 @@ module exit_start #(
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(22)) place_waits (.clk, .enable(1'b1), .in(in_place), .out(place_22));
 
     assign out_valid = valid[LAST];
-    assign out_ray   = {exit_pkg::MEETING_BITS'(0), inverse_square_22, length_22, over_22, place_22, start_22, axis_22, reached_22, down_22,
-                        height_22, speed_22, inverse_22};
+    assign out_ray   = {exit_pkg::MEETING_BITS'(0), inverse_square_22, length_22, down_sum_22, over_22, place_22, start_22, axis_22,
+                        reached_22, down_22, height_22, speed_22, inverse_22};
 endmodule
 
 `default_nettype wire

@@ -11,7 +11,7 @@ package fields_pkg;
     localparam int unsigned ALL = 7;
     localparam int unsigned OCTANTS = 4;
     // Mask of the fields whose rays leave empty prisms, unless they are united with spheres.
-    localparam int unsigned EXITS = 3;
+    localparam int unsigned EXITS = 7;
     // Mask of each field.
     localparam int unsigned MENGER = 1;
     localparam int unsigned BOX = 2;

@@ -28,6 +28,8 @@ module ray_generator #(
     parameter bit STEREO = 1'b1,
     // Whether rays by exits have the square of D's length.
     parameter bit LATTICE = 1'b0,
+    // Whether rays by exits may have the fourth axis of an octahedron.
+    parameter bit OCTAHEDRON = 1'b0,
     // Depth of the FIFO of rays after the pipeline.
     parameter int unsigned PLACES = 32
 ) (
@@ -59,6 +61,10 @@ module ray_generator #(
     input  wire  [1:0][1:0][2:0]      away,
     input  wire  [1:0][1:0][2:0]      last,
     input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0] nexts,
+    input  wire                       diagonals,
+    input  wire  [1:0][1:0][exit_pkg::PLANE_BITS-1:0]        sum_distances,
+    input  wire  [1:0][1:0]           sum_there,
+    input  wire  [1:0][1:0]           sum_away,
     // Constants of sphere_unit.
     input  wire  [1:0][3:0]           last_cone,
     input  wire                       cone_write,
@@ -97,17 +103,18 @@ module ray_generator #(
     end
 
     if (EXITS) begin : leaving
-        exit_start #(.STEREO(STEREO), .LATTICE(LATTICE)) starts (
+        exit_start #(.STEREO(STEREO), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)) starts (
             .clk, .rst, .near_limit, .far_limit, .choice, .distances, .there, .away, .last, .nexts,
-            .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(exit_valid), .out_ray(exit_ray)
+            .diagonals, .sum_distances, .sum_there, .sum_away, .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(exit_valid), .out_ray(exit_ray)
         );
     end else begin : no_leaving
         assign exit_valid = 1'b0;
         assign exit_ray   = '0;
-        wire _unused = &{1'b0, near_limit, far_limit, choice, distances, there, away, last, nexts};
+        wire _unused = &{1'b0, near_limit, far_limit, choice, distances, there, away, last, nexts, diagonals, sum_distances, sum_there, sum_away};
     end
 
-    localparam int unsigned KEPT_BITS = !EXITS ? raymarch_pkg::RAY_BITS : LATTICE ? exit_pkg::LATTICE_RAY_BITS : exit_pkg::RAY_BITS;
+    localparam int unsigned KEPT_BITS = !EXITS ? raymarch_pkg::RAY_BITS : LATTICE ? exit_pkg::LATTICE_RAY_BITS
+                                       : OCTAHEDRON ? exit_pkg::DIAGONAL_RAY_BITS : exit_pkg::RAY_BITS;
 
     logic                 by_exits, kept_valid, kept_ready;
     logic [KEPT_BITS-1:0] kept;

@@ -6,8 +6,8 @@
 //                    └─▶ ...  ─┘         └▶ waiting ─┘
 //                                     of the next band
 //
-// In a lane, an exit_lane finds the ends of rays that leave empty prisms, and a ring_lane those of rays that march by distances. A build
-// has the lanes that its fields need; `exits` selects one kind for the frame.
+// In a lane, an exit_lane finds the ends of rays that leave empty prisms; in the first lane, a ring_lane finds those of rays that march by
+// distances. A build has the lanes that its fields need; `exits` selects one kind for the frame.
 //
 // `start` (one clock, not while `busy`) begins a frame; its parameters must hold until the frame has ended. The pixels of a
 // band are sent while `band_open` is high, in any order, each pixel once, or with `stereo` once for each eye. `band_done` is
@@ -26,7 +26,7 @@
 // list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes ray_paint, and takes one clock per light for a pixel on a
 // sphere or fillet.
 //
-// Each lane makes one evaluation of the field per clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
+// Each lane makes one evaluation of the field per clock, for marching rays the first lane alone. `restart` and reset cancel the frame. Groups are a valid/ready stream,
 // whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
 
 `default_nettype none
@@ -69,6 +69,10 @@ module raymarcher #(
     input  wire  [1:0][1:0][2:0]      away,
     input  wire  [1:0][1:0][2:0]      last,
     input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0] nexts,
+    // The fourth axis of an octahedron.
+    input  wire  [1:0][1:0][exit_pkg::PLANE_BITS-1:0]        sum_distances,
+    input  wire  [1:0][1:0]           sum_there,
+    input  wire  [1:0][1:0]           sum_away,
     // Marching rays: the box about the field (docs/formats/raymarch.md, "Rays").
     input  wire  [1:0][2:0][23:0]     outside,
     input  wire  [2:0][23:0]          bounds,
@@ -112,9 +116,10 @@ module raymarcher #(
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
     // Whether the build has solids with empty prisms, each kind of rays, and light on spheres.
-    localparam bit          LEAVES     = (FIELDS & fields_pkg::EXITS) != 0 || LATTICE;
+    localparam bit          LEAVES     = FIELDS != 0 || LATTICE;
+    localparam bit          OCTAHEDRON = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam bit          EXITS      = LEAVES || ROUND;
-    localparam bit          MARCH      = BLEND || (FIELDS & fields_pkg::OCTANTS) != 0;
+    localparam bit          MARCH      = BLEND;
     localparam bit          LIT        = ROUND || LATTICE;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(MARCH, LIT, BLEND);
 
@@ -155,12 +160,18 @@ module raymarcher #(
         row_ends    <= (10'd180 << size) - 10'd1;
     end
 
+    // Whether the solid is an octahedron.
+    logic diagonals;
+
     assign by_exits = EXITS && (!MARCH || exits);
 
-    ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .BLEND(BLEND), .STEREO(STEREO)) generator (
+    always_ff @(posedge clk) diagonals <= OCTAHEDRON && rule == exit_pkg::BOX && levels[0];
+
+    ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .BLEND(BLEND), .STEREO(STEREO)) generator (
         .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends), .stereo, .exits,
         .first, .across, .down, .near_limit, .round(solid.is_round), .origins, .outside, .far_limit, .choice, .distances,
-        .there, .away, .last, .nexts, .last_cone, .cone_write, .cone_address, .cone_value, .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
+        .there, .away, .last, .nexts, .diagonals, .sum_distances, .sum_there, .sum_away, .last_cone, .cone_write, .cone_address, .cone_value,
+        .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
     );
 
     assign ray_odd     = by_exits ? exit_ray.place[raymarch_pkg::PLACE_BITS-1] : ray.place.odd;
@@ -212,8 +223,8 @@ module raymarcher #(
 
         if (LEAVES) begin : leaving
             exit_lane #(
-                .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0 || LATTICE), .STEREO(STEREO),
-                .ROUND(ROUND), .LATTICE(LATTICE)
+                .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0 || LATTICE || OCTAHEDRON),
+                .STEREO(STEREO), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)
             ) lane (
                 .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
                 .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
@@ -249,9 +260,9 @@ module raymarcher #(
             assign found[i] = '0;
         end
 
-        if (MARCH) begin : marching
-            // Fields with fillets march, and so do fields with faces perpendicular to the diagonals.
-            localparam int unsigned MARCHED = BLEND ? FIELDS : FIELDS & fields_pkg::OCTANTS;
+        if (MARCH && i == 0) begin : marching
+            // Fields with fillets march, in a single lane: a second one would take a quarter of all LUTs.
+            localparam int unsigned MARCHED = FIELDS & ~fields_pkg::OCTANTS;
             // Depth of the queue before a lane; 0 for no queue.
             localparam int unsigned QUEUE   = raymarch_pkg::has_short_rings(LEVELS, MARCHED, BLEND, BLEND) ? 32 : 0;
 
@@ -320,7 +331,8 @@ module raymarcher #(
         exit_end.t         = landed.hit || landed.met ? landed.t : raymarch_pkg::END_T_BITS'(landed.height);
         exit_end.steps     = landed.steps;
         exit_end.state     = landed.hit || landed.met ? raymarch_pkg::HIT : raymarch_pkg::MISS;
-        exit_end.surface   = !landed.hit ? landed.number : landed.round ? '0 : {landed.axis, landed.positive};
+        exit_end.surface   = !landed.hit ? landed.number : landed.round ? '0
+                             : diagonals ? exit_pkg::octant(landed.axis, landed.positive) : {landed.axis, landed.positive};
         exit_end.round     = !landed.hit || landed.round;
         exit_end.direction = landed.direction;
         // A pure sphere.
@@ -401,7 +413,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end, last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
+    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end, last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 
 `default_nettype wire

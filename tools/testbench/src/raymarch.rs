@@ -89,6 +89,9 @@ pub fn exit_ray(
     if solid.rule.is_lattice() {
         set_length(&mut record, beam);
     }
+    if solid.rule == Rule::Octahedron {
+        record.set("down_sum", beam.down[3]);
+    }
     // A ray that is over has no start.
     if !is_over {
         record.set("start", start.t);
@@ -362,17 +365,13 @@ pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
 }
 
 /// The name in the gateware and the number of levels of a solid by exits.
-///
-/// # Panics
-/// For an octahedron, whose rays march.
 #[must_use]
 pub fn rule(rule: Rule) -> (&'static str, u64, u32) {
     let (name, number) = match rule {
-        Rule::Box => ("BOX", 0),
+        Rule::Box | Rule::Octahedron => ("BOX", 0),
         Rule::Planes => ("PLANES", 1),
         Rule::Sponge { .. } => ("SPONGE", 2),
         Rule::Repeated { .. } => ("CUBES", 3),
-        Rule::Octahedron => unreachable!("a field of marching rays"),
     };
     (name, number, rule.levels())
 }
@@ -454,6 +453,25 @@ fn set_starts(module: &mut Module, exits: &Exits) {
     }
 }
 
+/// Drives the constants of the fourth axis of an octahedron.
+fn set_diagonals(module: &mut Module, exits: &Exits) {
+    for (number, Eye { start, .. }) in exits.eyes.iter().enumerate() {
+        let [up, down] = &start.sides;
+        let bits = |is_set: fn(&Side) -> bool| {
+            u32::from(is_set(&up[3])) | u32::from(is_set(&down[3])) << 1
+        };
+        module.drive_all(
+            &format!("sum_distances[{number}]"),
+            [up[3].distance, down[3].distance],
+        );
+        module.drive(
+            &format!("sum_there[{number}]"),
+            bits(|side| side.is_bounded),
+        );
+        module.drive(&format!("sum_away[{number}]"), bits(|side| side.is_away));
+    }
+}
+
 /// Drives the frame constants of a whole raymarcher.
 pub fn set_raymarcher(module: &mut Module, setup: &FieldSetup) {
     match &setup.form {
@@ -479,6 +497,9 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     ] {
         module.drive(name, value);
     }
+    let solid = setup.exits().and_then(|exits| exits.solid);
+    let is_octahedron = solid.is_some_and(|solid| solid.rule == Rule::Octahedron);
+    module.drive("diagonals", is_octahedron);
     set_rays(module, setup);
 }
 
@@ -495,8 +516,9 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
             drive_eyes(module, "first", eyes.map(|eye| axes(eye.first)));
             module.drive_all("across", axes(exits.steps[0]));
             module.drive_all("down", axes(exits.steps[1]));
-            drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
+            drive_eyes(module, "origins", eyes.map(|eye| eye.place()));
             set_starts(module, exits);
+            set_diagonals(module, exits);
             let count = 1 + usize::from(setup.stereo.is_some());
             set_cones(module, "cone_", exits, count, |cone| *cone);
         }

@@ -157,7 +157,8 @@ fn rays_by_exits_have_the_prism_around_each_eye() {
         last: number.is_multiple_of(5),
         next: 0x1000 | number as u16,
     };
-    let prism = |eye: u32| [0, 1].map(|way| [0, 1, 2].map(|axis| start(6 * eye + 3 * way + axis)));
+    let prism =
+        |eye: u32| [0, 1].map(|way| [0, 1, 2, 3].map(|axis| start(8 * eye + 4 * way + axis)));
     raymarcher.unwrap().set_field(&field(Form::Exits {
         exits,
         borders: [-1, 2, -3],
@@ -171,15 +172,19 @@ fn rays_by_exits_have_the_prism_around_each_eye() {
         r.start_left_x(),
         r.start_left_y(),
         r.start_left_z(),
+        r.start_left_sum(),
         r.start_left_mirrored_x(),
         r.start_left_mirrored_y(),
         r.start_left_mirrored_z(),
+        r.start_left_mirrored_sum(),
         r.start_right_x(),
         r.start_right_y(),
         r.start_right_z(),
+        r.start_right_sum(),
         r.start_right_mirrored_x(),
         r.start_right_mirrored_y(),
         r.start_right_mirrored_z(),
+        r.start_right_mirrored_sum(),
     ];
     for (number, plane) in (0..).zip(planes) {
         let Start {
@@ -190,6 +195,8 @@ fn rays_by_exits_have_the_prism_around_each_eye() {
             ..
         } = start(number);
         let flags = u32::from(there) | u32::from(away) << 1 | u32::from(last) << 2;
+        // The fourth axis has no last flag.
+        let flags = if number % 4 == 3 { flags & 3 } else { flags };
         assert_eq!(plane.read(), distance | flags << 25, "plane {number}");
     }
     let next = [
@@ -201,7 +208,7 @@ fn rays_by_exits_have_the_prism_around_each_eye() {
         r.next_right_z(),
     ];
     let next = next.map(|next| [next.read() & 0xFFFF, next.read() >> 16]);
-    let axes = [0, 1, 2, 6, 7, 8].map(|number| [0x1000 | number, 0x1000 | (number + 3)]);
+    let axes = [0, 1, 2, 8, 9, 10].map(|number| [0x1000 | number, 0x1000 | (number + 4)]);
     assert_eq!(next, axes);
 }
 

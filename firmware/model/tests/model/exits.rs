@@ -614,6 +614,21 @@ fn mirrored_rays_have_mirrored_ends() {
     assert!(steps <= 200, "{steps}");
 }
 
+/// After the prism around the eye, a ray is in an octahedron, or does not meet it.
+#[test]
+fn an_octahedron_takes_one_evaluation() {
+    let mut random = Pcg64Mcg::new(4);
+    let mut hits = 0;
+    for _ in 0..3000 {
+        let (eye, direction) = stiff(&mut random);
+        let exits = frame("octahedron:1", eye, direction);
+        let end = end_of(&exits);
+        assert!(end.steps <= 1, "{eye:?} {direction:?}: {end:?}");
+        hits += u32::from(end.state != State::Miss);
+    }
+    assert!(hits > 200, "{hits}");
+}
+
 /// A ray through a pixel outside of a sphere's rectangle does not meet the sphere.
 #[test]
 fn rectangles_hold_all_pixels_that_see_a_sphere() {
@@ -677,6 +692,7 @@ fn codes_of_intervals_increase_and_return() {
         ("planes:1", 0..=1),
         ("cubes:2,0.4", -2..=64),
         ("lattice:1,0.3", -2..=64),
+        ("octahedron:1", 0..=1),
     ] {
         let solid = frame(field, eye, [ONE, 0, 0]).solid.expect("a solid");
         assert_eq!((solid.code(i32::MIN), solid.interval(0)), (0, i32::MIN));
@@ -705,7 +721,9 @@ fn a_start_in_codes_makes_the_same_rays() {
             "box:1,0.5,0.25",
             "cubes:2,0.4",
             "planes:1",
-        ][round % 5];
+            "lattice:1,0.3",
+            "octahedron:1",
+        ][round % 7];
         let eye = [0; 3].map(|_| random.random_range(-4 * HALF..4 * HALF));
         let exits = frame(field, eye, [0; 3]);
         let solid = exits.solid.expect("a solid");

@@ -21,7 +21,7 @@ use cones::ConeWords;
 use setup::{Tables, field_setup, palette};
 use spheres::Spheres;
 
-/// Number of evaluations of the field per clock cycle.
+/// Number of evaluations of the field per clock cycle; marching rays have one.
 const LANES: u64 = 2;
 
 /// Number of counters.
@@ -83,7 +83,8 @@ impl Raymarcher {
         let palette = palette(&self.parameters, &self.spheres, &self.tables);
         let (stats, hidden) = rows::render(&Tracer::new(&setup, cones), &palette, target);
         let eyes = 1 + u32::from(setup.stereo.is_some());
-        let work = (stats.evaluations / LANES).max(stats.rays.into());
+        let lanes = if setup.exits().is_some() { LANES } else { 1 };
+        let work = (stats.evaluations / lanes).max(stats.rays.into());
         let cycles = work + LATENCY;
         let counters = Counters {
             cycles_busy: cycles as u32,

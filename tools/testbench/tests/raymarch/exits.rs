@@ -7,9 +7,9 @@ use glint_core::camera::View;
 use glint_core::field::{Field, Surface};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::State;
-use glint_model::raymarch::exits::{Exits, Eye, Inverse, Words};
+use glint_model::raymarch::exits::{Exits, Inverse, Rule, Words};
 use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
-use glint_testbench::{Bits, Layout, Module, Pipe};
+use glint_testbench::{Bits, Layout, Module, Pipe, Record};
 use glint_vectors::Random;
 
 use crate::scenes::{FIELDS, SPONGES, UNIONS, camera, size, stereo};
@@ -28,7 +28,7 @@ fn fields() -> Vec<&'static str> {
 fn all_fields() -> Vec<&'static str> {
     let is_union = |field: &&str| field.starts_with("union:");
     let unions = UNIONS.into_iter().filter(is_union);
-    [&SPONGES[..], &FIELDS, &LATTICES]
+    [&SPONGES[..], &FIELDS, &LATTICES, &OCTAHEDRA]
         .concat()
         .into_iter()
         .chain(unions)
@@ -45,13 +45,38 @@ const LATTICES: [&str; 6] = [
     "lattice:1,0.01",
 ];
 
+/// Octahedra: a typical one, the smallest and the largest.
+const OCTAHEDRA: [&str; 4] = [
+    "octahedron:1",
+    "octahedron:0.01",
+    "octahedron:12",
+    "octahedron:2.7",
+];
+
 /// The surface that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Seen {
     /// A face perpendicular to an axis, and whether its normal is positive.
     Face(u64, bool),
+    /// A face of an octahedron: bit i is set if component i of the normal is positive.
+    Octant(u64),
     /// A sphere of a list or of a lattice, with the ray's direction.
     Sphere(u64, [i32; 3]),
+}
+
+impl Seen {
+    /// The surface of a hit in a solid.
+    fn of(record: &Record, rule: Rule) -> Self {
+        let (axis, is_positive) = (record.get("axis"), record.is_set("positive"));
+        match rule {
+            Rule::Octahedron => {
+                // The function `octant` of exit_pkg.
+                let negative = [1, 2, 4, 0][axis as usize];
+                Self::Octant(if is_positive { !negative & 7 } else { negative })
+            }
+            _ => Self::Face(axis, is_positive),
+        }
+    }
 }
 
 /// End of a ray. A miss has no surface, and the ray's limit as its parameter: the far limit, or the parameter at a sphere.
@@ -73,8 +98,8 @@ fn set_lane(module: &mut Module, exits: &Exits) {
     record.set_all("border", solid.borders());
     module.drive_bits("solid", record.bits());
     module.drive("far_t", exits.far);
-    for (eye, Eye { origin, .. }) in exits.eyes.iter().enumerate() {
-        module.drive_all(&format!("origins[{eye}]"), origin.iter().copied());
+    for (number, eye) in exits.eyes.iter().enumerate() {
+        module.drive_all(&format!("origins[{number}]"), eye.place());
     }
 }
 
@@ -147,6 +172,7 @@ fn some_rays(
             State::Hit(Surface::Face { axis, positive }) => {
                 (Some(Seen::Face(axis.into(), positive)), found.t)
             }
+            State::Hit(Surface::Octant { signs }) => (Some(Seen::Octant(signs.into())), found.t),
             State::Hit(surface) => {
                 let number = surface.number().unwrap_or_default();
                 (Some(Seen::Sphere(number.into(), beam.direction())), found.t)
@@ -181,7 +207,8 @@ impl Bench {
         let (rays, ends) = (("in", &["ray"][..]), ("out", &["end"][..]));
         Self {
             pipe: Pipe::new(name, seed, rays, ends, stalls),
-            landing: (name != "exit_lane")
+            landing: [ALL, "exit_lane_lattice"]
+                .contains(&name)
                 .then(|| Pipe::new("exit_landing", seed, ("in", &["end"]), ends, stalls)),
             has_limits: name == ALL,
         }
@@ -196,6 +223,7 @@ impl Bench {
         } = self;
         set_lane(&mut pipe.module, exits);
         let layout = pipe.module.packed_type("exit_pkg::end_t").clone();
+        let rule = exits.solid.expect("a solid").rule;
         let count = expected.len();
         let evaluations: u64 = expected.values().map(|sent| sent.end.steps).sum();
         for sent in expected.values() {
@@ -226,7 +254,7 @@ impl Bench {
             };
             let surface = match (is_hit, record.is_set("round"), record.is_set("met")) {
                 (true, true, _) => Some(Seen::Sphere(0, direction())),
-                (true, false, _) => Some(Seen::Face(record.get("axis"), record.is_set("positive"))),
+                (true, false, _) => Some(Seen::of(&record, rule)),
                 (false, _, true) => Some(Seen::Sphere(record.get("number"), direction())),
                 (false, _, false) => None,
             };
@@ -309,7 +337,7 @@ fn random_rays_in_flat_solids() {
 }
 
 #[test]
-fn random_rays_with_limits() {
+fn random_rays_in_all_solids() {
     random_rays(ALL, &all_fields());
 }
 
@@ -318,20 +346,28 @@ fn random_rays_in_lattices() {
     random_rays("exit_lane_lattice", &LATTICES);
 }
 
-#[test]
-fn stiff_rays_in_lattices() {
+fn stiff_rays(name: &str, fields: &[&str]) {
     let mut random = Random(9);
-    let mut bench = Bench::new("exit_lane_lattice", 1, [0.0, 0.0]);
+    let mut bench = Bench::new(name, 1, [0.0, 0.0]);
     let layout = bench.pipe.module.packed_type("exit_pkg::ray_t").clone();
     for frame in 0..20 * frames() {
-        let exits = stiff_frame(&mut random, LATTICES[frame % LATTICES.len()]);
-        let rays = some_rays(&mut random, &layout, &exits, 1, false, 1);
+        let exits = stiff_frame(&mut random, fields[frame % fields.len()]);
+        let rays = some_rays(&mut random, &layout, &exits, 1, name == ALL, 1);
         bench.check(&exits, rays);
     }
 }
 
-/// A lane for lattices draws flat solids as one without.
 #[test]
-fn random_rays_in_flat_solids_beside_lattices() {
-    random_rays("exit_lane_lattice", &fields());
+fn stiff_rays_in_lattices() {
+    stiff_rays("exit_lane_lattice", &LATTICES);
+}
+
+#[test]
+fn random_rays_to_octahedra() {
+    random_rays("exit_lane_octahedron", &OCTAHEDRA);
+}
+
+#[test]
+fn stiff_rays_to_octahedra() {
+    stiff_rays("exit_lane_octahedron", &OCTAHEDRA);
 }

@@ -125,7 +125,7 @@ fn end(module: &mut Module, whole: bool) {
 
 #[test]
 fn beginnings_of_random_frames() {
-    let fields = [&FIELDS[..], &ROUND].concat();
+    let fields = [&FIELDS[..], &ROUND, &["octahedron:1", "octahedron:0.01"]].concat();
     let mut random = Random(5);
     let mut modules = GENERATORS.map(|name| Bench::new(name, 1));
     for number in 0..60 {

@@ -39,7 +39,8 @@ pub enum Rule {
         /// Whether spheres with the cube's side as diameter replace the cubes.
         round: bool,
     },
-    /// The octahedron: a box along its four diagonals, with the intervals of a box.
+    /// The octahedron: a box along its four diagonals, with the intervals of a box. An octahedron is convex: after a ray has left the prism
+    /// around the eye, it is below no slab, so a lane needs no border of the fourth one.
     Octahedron,
 }
 
@@ -63,9 +64,11 @@ impl Rule {
         matches!(self, Self::Repeated { round: true })
     }
 
-    /// Number of levels of a sponge; of spheres in place of cubes 1, by which the gateware tells them apart; 0 for other solids.
+    /// Number of levels of a sponge; 1 of spheres in place of cubes and of an octahedron in place of a box, by which the gateware tells them
+    /// apart; 0 for other solids.
     pub const fn levels(&self) -> u32 {
         match *self {
+            Self::Octahedron => 1,
             Self::Repeated { round } => round as u32,
             Self::Sponge { cells, last, .. } if last > 0 => (cells / last).ilog(3),
             _ => 0,
@@ -191,12 +194,7 @@ impl Solid {
     pub(super) fn place(&self, k: &[i32; AXES]) -> Place {
         match self.rule {
             Rule::Box => outside(k, 1, 0..3).unwrap_or(Place::Solid),
-            // The gateware has three dividers: the fourth axis follows when the ray is within the slabs of the other three.
-            Rule::Octahedron => match outside(k, 1, 0..3) {
-                None => outside(k, 1, 3..AXES).unwrap_or(Place::Solid),
-                _ if k[3] == 1 => Place::Gone,
-                Some(place) => place,
-            },
+            Rule::Octahedron => outside(k, 1, 0..AXES).unwrap_or(Place::Solid),
             Rule::Planes if k[2] == 0 => Place::Empty(prism(Exit::First, |axis| {
                 (axis == 2).then_some(Border {
                     at: self.side[2],

@@ -2,7 +2,7 @@
 
 use glint_core::field::{FRACTION, magnitude};
 
-use super::intervals::{AXES, Exit, Prism, Solid};
+use super::intervals::{AXES, Exit, Prism, Rule, Solid};
 use super::narrow::{floor, nearest, squared};
 use super::setup::Exits;
 use super::words::Inverse;
@@ -25,6 +25,8 @@ pub struct Beam {
     pub inverse: [Inverse; AXES],
     /// The number of doublings, 0 to 3, that brings the direction's length to between 1 and 2.
     pub doublings: u32,
+    /// The first bits of D's components along x, y and z, s1.10, or of half of these for an octahedron; rounded down.
+    pub heading: [i32; 3],
     /// The square of the doubled direction's length, u2.23, rounded down.
     pub square: i64,
     /// The reciprocal of `square`, times 2^`doublings`.
@@ -55,11 +57,11 @@ impl Beam {
         })
     }
 
-    /// How far up the ray leads ([`RayEnd::height`](crate::raymarch::RayEnd::height)), for a solid whose axes are x, y and z: the first ten
-    /// bits of the component along z, divided by those of the largest component and one more.
+    /// How far up the ray leads ([`RayEnd::height`](crate::raymarch::RayEnd::height)): the first ten bits of the component along z, divided
+    /// by those of the largest component and one more.
     pub fn height(&self) -> u8 {
-        let [x, y, z] = [0, 1, 2].map(|axis: usize| self.speed[axis] >> 15);
-        match self.down[2] {
+        let [x, y, z] = self.heading.map(magnitude);
+        match self.heading[2] < 0 {
             true => 0,
             false => ((z << 8) / (x.max(y).max(z) + 1)) as u8,
         }
@@ -78,7 +80,15 @@ impl Exits {
     pub fn ray(&self, eye: usize, column: u32, row: u32) -> Beam {
         // The direction D, s1.24, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
         // component is therefore its complement. The component wraps only for invalid frame constants.
-        let direction = self.direction(eye, column, row).map(|part| part << 1 >> 7);
+        let [x, y, z] = self.direction(eye, column, row).map(|part| part << 1 >> 7);
+        // The fourth diagonal of an octahedron is the sum of the others: of three middles k + 1/2, the middle of the next integer. The sum of
+        // two diagonals is half an axis.
+        let first @ [a, b, c] = [x, y, z].map(|part| part >> 14);
+        let (fourth, heading) = match self.octahedron() {
+            Some(_) => (x + y + z + 1, [b + c, a + c, a + b]),
+            None => (0, first),
+        };
+        let direction = [x, y, z, fourth];
         let down = direction.map(|part| part < 0);
         let speed = direction.map(|part| 2 * magnitude(part) + 1);
         // The square is that of 23 bits, without the square of the lowest 6.
@@ -97,6 +107,7 @@ impl Exits {
             down,
             speed,
             inverse: speed.map(|speed| Inverse::of(speed, &self.words)),
+            heading,
             doublings,
             square,
             inverse_square: Inverse {
@@ -107,7 +118,8 @@ impl Exits {
             start: Way {
                 t: self.near,
                 face: 2,
-                reached: [i32::MIN; AXES],
+                // An octahedron's fourth slab has no interval below.
+                reached: [i32::MIN, i32::MIN, i32::MIN, 0],
             },
             is_away: false,
         };
@@ -175,13 +187,31 @@ impl Exits {
         let corner = self.eyes[beam.eye].corner(&beam.down);
         let bits = (self.words.parameter + self.words.direction + 1) as i32 - 12;
         let is_lattice = (self.solid).is_some_and(|solid| solid.rule.is_lattice());
-        [0, 1, 2, 3].map(|axis: usize| {
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| {
             let way = t * self.speed(beam, axis);
             corner[axis]
                 + match is_lattice {
                     true => nearest(way, bits),
                     false => floor(way, bits),
                 }
-        })
+        });
+        [x, y, z, self.fourth(beam, [x, y, z])]
+    }
+
+    /// The coordinate of a point along the fourth diagonal of an octahedron, from the other three: each is counted from the solid's lower
+    /// corner, along a mirrored axis, and stands for the middle of its interval. 0 for other solids.
+    fn fourth(&self, beam: &Beam, point: [i64; 3]) -> i64 {
+        let Some(solid) = self.octahedron() else {
+            return 0;
+        };
+        let half = solid.side[0] / 2;
+        let mirrored = |axis: usize, x: i64| if beam.down[axis] { !x } else { x };
+        let parts = [0, 1, 2].map(|axis: usize| mirrored(axis, point[axis] - half));
+        mirrored(3, parts.iter().sum::<i64>() + 1) + half
+    }
+
+    /// The solid if it is an octahedron.
+    fn octahedron(&self) -> Option<Solid> {
+        self.solid.filter(|solid| solid.rule == Rule::Octahedron)
     }
 }

@@ -30,7 +30,8 @@ pub struct Eye {
     pub origin: [i32; 3],
     /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis.
     pub corners: [[i64; AXES]; 2],
-    /// Direction D of the first pixel's ray along each axis, s2.30.
+    /// Direction D of the first pixel's ray along each axis, s2.30. The fourth number is not used: a ray's component along the fourth axis is
+    /// the sum of the three others.
     pub first: [i32; AXES],
     /// The empty prism around the eye.
     pub start: Start,
@@ -64,13 +65,27 @@ pub struct Side {
 impl Eye {
     /// An eye at a position in field units, s13.12, with the directions of its rays and its prism still to be set.
     pub fn at(origin: [i32; 3], solid: &Option<Solid>) -> Self {
-        let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
-        let place = along(solid, origin.map(i64::from));
         Self {
             origin,
+            ..Self::placed(along(solid, origin.map(i64::from)), solid)
+        }
+    }
+
+    /// As [`at`](Self::at), from the position along the axes of the solid; without `origin`, which only spheres need, for an octahedron.
+    pub fn placed(place: [i64; AXES], solid: &Option<Solid>) -> Self {
+        let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
+        let [x, y, z, _] = place.map(|part| part as i32);
+        Self {
+            origin: [x, y, z],
             corners: [1, -1].map(|sign| [0, 1, 2, 3].map(|i: usize| half[i] + sign * place[i])),
             ..Self::default()
         }
+    }
+
+    /// The position from the solid's centre along the first three axes, s13.12: in x, y and z, or along diagonals of an octahedron.
+    pub fn place(&self) -> [i32; 3] {
+        let [up, down] = &self.corners;
+        [0, 1, 2].map(|axis: usize| ((up[axis] - down[axis]) / 2) as i32)
     }
 
     /// The position from the solid's lower corner, with the axes mirrored that are `down`.
@@ -94,7 +109,7 @@ pub struct Exits {
     pub exponent: u32,
     /// The left and the right eye; equal without stereo.
     pub eyes: [Eye; 2],
-    /// Change of D per pixel to the right and per pixel down, s2.30.
+    /// Change of D per pixel to the right and per pixel down, s2.30; the fourth numbers are not used.
     pub steps: [[i32; AXES]; 2],
     /// Parameter of the near plane.
     pub near: i64,
@@ -112,7 +127,7 @@ impl Exits {
     /// Whether pictures of a field are drawn by exits. Rays march in all other fields.
     pub fn draws(field: &Field) -> bool {
         match field {
-            Field::Primitive(primitive) => !matches!(primitive, Primitive::Octahedron(_)),
+            Field::Primitive(_) => true,
             Field::Union(union) => union.blend() == Q32_32::ZERO,
         }
     }
@@ -182,9 +197,9 @@ impl Exits {
         Ok(exits)
     }
 
-    /// The direction D of pixel (x, y) along each axis, s2.30.
-    pub(super) fn direction(&self, eye: usize, column: u32, row: u32) -> [i32; AXES] {
-        [0, 1, 2, 3].map(|axis: usize| {
+    /// The direction D of pixel (x, y) along each of the first three axes, s2.30.
+    pub(super) fn direction(&self, eye: usize, column: u32, row: u32) -> [i32; 3] {
+        [0, 1, 2].map(|axis: usize| {
             let across = self.steps[0][axis].wrapping_mul(column as i32);
             let down = self.steps[1][axis].wrapping_mul(row as i32);
             self.eyes[eye].first[axis]

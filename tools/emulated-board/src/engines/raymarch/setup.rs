@@ -76,6 +76,7 @@ fn leaving(
         RuleRegister::Cubes => Rule::Repeated {
             round: register.depth() & 1 == 1,
         },
+        RuleRegister::Box if register.depth() & 1 == 1 => Rule::Octahedron,
         RuleRegister::Box => Rule::Box,
     };
     let axes = |[x, y, z]: [i32; 3]| [x, y, z, 0];
@@ -83,7 +84,8 @@ fn leaving(
     let [x, y, z] = half.map(|at| 2 * i64::from(parameters.unsigned(at, 21)));
     let solid = exits::Solid {
         rule,
-        side: [x, y, z, 0],
+        // Only an octahedron has a fourth side.
+        side: [x, y, z, x],
     };
     let eyes = [
         (offset::ORIGIN_LEFT_X, register.left_exit()),
@@ -98,10 +100,12 @@ fn leaving(
         exponent: 0,
         eyes: eyes.map(|(first, exit)| {
             let eye = eye(parameters, first);
+            let [x, y, z] = eye.origin.map(i64::from);
+            let place = [x, y, z, 0];
             exits::Eye {
                 first: axes(eye.first),
                 start: start(parameters, &solid, first, exit),
-                ..exits::Eye::at(eye.origin, &Some(solid))
+                ..exits::Eye::placed(place, &Some(solid))
             }
         }),
         steps: [offset::ACROSS_X, offset::DOWN_X].map(|first| axes(parameters.row(first, 32))),
@@ -121,11 +125,15 @@ fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option
     const AXIS: u32 = offset::NEXT_LEFT_Y - offset::NEXT_LEFT_X;
     let side = |way: u32, axis: u32| {
         let plane = parameters.word(first + START + way * MIRRORED + 4 * axis);
-        let next = parameters.word(first + NEXT + axis * AXIS) >> (16 * way) & 0x1FFF;
+        // Along the fourth axis a ray always leads into the slab.
+        let next = match axis {
+            3 => 0,
+            _ => solid.interval(parameters.word(first + NEXT + axis * AXIS) >> (16 * way) & 0x1FFF),
+        };
         Side {
             is_bounded: plane >> 25 & 1 == 1,
             distance: i64::from(plane & 0x1FF_FFFF),
-            next: solid.interval(next),
+            next,
             is_away: plane >> 26 & 1 == 1,
             is_last: plane >> 27 & 1 == 1,
         }
@@ -136,10 +144,7 @@ fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option
             Some(Exit::Last) => exits::Exit::Last,
             Some(Exit::Second) | None => exits::Exit::Second,
         },
-        sides: [0, 1].map(|way| {
-            let [x, y, z] = [0, 1, 2].map(|axis| side(way, axis));
-            [x, y, z, Side::default()]
-        }),
+        sides: [0, 1].map(|way| [0, 1, 2, 3].map(|axis| side(way, axis))),
     }
 }
 
