@@ -15,8 +15,8 @@
 // Spheres of a lattice are in such cubes: `hit` then says that the point is in the box about a sphere, from which the planes of the box lead
 // by the first exit. `over` says that a coordinate, within its cell, is above the cube.
 //
-// Latency 7 clocks from `point` to `next`, `there`, `choice`, `above`, `hit` and `gone`, 8 clocks to `at`, and 1 clock to `over`; `reached_3` is an
-// input of clock 3. Throughput one point per clock, no handshake. `solid` must hold.
+// Latency 7 clocks from `point` to `next`, `there`, `choice`, `above`, `hit` and `gone`, 8 clocks to `at`, and 1 clock to `over`; `reached_3`
+// is an input of clock 3. Throughput one point per clock, no handshake. `solid` must hold.
 
 `default_nettype none
 
@@ -181,8 +181,8 @@ module exit_borders #(
                               : above_5 == '0 && !outside_5 && !in_hole_5 && !(is_cubes && middle_5[LAST] != '0);
     end
 
-    // The next interval has the digits before the first middle digit, this digit plus one, and zeros; from a box, the digit 1. Below the solid it is the lowest one,
-    // and without a middle digit the plane is the upper one of the solid.
+    // The next interval has the digits before the first middle digit, this digit plus one, and zeros; from a box, the digit 1. Below the solid
+    // it is the lowest one, and without a middle digit the plane is the upper one of the solid.
     logic [2:0] below_7;
 
     always_ff @(posedge clk) begin
@@ -199,7 +199,8 @@ module exit_borders #(
                     middle_6[i] ? before_6[level] && interval_6[i][BITS-2-2*level] || first_6[level] && !in_box_6
                                 : level == 0 && interval_6[i][BITS-1];
                 next[i][exit_pkg::INTERVAL_BITS-3-2*level] <=
-                    middle_6[i] ? before_6[level] && interval_6[i][BITS-3-2*level] || first_6[level] && in_box_6 : level == 0 && interval_6[i][BITS-1];
+                    middle_6[i] ? before_6[level] && interval_6[i][BITS-3-2*level] || first_6[level] && in_box_6
+                                : level == 0 && interval_6[i][BITS-1];
             end
             above[i]   <= !is_planes && interval_6[i][BITS-1] && (is_cubes ? interval_6[i][BITS-3 -: 5] == '1 && !in_box_6 : !middle_6[i]);
             below_7[i] <= !interval_6[i][BITS-1];

@@ -2,9 +2,9 @@
 //
 //   point ─▶ sum of the three coordinates, with their signs ─▶ - border ─▶ beyond
 //
-// The point, between 0 and the side of the slabs, or before 0 by rounding, is given along three diagonals from their lower corners, mirrored where `down`; the
-// integer k stands for k + 1/2. The fourth diagonal is their sum; `down_sum` says whether it is mirrored. `half` is half the side of all
-// slabs.
+// The point, between 0 and the side of the slabs, or before 0 by rounding, is given along three diagonals from the slabs' lower borders,
+// mirrored where `down`; the integer k stands for k + 1/2. The fourth diagonal is their sum; `down_sum` says whether it is mirrored. `half` is
+// half the side of all slabs.
 //
 // Latency 4 clocks from `point` and `down`, 3 clocks from `down_sum_1`; throughput one point per clock, no handshake. `half` must hold.
 

@@ -54,12 +54,12 @@ module exit_landing (
     assign lands_1   = end_1.hit && end_1.round && end_1.lands;
 
     // Both terms have 15 fraction bits. Only a root of 0 can be the larger one: it counts as 1.
-    exit_root rooting (.clk, .square(equation_1.rest), .root(root_10));
+    exit_root rooting (.clk, .square(~equation_1.rest), .root(root_10));
 
     delay #(.WIDTH(exit_pkg::ALONG_BITS), .CLOCKS(8)) along_waits (.clk, .enable(1'b1), .in(equation_1.along), .out(along_9));
 
     always_ff @(posedge clk) begin
-        along_10    <= {1'b0, along_9} + 1'b1;
+        along_10    <= {1'b0, ~along_9} + 1'b1;
         distance_11 <= {1'b0, along_10[exit_pkg::ALONG_BITS-1:0], 1'b0} - {2'b0, root_10[22:2]};
     end
 

@@ -2,9 +2,9 @@
 //
 //   whole ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to below 3/2, exponent
 //
-// `whole` is u0.25, at least 2^-25; that of a magnitude of 24 bits ends with a 1, the middle of its interval. The mantissa has 22 fraction bits, rounded to nearest.
-// An entry of the table has the value at the end of its interval and the decrease over the interval. Latency 10 clocks, throughput one per
-// clock, no handshake.
+// `whole` is u0.25, at least 2^-25; that of a magnitude of 24 bits ends with a 1, the middle of its interval. The mantissa has 22 fraction
+// bits, rounded to nearest. An entry of the table has the value at the end of its interval and the decrease over the interval. Latency 10
+// clocks, throughput one per clock, no handshake.
 
 `default_nettype none
 

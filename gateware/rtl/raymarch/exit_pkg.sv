@@ -21,13 +21,13 @@ package exit_pkg;
     // Width of an exit: T, and a bit before it that is set if the exit exceeds the range of T. Its other bits are then arbitrary.
     localparam int unsigned EXIT_BITS = T_BITS + 1;
 
-    // The solids. BOX is the inside of a box, or of an octahedron, which is a box along its four diagonals, PLANES the outside of the slab between two planes perpendicular to z, SPONGE the Menger
-    // sponge, and CUBES are cubes repeated every 64 units, or spheres in such cubes.
+    // The solids. BOX is the inside of a box, or of an octahedron, which is a box along its four diagonals; PLANES the outside of the slab
+    // between two planes perpendicular to z, SPONGE the Menger sponge, and CUBES are cubes repeated every 64 units, or spheres in such cubes.
     typedef enum logic [1:0] {BOX = 2'd0, PLANES = 2'd1, SPONGE = 2'd2, CUBES = 2'd3} rule_t;
 
-    // A solid: its rule, the number of levels of a sponge, of BOX 1 for an octahedron, and of CUBES 1 if they are spheres; half its side along each axis, for cubes that
-    // of a cube; and the coordinate of a plane perpendicular to each axis: of a box and of a sponge the lower plane, of PLANES the upper
-    // one, and of cubes the lower plane of the cube after the middle one, all below 2^21 - 2^15.
+    // A solid: its rule; the number of levels of a sponge, which is 1 of BOX for an octahedron and of CUBES for spheres; half its side along
+    // each axis, for cubes that of a cube; and the coordinate of a plane perpendicular to each axis: of a box and of a sponge the lower plane,
+    // of PLANES the upper one, and of cubes the lower plane of the cube after the middle one, all below 2^21 - 2^15.
     typedef struct packed {
         rule_t                              rule;
         logic [2:0]                         levels;
@@ -109,8 +109,8 @@ package exit_pkg;
     localparam int unsigned DIAGONAL_RAY_BITS = RAY_BITS + 1;
     localparam int unsigned LATTICE_RAY_BITS  = DIAGONAL_RAY_BITS + LENGTH_BITS + INVERSE_SQUARE_BITS;
 
-    // The terms of the quadratic equation of a ray in the box about a sphere of a lattice: -q·D with the doubled direction, less 2^-14, u7.14;
-    // the square of the root, u12.20; and the reciprocal of the square of D.
+    // The terms of the quadratic equation of a ray in the box about a sphere of a lattice: q·D with the doubled direction, s7.14 without its
+    // sign, which is negative; the complement of the square of the root, u12.20; and the reciprocal of the square of D.
     localparam int unsigned ALONG_BITS = 21;
     localparam int unsigned REST_BITS  = 32;
 

@@ -49,17 +49,17 @@ module exit_sphere (
 
     always_comb for (int i = 0; i < 3; i++) inside_1[i] = over_1[i] ? '0 : place_1[i];
 
-    logic signed [36:0] beyond_5, beyond_6, beyond_7;
+    logic signed [35:0] beyond_5, beyond_6, beyond_7;
     logic signed [43:0] along_5, along_6, along_7;
     logic signed [21:0] along_8;
     logic signed [42:0] product_10, square_11;
     logic               falls_11;
 
-    multiply_add #(.BITS(37)) beyond_x (
-        .clk, .enable(1'b1), .a(25'(left_2)), .b(offset_2), .c({left_4[18], left_4, 17'd0}), .p(beyond_5)
+    multiply_add #(.BITS(36)) beyond_x (
+        .clk, .enable(1'b1), .a(25'(left_2)), .b(offset_2), .c({left_4, 17'd0}), .p(beyond_5)
     );
-    multiply_add #(.BITS(37)) beyond_y (.clk, .enable(1'b1), .a(25'(y_3)), .b(y_3), .c(beyond_5), .p(beyond_6));
-    multiply_add #(.BITS(37)) beyond_z (.clk, .enable(1'b1), .a(25'(z_4)), .b(z_4), .c(beyond_6), .p(beyond_7));
+    multiply_add #(.BITS(36)) beyond_y (.clk, .enable(1'b1), .a(25'(y_3)), .b(y_3), .c(beyond_5), .p(beyond_6));
+    multiply_add #(.BITS(36)) beyond_z (.clk, .enable(1'b1), .a(25'(z_4)), .b(z_4), .c(beyond_6), .p(beyond_7));
     multiply_add #(.BITS(44)) along_x (.clk, .enable(1'b1), .a({1'b0, speed_x_2, 1'b1}), .b(q_2[0]), .c('0), .p(along_5));
     multiply_add #(.BITS(44)) along_y (.clk, .enable(1'b1), .a({1'b0, speed_y_3, 1'b1}), .b(y_3), .c(along_5), .p(along_6));
     multiply_add #(.BITS(44)) along_z (.clk, .enable(1'b1), .a({1'b0, speed_z_4, 1'b1}), .b(z_4), .c(along_6), .p(along_7));
@@ -79,15 +79,15 @@ module exit_sphere (
     );
     square_add #(.NEGATIVE(1'b1)) difference (.clk, .x({along_8, 2'd0}), .c({2'd0, product_10[42:2]}), .p(square_11));
 
-    delay #(.WIDTH(1), .CLOCKS(4)) start_waits (.clk, .enable(1'b1), .in(beyond_7[36]), .out(starts));
+    delay #(.WIDTH(1), .CLOCKS(4)) start_waits (.clk, .enable(1'b1), .in(beyond_7[35]), .out(starts));
     delay #(.WIDTH(1), .CLOCKS(3)) sign_waits (.clk, .enable(1'b1), .in(along_8[21]), .out(falls_11));
 
     always_ff @(posedge clk) meets <= starts || falls_11 && square_11[42];
 
-    assign along = ~along_8[20:0];
-    assign rest  = ~square_11[37:6];
+    assign along = along_8[20:0];
+    assign rest  = square_11[37:6];
 
-    wire _unused = &{1'b0, half[20:17], point[0][27:18], point[1][27:18], point[2][27:18], beyond_7[35], beyond_7[10:0], along_7[18:0],
+    wire _unused = &{1'b0, half[20:17], point[0][27:18], point[1][27:18], point[2][27:18], beyond_7[10:0], along_7[18:0],
                      product_10[1:0], square_11[41:38], square_11[5:0]};
 endmodule
 

@@ -105,12 +105,14 @@ module ray_generator #(
     if (EXITS) begin : leaving
         exit_start #(.STEREO(STEREO), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)) starts (
             .clk, .rst, .near_limit, .far_limit, .choice, .distances, .there, .away, .last, .nexts,
-            .diagonals, .sum_distances, .sum_there, .sum_away, .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(exit_valid), .out_ray(exit_ray)
+            .diagonals, .sum_distances, .sum_there, .sum_away,
+            .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(exit_valid), .out_ray(exit_ray)
         );
     end else begin : no_leaving
         assign exit_valid = 1'b0;
         assign exit_ray   = '0;
-        wire _unused = &{1'b0, near_limit, far_limit, choice, distances, there, away, last, nexts, diagonals, sum_distances, sum_there, sum_away};
+        wire _unused = &{1'b0, near_limit, far_limit, choice, distances, there, away, last, nexts,
+                         diagonals, sum_distances, sum_there, sum_away};
     end
 
     localparam int unsigned KEPT_BITS = !EXITS ? raymarch_pkg::RAY_BITS : LATTICE ? exit_pkg::LATTICE_RAY_BITS
