@@ -20,7 +20,7 @@ class FlatField:
     expression of LEVELS. `ports` connects the ports other than `clk`, `point`, `distance` and `surface` to members of `solid_t`;
     `parameters` are the parameters of the instance. With `octants`, faces are perpendicular to the diagonals (±1, ±1, ±1), and
     `surface` is {z, y, x}, 1 where the normal is positive. Otherwise faces are perpendicular to the axes, and `surface` is
-    {axis, positive}. With `exits`, rays leave empty prisms (rtl/raymarch/exit_lane.sv), and the module serves unions alone. `inside` is the name of a field whose module serves this field too, in builds with both.
+    {axis, positive}. `inside` is the name of a field whose module serves this field too, in builds with both.
     """
 
     name: str
@@ -29,7 +29,6 @@ class FlatField:
     ports: dict
     parameters: dict = field(default_factory=dict)
     octants: bool = False
-    exits: bool = False
     inside: str = ""
 
 
@@ -37,10 +36,9 @@ _BOX = {port: f"solid.{port}" for port in ("half", "has", "room", "repeated")}
 
 FLAT_FIELDS = (
     FlatField("menger", "sponges", clocks="3 * LEVELS + 3", parameters={"LEVELS": "LEVELS", "BOX": "(FIELDS & 2) != 0"},
-              ports={"is_box": "solid.kind == 2'd1", "levels": "solid.levels[LEVELS-1:0]", "cube_half": "solid.cube_half", **_BOX},
-              exits=True),
-    FlatField("box", "boxes, cubes and planes", clocks="3", ports=_BOX, exits=True, inside="menger"),
-    FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True, exits=True),
+              ports={"is_box": "solid.kind == 2'd1", "levels": "solid.levels[LEVELS-1:0]", "cube_half": "solid.cube_half", **_BOX}),
+    FlatField("box", "boxes, cubes and planes", clocks="3", ports=_BOX, inside="menger"),
+    FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True),
 )
 """All flat fields, by their numbers in `solid.kind`. Field 0 is the sponge; the build sets its number of levels."""
 
@@ -58,11 +56,6 @@ def mask(names):
 def has_octants(names):
     """Returns whether a build with the fields `names` has fields whose faces are perpendicular to the diagonals."""
     return any(flat.octants for flat in FLAT_FIELDS if flat.name in names)
-
-
-def has_exits(names):
-    """Returns whether a build with the fields `names` has fields whose rays leave empty prisms."""
-    return any(flat.exits for flat in FLAT_FIELDS if flat.name in names)
 
 
 def files():
@@ -84,8 +77,6 @@ def _package():
             number("KIND_BITS", KIND_BITS),
             number("ALL", mask(NAMES), "Masks of all fields, and of the fields whose faces are perpendicular to the diagonals."),
             number("OCTANTS", sum(1 << field for field in octants)),
-            number("EXITS", sum(1 << field for field, flat in enumerate(FLAT_FIELDS) if flat.exits),
-                   "Mask of the fields whose rays leave empty prisms, unless they are united with spheres."),
             *(number(flat.name.upper(), 1 << field, "Mask of each field." if field == 0 else "")
               for field, flat in enumerate(FLAT_FIELDS)),
         ]),

@@ -11,7 +11,7 @@ from migen import Case, Cat, ClockSignal, Constant, If, Instance, Mux, ResetSign
 
 from .clock_control import ClockControl
 from .counters import Counters
-from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_exits, has_octants, mask
+from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
 from .packed import Package, Struct
 from .parameters import Parameter, PassParameters
 from .rtl import add_sources
@@ -49,7 +49,7 @@ class Fields:
     @property
     def has_exits(self):
         """Whether rays of some fields leave empty prisms, or meet the spheres of a list."""
-        return self.has_spheres or has_exits(self.flat)
+        return self.has_spheres or bool(self.flat)
 
     @property
     def has_spheres(self):

@@ -10,8 +10,6 @@ package fields_pkg;
     // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
     localparam int unsigned ALL = 7;
     localparam int unsigned OCTANTS = 4;
-    // Mask of the fields whose rays leave empty prisms, unless they are united with spheres.
-    localparam int unsigned EXITS = 7;
     // Mask of each field.
     localparam int unsigned MENGER = 1;
     localparam int unsigned BOX = 2;
