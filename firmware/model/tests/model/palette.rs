@@ -52,7 +52,10 @@ fn fog_falls_off_as_e_to_its_depth() {
 #[test]
 fn a_frame_without_fog_has_the_palette_it_was_given() {
     // Rays by exits, and rays that march.
-    for (field, half, last) in [("box:1,1,1", 7, 5), ("octahedron:1", 40, 34)] {
+    for (field, half, last) in [
+        ("box:1,1,1", 7, 5),
+        ("smooth:0.3,box:1,1,1+sphere:0.7", 40, 34),
+    ] {
         let options = FieldOptions {
             palette: Palette::default().with_occlusion(&Field::parse(field).unwrap()),
             ..FieldOptions::default()

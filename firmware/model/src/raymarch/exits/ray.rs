@@ -85,7 +85,7 @@ impl Exits {
         // two diagonals is half an axis.
         let first @ [a, b, c] = [x, y, z].map(|part| part >> 14);
         let (fourth, heading) = match self.octahedron() {
-            Some(_) => (x + y + z + 1, [b + c, a + c, a + b]),
+            Some(_) => ((x + y + z + 1) << 7 >> 7, [b + c, a + c, a + b]),
             None => (0, first),
         };
         let direction = [x, y, z, fourth];

@@ -71,7 +71,8 @@ impl Exits {
         // The divisor is below 4; it has 22 fraction bits, and stands for the middle of its interval. The root is rounded down, the divisor
         // up.
         let divisor = -((-(forward << SHARE) - cone.share * root) >> SHARE);
-        let inverse = Inverse::of(2 * divisor as u32 + 1, &self.words);
+        // It exceeds 24 bits only for invalid constants.
+        let inverse = Inverse::of((divisor as u32 & 0xFF_FFFF) << 1 | 1, &self.words);
         let mantissa = floor(
             i64::from(inverse.mantissa),
             self.words.inverse as i32 - MANTISSA,
