@@ -3,8 +3,8 @@
 //
 // The proof tracks one arbitrary ray. The column of a ray, which does not affect the results of a lane, is its number. The solid is
 // arbitrary, but a ray takes at most two rounds (evaluations). A ray has a limit, a start and a tag, which come back if all memories of the
-// ring stay in step with its slots: the limit as T of a miss, the start as T of a hit in the first round, and the tag as the outcome of the
-// second round.
+// ring stay in step with its slots: the limit as T of a miss and as the sphere, the start as T of a hit in the first round, and the tag as
+// the outcome of the second round.
 
 `default_nettype none
 
@@ -39,17 +39,17 @@ module exit_lane_proof (
         ray.place      = exit_pkg::PLACE_BITS'(came);
         ray.over       = in_over;
         ray.start      = exit_pkg::T_BITS'(in_start);
-        ray.limit      = exit_pkg::T_BITS'(in_limit);
+        ray.sphere     = {in_tag, in_limit, exit_pkg::T_BITS'(in_limit)};
         ray.reached[0] = {8'd0, in_tag, 4'd0};
     end
 
-    exit_lane #(.LEVELS(4), .STEREO(1'b0), .LIMITS(1'b1), .PLACES(PLACES)) dut (
+    exit_lane #(.LEVELS(4), .STEREO(1'b0), .ROUND(1'b1), .PLACES(PLACES)) dut (
         .clk, .rst, .origins('0), .solid('0), .far_t('0), .in_valid, .in_ready, .in_ray(ray), .out_valid, .out_ready, .out_end, .evaluates,
         .waits
     );
 
     stream_checker #(.WIDTH(1), .GIVEN(1)) given (.clk, .rst, .valid(in_valid), .ready(in_ready), .data(1'b0));
-    stream_checker #(.WIDTH(exit_pkg::END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
+    stream_checker #(.WIDTH(exit_pkg::LAND_END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
 
     logic       entered, left, here;
     logic [5:0] on_its_way, refused;
@@ -74,6 +74,7 @@ module exit_lane_proof (
         none_made_up:     assert (!out_valid || out_end.place[3:0] < came);
         none_twice:       assert (!here || entered && !left);
         limit_in_step:    assert (!here || out_end.hit || out_end.t[2:0] == limit);
+        sphere_in_step:   assert (!here || {out_end.met, out_end.number} == {tag, limit});
         start_in_step:    assert (!here || !out_end.hit || out_end.steps != 8'd1 || out_end.t[2:0] == start);
         tag_in_step:      assert (!here || out_end.steps != 8'd2 || out_end.hit == tag);
         none_lost:        assert (left || on_its_way < 6'(over ? WITHIN - ROUND : WITHIN));

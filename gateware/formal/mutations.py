@@ -248,6 +248,7 @@ MUTATIONS = {
         _exits("enter ? places - 1'b1 : places + 1'b1", "enter ? places - 1'b1 : places", "empty_takes"),
         _exits("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "takes_again"),
         _exits("slot_21 <= following(slot_21);", "slot_21 <= following(slot_12);", "limit_in_step"),
+        _exits("= sphere_22.met;", "= sphere_22.number[0];", "sphere_in_step"),
         _exits("states[slot_0] <=", "states[slot_22] <=", "start_in_step"),
         _exits("reached[slot_8])", "reached[slot_12])", "tag_in_step"),
         _exits("followed[slot_12] <=", "followed[slot_13] <=", "tag_in_step"),

@@ -192,23 +192,17 @@ module exit_lane #(
     end
 
     // The light on a sphere needs the ray's direction.
+    localparam int unsigned SIZE_BITS = exit_pkg::DIRECTION_BITS - 1;
     logic [2:0][exit_pkg::DIRECTION_BITS-1:0] direction_22;
 
     if (ROUND || LATTICE) begin : directions
-        localparam int unsigned SIZE_BITS = exit_pkg::DIRECTION_BITS - 1;
+        for (genvar i = 0; i < 3; i++) begin : axes
+            (* ram_style = "distributed" *) logic [SIZE_BITS-1:0] sizes [0:2**SLOT_BITS-1];
 
-        (* ram_style = "distributed" *) logic [3*SIZE_BITS-1:0] sizes [0:2**SLOT_BITS-1];
-        logic [2:0][SIZE_BITS-1:0] size_22, in_size;
+            assign direction_22[i] = {1'b0, sizes[slot_22]} ^ {exit_pkg::DIRECTION_BITS{down_22[i]}};
 
-        assign size_22 = sizes[slot_22];
-
-        always_comb
-            for (int i = 0; i < 3; i++) begin
-                in_size[i]      = in_ray.speed[i][exit_pkg::SPEED_BITS-1 -: SIZE_BITS];
-                direction_22[i] = {1'b0, size_22[i]} ^ {exit_pkg::DIRECTION_BITS{down_22[i]}};
-            end
-
-        always_ff @(posedge clk) if (!again) sizes[slot_22] <= in_size;
+            always_ff @(posedge clk) if (!again) sizes[slot_22] <= in_ray.speed[i][exit_pkg::SPEED_BITS-1 -: SIZE_BITS];
+        end
     end else begin : no_directions
         assign direction_22 = '0;
     end

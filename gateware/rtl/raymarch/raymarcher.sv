@@ -213,22 +213,26 @@ module raymarcher #(
     assign ray_ready = may_enter && lane_ready != '0;
 
     // The ends of the rays by exits and of the marching rays.
-    exit_pkg::end_t     [LANES-1:0] found;
-    raymarch_pkg::end_t [LANES-1:0] ring_end;
-    logic [LANES-1:0]               exit_valid, exit_taken, ring_valid, ring_taken;
+    logic [LANES-1:0][exit_pkg::LAND_END_BITS-1:0] found;
+    logic [LANES-1:0][raymarch_pkg::END_BITS-1:0]  ring_end;
+    logic [LANES-1:0]                              exit_valid, exit_taken, ring_valid, ring_taken;
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
         // Signals of the exit_lane and of the ring_lane.
         logic exit_ready, exit_evaluates, exit_waits, ring_ready, ring_idles, ring_evaluates, ring_waits;
 
         if (LEAVES) begin : leaving
+            exit_pkg::end_t ending;
+
+            assign found[i] = ending;
+
             exit_lane #(
                 .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0 || LATTICE || OCTAHEDRON),
                 .STEREO(STEREO), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)
             ) lane (
                 .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
                 .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
-                .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(found[i]),
+                .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(ending),
                 .evaluates(exit_evaluates), .waits(exit_waits)
             );
         end else if (ROUND) begin : passing
@@ -268,6 +272,9 @@ module raymarcher #(
 
             logic               entry_valid, entry_ready;
             raymarch_pkg::ray_t entry;
+            raymarch_pkg::end_t ending;
+
+            assign ring_end[i] = ending;
 
             if (QUEUE != 0) begin : queued
                 fifo #(.WIDTH(raymarch_pkg::RAY_BITS), .DEPTH(QUEUE)) queue (
@@ -283,7 +290,7 @@ module raymarcher #(
             ring_lane #(.LEVELS(LEVELS), .FIELDS(MARCHED), .ROUND(BLEND), .BLEND(BLEND), .STEREO(STEREO)) lane (
                 .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write, .sphere_number, .sphere,
                 .in_valid(entry_valid), .in_ready(entry_ready), .in_ray(entry),
-                .out_valid(ring_valid[i]), .out_ready(ring_taken[i]), .out_end(ring_end[i]),
+                .out_valid(ring_valid[i]), .out_ready(ring_taken[i]), .out_end(ending),
                 .evaluates(ring_evaluates), .waits(ring_waits)
             );
         end else begin : no_marching

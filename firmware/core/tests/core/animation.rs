@@ -15,7 +15,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn an_angle_is_exact_for_a_year(rate in -(360_i64 << 32)..=360 << 32, time in 0..=365_u64 * 86_400 << 32) {
+    fn an_angle_is_exact_for_a_year(rate in -(360_i64 << 32)..=360 << 32, time in 0..=(365_u64 * 86_400) << 32) {
         let [rate, time] = [Q32_32::from_bits(rate), Q32_32::from_bits(time as i64)];
         let time = U32_32::from_num(time);
         let found = Rate::new(rate).expect("in range").angle(time);

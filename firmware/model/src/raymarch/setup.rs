@@ -10,7 +10,6 @@ use super::directions::{Directions, check};
 use super::exits::{Exits, Words};
 use super::marching::{Marching, placed};
 use super::options::FieldOptions;
-use super::tracer::Tracer;
 use crate::depth::DepthScale;
 use crate::error::RenderError;
 
@@ -86,12 +85,6 @@ impl FieldSetup {
             stereo: stereo.map(|stereo| stereo.tint),
             form,
         })
-    }
-
-    /// What finds the ends of the frame's rays.
-    pub fn tracer(&self) -> Tracer<'_> {
-        let cones = self.exits().map(Exits::cones).unwrap_or_default();
-        Tracer::new(self, cones)
     }
 
     /// The constants of marching rays; `None` if rays go by exits.

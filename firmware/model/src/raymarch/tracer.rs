@@ -1,7 +1,7 @@
 //! Finds the ends of the rays of a frame.
 
 use super::end::RayEnd;
-use super::exits::Cones;
+use super::exits::{Cones, Exits};
 use super::setup::{FieldSetup, Form};
 
 /// The constants of a frame, with the cones in which the eyes see its spheres. They are large, so the constants alone do not have them.
@@ -10,6 +10,14 @@ pub struct Tracer<'a> {
     /// The constants.
     pub setup: &'a FieldSetup,
     cones: [Cones; 2],
+}
+
+impl FieldSetup {
+    /// What finds the ends of the frame's rays.
+    pub fn tracer(&self) -> Tracer<'_> {
+        let cones = self.exits().map(Exits::cones).unwrap_or_default();
+        Tracer::new(self, cones)
+    }
 }
 
 impl<'a> Tracer<'a> {

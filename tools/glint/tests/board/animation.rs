@@ -19,7 +19,7 @@ const FRAME: f64 = 1.0 / 60.0;
 /// The picture of a scene file on the model.
 fn on_model(text: &str) -> Vec<u16> {
     let scene = SceneFile::parse("a", "a.toml", text).unwrap_or_else(|error| panic!("{error}"));
-    let drawn = scene::draw(&scene, &Changes::default(), |frame| render::on_model(frame));
+    let drawn = scene::draw(&scene, &Changes::default(), render::on_model);
     drawn.unwrap().unwrap().image.colour
 }
 

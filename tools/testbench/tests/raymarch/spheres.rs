@@ -46,7 +46,7 @@ impl Window {
         let list = cones[random.bits() as usize % eyes].list();
         let whole = [[0, exits.width - 1], [0, exits.height - 1]];
         let [columns, rows] = match list.len() {
-            count if count > 0 && random.bits() % 4 > 0 => {
+            count if count > 0 && !random.bits().is_multiple_of(4) => {
                 let rectangle = &list[random.bits() as usize % count].rectangle;
                 [rectangle.columns, rectangle.rows]
             }
@@ -249,7 +249,8 @@ fn directed_rays() {
     let equal = "spheres:0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1";
     let unit = 1 << 14;
     // A field, the eye, the direction, the near plane, and whether a sphere is met.
-    let cases: [(&str, [i32; 3], [i32; 3], i64, bool); 16] = [
+    type Case = (&'static str, [i32; 3], [i32; 3], i64, bool);
+    let cases: [Case; 16] = [
         ("sphere:1", [-4 * RADIUS, RADIUS, 0], along, 0, false),
         ("sphere:1", [-4 * RADIUS, RADIUS + 1, 0], along, 0, false),
         ("sphere:1", [-4 * RADIUS, RADIUS - 1, 0], along, 0, true),

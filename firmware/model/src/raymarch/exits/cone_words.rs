@@ -15,7 +15,7 @@ impl Cone {
         let high = |x: i64| (x >> 32) as u32;
         let (mantissa, exponent) = self.distance;
         [
-            columns[0] / 8 | columns[1] / 8 << 8,
+            columns[0] >> 3 | columns[1] >> 3 << 8,
             rows[0] | rows[1] << 10,
             low(a.across),
             low(a.down),
