@@ -393,7 +393,7 @@ fn the_committed_cycles_of_pictures_hold() {
 /// Bounds of the pictures of fields whose text starts with a word: false hits and misses, undecided rays, the median and the 99th
 /// percentile of the depth's error in world units, the fraction of wrong faces, the 99th percentile of the normal's error in degrees, and
 /// evaluations per ray. The first line that matches a form of rays and a field determines its bounds.
-const BOUNDS: [(Form, &str, [f64; 7]); 14] = [
+const BOUNDS: [(Form, &str, [f64; 7]); 16] = [
     // Exact masks, and errors of depths by the rounding of the eye.
     (
         Form::Exits,
@@ -421,6 +421,12 @@ const BOUNDS: [(Form, &str, [f64; 7]); 14] = [
         "planes:0.5",
         [0.0, 0.0, 4e-7, 8e-5, 0.0, 0.0, 1.0],
     ),
+    (
+        Form::Exits,
+        "lattice",
+        [0.0, 0.0, 2e-6, 2e-5, 0.0, 0.06, 4.2],
+    ),
+    (Form::Exits, "", [0.0, 0.0, 5e-6, 2e-5, 0.0, 0.02, 1.5]),
     (
         Form::Marching,
         "menger",

@@ -27,7 +27,7 @@ pub const EXITS: Requirements = Requirements {
     median: [f64::INFINITY; 2],
     p99: [2e-5, 5e-6],
     faces: [2e-4, 0.0],
-    normals: f64::INFINITY,
+    normals: 0.1,
 };
 
 /// Bounds of fields whose rays march, and of the studies of marching rays.
