@@ -6,8 +6,8 @@
 //!
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!
-//! [`Ray`] is a marching ray before its first step, and [`Marching::march`] finds its end. Most flat fields have no marching rays:
-//! [`exits`] finds the ends of their rays. For both, [`FieldSetup`] has the constants of a frame, [`FieldSetup::trace`] finds the end of
+//! [`Ray`] is a marching ray before its first step, and [`Marching::march`] finds its end. Only fields with fillets have marching rays:
+//! [`exits`] finds the ends of all others. For both, [`FieldSetup`] has the constants of a frame, [`Tracer::trace`] finds the end of
 //! a pixel's ray, and [`paint()`] computes the colour for this end.
 
 mod blend;

@@ -10,7 +10,7 @@
 //! Spheres of a list are met before the flat solid, in the cones in which an eye sees them. Spheres of a lattice are met in the boxes about
 //! them.
 //!
-//! [`Exits`] has the constants of a frame, [`Exits::ray`] makes the ray of a pixel, [`Exits::follow`] finds its end, and [`Words`] has the
+//! [`Exits`] has the constants of a frame, [`Exits::ray`] makes the ray of a pixel, [`Exits::end`] finds its end, and [`Words`] has the
 //! word lengths.
 
 mod code;

@@ -18,7 +18,7 @@ const STATED: [(Quality, Size, [u32; 2]); 3] = [
 ];
 
 /// A field whose rays go by exits, without a threshold, and one whose rays march.
-const FIELDS: [&str; 2] = ["menger:3", "union:box:1,1,0.2+sphere:0.7"];
+const FIELDS: [&str; 2] = ["menger:3", "smooth:0.3,box:1,1,0.2+sphere:0.7"];
 
 fn frame<'a>(field: &'a Field, appearance: &'a Appearance, quality: Quality) -> Frame<'a> {
     let subject = Subject::Field(FieldSubject {

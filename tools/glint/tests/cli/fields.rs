@@ -187,7 +187,7 @@ fn warnings_of_pictures_that_show_nothing() {
 fn undecided_rays_have_the_colour_of_the_horizon() {
     let folder = folder("undecided");
     let render = |more: &str| {
-        let field = "render --field octahedron:1 --look-at 0.5,0.5,0.001,-1,1,0.001 --background 000000 --stats a.json";
+        let field = "render --field smooth:0.01,box:8,8,0.01+sphere:0.01 --look-at=-7.5,0,0.0225,1,0,0 --background 000000 --stats a.json";
         let picture = drawn(&folder, &format!("{field} {more}"));
         let undecided = json(&folder.join("a.json"))["undecided"].as_u64().unwrap();
         (picture, undecided as usize)

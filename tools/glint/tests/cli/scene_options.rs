@@ -228,7 +228,8 @@ fn two_eyes() {
 fn quality_of_a_scene() {
     let folder = folder("scene-quality");
     // Its rays march: a quality sets a threshold too, and the pictures of two qualities differ at one size.
-    const FIELD: &str = "title = \"A\"\nfield = \"octahedron:1\"\ncamera = \"3 25 70\"\n";
+    const FIELD: &str =
+        "title = \"A\"\nfield = \"smooth:0.3,box:1,1,0.2+sphere:0.7\"\ncamera = \"3 25 70\"\n";
     for (name, keys) in [
         ("balanced.toml", ""),
         ("fast.toml", "quality = \"fast\"\n"),
@@ -238,7 +239,7 @@ fn quality_of_a_scene() {
     }
     let of_scene = |scene: &str| drawn(&folder, &format!("render --scene {scene}"));
     let of_field = |more: &str| {
-        let field = "--field octahedron:1 --camera 3,25,70";
+        let field = "--field smooth:0.3,box:1,1,0.2+sphere:0.7 --camera 3,25,70";
         drawn(&folder, &format!("render {field} {more}"))
     };
     let balanced = of_scene("balanced.toml");
