@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use glint_core::feature::SPHERES;
 use glint_core::field::{FixedSpheres, FlatConstants, Solid as Marched};
 use glint_core::stereo::Tint;
 use glint_hal::raymarch::{
@@ -259,9 +258,10 @@ fn with_spheres(
         .with_last_light((lights.count - 1) as u8)
 }
 
-/// The solid with the cones in which the eyes see the spheres. Also writes the cones.
+/// The solid with the cones in which the eyes see the spheres. Also writes the cones: without spheres one that no pixel sees, because the
+/// gateware looks for spheres in every frame by exits and keeps the cones of the frame before.
 fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool) -> Solid {
-    if !SPHERES.is_built || !raymarcher.capabilities().round {
+    if !raymarcher.capabilities().round {
         return solid;
     }
     let eyes = if stereo { 2 } else { 1 };

@@ -38,7 +38,9 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         ("box:1,1,1", plain, Err(Missing::Flat(Kind::Box))),
         ("cubes:2,0.5", plain, Err(Missing::Flat(Kind::Box))),
         ("planes:1", plain, Err(Missing::Flat(Kind::Box))),
+        ("octahedron:1", plain, Err(Missing::Flat(Kind::Octahedron))),
         ("sphere:1", plain, Err(Missing::Round)),
+        ("lattice:1,0.3", plain, Err(Missing::Lattice)),
         ("menger:4", stereo, Err(Missing::Stereo)),
         ("menger:4", marching, Err(Missing::Marching)),
         ("menger:4", plain, Ok(())),
@@ -52,4 +54,36 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         assert_eq!(set, expected, "{field}");
         assert_eq!(block.borrow().writes.is_empty(), set.is_err(), "{field}");
     }
+}
+
+/// The gateware looks for spheres in every frame by exits, and keeps the cones of the frame before.
+#[test]
+fn a_frame_without_spheres_has_a_cone_that_no_pixel_sees() {
+    // SAFETY: a model on the bus answers all accesses, so no device is affected.
+    let registers = unsafe { Peripherals::steal() }.raymarch;
+    let [address, value] = [
+        registers.cone_address().address(),
+        registers.cone_value().address(),
+    ];
+    let block = recording::connect([
+        (
+            registers.ident().address(),
+            litex_pac::raymarch::Raymarch::IDENT,
+        ),
+        (registers.caps().address(), SPONGES | 1 << 10),
+    ]);
+    let mut raymarcher = Raymarcher::probe(registers).unwrap();
+    let field = Field::parse("menger:2").unwrap();
+    let view = View::spherical(Q32_32::from_num(4), Turns(1 << 29), Turns(1 << 30)).unwrap();
+    let options = FieldOptions::default();
+    let setup = FieldSetup::new(&field, &view, (640, 360), &options).unwrap();
+    let palette = options.palette_for(&setup);
+    set_field(&mut raymarcher, &setup, &palette, false).unwrap();
+    let block = block.borrow();
+    let of = |register: usize| {
+        let writes = block.writes.iter().filter(move |(at, _)| *at == register);
+        writes.map(|(_, word)| *word).collect::<Vec<u32>>()
+    };
+    assert_eq!(of(address), [0]);
+    assert_eq!(of(value)[0], 1, "the first column exceeds the last one");
 }

@@ -23,10 +23,11 @@
 // purpose.
 //
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Rays by exits meet the spheres of a
-// list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes ray_paint, and takes one clock per light for a pixel on a
-// sphere or fillet.
+// list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes
+// ray_paint, and takes one clock per light for a pixel on a sphere or fillet.
 //
-// Each lane makes one evaluation of the field per clock, for marching rays the first lane alone. `restart` and reset cancel the frame. Groups are a valid/ready stream,
+// Each lane makes one evaluation of the field per clock, for marching rays the first lane alone.
+// `restart` and reset cancel the frame. Groups are a valid/ready stream,
 // whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
 
 `default_nettype none
@@ -167,8 +168,11 @@ module raymarcher #(
 
     always_ff @(posedge clk) diagonals <= OCTAHEDRON && rule == exit_pkg::BOX && levels[0];
 
-    ray_generator #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .BLEND(BLEND), .STEREO(STEREO)) generator (
-        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends), .stereo, .exits,
+    ray_generator #(
+        .EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .BLEND(BLEND), .STEREO(STEREO)
+    ) generator (
+        .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends),
+        .stereo, .exits,
         .first, .across, .down, .near_limit, .round(solid.is_round), .origins, .outside, .far_limit, .choice, .distances,
         .there, .away, .last, .nexts, .diagonals, .sum_distances, .sum_there, .sum_away, .last_cone, .cone_write, .cone_address, .cone_value,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
@@ -265,7 +269,7 @@ module raymarcher #(
         end
 
         if (MARCH && i == 0) begin : marching
-            // Fields with fillets march, in a single lane: a second one would take a quarter of all LUTs.
+            // Fields with fillets march, in a single lane: it is larger than a lane by exits.
             localparam int unsigned MARCHED = FIELDS & ~fields_pkg::OCTANTS;
             // Depth of the queue before a lane; 0 for no queue.
             localparam int unsigned QUEUE   = raymarch_pkg::has_short_rings(LEVELS, MARCHED, BLEND, BLEND) ? 32 : 0;
@@ -378,7 +382,8 @@ module raymarcher #(
 
     if (LIT) begin : light
         round_light #(.BLEND(BLEND), .STEREO(STEREO)) shine (
-            .clk, .rst(reset), .origins, .exits(by_exits), .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]), .sphere_write, .sphere_number, .sphere,
+            .clk, .rst(reset), .origins, .exits(by_exits), .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]),
+            .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
             .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
         );
@@ -420,7 +425,8 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end, last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
+    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end,
+                     last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 
 `default_nettype wire

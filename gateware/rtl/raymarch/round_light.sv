@@ -284,7 +284,9 @@ module round_light #(
 
     logic [KEPT_BITS-1:0] kept_last, kept;
 
-    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(KEPT_BITS'({held.length, held.gap, held.slope, held[ROUND_BITS-1:0]})), .out(kept_last));
+    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (
+        .clk, .enable, .in(KEPT_BITS'({held.length, held.gap, held.slope, held[ROUND_BITS-1:0]})), .out(kept_last)
+    );
 
     skid_buffer #(.WIDTH(KEPT_BITS + 24)) leaving (
         .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({kept_last, colour_last}),

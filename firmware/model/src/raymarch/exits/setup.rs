@@ -266,7 +266,7 @@ impl Exits {
 
     /// Computes the cones in which an eye sees the spheres of a list, in the order of the list.
     pub fn each_cone(&self, eye: usize, take: &mut dyn FnMut(Cone)) {
-        if self.spheres.repeated || self.spheres.count == 0 {
+        if !SPHERES.is_built || self.spheres.repeated || self.spheres.count == 0 {
             return;
         }
         let world = |[x, y, z, _]: [i32; AXES]| [x, y, z].map(i64::from);
