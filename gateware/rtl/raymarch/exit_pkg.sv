@@ -22,11 +22,12 @@ package exit_pkg;
     localparam int unsigned EXIT_BITS = T_BITS + 1;
 
     // The solids. BOX is the inside of a box, or of an octahedron, which is a box along its four diagonals; PLANES the outside of the slab
-    // between two planes perpendicular to z, SPONGE the Menger sponge, and CUBES are cubes repeated every 64 units, or spheres in such cubes.
+    // between two planes perpendicular to z, SPONGE the Menger sponge, and CUBES are boxes repeated every 64 units, or spheres in cubes. Boxes
+    // have no gaps along an axis on which their side is this period.
     typedef enum logic [1:0] {BOX = 2'd0, PLANES = 2'd1, SPONGE = 2'd2, CUBES = 2'd3} rule_t;
 
     // A solid: its rule; the number of levels of a sponge, which is 1 of BOX for an octahedron and of CUBES for spheres; half its side along
-    // each axis, for cubes that of a cube; and the coordinate of a plane perpendicular to each axis: of a box and of a sponge the lower plane,
+    // each axis, for CUBES that of one box; and the coordinate of a plane perpendicular to each axis: of a box and of a sponge the lower plane,
     // of PLANES the upper one, and of cubes the lower plane of the cube after the middle one, all below 2^21 - 2^15.
     typedef struct packed {
         rule_t                              rule;

@@ -53,12 +53,13 @@ pub enum Field {
         /// Radius of each ball.
         radius: f64,
     },
-    /// Cubes along the axes about all points whose coordinates are integer multiples of the period.
-    Cubes {
-        /// Distance between the centres of neighbouring cubes.
+    /// Boxes along the axes about all points whose coordinates are integer multiples of the period.
+    Boxes {
+        /// Distance between the centres of neighbouring boxes along each axis.
         period: f64,
-        /// Half of each cube's side length, at most half the period.
-        half: f64,
+        /// Half of each box's side length along each axis: at most half the period, or infinite for a solid that is unbounded along the
+        /// axis.
+        half: Vector,
     },
     /// The solid outside a room of infinite width, which has its floor at z = −half and its ceiling at z = half.
     Planes {
@@ -82,8 +83,8 @@ impl Field {
     /// Finds the first point of a ray inside the solid, with a parameter from `t_min` to `t_max`. If the point at `t_min` is
     /// inside the solid, the hit is at `t_min` and its face is [`Face::Inside`].
     ///
-    /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` must be finite, because a ray
-    /// may never hit a ball or cube.
+    /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Boxes`] `t_max` must be finite, because a ray
+    /// may never hit a ball or box.
     ///
     /// # Panics
     /// When a ray runs close to a [`Field::SmoothUnion`] for too many steps (see [`Unconverged`]).
@@ -97,8 +98,8 @@ impl Field {
             Self::Lattice { period, radius } => grid::nearest(*period, &ray, t_min, t_max, |ray| {
                 solids::sphere_hit(*radius, ray, t_min)
             }),
-            Self::Cubes { period, half } => grid::nearest(*period, &ray, t_min, t_max, |ray| {
-                solids::box_hit([*half; 3], ray, t_min)
+            Self::Boxes { period, half } => grid::nearest(*period, &ray, t_min, t_max, |ray| {
+                solids::box_hit(*half, ray, t_min)
             }),
             Self::Planes { half } => solids::planes_hit(*half, &ray, t_min),
             Self::Union(a, b) => {

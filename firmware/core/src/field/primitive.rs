@@ -3,6 +3,7 @@
 
 use core::fmt;
 
+mod boxes;
 mod cuboid;
 mod fixed_sphere;
 mod menger;
@@ -15,7 +16,8 @@ use super::shape::{FieldKind, FlatConstants, FlatSolid, Placed};
 use super::surface::FieldSample;
 use crate::feature::SPHERES;
 
-pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
+pub use boxes::{Boxes, Cubes};
+pub use cuboid::{Cuboid, FixedBox, Planes};
 pub use fixed_sphere::{FixedSphere, FixedSpheres, length, normalised_root};
 pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
@@ -114,6 +116,7 @@ primitives! {
     Menger(Menger),
     Box(Cuboid),
     Cubes(Cubes),
+    Boxes(Boxes),
     Planes(Planes),
     Octahedron(Octahedron),
     Sphere(CentredSphere),

@@ -67,6 +67,8 @@ fn mistakes_say_what_was_expected() {
         ("menger:x", "depth x: expected a number"),
         ("menger:0", "depth: expected 1 to 6"),
         ("planes:13", "half: expected 0.01 to 12"),
+        ("boxes:2,1,1", "boxes needs one more number: z"),
+        ("boxes:2,1,1,1.1", "z: expected 0.01 to 1"),
         ("sphere", "sphere needs one more number: radius"),
         ("sphere:0", "radius: expected 0.01 to 12"),
         ("spheres:0,0,0", "spheres needs one more number: radius"),

@@ -347,6 +347,90 @@ fn each_stiff_ray_has_its_outcome() {
             "along a diagonal of gaps, up to the far limit",
         ),
         (
+            "boxes:2,1,1,0.25",
+            [0, 0, 32 * UNIT],
+            [ONE, ONE, 0],
+            "miss",
+            "between two plates, along both",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [0, 0, 8 * UNIT],
+            [ONE, 0, 0],
+            "miss",
+            "on a plate, leading up",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [0, 0, 8 * UNIT],
+            [ONE, 0, -1],
+            "+z at 0",
+            "on a plate, leading down by 1 ulp",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [0, 0, 32 * UNIT - 1],
+            [ONE, ONE, ONE],
+            "-z at 98305",
+            "to a plate, through borders of cells without a gap",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [32 * UNIT, 32 * UNIT, 32 * UNIT],
+            [0, 0, !ONE],
+            "+z at 98304",
+            "to a plate, along the edge of cells",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [0, 0, 32 * UNIT],
+            [ONE, ONE, 1 << 18],
+            "-z at 6291444",
+            "to a plate at a distance of 24 cells",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [0, 0, 32 * UNIT],
+            [ONE, ONE, 1 << 17],
+            "miss",
+            "to a plate beyond the far limit",
+        ),
+        (
+            "boxes:2,1,1,0.25",
+            [3, 4, 5],
+            [ONE, 0, 0],
+            "-z at 0",
+            "in a plate",
+        ),
+        (
+            "boxes:2,0.25,0.25,1",
+            [32 * UNIT, 32 * UNIT, 0],
+            [0, 0, ONE],
+            "miss",
+            "along a shaft between pillars",
+        ),
+        (
+            "boxes:2,0.25,0.25,1",
+            [8 * UNIT, 32 * UNIT, 0],
+            [-1, !ONE, ONE],
+            "+y at 98304",
+            "to the edge of a pillar",
+        ),
+        (
+            "boxes:2,1,1,1",
+            [7, 32 * UNIT, 0],
+            [ONE, ONE, ONE],
+            "-z at 0",
+            "in a solid without gaps",
+        ),
+        (
+            "boxes:2,0.25,0.25,0.25",
+            [32 * UNIT - 1, 8 * UNIT, 8 * UNIT],
+            [ONE, -1, -1],
+            "-x at 98305",
+            "a box with equal sides is a cube",
+        ),
+        (
             "octahedron:1",
             [4 * HALF, 0, 0],
             [!ONE, 0, 0],
@@ -571,6 +655,8 @@ fn mirrored_rays_have_mirrored_ends() {
         "box:1,0.5,0.25",
         "cubes:2,0.25",
         "cubes:2,0.5",
+        "boxes:2,0.25,1,0.5",
+        "boxes:2,1,1,0.25",
         "lattice:1,0.25",
         "planes:1",
     ];
@@ -691,6 +777,7 @@ fn codes_of_intervals_increase_and_return() {
         ("box:1,0.5,0.25", 0..=1),
         ("planes:1", 0..=1),
         ("cubes:2,0.4", -2..=64),
+        ("boxes:2,0.4,1,0.5", -2..=64),
         ("lattice:1,0.3", -2..=64),
         ("octahedron:1", 0..=1),
     ] {
@@ -720,10 +807,11 @@ fn a_start_in_codes_makes_the_same_rays() {
             "menger:6",
             "box:1,0.5,0.25",
             "cubes:2,0.4",
+            "boxes:2,0.4,1,0.25",
             "planes:1",
             "lattice:1,0.3",
             "octahedron:1",
-        ][round % 7];
+        ][round % 8];
         let eye = [0; 3].map(|_| random.random_range(-4 * HALF..4 * HALF));
         let exits = frame(field, eye, [0; 3]);
         let solid = exits.solid.expect("a solid");

@@ -29,7 +29,7 @@ impl Field {
                 .map(|sphere| length(subtract(p, sphere.centre)) - sphere.radius)
                 .fold(f64::INFINITY, f64::min),
             Self::Lattice { period, radius } => length(about_nearest(*period, p)) - radius,
-            Self::Cubes { period, half } => box_distance([*half; 3], about_nearest(*period, p)),
+            Self::Boxes { period, half } => box_distance(*half, about_nearest(*period, p)),
             Self::Planes { half } => half - p[2].abs(),
             Self::Union(a, b) => a.distance(p).min(b.distance(p)),
             Self::SmoothUnion { k, a, b } => smooth_minimum(*k, a.distance(p), b.distance(p)),
@@ -134,8 +134,10 @@ mod tests {
         let (period, radius) = (2.0, 0.25);
         let lattice = Field::Lattice { period, radius };
         assert_eq!(lattice.distance([4.0, -2.75, 10.0]), 0.5);
-        let cubes = Field::Cubes { period, half: 0.25 };
-        assert_eq!(cubes.distance([4.5, -2.75, 10.0]), 0.5);
+        let half = [0.25, 0.5, f64::INFINITY];
+        let pillars = Field::Boxes { period, half };
+        assert_eq!(pillars.distance([4.5, -2.25, 10.0]), 0.25);
+        assert_eq!(pillars.distance([4.75, -2.75, 9.0]), 0.5);
         let planes = Field::Planes { half: 1.5 };
         assert_eq!(planes.distance([9.0, 9.0, -1.0]), 0.5);
         assert_eq!(planes.distance([0.0, 0.0, 2.0]), -0.5);

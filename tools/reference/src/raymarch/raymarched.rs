@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::field::{
-    CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Octahedron,
+    Boxes, CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Octahedron,
     Planes, Primitive,
 };
 use glint_core::fixed::Q32_32;
@@ -113,9 +113,16 @@ impl Field {
             Primitive::Box(Cuboid { half }) => Self::Box {
                 half: half.map(number),
             },
-            Primitive::Cubes(Cubes { period, half }) => Self::Cubes {
+            Primitive::Cubes(Cubes { period, half }) => Self::Boxes {
                 period: number(period),
-                half: number(half),
+                half: [number(half); 3],
+            },
+            Primitive::Boxes(Boxes { period, half }) => Self::Boxes {
+                period: number(period),
+                half: half.map(|side| match number(side) {
+                    touching if 2.0 * touching >= number(period) => f64::INFINITY,
+                    side => side,
+                }),
             },
             Primitive::Planes(Planes { half }) => Self::Planes { half: number(half) },
             Primitive::Octahedron(Octahedron { size }) => Self::Convex(

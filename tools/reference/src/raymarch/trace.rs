@@ -74,7 +74,7 @@ impl Field {
     /// Returns the face, the outward normal and the solid's part (`Hit::member`) at a point of the surface.
     pub(super) fn surface(&self, p: Vector) -> (Face, Vector, usize) {
         match self {
-            Self::Menger { .. } | Self::Box { .. } | Self::Cubes { .. } | Self::Planes { .. } => {
+            Self::Menger { .. } | Self::Box { .. } | Self::Boxes { .. } | Self::Planes { .. } => {
                 let slope = self.slope(p);
                 let axis = (0..3).fold(0, |best, axis| {
                     if slope[axis].abs() > slope[best].abs() {

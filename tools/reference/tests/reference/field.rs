@@ -65,7 +65,8 @@ fn fields() -> Vec<(String, Field, f64)> {
         period: 1.0,
         radius,
     };
-    let cubes = |half| Field::Cubes { period: 0.75, half };
+    let boxes = |half| Field::Boxes { period: 0.75, half };
+    let cubes = |half| boxes([half; 3]);
     let half = [0.5, 1.0, 1.5];
     let planes = Field::Planes { half: 1.25 };
     let menger = Field::Menger { depth: 3 };
@@ -77,6 +78,13 @@ fn fields() -> Vec<(String, Field, f64)> {
         ("lattice of balls that overlap".into(), lattice(0.6), 0.5),
         ("cubes".into(), cubes(0.1), 0.125),
         ("cubes close together".into(), cubes(0.35), 0.125),
+        ("boxes".into(), boxes([0.1, 0.2, 0.3]), 0.1),
+        ("pillars".into(), boxes([0.125, 0.25, f64::INFINITY]), 0.125),
+        (
+            "plates".into(),
+            boxes([f64::INFINITY, 0.0625, f64::INFINITY]),
+            0.125,
+        ),
         ("planes".into(), planes.clone(), 0.25),
         ("a box with its corners cut".into(), cut_box(), 0.25),
         (

@@ -45,6 +45,16 @@ const LATTICES: [&str; 6] = [
     "lattice:1,0.01",
 ];
 
+/// Boxes everywhere, some of which touch along some axes.
+const BOXES: [&str; 6] = [
+    "boxes:2,0.7,0.3,0.12",
+    "boxes:2,0.25,1,0.15",
+    "boxes:1,0.5,0.5,0.05",
+    "boxes:1,0.499996185,0.5,0.499996185",
+    "boxes:2,0.5,0.5,0.5",
+    "boxes:2,1,1,1",
+];
+
 /// Octahedra: a typical one, the smallest and the largest.
 const OCTAHEDRA: [&str; 4] = [
     "octahedron:1",
@@ -120,9 +130,10 @@ fn stiff_frame(random: &mut Random, text: &str) -> Exits {
     };
     let old = camera(random);
     let before = exits(&old);
-    let half = i64::from(before.solid.expect("a solid").half()[0]);
-    let place = [0; 3].map(|_| {
-        let border = random.integer(-2, 2) * [1 << 17, half, 1 << 12][random.bits() as usize % 3];
+    let half = before.solid.expect("a solid").half();
+    let place = half.map(|half| {
+        let steps = [1 << 17, half.into(), 1 << 12];
+        let border = random.integer(-2, 2) * steps[random.bits() as usize % 3];
         (border + random.integer(-1, 1)) as f64 / 4096.0 / before.scale.to_num::<f64>()
     });
     let place = place.map(Q32_32::from_num);
@@ -355,6 +366,11 @@ fn stiff_rays(name: &str, fields: &[&str]) {
         let rays = some_rays(&mut random, &layout, &exits, 1, name == ALL, 1);
         bench.check(&exits, rays);
     }
+}
+
+#[test]
+fn stiff_rays_in_boxes() {
+    stiff_rays("exit_lane", &BOXES);
 }
 
 #[test]

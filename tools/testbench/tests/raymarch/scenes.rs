@@ -37,7 +37,7 @@ pub const UNIONS: [&str; 7] = [
 ];
 
 /// Fields with faces perpendicular to the axes.
-pub const FIELDS: [&str; 12] = [
+pub const FIELDS: [&str; 16] = [
     "menger:4",
     "menger:6",
     "menger:5",
@@ -47,6 +47,10 @@ pub const FIELDS: [&str; 12] = [
     "cubes:2,0.5",
     "cubes:0.25,0.1",
     "cubes:16,7.9",
+    "boxes:2,0.7,0.3,0.12",
+    "boxes:2,0.25,1,0.15",
+    "boxes:0.25,0.125,0.01,0.125",
+    "boxes:16,8,8,8",
     "planes:0.5",
     "planes:12",
     "planes:0.01",

@@ -1,12 +1,12 @@
-//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: a box, a lattice of cubes, and the space between a floor and a ceiling.
+//! `box:X,Y,Z` and `planes:HALF`: a box, and the space between a floor and a ceiling; the solid of these and of lattices of boxes.
 
 use core::fmt;
 
 use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
-use crate::field::limits::{MAX_EXTENT, PERIOD, SMALLEST, largest_half};
-use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed, SCALE, scale_of};
+use crate::field::limits::{MAX_EXTENT, SMALLEST};
+use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed, SCALE};
 use crate::field::surface::{FRACTION, FieldSample, cropped, units};
 use crate::fixed::Q32_32;
 
@@ -15,15 +15,6 @@ use crate::fixed::Q32_32;
 pub struct Cuboid {
     /// Half the length of each side, in world units.
     pub half: [Q32_32; 3],
-}
-
-/// A lattice of cubes, whose centres are at all multiples of the period along each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cubes {
-    /// Distance between the centres of neighbouring cubes, in world units.
-    pub period: Q32_32,
-    /// Half the side of a cube in world units; less than half the period by at least one unit of coordinates.
-    pub half: Q32_32,
 }
 
 /// An infinite floor and an infinite ceiling, perpendicular to the z axis.
@@ -60,44 +51,6 @@ impl FieldKind for Cuboid {
             repeated: false,
         };
         Placed::bounded(solid, self.half)
-    }
-}
-
-impl FieldKind for Cubes {
-    type Solid = FixedBox;
-
-    const NAME: &'static str = "cubes";
-    const FORM: &'static str = "cubes:PERIOD,HALF";
-    const ABOUT: &'static str = "cubes everywhere, by half their side";
-    const EXAMPLE: &'static str = "cubes:2,0.8";
-    const LOOK: &'static [&'static str] = &[
-        "lookat 1 -1 1 -1 1.2 -1.5",
-        "fov 66",
-        "background sky",
-        "fog 0.15",
-    ];
-
-    fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
-        let period = numbers.number("period", PERIOD)?;
-        let half = numbers.number("half", [SMALLEST, largest_half(period)])?;
-        Ok(Self { period, half })
-    }
-
-    fn write(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{},{}", self.period, self.half)
-    }
-
-    fn placed(&self) -> Placed<FixedBox> {
-        let scale = scale_of(self.period);
-        let solid = FixedBox {
-            half: [Some(units(self.half, scale) as i32); 3],
-            room: false,
-            repeated: true,
-        };
-        Placed {
-            scale,
-            ..Placed::endless(solid)
-        }
     }
 }
 
@@ -139,12 +92,24 @@ impl FieldKind for Planes {
 /// A box, a lattice of boxes, or a room (the space inside a box, with the solid around it), in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedBox {
-    /// Half the length of each side, u10.12; `None` along an axis on which the box is unbounded.
+    /// Half the length of each side, u10.12; `None` along an axis on which the box is unbounded. Repeated boxes whose half side is 2^17
+    /// touch along an axis: no coordinate in a cell is as large.
     half: [Option<i32>; 3],
     /// Whether the box is a room, with the solid outside the box.
     room: bool,
     /// Whether the solid is periodic with 64 field units along each axis.
     repeated: bool,
+}
+
+impl FixedBox {
+    /// A lattice of boxes, by half their sides, at most 2^17.
+    pub(super) fn repeated(half: [i32; 3]) -> Self {
+        Self {
+            half: half.map(Some),
+            room: false,
+            repeated: true,
+        }
+    }
 }
 
 impl FlatSolid for FixedBox {

@@ -33,10 +33,10 @@ pub enum Rule {
         /// Exponent of the side of a smallest cell, with 12 fraction bits.
         exponent: u32,
     },
-    /// Cubes, or spheres in such cubes, in every cell of a lattice. Intervals: 2·cell in a cube, 2·cell + 1 in the gap above it. The solid
-    /// ends before cell `LAST_CELL`.
+    /// Boxes, or spheres in cubes, in every cell of a lattice. Intervals: 2·cell in a box, 2·cell + 1 in the gap above it. An axis on which
+    /// the side of a box is the period has no gaps. The solid ends before cell `LAST_CELL`.
     Repeated {
-        /// Whether spheres with the cube's side as diameter replace the cubes.
+        /// Whether spheres with the side of a cube as diameter replace the boxes.
         round: bool,
     },
     /// The octahedron: a box along its four diagonals, with the intervals of a box. An octahedron is convex: after a ray has left the prism
@@ -81,7 +81,7 @@ impl Rule {
 pub struct Solid {
     /// The rule.
     pub rule: Rule,
-    /// Side of the solid along each axis, u12.12; for a repeated solid, the side of a cube.
+    /// Side of the solid along each axis, u12.12; for a repeated solid, the side of a box.
     pub side: [i64; AXES],
 }
 
@@ -159,7 +159,7 @@ impl Solid {
     }
 
     /// The coordinate from the centre, s9.12, of a plane perpendicular to each of the axes x, y and z: the lower plane of a box and of a
-    /// sponge, the upper one of planes, and the lower one of the cube after the middle one of repeated cubes.
+    /// sponge, the upper one of planes, and the lower one of the box after the middle one of repeated boxes.
     pub fn borders(&self) -> [i32; 3] {
         self.half().map(|half| match self.rule {
             Rule::Planes => half,
