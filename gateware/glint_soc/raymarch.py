@@ -20,7 +20,7 @@ IDENT = int.from_bytes(b"MARC", "big")
 
 _ERRORS = [
     ("0", "none", "all requested features are built"),
-    ("1", "field", "the flat field, the depth of the sponge, spheres, a lattice or fillets are not built"),
+    ("1", "field", "the flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals or a highlight are not built"),
     ("2", "stereo", "two eyes are not built"),
 ]
 
@@ -36,7 +36,8 @@ INTERVAL_BITS = 13
 @dataclass(frozen=True)
 class Fields:
     """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
-    include the sponge if it has levels), spheres of a list, spheres of a lattice, fillets between spheres and flat fields, two eyes."""
+    include the sponge if it has levels), spheres of a list, spheres of a lattice, fillets between spheres and flat fields, two eyes,
+    colours of spheres by their normals, a highlight on spheres."""
 
     lanes: int = 2
     levels: int = 6
@@ -45,6 +46,8 @@ class Fields:
     lattice: bool = True
     blend: bool = True
     stereo: bool = True
+    normals: bool = True
+    highlight: bool = True
 
     @property
     def has_exits(self):
@@ -67,22 +70,24 @@ class Fields:
         return {"FIELDS": mask(values.pop("flat")), **{name.upper(): int(value) for name, value in values.items()}}
 
 
+_FACES_ALONE = dict.fromkeys(("round", "lattice", "blend", "normals", "highlight"), False)
+
 BUILDS = {
     "all": Fields(),
-    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False),
-    "faces": Fields(levels=4, flat=("menger", "box"), round=False, lattice=False, blend=False),
-    "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, lattice=False, blend=False),
+    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False, highlight=False),
+    "faces": Fields(levels=4, flat=("menger", "box"), **_FACES_ALONE),
+    "sponge": Fields(lanes=4, levels=4, flat=("menger",), **_FACES_ALONE),
 }
 """Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
 
-_FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo"}
+_FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo", "normals": "normals", "highlight": "highlight"}
 
 
 def build(text, lanes=None):
     """Returns the build options that `text` names, with the number of `lanes` if it is given.
 
     `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
-    fields, `spheres`, `lattice`, `fillets`, `stereo`.
+    fields, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`.
     """
     if text in BUILDS:
         fields = BUILDS[text]
@@ -115,6 +120,8 @@ class Raymarcher(LiteXModule):
             CSRField("round", offset=10, reset=int(fields.round), description="Spheres of a list, alone and in unions."),
             CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between spheres and flat fields."),
             CSRField("lattice", offset=12, reset=int(fields.lattice), description="Spheres of a lattice."),
+            CSRField("normals", offset=13, reset=int(fields.normals), description="Colours of spheres by their normals."),
+            CSRField("highlight", offset=14, reset=int(fields.highlight), description="A highlight on spheres."),
             CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if the flat field of kind k in "
                                                            "`solid` is built."),
         ], description="What this block can do.")
@@ -219,7 +226,9 @@ class Raymarcher(LiteXModule):
                      "u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of "
                      "the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes "
                      "the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: "
-                     "colours of the faces 6 and 7 of a field with eight faces."),
+                     "colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to "
+                     "light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are "
+                     "lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour."),
         ], description="Writing sets a constant of spheres, lights or faces.")
 
         self._cone_address = Parameter(9, name="cone_address", description="Address of the next write to `cone_value`: the eye in bit 8, the "
@@ -254,6 +263,8 @@ class Raymarcher(LiteXModule):
         no_rays = (exits.enable & int(not fields.has_exits)) | (~exits.enable & int(not fields.has_marching))
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (solid.is_round & ~solid.spheres_repeated & int(not fields.round)) |
                                   (exits.enable & (exits.rule == 3) & exits.depth[0] & int(not fields.lattice)) |
+                                  (solid.is_round & lights["normals"] & int(not fields.normals)) |
+                                  (solid.is_round & lights["highlight"] & int(not fields.highlight)) |
                                   (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
         constants = Struct("solid_t", "The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and "
@@ -362,18 +373,22 @@ class Raymarcher(LiteXModule):
         centre, radius, inverse = [Signal(23) for _ in range(3)], Signal(21), Signal(22)
         directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
         ambient, blend = Signal(24), [Signal(17), Signal(17)]
+        half, (normals, lit, highlight), steepness, shine = [Signal(18) for _ in range(3)], [Signal() for _ in range(3)], Signal(13), Signal(24)
         write = Signal()
         if fields.has_spheres:
             places = {**dict(enumerate([*centre, radius, inverse, ambient, *blend])),
                       **{16 + 4*light + axis: part for light, direction in enumerate(directions) for axis, part in enumerate(direction)},
-                      **{19 + 4*light: colour for light, colour in enumerate(colours)}}
+                      **{19 + 4*light: colour for light, colour in enumerate(colours)},
+                      **{34 + axis: part for axis, part in enumerate(half)}, 37: Cat(normals, lit, highlight, Signal(5), steepness), 38: shine}
             self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
             self.comb += write.eq(self._sphere.re & (entry[3:] == 0b001))
         sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the reciprocal of its radius and a shift "
             "(docs/formats/raymarch.md, \"Light on spheres\"); its radius, and its centre.", {
             "material": value, "shift": inverse[17:], "inverse": inverse[:17], "radius": radius, "centre": centre})
-        lights = Struct("lights_t", "Light on spheres: number of the last light, ambient light, colours of the lights, and "
-            "directions to the lights, s1.16.", {
+        lights = Struct("lights_t", "Light on spheres: whether colours depend on normals, whether there are lights and a highlight, "
+            "the steepness, the colour and the direction of the highlight, number of the last light, ambient light, colours of the lights, and directions "
+            "to the lights, s1.16.", {
+            "normals": normals, "lit": lit, "highlight": highlight, "steepness": steepness, "shine": shine, "half": half,
             "last_light": last_light, "ambient": ambient, "colours": colours, "directions": directions})
         return write, entry[:3], sphere, lights, blend
 

@@ -9,7 +9,9 @@ use glint_hal::raymarch::{
     Solid, Start, Stereo, Tables, Tuning, colour,
 };
 use glint_model::raymarch::exits::{self, AXES, Cone, Exits, Rule};
-use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Form, Lights, Marching, Palette};
+use glint_model::raymarch::{
+    Blend, FieldSetup, FieldStats, Form, Lights, Marching, Palette, Shine,
+};
 
 /// A feature that a frame needs and this build of the raymarcher lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +26,10 @@ pub enum Missing {
     Lattice,
     /// Fillets between spheres and flat fields.
     Blend,
+    /// Spheres coloured by their normals.
+    Normals,
+    /// A highlight on spheres.
+    Highlight,
     /// Two eyes.
     Stereo,
     /// Marching rays of fields that are drawn by exits.
@@ -39,6 +45,8 @@ impl fmt::Display for Missing {
             Self::Round => f.write_str("no spheres"),
             Self::Lattice => f.write_str("no lattices"),
             Self::Blend => f.write_str("no smooth unions"),
+            Self::Normals => f.write_str("no spheres coloured by normals"),
+            Self::Highlight => f.write_str("no highlight on spheres"),
             Self::Stereo => f.write_str("no stereo"),
             Self::Marching => f.write_str("no marching rays for this field"),
         }
@@ -48,11 +56,15 @@ impl fmt::Display for Missing {
 impl core::error::Error for Missing {}
 
 impl Missing {
-    /// Checks that a build with these capabilities can draw the frame with the constants `setup`.
+    /// Checks that a build with these capabilities can draw the frame with the constants `setup` and the lights of `palette`.
     ///
     /// # Errors
     /// The missing feature.
-    pub fn check(capabilities: &Capabilities, setup: &FieldSetup) -> Result<(), Self> {
+    pub fn check(
+        capabilities: &Capabilities,
+        setup: &FieldSetup,
+        lights: &Lights,
+    ) -> Result<(), Self> {
         let (kind, levels) = kind(setup);
         if u32::from(levels) >> capabilities.levels != 0 {
             return Err(Self::Levels(capabilities.levels));
@@ -66,6 +78,12 @@ impl Missing {
                 true if !capabilities.lattice => return Err(Self::Lattice),
                 false if !capabilities.round => return Err(Self::Round),
                 _ => (),
+            }
+            if lights.normals.is_some() && !capabilities.normals {
+                return Err(Self::Normals);
+            }
+            if lights.highlight.is_some() && !capabilities.highlight {
+                return Err(Self::Highlight);
             }
         }
         if let Form::Marching(marching) = &setup.form {
@@ -114,7 +132,7 @@ pub fn set_field(
     palette: &Palette,
     has_tables: bool,
 ) -> Result<(), Missing> {
-    Missing::check(&raymarcher.capabilities(), setup)?;
+    Missing::check(&raymarcher.capabilities(), setup, &palette.lights)?;
     if !has_tables {
         raymarcher.set_tables(tables(palette));
     }
@@ -255,7 +273,7 @@ fn with_spheres(
         .with_is_round(true)
         .with_spheres_repeated(spheres.repeated)
         .with_last_sphere((spheres.count - 1) as u8)
-        .with_last_light((lights.count - 1) as u8)
+        .with_last_light(lights.count.saturating_sub(1) as u8)
 }
 
 /// The solid with the cones in which the eyes see the spheres. Also writes the cones: without spheres one that no pixel sees, because the
@@ -303,6 +321,17 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
             write(16 + 4 * number + axis, part);
         }
         write(19 + 4 * number, colour(light.colour));
+    }
+    let normals = u32::from(lights.normals.is_some());
+    let lit = u32::from(lights.count != 0);
+    if let Some(Shine { light, steepness }) = lights.highlight {
+        for (axis, part) in (0..).zip(numbers(light.direction)) {
+            write(34 + axis, part);
+        }
+        write(38, colour(light.colour));
+        write(37, normals | lit << 1 | 1 << 2 | u32::from(steepness) << 8);
+    } else {
+        write(37, normals | lit << 1);
     }
 }
 

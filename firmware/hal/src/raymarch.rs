@@ -29,6 +29,10 @@ pub struct Capabilities {
     pub lattice: bool,
     /// Whether this build draws fillets between spheres and flat fields.
     pub blend: bool,
+    /// Whether this build colours spheres by their normals.
+    pub normals: bool,
+    /// Whether this build draws a highlight on spheres.
+    pub highlight: bool,
 }
 
 /// The planes of the prism around an eye, along each axis and along each mirrored axis; the fourth axis is that of an octahedron.
@@ -136,6 +140,8 @@ impl Raymarcher {
             round: caps.round(),
             lattice: caps.lattice(),
             blend: caps.blend(),
+            normals: caps.normals(),
+            highlight: caps.highlight(),
         };
         Ok(Self {
             registers,

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x6bff_daec;
+pub const BUILD_ID: u32 = 0xea70_0490;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -5931,6 +5931,34 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
         }
 
+        /// `normals`, bit 13: Colours of spheres by their normals.
+        #[inline]
+        #[must_use]
+        pub const fn normals(self) -> bool {
+            (self.0 >> 13) & 1 != 0
+        }
+
+        /// This value with another `normals`.
+        #[inline]
+        #[must_use]
+        pub const fn with_normals(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
+        }
+
+        /// `highlight`, bit 14: A highlight on spheres.
+        #[inline]
+        #[must_use]
+        pub const fn highlight(self) -> bool {
+            (self.0 >> 14) & 1 != 0
+        }
+
+        /// This value with another `highlight`.
+        #[inline]
+        #[must_use]
+        pub const fn with_highlight(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
+        }
+
         /// `flat`, bits 23 to 16: Bit k is set if the flat field of kind k in `solid` is built.
         #[inline]
         #[must_use]
@@ -6569,7 +6597,7 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces.
+        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {
@@ -6639,7 +6667,7 @@ pub mod raymarch {
     pub enum Error {
         /// All requested features are built.
         None = 0,
-        /// The flat field, the depth of the sponge, spheres, a lattice or fillets are not built.
+        /// The flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals or a highlight are not built.
         Field = 1,
         /// Two eyes are not built.
         Stereo = 2,
@@ -6676,7 +6704,7 @@ pub mod raymarch {
         pub const fn text(self) -> &'static str {
             match self {
                 Self::None => "all requested features are built",
-                Self::Field => "the flat field, the depth of the sponge, spheres, a lattice or fillets are not built",
+                Self::Field => "the flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals or a highlight are not built",
                 Self::Stereo => "two eyes are not built",
             }
         }

@@ -28,7 +28,7 @@ mod tracer;
 pub use blend::{Beside, Blend};
 pub use end::{RayEnd, State};
 pub use glint_core::stereo::{Stereo, Tint};
-pub use lights::{Light, Lights};
+pub use lights::{Light, Lights, Shine};
 pub use marching::{Eye, Marching};
 pub use options::{DEFAULT_TUNING, FieldOptions, ROUND_TUNING, Tuning};
 pub use paint::paint;

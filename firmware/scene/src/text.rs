@@ -154,6 +154,9 @@ impl Scene {
             OptionName::Ambient => self.put(name, from, out, |scene| {
                 OrDefault(scene.appearance.ambient.map(HexColour))
             }),
+            OptionName::Highlight => {
+                self.put(name, from, out, |scene| OrOff(scene.appearance.highlight))
+            }
             OptionName::Background => self.put(name, from, out, |scene| {
                 OrDefault(scene.appearance.background)
             }),

@@ -35,8 +35,16 @@ package raymarch_registers_pkg;
         logic [2:0][22:0] centre;
     } sphere_t;
 
-    // Light on spheres: number of the last light, ambient light, colours of the lights, and directions to the lights, s1.16.
+    // Light on spheres: whether colours depend on normals, whether there are lights and a highlight, the steepness, the colour
+    // and the direction of the highlight, number of the last light, ambient light, colours of the lights, and directions to
+    // the lights, s1.16.
     typedef struct packed {
+        logic normals;
+        logic lit;
+        logic highlight;
+        logic [12:0] steepness;
+        logic [23:0] shine;
+        logic [2:0][17:0] half;
         logic [1:0] last_light;
         logic [23:0] ambient;
         logic [3:0][23:0] colours;

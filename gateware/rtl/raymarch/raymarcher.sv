@@ -24,7 +24,8 @@
 //
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Rays by exits meet the spheres of a
 // list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes
-// ray_paint, and takes one clock per light for a pixel on a sphere or fillet.
+// ray_paint, and takes one clock per pass for a pixel on a sphere or fillet: with NORMALS one for each axis, then one for each light, and
+// with HIGHLIGHT one for a highlight.
 //
 // Each lane makes one evaluation of the field per clock, for marching rays the first lane alone.
 // `restart` and reset cancel the frame. Groups are a valid/ready stream,
@@ -40,6 +41,8 @@ module raymarcher #(
     parameter bit          LATTICE = 1'b1,
     parameter bit          BLEND   = 1'b1,
     parameter bit          STEREO  = 1'b1,
+    parameter bit          NORMALS   = 1'b1,
+    parameter bit          HIGHLIGHT = 1'b1,
     parameter int unsigned EARLY   = BLEND ? 1024 : 512
 ) (
     input  wire                       clk,
@@ -381,8 +384,8 @@ module raymarcher #(
     logic [23:0]     lit_colour;
 
     if (LIT) begin : light
-        round_light #(.BLEND(BLEND), .STEREO(STEREO)) shine (
-            .clk, .rst(reset), .origins, .exits(by_exits), .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]),
+        round_light #(.BLEND(BLEND), .STEREO(STEREO), .NORMALS(NORMALS), .HIGHLIGHT(HIGHLIGHT)) shine (
+            .clk, .rst(reset), .origins, .exits(by_exits), .stereo, .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]),
             .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
             .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)

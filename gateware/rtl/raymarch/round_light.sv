@@ -1,24 +1,33 @@
 // Computes the light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats/raymarch.md, "Round fields").
 //
 //   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times light's colour, sum ─▶ times the material ─▶ end, colour
-//                                   └──────────── once for each light ─────────────┘
+//                                   └─────────────── once for each pass ────────────┘
 //
 // All ends of rays pass in order; the colour for ends on other surfaces is undefined. An end on a sphere or fillet takes one clock for each
-// light, any other end takes one clock. With BLEND the colour is interpolated, by `share`, between the colours of the face, from `palette`,
-// and of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light after the first. The ends at the output have no
-// direction. Streams are valid/ready. Sphere writes and changes of parameters are only allowed while the pipeline is empty.
+// pass, any other end takes one clock. The passes are
+// - with NORMALS, and if `lights.normals` is high, one for each axis: their sum is the material's colour;
+// - one for each light, if there are any;
+// - with HIGHLIGHT, and if `lights.highlight` is high, one for the highlight, with a power of the cosine in place of the cosine.
+//
+// With BLEND the colour is interpolated, by `share`, between the colours of the face, from `palette`,
+// and of the sphere. Latency 24 clocks, 12 more with HIGHLIGHT and 4 more with BLEND, plus one clock for each pass after the first. The ends
+// at the output have no direction. Streams are valid/ready. Writes and changes of parameters are only allowed while the pipeline is empty.
 
 `default_nettype none
 
 module round_light #(
-    parameter bit BLEND  = 1'b0,
-    parameter bit STEREO = 1'b1
+    parameter bit BLEND     = 1'b0,
+    parameter bit STEREO    = 1'b1,
+    // Whether colours may depend on the normal, and whether there may be a highlight.
+    parameter bit NORMALS   = 1'b1,
+    parameter bit HIGHLIGHT = 1'b0
 ) (
     input  wire                      clk,
     input  wire                      rst,
     // Frame. `exits` states the format of t: u14.14 of rays by exits, u11.12 of marching rays.
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire                      exits,
+    input  wire                      stereo,
     input  wire                      repeated,
     input  wire raymarch_registers_pkg::lights_t lights,
     input  wire  [5:0][23:0]         palette,
@@ -35,7 +44,9 @@ module round_light #(
     output raymarch_pkg::end_t          out_end,
     output logic [23:0]              out_colour
 );
-    localparam int unsigned LAST = BLEND ? 26 : 22;
+    // Clocks that the highlight takes. The suffixes of names from 15 on leave them out.
+    localparam int unsigned WAIT = HIGHLIGHT ? 12 : 0;
+    localparam int unsigned LAST = WAIT + (BLEND ? 26 : 22);
     // Ends without the direction.
     localparam int unsigned ROUND_BITS = raymarch_pkg::EXIT_END_BITS + 1;
     localparam int unsigned MARCH_BITS = BLEND ? 10 + 12 + 10 : 0;
@@ -46,13 +57,28 @@ module round_light #(
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
 
-    // An end stays in clock 0 for one clock per light.
-    logic            enable, held_valid, last_0;
+    // An end stays in clock 0 for one clock per pass: the kind of the pass, and its number among those of this kind.
+    typedef enum logic [1:0] {NORMAL, LIGHT, SHINE} kind_t;
+
+    logic            enable, held_valid, last_0, last_of_kind_0, has_normals, has_highlight;
     raymarch_pkg::end_t held;
-    logic [1:0]      light_0;
+    kind_t           kind_0;
+    logic [1:0]      number_0;
     logic [LAST:0]   valid;
 
-    assign last_0   = !held.round || held.state != raymarch_pkg::HIT || light_0 == lights.last_light;
+    assign has_normals   = NORMALS && lights.normals;
+    assign has_highlight = HIGHLIGHT && lights.highlight;
+
+    always_comb begin
+        unique case (kind_0)
+            NORMAL:  last_of_kind_0 = number_0 == 2'd2;
+            LIGHT:   last_of_kind_0 = number_0 == lights.last_light;
+            default: last_of_kind_0 = 1'b1;
+        endcase
+        last_0 = last_of_kind_0 && (kind_0 == NORMAL ? !lights.lit : kind_0 == SHINE || !has_highlight);
+        if (!held.round || held.state != raymarch_pkg::HIT) last_0 = 1'b1;
+    end
+
     assign in_ready = enable && (!held_valid || last_0);
     assign valid[0] = held_valid && last_0;
 
@@ -60,9 +86,11 @@ module round_light #(
         if (in_ready) begin
             held_valid <= in_valid;
             held       <= in_end;
-            light_0    <= '0;
+            number_0   <= '0;
+            kind_0     <= has_normals ? NORMAL : LIGHT;
         end else if (enable) begin
-            light_0 <= light_0 + 1'b1;
+            number_0 <= last_of_kind_0 ? '0 : number_0 + 1'b1;
+            if (last_of_kind_0) kind_0 <= !HIGHLIGHT || kind_0 == NORMAL ? LIGHT : SHINE;
         end
         if (enable) valid[LAST:1] <= valid[LAST-1:0];
 
@@ -82,7 +110,7 @@ module round_light #(
     delay #(.WIDTH(3), .CLOCKS(2)) number_to_2 (.clk, .enable, .in(held.surface), .out(number_2));
     delay #(.WIDTH(3), .CLOCKS(6)) number_to_8 (.clk, .enable, .in(number_2), .out(number_8));
     delay #(.WIDTH(3), .CLOCKS(3)) number_to_11 (.clk, .enable, .in(number_8), .out(number_11));
-    delay #(.WIDTH(3), .CLOCKS(7)) number_to_18 (.clk, .enable, .in(number_11), .out(number_18));
+    delay #(.WIDTH(3), .CLOCKS(7 + WAIT)) number_to_18 (.clk, .enable, .in(number_11), .out(number_18));
 
     always_ff @(posedge clk) begin
         if (sphere_write) begin
@@ -103,6 +131,7 @@ module round_light #(
     // for the direction of the light.
     logic              eye_2;
     logic [1:0]        light_3, light_14;
+    kind_t             kind_3, kind_9, kind_14, kind_17, kind_18;
     logic              first_17;
     logic [2:0][22:0]  apart_4;
     logic [53:0]       towards_3;
@@ -120,12 +149,27 @@ module round_light #(
             2'd2: towards_3 = directions[161:108];
             2'd3: towards_3 = directions[215:162];
         endcase
+        if (HIGHLIGHT && kind_3 == SHINE) towards_3 = lights.half;
+        // The axis with this number, of length 1.
+        if (NORMALS && kind_3 == NORMAL)
+            towards_3 = {1'b0, light_3 == 2'd2, 16'b0, 1'b0, light_3 == 2'd1, 16'b0, 1'b0, light_3 == 2'd0, 16'b0};
     end
 
     delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable, .in(STEREO && held.place.eye), .out(eye_2));
-    delay #(.WIDTH(2), .CLOCKS(3)) light_to_3 (.clk, .enable, .in(light_0), .out(light_3));
-    delay #(.WIDTH(2), .CLOCKS(11)) light_to_14 (.clk, .enable, .in(light_3), .out(light_14));
+    delay #(.WIDTH(2), .CLOCKS(3)) light_to_3 (.clk, .enable, .in(number_0), .out(light_3));
+    delay #(.WIDTH(2), .CLOCKS(11 + WAIT)) light_to_14 (.clk, .enable, .in(light_3), .out(light_14));
     delay #(.WIDTH(1), .CLOCKS(3)) first_to_17 (.clk, .enable, .in(light_14 == '0), .out(first_17));
+
+    if (NORMALS || HIGHLIGHT) begin : kinds
+        delay #(.WIDTH(2), .CLOCKS(3)) kind_to_3 (.clk, .enable, .in(kind_0), .out({kind_3}));
+        delay #(.WIDTH(2), .CLOCKS(6)) kind_to_9 (.clk, .enable, .in(kind_3), .out({kind_9}));
+        delay #(.WIDTH(2), .CLOCKS(5 + WAIT)) kind_to_14 (.clk, .enable, .in(kind_9), .out({kind_14}));
+        delay #(.WIDTH(2), .CLOCKS(3)) kind_to_17 (.clk, .enable, .in(kind_14), .out({kind_17}));
+        delay #(.WIDTH(2), .CLOCKS(1)) kind_to_18 (.clk, .enable, .in(kind_17), .out({kind_18}));
+    end else begin : lights_alone
+        assign {kind_3, kind_9, kind_14, kind_17, kind_18} = {5{LIGHT}};
+        wire _unused = &{1'b0, kind_3, kind_9, kind_14, kind_17, kind_18};
+    end
 
     // 10 of t's fraction bits are used.
     logic [23:0] t;
@@ -158,6 +202,7 @@ module round_light #(
     logic [22:0]        apart_y_5, apart_z_6;
     logic [17:0]        towards_y_5, towards_z_6;
     logic signed [42:0] x_7, x_y_8, product_9;
+    logic [40:4]        product_size;
     logic [36:0]        by_fours, shifted_11;
     logic [1:0]         ones_10;
     logic [16:0]        size_12;
@@ -174,17 +219,24 @@ module round_light #(
         .clk, .enable, .a(25'($signed(apart_z_6))), .b(towards_z_6), .c(x_y_8), .p(product_9)
     );
 
+    // A component of a normal may be negative: its complement is shifted and multiplied.
+    logic negative_9, negative_15;
+
+    assign negative_9   = NORMALS && kind_9 == NORMAL && product_9[42];
+    assign product_size = product_9[40:4] ^ {37{negative_9}};
+    delay #(.WIDTH(1), .CLOCKS(6)) sign_waits (.clk, .enable, .in(negative_9), .out(negative_15));
+
     always_ff @(posedge clk) begin
         if (enable) begin
             // The shift is 6 to 21. A light behind the surface contributes 0.
             unique case (shift_9[4:2])
-                3'd1:    by_fours <= product_9[40:4];
-                3'd2:    by_fours <= 37'(product_9[40:8]);
-                3'd3:    by_fours <= 37'(product_9[40:12]);
-                3'd4:    by_fours <= 37'(product_9[40:16]);
-                default: by_fours <= 37'(product_9[40:20]);
+                3'd1:    by_fours <= product_size[40:4];
+                3'd2:    by_fours <= 37'(product_size[40:8]);
+                3'd3:    by_fours <= 37'(product_size[40:12]);
+                3'd4:    by_fours <= 37'(product_size[40:16]);
+                default: by_fours <= 37'(product_size[40:20]);
             endcase
-            if (product_9[42]) by_fours <= '0;
+            if (product_9[42] && !negative_9) by_fours <= '0;
             ones_10    <= shift_9[1:0];
             shifted_11 <= by_fours >> ones_10;
             size_12    <= shifted_11[16:0] | {17{shifted_11[36:17] != '0}};
@@ -194,14 +246,55 @@ module round_light #(
     // The suffix of a name is the signal's clock: 15 for the cosine of the angle between normal and light, in 256ths; 18 for the sum over
     // the lights; 19 for the sum, saturated at 255.
     logic signed [36:0] cosine_15;
-    logic [8:0]         share_15;
+    logic signed [9:0]  share_of_cosine, share_15;
     logic [23:0]        colour_15;
     logic [2:0][7:0]    colour_22, colour_last, face_colour_22;
 
     multiply_add #(.BITS(37)) over_radius (
         .clk, .enable, .a({8'b0, size_12}), .b({1'b0, inverse_12}), .c('0), .p(cosine_15)
     );
-    assign share_15 = cosine_15[33] ? 9'd256 : {1'b0, cosine_15[32:25]};
+    assign share_of_cosine = {1'b0, cosine_15[33], cosine_15[33] ? 8'd0 : cosine_15[32:25]} ^ {10{negative_15}};
+
+    // The suffix of a name is the signal's clock: 16 for 1 - cosine; 20 for x = 1 - steepness·(1 - cosine), at least 0; 27 for x^4.
+    if (HIGHLIGHT) begin : highlight
+        logic [15:0]        below_16, x_20, square_23;
+        logic signed [29:0] scaled_19;
+        logic signed [33:0] product_23, fourth_26;
+        logic [7:0]         fourth;
+        logic [8:0]         part_27;
+        logic signed [9:0]  waited_27;
+        kind_t              kind_27;
+
+        multiply_add #(.BITS(30)) scale (
+            .clk, .enable, .a({9'b0, below_16}), .b({5'b0, lights.steepness}), .c('0), .p(scaled_19)
+        );
+        multiply_add #(.BITS(34)) square (.clk, .enable, .a({9'b0, x_20}), .b({2'b0, x_20}), .c('0), .p(product_23));
+        multiply_add #(.BITS(34)) square_again (.clk, .enable, .a({9'b0, square_23}), .b({2'b0, square_23}), .c('0), .p(fourth_26));
+
+        assign square_23 = product_23[31:16];
+        assign fourth    = fourth_26[31:24];
+
+        always_ff @(posedge clk) begin
+            if (enable) begin
+                below_16 <= ~cosine_15[32:17] & {16{!cosine_15[33]}};
+                x_20     <= ~scaled_19[23:8] & {16{scaled_19[29:24] == '0}};
+                part_27  <= {1'b0, fourth} + 9'(fourth[7]);
+            end
+        end
+
+        delay #(.WIDTH(10), .CLOCKS(WAIT)) share_waits (.clk, .enable, .in(share_of_cosine), .out(waited_27));
+        // `kind_14` has waited too.
+        delay #(.WIDTH(2), .CLOCKS(1)) kind_to_27 (.clk, .enable, .in(kind_14), .out({kind_27}));
+        assign share_15 = kind_27 == SHINE ? {1'b0, part_27} : waited_27;
+
+        wire _unused = &{1'b0, scaled_19[7:0], product_23[33:32], product_23[15:0], fourth_26[33:32], fourth_26[23:0]};
+    end else begin : no_highlight
+        assign share_15 = share_of_cosine;
+        wire _unused = &{1'b0, lights.half, lights.steepness, lights.shine, lights.highlight};
+    end
+
+    // Share of a component of the normal in its own channel; with two eyes the luminances of the three in all channels.
+    localparam logic [7:0] SLOPE = 8'd95, MIDDLE = 8'd130;
 
     always_ff @(posedge clk) begin
         if (enable) begin
@@ -211,24 +304,53 @@ module round_light #(
                 2'd2: colour_15 <= colours[71:48];
                 2'd3: colour_15 <= colours[95:72];
             endcase
+            if (HIGHLIGHT && kind_14 == SHINE) colour_15 <= lights.shine;
+            if (NORMALS && kind_14 == NORMAL) begin
+                if (STEREO && stereo) colour_15 <= {3{light_14[1] ? 8'd11 : light_14[0] ? 8'd56 : 8'd29}};
+                else colour_15 <= {light_14[1] ? SLOPE : 8'd0, light_14[0] ? SLOPE : 8'd0, light_14 == '0 ? SLOPE : 8'd0};
+            end
         end
     end
 
     for (genvar i = 0; i < 3; i++) begin : channels
         logic signed [25:0] sum_18, coloured;
-        logic [7:0]         light;
+        logic [7:0]         ambient, begins_17, light, shine_21, colour_19;
         logic [8:0]         light_19;
 
+        assign ambient   = lights.ambient[8*i +: 8];
+        assign begins_17 = NORMALS && kind_17 == NORMAL ? MIDDLE : HIGHLIGHT && kind_17 == SHINE ? 8'd0 : ambient;
+
         multiply_add #(.BITS(26)) shine (
-            .clk, .enable, .a({17'b0, colour_15[8*i +: 8]}), .b({9'b0, share_15}),
-            .c(first_17 ? {10'b0, lights.ambient[8*i +: 8], 8'b0} : sum_18), .p(sum_18)
+            .clk, .enable, .a({17'b0, colour_15[8*i +: 8]}), .b(18'(share_15)), .c(first_17 ? {10'b0, begins_17, 8'b0} : sum_18), .p(sum_18)
         );
         assign light = sum_18[15:8] | {8{sum_18[25:16] != '0}};
-        always_ff @(posedge clk) if (enable) light_19 <= {1'b0, light} + 9'(light[7]);
+
+        // The passes of an end follow each other: the light stays for the highlight, and the material's colour for the lights. Without
+        // lights, the ambient light is all.
+        always_ff @(posedge clk)
+            if (enable && !(HIGHLIGHT && kind_18 == SHINE))
+                light_19 <= NORMALS && kind_18 == NORMAL ? {1'b0, ambient} + 9'(ambient[7]) : {1'b0, light} + 9'(light[7]);
+
+        if (NORMALS) begin : material
+            logic [7:0] base_19;
+            always_ff @(posedge clk) if (enable && kind_18 == NORMAL) base_19 <= light;
+            assign colour_19 = has_normals ? base_19 : material_19[8*i +: 8];
+        end else begin : material
+            assign colour_19 = material_19[8*i +: 8];
+        end
+
+        if (HIGHLIGHT) begin : shining
+            logic [7:0] shine_19;
+            always_ff @(posedge clk) if (enable) shine_19 <= kind_18 == SHINE ? light : '0;
+            delay #(.WIDTH(8), .CLOCKS(2)) shine_waits (.clk, .enable, .in(shine_19), .out(shine_21));
+        end else begin : shining
+            assign shine_21 = '0;
+        end
+
         multiply_add #(.BITS(26)) on_material (
-            .clk, .enable, .a({17'b0, material_19[8*i +: 8]}), .b({9'b0, light_19}), .c('0), .p(coloured)
+            .clk, .enable, .a({17'b0, colour_19}), .b({9'b0, light_19}), .c({10'b0, shine_21, 8'b0}), .p(coloured)
         );
-        assign colour_22[i] = coloured[15:8];
+        assign colour_22[i] = coloured[15:8] | {8{HIGHLIGHT && coloured[16]}};
 
         wire _unused = &{1'b0, sum_18[7:0], coloured[25:16], coloured[7:0]};
     end
@@ -240,8 +362,8 @@ module round_light #(
         logic [7:0]      share_22;
         logic [8:0]      part_23;
 
-        delay #(.WIDTH(3), .CLOCKS(21)) face_waits (.clk, .enable, .in(held.face), .out(face_21));
-        delay #(.WIDTH(8), .CLOCKS(22)) share_waits (.clk, .enable, .in(held.share), .out(share_22));
+        delay #(.WIDTH(3), .CLOCKS(21 + WAIT)) face_waits (.clk, .enable, .in(held.face), .out(face_21));
+        delay #(.WIDTH(8), .CLOCKS(22 + WAIT)) share_waits (.clk, .enable, .in(held.share), .out(share_22));
 
         always_ff @(posedge clk) begin
             if (enable) begin

@@ -7,6 +7,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SPHERES, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
+use glint_core::light::Material;
 use glint_core::picture::Backend;
 use glint_core::shape::Shape;
 use glint_model::{Clip, MeshOptions};
@@ -34,6 +35,10 @@ pub struct Fields {
     pub fillets: bool,
     /// Two eyes.
     pub stereo: bool,
+    /// Spheres coloured by their normals.
+    pub normals: bool,
+    /// A highlight on spheres.
+    pub highlight: bool,
 }
 
 /// Gateware and firmware that scenes require.
@@ -79,6 +84,8 @@ impl SceneFile {
             lanes: self.lanes.unwrap_or(LANES),
             // A mesh in a field is drawn for one eye after the other.
             stereo: scene.stereo.is_some() && !has_triangles,
+            normals: field.is_round() && scene.appearance.material == Material::Normal,
+            highlight: field.is_round() && scene.appearance.has_highlight(),
             ..Fields::of(&field)
         });
         Needs {
@@ -191,6 +198,8 @@ impl Fields {
             lattice: false,
             fillets: false,
             stereo: false,
+            normals: false,
+            highlight: false,
         };
         match field {
             Field::Primitive(primitive) => none.and(primitive),
@@ -236,6 +245,8 @@ impl Fields {
             lattice: self.lattice || other.lattice,
             fillets: self.fillets || other.fillets,
             stereo: self.stereo || other.stereo,
+            normals: self.normals || other.normals,
+            highlight: self.highlight || other.highlight,
         }
     }
 
@@ -251,6 +262,8 @@ impl Fields {
             ("lattice", self.lattice),
             ("fillets", self.fillets),
             ("stereo", self.stereo),
+            ("normals", self.normals),
+            ("highlight", self.highlight),
         ];
         let built = features.into_iter().filter(|(_, is_built)| *is_built);
         names.extend(built.map(|(name, _)| name.to_owned()));

@@ -331,7 +331,14 @@ fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
 pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let mut record = module.record("lights");
     record.set("ambient", colour(lights.ambient));
-    record.set("last_light", lights.count as u64 - 1);
+    record.set("last_light", lights.count.saturating_sub(1) as u64);
+    record.set("normals", u64::from(lights.normals.is_some()));
+    record.set("lit", u64::from(lights.count != 0));
+    let highlight = lights.highlight.unwrap_or_default();
+    record.set("highlight", u64::from(lights.highlight.is_some()));
+    record.set("steepness", highlight.steepness);
+    record.set("shine", colour(highlight.light.colour));
+    record.set_all("half", highlight.light.direction);
     for (i, light) in lights.list.iter().enumerate() {
         record.set(&format!("colours[{i}]"), colour(light.colour));
         record.set_all(&format!("directions[{i}]"), light.direction);

@@ -17,7 +17,7 @@ use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
-use crate::light::{self, Background, Light, Material, Rgb};
+use crate::light::{self, Background, Highlight, Light, Material, Rgb};
 use crate::picture::{Backend, Edges};
 use crate::quality::Quality;
 use crate::stereo::{self, Stereo};
@@ -80,9 +80,9 @@ commands! {
     options {
         object Object(action: Object) or show in OBJECT: "list or show the objects, add one, change its place or colour, or remove it"
             => key(Order::Subject, "torus scale 0.5 move 1,0,0").action("add").list().without(&["field", "program"]);
-        material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours faces by direction"
+        material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours by direction, mixed gives each sphere its own colour"
             => key(Order::Option, "jade").with(LIT)
-                .host(option("material", "MATERIAL", "Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes instead of their own ones"));
+                .host(option("material", "MATERIAL", "Material of a field; `normal` colours by the normal, `mixed` gives successive spheres different colours [default: normal]. Without a field, the colour of meshes instead of their own ones"));
         light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default"
             => key(Order::Option, "1,-2,3,fff0d8").list().with(LIT)
                 .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; of several, the first one lights the mesh in a field")
@@ -91,6 +91,10 @@ commands! {
             => key(Order::Option, "404040").with(LIT)
                 .host(option("ambient", "RRGGBB", "Ambient light [default: 404040 with a --light; without, white on a field and black on meshes]")
                     .expects("a colour RRGGBB"));
+        highlight Highlight(highlight: Or<Off, Highlight>) or show in LIGHT: "show or set the highlight of the first light on a field: STRENGTH * cos^EXPONENT"
+            => key(Order::Option, "0.6,32").with(FIELD)
+                .host(option("highlight", "STRENGTH,EXPONENT", "Highlight of the first light on a field: its strength, from 0 to 1, and its sharpness, a whole number from 1 to 128. `normal` without a --light has none")
+                    .expects("a highlight STRENGTH,EXPONENT such as 0.6,32"));
         background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes, which have one colour"
             => key(Order::Option, "sky").with(LIT)
                 .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")

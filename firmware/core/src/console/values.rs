@@ -13,7 +13,7 @@ use crate::choice::choices;
 use crate::field::{self, KINDS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28, parse_i32};
 use crate::imu::Follow;
-use crate::light::{self, Background, Rgb, parse_rgb};
+use crate::light::{self, Background, HIGHLIGHT_FORM, Highlight, Rgb, parse_rgb};
 use crate::matrix::Axis;
 use crate::mesh::{self, MAX_BYTES};
 use crate::picture;
@@ -206,6 +206,16 @@ impl WordArgument for Rgb {
 
     fn parse(text: &str) -> Option<Self> {
         parse_rgb(text)
+    }
+}
+
+/// The text form of a highlight.
+impl WordArgument for Highlight {
+    type Value<'a> = Self;
+    const KIND: WordKind = WordKind::Text(&HIGHLIGHT_FORM);
+
+    fn parse(text: &str) -> Option<Self> {
+        Self::parse(text)
     }
 }
 

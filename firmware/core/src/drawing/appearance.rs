@@ -4,7 +4,9 @@ use heapless::Vec;
 
 use crate::colour::Rgb565;
 use crate::fixed::U4_28;
-use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb};
+use crate::light::{
+    Background, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
+};
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
 /// normal, and the background is white. Lights, ambient light and background also apply to meshes.
@@ -16,6 +18,8 @@ pub struct Appearance {
     pub lights: Vec<Light, MAX_LIGHTS>,
     /// Ambient light; `None` selects the default ambient light.
     pub ambient: Option<Rgb>,
+    /// Highlight of the first light on a field.
+    pub highlight: Option<Highlight>,
     /// Background; `None` selects white for a field and black for meshes.
     pub background: Option<Background>,
     /// Density of the fog per world unit: over a distance d, the fog transmits the fraction exp(−d · density) of the light. 0
@@ -36,12 +40,20 @@ impl Appearance {
             Lighting {
                 ambient: Lighting::AMBIENT,
                 lights: self.lights.clone(),
+                ..Lighting::PLAIN
             }
         };
         Lighting {
             ambient: self.ambient.unwrap_or(lighting.ambient),
+            highlight: self.highlight,
             ..lighting
         }
+    }
+
+    /// Whether fields have a highlight: there is one if there are lights.
+    pub fn has_highlight(&self) -> bool {
+        let lighting = self.lighting();
+        lighting.highlight.is_some() && !lighting.lights.is_empty()
     }
 
     /// Returns the lighting of meshes: the first light, or white light at the camera if the list is empty. The default ambient

@@ -5,7 +5,8 @@ use glint_core::camera::View;
 use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::{
-    Background, Light, LightError, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb, parse_rgb,
+    Background, Highlight, Light, LightError, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
+    highlight_share, parse_rgb,
 };
 use proptest::prelude::*;
 
@@ -53,6 +54,7 @@ proptest! {
                     Light::new(direction.map(Q32_32::from_bits), *colour).expect("a direction")
                 })
                 .collect(),
+            ..Lighting::PLAIN
         };
         let exact: Vec<_> = lights
             .iter()
@@ -172,14 +174,18 @@ fn what_is_not_said_of_light_follows_from_what_is() {
         ambient: Some([1, 2, 3]),
         ..gold.clone()
     };
-    let Lighting { ambient, lights } = dim.lighting();
+    let Lighting {
+        ambient, lights, ..
+    } = dim.lighting();
     assert_eq!((ambient, lights), ([1, 2, 3], Lighting::day().lights));
     let light = Light::parse("0,0,1").expect("a light");
     let lit = Appearance {
         lights: [light].into_iter().collect(),
         ..gold
     };
-    let Lighting { ambient, lights } = lit.lighting();
+    let Lighting {
+        ambient, lights, ..
+    } = lit.lighting();
     assert_eq!((ambient, &lights[..]), (Lighting::AMBIENT, &[light][..]));
 }
 
@@ -212,6 +218,7 @@ fn a_light_at_the_camera_follows_the_camera() {
     let lighting = Lighting {
         ambient: [0; 3],
         lights: [Light::at_camera([255; 3])].into_iter().collect(),
+        ..Lighting::PLAIN
     };
     // The camera is on the x axis, so the face towards the camera is in full light and all other faces are dark.
     let lit = lighting.clone().seen_from(&view);
@@ -251,4 +258,46 @@ fn backgrounds() {
     for text in ["", "black", "12345", "1234567", "White", "+12345"] {
         assert_eq!(Background::parse(text), None, "{text}");
     }
+}
+
+#[test]
+fn highlights_are_read_and_come_back() {
+    for (text, shown) in [
+        ("0.6,32", "0.6,32"),
+        ("1,4", "1,4"),
+        ("0,128", "0,128"),
+        ("0.0625,5", "0.063,5"),
+        ("0.05,100", "0.05,100"),
+    ] {
+        let highlight = Highlight::parse(text).expect(text);
+        assert_eq!(highlight.to_string(), shown);
+        assert_eq!(Highlight::parse(shown), Some(highlight));
+    }
+    for text in [
+        "", "0.5", "0.5,3", "0.5,129", "1.001,9", "-0.1,9", "0.5,9,", "x,9", "0.5,+-9",
+    ] {
+        assert_eq!(Highlight::parse(text), None, "{text}");
+    }
+}
+
+/// The power of the cosine in the highlight against the exact one, for all exponents.
+#[test]
+fn the_highlight_is_near_the_power_of_the_cosine() {
+    let mut most: [f64; 2] = [0.0; 2];
+    for exponent in 4..=128 {
+        let highlight = Highlight::parse(&format!("1,{exponent}")).expect("a highlight");
+        let steepness = f64::from(highlight.steepness()) / 256.0;
+        for cosine in (0..=1 << 16).step_by(7).chain([1 << 16]) {
+            let found = f64::from(highlight_share(highlight.steepness(), cosine)) / 255.0;
+            let cosine = f64::from(cosine) / 65536.0;
+            let exact = (1.0 - steepness * (1.0 - cosine)).max(0.0).powi(4);
+            most[0] = most[0].max((found - exact).abs());
+            most[1] = most[1].max((found - cosine.powi(exponent)).abs());
+        }
+    }
+    println!(
+        "from the fourth power {:.4}, from the power of the cosine {:.4}",
+        most[0], most[1]
+    );
+    assert!(most[0] <= 1.4 / 255.0 && most[1] <= 0.037, "{most:?}");
 }

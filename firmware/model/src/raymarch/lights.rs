@@ -1,7 +1,14 @@
 //! Ambient and directional light on spheres, whose normal varies from point to point.
 
+use glint_core::colour::luminance;
 use glint_core::field::{FixedSphere, MAX_SPHERES};
-use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, whole};
+use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, highlight_share, whole};
+
+/// The colour of [`Material::Normal`] on spheres: in each channel this value, plus [`SLOPE`] times a component of the normal.
+const MIDDLE: u8 = 130;
+
+/// Change of a channel with the component of the normal that it shows.
+const SLOPE: u8 = 95;
 
 /// A directional light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,6 +19,16 @@ pub struct Light {
     pub colour: Rgb,
 }
 
+/// The highlight of the first light: the light has this colour and the direction halfway to the light and to the camera, and a power of
+/// the cosine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shine {
+    /// Direction and colour.
+    pub light: Light,
+    /// The steepness of the power, u5.8.
+    pub steepness: u16,
+}
+
 /// The lights of a frame, and the materials of the spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lights {
@@ -19,67 +36,151 @@ pub struct Lights {
     pub ambient: Rgb,
     /// Lights; the first `count` entries are valid.
     pub list: [Light; MAX_LIGHTS],
-    /// Number of lights, 1 to 4. The gateware takes one clock for each light.
+    /// Number of lights, 0 to 4; 0 only with `normals`. The gateware takes one clock for each light.
     pub count: usize,
     /// Material colours of the spheres, by sphere number.
     pub materials: [Rgb; MAX_SPHERES],
+    /// Colours of the three components of a normal, if the material's colour depends on it. The gateware takes one clock for each.
+    pub normals: Option<[Rgb; 3]>,
+    /// The highlight, which takes one clock more.
+    pub highlight: Option<Shine>,
 }
 
 impl Lights {
-    /// Returns the lights of a scene for spheres of the given material. For the material `Normal` without lights, returns daylight,
-    /// because unshaded spheres look flat.
+    /// The colours of the three components of a normal for [`Material::Normal`], or their luminances for two eyes.
+    pub fn components(is_grey: bool) -> [Rgb; 3] {
+        let colours = [[SLOPE, 0, 0], [0, SLOPE, 0], [0, 0, SLOPE]];
+        if is_grey { colours.map(grey) } else { colours }
+    }
+
+    /// Returns the lights of a scene for spheres of the given material.
     pub fn new(material: Material, lighting: &Lighting) -> Self {
-        let day = Lighting::day();
-        let lighting = if material == Material::Normal && lighting.lights.is_empty() {
-            &day
-        } else {
-            lighting
-        };
         let mut list = [Light::default(); MAX_LIGHTS];
         for (place, light) in list.iter_mut().zip(&lighting.lights) {
             *place = Light {
-                // Converts a direction from 14 to 16 fraction bits.
-                direction: light.direction().map(|x| i32::from(x) << 2),
+                direction: widened(light.direction()),
                 colour: light.colour(),
             };
         }
+        let count = lighting.lights.len();
+        let normals = (material == Material::Normal).then(|| Self::components(false));
         Self {
             ambient: lighting.ambient,
             list,
-            count: lighting.lights.len().max(1),
+            count: if normals.is_some() {
+                count
+            } else {
+                count.max(1)
+            },
             materials: material.spheres(),
+            normals,
+            highlight: lighting
+                .highlight
+                .zip(lighting.lights.first())
+                .map(|(highlight, light)| Shine {
+                    light: Light {
+                        direction: widened(lighting.half),
+                        colour: highlight.colour(light.colour()),
+                    },
+                    steepness: highlight.steepness(),
+                }),
         }
     }
-}
 
-impl Lights {
+    /// Replaces each colour by its luminance in all channels.
+    pub(super) fn grey(self) -> Self {
+        let grey_light = |light: Light| Light {
+            colour: grey(light.colour),
+            ..light
+        };
+        Self {
+            ambient: grey(self.ambient),
+            list: self.list.map(grey_light),
+            highlight: self.highlight.map(|shine| Shine {
+                light: grey_light(shine.light),
+                ..shine
+            }),
+            materials: self.materials.map(grey),
+            normals: self.normals.map(|_| Self::components(true)),
+            ..self
+        }
+    }
+
     /// Returns the colour of the lit sphere `number` at the point `from_centre`, relative to its centre: (ambient +
-    /// Σ max(0, n·l)·colour) times the material. The normal n is `from_centre` divided by the radius, and l is the
+    /// Σ max(0, n·l)·colour) times the material, plus the highlight. The normal n is `from_centre` divided by the radius, and l is the
     /// direction to a light.
     pub(super) fn shine_on(&self, number: u8, sphere: &FixedSphere, from_centre: [i32; 3]) -> Rgb {
-        let mut sum = self.ambient.map(|part| i32::from(part) << 8);
+        let cosine = |direction| cosine(sphere, from_centre, direction);
+        let mut sum = Sum::of(self.ambient);
         for light in self.list.iter().take(self.count) {
-            let share = cosine(sphere, from_centre, light.direction);
-            for (sum, part) in sum.iter_mut().zip(light.colour) {
-                *sum += share * i32::from(part);
-            }
+            sum.add(light.colour, (cosine(light.direction).max(0) >> 8) as i32);
         }
-        let material = self.materials[usize::from(number) % MAX_SPHERES];
+        let material = match &self.normals {
+            None => self.materials[usize::from(number) % MAX_SPHERES],
+            Some(normals) => {
+                let mut sum = Sum::of([MIDDLE; 3]);
+                for (axis, colour) in normals.iter().enumerate() {
+                    let mut direction = [0; 3];
+                    direction[axis] = 1 << 16;
+                    sum.add(*colour, (cosine(direction) >> 8) as i32);
+                }
+                sum.colour()
+            }
+        };
+        let highlight = self.highlight.map_or([0; 3], |Shine { light, steepness }| {
+            let share = highlight_share(steepness, cosine(light.direction) as i32);
+            let mut sum = Sum::of([0; 3]);
+            sum.add(light.colour, whole(share));
+            sum.colour()
+        });
+        let light = sum.colour();
         core::array::from_fn(|i| {
-            let light = (sum[i] >> 8).min(255) as u8;
-            ((i32::from(material[i]) * whole(light)) >> 8) as u8
+            let lit = (i32::from(material[i]) * whole(light[i])) >> 8;
+            (lit + i32::from(highlight[i])).min(255) as u8
         })
     }
 }
 
-/// The cosine of the angle between the normal at the point `from_centre` of a sphere and a direction: 8 fraction bits,
-/// rounded down, 0 if negative, at most 256.
-fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i32 {
+/// The luminance of a colour in all channels.
+fn grey(colour: Rgb) -> Rgb {
+    [luminance(colour); 3]
+}
+
+/// Converts a direction from 14 to 16 fraction bits.
+fn widened(direction: [i16; 3]) -> [i32; 3] {
+    direction.map(|x| i32::from(x) << 2)
+}
+
+/// A sum of colours with shares, with 8 fraction bits.
+struct Sum([i32; 3]);
+
+impl Sum {
+    fn of(colour: Rgb) -> Self {
+        Self(colour.map(|part| i32::from(part) << 8))
+    }
+
+    /// Adds a colour times a share with 8 fraction bits.
+    fn add(&mut self, colour: Rgb, share: i32) {
+        for (sum, part) in self.0.iter_mut().zip(colour) {
+            *sum += share * i32::from(part);
+        }
+    }
+
+    /// The sum, rounded down, 255 at most.
+    fn colour(&self) -> Rgb {
+        self.0.map(|part| (part >> 8).clamp(0, 255) as u8)
+    }
+}
+
+/// The cosine of the angle between the normal at the point `from_centre` of a sphere and a direction: 16 fraction bits, rounded down in
+/// magnitude, at most 1 in magnitude. The complement stands for a negative number, as in the gateware.
+fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i64 {
     let product: i64 = core::iter::zip(from_centre, direction)
         .map(|(a, b)| i64::from(a) * i64::from(b))
         .sum();
+    let sign = product >> 63;
     // A direction has length 1 and 16 fraction bits, so a shift by floor(log2 radius) leaves 17 bits of the product for
     // a point on the sphere.
-    let size = (product.max(0) >> sphere.shift).min((1 << 17) - 1);
-    ((size * i64::from(sphere.inverse)) >> 25).min(256) as i32
+    let size = ((product ^ sign) >> sphere.shift).min((1 << 17) - 1);
+    ((size * i64::from(sphere.inverse)) >> 17).min(1 << 16) ^ sign
 }

@@ -5,7 +5,7 @@ use glint_core::field::Field;
 use glint_core::light::{Background, Lighting, Material};
 
 use super::exits::Exits;
-use super::lights::{Light, Lights};
+use super::lights::Lights;
 
 /// The colours of a frame, computed from materials and lights; eight bits per channel. With two eyes the colours are grey: all channels
 /// have the luminance.
@@ -94,18 +94,9 @@ impl Palette {
     #[must_use]
     pub fn grey(self) -> Self {
         let grey = |colour| [luminance(colour); 3];
-        let lights = Lights {
-            ambient: grey(self.lights.ambient),
-            list: self.lights.list.map(|light| Light {
-                colour: grey(light.colour),
-                ..light
-            }),
-            materials: self.lights.materials.map(grey),
-            ..self.lights
-        };
         Self {
             faces: self.faces.map(grey),
-            lights,
+            lights: self.lights.grey(),
             undecided: grey(self.undecided),
             zenith: grey(self.zenith),
             horizon: grey(self.horizon),

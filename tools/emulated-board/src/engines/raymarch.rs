@@ -80,9 +80,10 @@ impl Raymarcher {
         let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
         let solid = Solid::from_bits(self.parameters.word(offset::SOLID));
         let cones = self.cones.of(solid);
-        let palette = palette(&self.parameters, &self.spheres, &self.tables);
+        let is_stereo = setup.stereo.is_some();
+        let palette = palette(&self.parameters, &self.spheres, &self.tables, is_stereo);
         let (stats, hidden) = rows::render(&Tracer::new(&setup, cones), &palette, target);
-        let eyes = 1 + u32::from(setup.stereo.is_some());
+        let eyes = 1 + u32::from(is_stereo);
         let lanes = if setup.exits().is_some() { LANES } else { 1 };
         let work = (stats.evaluations / lanes).max(stats.rays.into());
         let cycles = work + LATENCY;
@@ -168,6 +169,8 @@ impl Device for Raymarcher {
                 .with_round(true)
                 .with_lattice(true)
                 .with_blend(true)
+                .with_normals(true)
+                .with_highlight(true)
                 .with_flat((1 << Kind::ALL.len()) - 1)
                 .bits(),
             offset::CONTROL => self.control.bits(),

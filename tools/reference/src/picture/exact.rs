@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::light::{Light, Lighting, Material, Rgb};
+use glint_core::light::{Light, Material, Rgb};
 use glint_core::matrix::Matrix;
 use glint_core::mesh::{Chunk, Triangle};
 use glint_core::stereo::Tint;
@@ -294,8 +294,7 @@ fn barycentric([a, b, c]: [Vector; 3], point: Vector) -> Vector {
 
 /// A field, its light and its colours in f64.
 struct Appeared {
-    faces: Lit,
-    spheres: Lit,
+    light: Lit,
     sky: [Vector; 2],
     density: f64,
     is_round: bool,
@@ -318,19 +317,16 @@ fn draw_field(
         "expected no union"
     );
     let lighting = appearance.lighting();
-    let day = Lighting::day();
-    // Spheres of the material `normal` are in daylight if no light is set.
-    let of_spheres = match appearance.material {
-        Material::Normal if lighting.lights.is_empty() => &day,
-        _ => &lighting,
-    };
-    let lit_by = |Lighting { ambient, lights }: &Lighting| Lit {
-        ambient: share(*ambient),
-        lights: lights.iter().map(|light| lit(light, camera)).collect(),
-    };
+    ensure!(!appearance.has_highlight(), "expected no highlight");
     let appeared = Appeared {
-        faces: lit_by(&lighting),
-        spheres: lit_by(of_spheres),
+        light: Lit {
+            ambient: share(lighting.ambient),
+            lights: lighting
+                .lights
+                .iter()
+                .map(|light| lit(light, camera))
+                .collect(),
+        },
         sky: appearance
             .field_background()
             .colours()
@@ -387,18 +383,20 @@ fn field_pixel(
     } else {
         0
     };
-    let (colour, light) = match hit.face {
+    let colour = match hit.face {
         Face::Axis { axis, positive } => {
-            let face = 2 * axis + usize::from(positive);
-            (material.faces()[face], &appeared.faces)
+            material.faces()[2 * axis + usize::from(positive)].map(f64::from)
         }
         Face::Diagonal { positive } => {
             let face = (0..3).map(|i| usize::from(positive[i]) << i).sum::<usize>();
-            (material.octants()[face], &appeared.faces)
+            material.octants()[face].map(f64::from)
         }
-        Face::Round | Face::Inside => (material.spheres()[sphere], &appeared.spheres),
+        Face::Round | Face::Inside if material == Material::Normal => {
+            hit.normal.map(|part| 130.0 + 95.0 * part)
+        }
+        Face::Round | Face::Inside => material.spheres()[sphere].map(f64::from),
     };
-    let lit = product(colour.map(f64::from), light.on(hit.normal));
+    let lit = product(colour, appeared.light.on(hit.normal));
     Pixel {
         seen: Seen::Surface {
             face: hit.face,

@@ -5,7 +5,7 @@ use glint_core::field::{Field, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
 use glint_model::raymarch::{
-    FieldOptions, FieldSetup, Form, Light, Lights, Marching, Stereo, Tint,
+    FieldOptions, FieldSetup, Form, Light, Lights, Marching, Shine, Stereo, Tint,
 };
 
 use glint_vectors::{Camera, Random};
@@ -153,18 +153,30 @@ pub fn stereo(random: &mut Random) -> Stereo {
 }
 
 /// Makes random lights and materials.
-pub fn lights(random: &mut Random) -> Lights {
+pub fn lights(random: &mut Random, is_stereo: bool) -> Lights {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);
     let materials = [0; 8].map(|_| colour());
     let ambient = colour();
     let colours = [0; 4].map(|_| colour());
+    let shine = colour();
+    let mut light = |colour| Light {
+        direction: random.direction().map(|x| (x * 65535.0) as i32),
+        colour,
+    };
+    let list = colours.map(&mut light);
+    let light = light(shine);
+    let normals = random.coin().then(|| Lights::components(is_stereo));
+    let fewest = if normals.is_some() { 0 } else { 1 };
+    let count = random.integer(fewest, 4) as usize;
     Lights {
         ambient,
-        list: colours.map(|colour| Light {
-            direction: random.direction().map(|x| (x * 65535.0) as i32),
-            colour,
+        list,
+        count,
+        normals,
+        highlight: (count != 0 && random.coin()).then(|| Shine {
+            light,
+            steepness: random.integer(256, 6952) as u16,
         }),
-        count: random.integer(1, 4) as usize,
         materials,
     }
 }

@@ -219,18 +219,21 @@ fn round(register: SolidRegister, spheres: &Spheres) -> FixedSpheres {
 }
 
 /// The colours and tables for the pixels of the field.
-pub fn palette(parameters: &Parameters, spheres: &Spheres, tables: &Tables) -> Palette {
+pub fn palette(
+    parameters: &Parameters,
+    spheres: &Spheres,
+    tables: &Tables,
+    is_stereo: bool,
+) -> Palette {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let colours: [[u8; 3]; 8] =
         std::array::from_fn(|number| colour(parameters.word(offset::COLOUR_0 + 4 * number as u32)));
     let [a, b, c, d, e, f, undecided, zenith] = colours;
     let [g, h] = spheres.faces;
     let [fog, occlusion] = *tables;
-    let mut lights = spheres.lights;
-    lights.count = usize::from(register.last_light()) + 1;
     Palette {
         faces: [a, b, c, d, e, f, g, h],
-        lights,
+        lights: spheres.lights(register.last_light(), is_stereo),
         undecided,
         zenith,
         horizon: colour(parameters.word(offset::HORIZON)),

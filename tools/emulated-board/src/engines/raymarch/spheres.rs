@@ -2,15 +2,18 @@
 
 use glint_core::field::{FixedSphere, MAX_SPHERES};
 use glint_core::light::MAX_LIGHTS;
-use glint_model::raymarch::{Blend, Light, Lights};
+use glint_model::raymarch::{Blend, Light, Lights, Shine};
 use litex_pac::raymarch::Sphere;
 use litex_pac::register::Value;
 
 /// The constants that writes to the register have set.
 pub struct Spheres {
     pub list: [FixedSphere; MAX_SPHERES],
-    pub lights: Lights,
+    lights: Lights,
     pub blend: Blend,
+    /// The kinds of light: bit 0 is set for colours by normals, bit 1 for lights, bit 2 for a highlight.
+    kinds: u32,
+    highlight: Shine,
     /// Colours of the faces 6 and 7 of a field with eight faces.
     pub faces: [[u8; 3]; 2],
     /// The constants that the next write to an entry of `list` stores.
@@ -26,10 +29,30 @@ impl Spheres {
                 list: [Light::default(); MAX_LIGHTS],
                 count: 1,
                 materials: [[0; 3]; MAX_SPHERES],
+                normals: None,
+                highlight: None,
             },
+            kinds: 0,
+            highlight: Shine::default(),
             blend: Blend::default(),
             faces: [[0; 3]; 2],
             next: FixedSphere::default(),
+        }
+    }
+
+    /// The lights of a frame whose lights have the numbers 0 to `last`, with one eye or two.
+    pub fn lights(&self, last: u8, is_stereo: bool) -> Lights {
+        let [has_normals, is_lit, has_highlight] = [0, 1, 2].map(|bit| self.kinds >> bit & 1 != 0);
+        Lights {
+            // Without colours by normals there is always a light.
+            count: if is_lit || !has_normals {
+                usize::from(last) + 1
+            } else {
+                0
+            },
+            normals: has_normals.then(|| Lights::components(is_stereo)),
+            highlight: has_highlight.then_some(self.highlight),
+            ..self.lights
         }
     }
 
@@ -60,6 +83,12 @@ impl Spheres {
                 }
             }
             32 | 33 => self.faces[entry - 32] = colour(value),
+            34..=36 => self.highlight.light.direction[entry - 34] = signed(18),
+            37 => {
+                self.kinds = value & 7;
+                self.highlight.steepness = (value >> 8 & 0x1FFF) as u16;
+            }
+            38 => self.highlight.light.colour = colour(value),
             _ => {}
         }
     }

@@ -6,7 +6,7 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, U4_28};
-use glint_core::light::{Background, Light, Material};
+use glint_core::light::{Background, Highlight, Light, Material};
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
@@ -143,6 +143,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
             .into_iter()
             .collect(),
         ambient: Some([0x30, 0x20, 0x28]),
+        highlight: Highlight::parse("0.7,20"),
         background: Some(Background::Sky),
         fog: U4_28::lit("0.2"),
         occlusion: true,
