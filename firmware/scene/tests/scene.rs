@@ -103,6 +103,8 @@ fn line() -> impl Strategy<Value = String> {
             "background sky",
             "background default",
             "background 405060",
+            "highlight off",
+            "highlight 0.6,32",
             "fog off",
             "clip off",
             "winding screen",
@@ -117,7 +119,8 @@ fn line() -> impl Strategy<Value = String> {
             "quality exact"
         ])
         .prop_map(str::to_owned),
-        word(&["normal", "jade", "clay"]).prop_map(|material| format!("material {material}")),
+        word(&["normal", "mixed", "jade", "clay"])
+            .prop_map(|material| format!("material {material}")),
         (number(-640, 640), number(1, 640)).prop_map(|(x, y)| format!("light {x},{y},1,ff8040")),
         number(1, 1024).prop_map(|fog| format!("fog {fog}")),
         number(1, 1024).prop_map(|far| format!("clip {far}")),

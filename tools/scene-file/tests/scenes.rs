@@ -352,15 +352,16 @@ fn needs_follow_from_the_keys() {
         model = "cube"; winding = "screen" → --blocks scanout triangle --no-geometry
         model = "cube"; edges = "over"; clip = 10 → --blocks scanout triangle line
         field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
-        field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres --lanes 1
+        field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres,normals --lanes 1
+        field = "sphere:1"; material = "jade"; highlight = "0.5,9" → --blocks scanout raymarch --no-depths --fields spheres,highlight --lanes 2
         field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
         field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box --lanes 2
         field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2
         model = "cube"; stereo = "0.1,4" → --blocks scanout triangle
         model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --fields octahedron --lanes 2
-        field = "lattice:2,0.5" → --blocks scanout raymarch --no-depths --fields lattice --lanes 2
-        field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres --lanes 2
-        field = "smooth:0.3,box:1,1,0.2+sphere:1" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
+        field = "lattice:2,0.5"; material = "sky" → --blocks scanout raymarch --no-depths --fields lattice --lanes 2
+        field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres,normals --lanes 2
+        field = "smooth:0.3,box:1,1,0.2+sphere:1"; material = "sky" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
         field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --fields menger:2 --lanes 2
     "#;
     for (text, expected) in rows(table) {
@@ -391,6 +392,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         model = "torus"; edges = "over" → edges mesh view
         object = "torus"; light = "1,1,1" → light mesh object view
         model = "torus"; steer = "gesture on" → gesture mesh view
+        field = "menger:3"; highlight = "0.5,9"; material = "jade" → field light view
         field = "menger:3"; steer = "imu orbit" → field imu view
         field = "menger:3"; animate = "azimuth 30" → animate field view
         field = "menger:2"; model = "torus" → field mesh mesh-in-field view

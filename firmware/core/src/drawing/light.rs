@@ -2,7 +2,7 @@
 //!
 //! Faces perpendicular to the axes have only six directions, so their six lit colours are computed once per frame, and no
 //! lighting is computed per pixel. Spheres are lit per pixel, and meshes per triangle or vertex, in `glint-model` and in the
-//! gateware. Light depends only on the angle between the normal and the direction to the light; there are no shadows.
+//! gateware. Light depends only on the angles between the normal, the direction to the light and that to the camera; there are no shadows.
 
 use core::fmt;
 

@@ -31,7 +31,7 @@ const MISTAKES: &str = r#"
     stereo 0.05
         stereo: 0.05: expected E,ZERO[,red-blue|red-cyan]
     material wood
-        material: MATERIAL is "wood" (column 10): expected normal or clay or jade or sky or gold or ivory or slate
+        material: MATERIAL is "wood" (column 10): expected normal or mixed or clay or jade or sky or gold or ivory or slate
     light 1,2
         light: 1,2: expected X,Y,Z[,RRGGBB] or camera[,RRGGBB]
     ambient fff
