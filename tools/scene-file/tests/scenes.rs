@@ -194,7 +194,7 @@ fn refused_files() {
             [budget]; watts = 3 → line 5: budget: `watts`: expected a limit, one of lut, ff
             up = "y" → line 4: up: expected only without camera, found it in line 3
             material = "normal" → line 4: material: `"normal"`: expected a material of one colour on meshes
-            material = "wood" → line 4: material = `wood`: material: MATERIAL is "wood" (column 10): expected normal or clay
+            material = "wood" → line 4: material = `wood`: material: MATERIAL is "wood" (column 10): expected normal or mixed or clay
             material = "jade"; edges = "over" → line 4: material: `"jade"`: expected a mesh with faces, without the key edges
             steer = "orbt 60" → line 4: steer: `"orbt 60"`: expected fixed, buttons, orbit FRAMES
             [budget]; lut = "3" → budget.lut: `"3"`: expected a number above 0
