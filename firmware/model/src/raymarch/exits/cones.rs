@@ -13,10 +13,11 @@
 
 use glint_core::feature::SPHERES;
 use glint_core::field::{FixedSphere, MAX_SPHERES};
+use glint_core::vector::cross;
 
 use super::narrow::{nearest, saturated};
 use super::rectangle::Rectangle;
-use super::vectors::{Scaled, Vector, across, dot, unit};
+use super::vectors::{Scaled, Vector, bits, perpendicular, product, rounded, unit};
 
 /// Bits of the magnitude of a change per column or row.
 const STEP: u32 = 24;
@@ -107,7 +108,7 @@ pub(super) struct Sight {
     /// Direction D of the first ray, and its changes per column and row, s2.30.
     directions: [Vector; 3],
     /// The parameter T of the near plane, u14.14, slightly behind it: a sphere's hit that is rounded to before the plane is in the disc.
-    near: i64,
+    near: Scaled,
     /// T for the hits in a disc: that of the near plane, or larger by at most 2^−16.
     disc: Scaled,
     /// The near plane's normal, and two axes in it; the second is perpendicular to the change per column.
@@ -116,179 +117,201 @@ pub(super) struct Sight {
     point: Vector,
 }
 
+/// A pixel and the direction D of its ray.
+struct Pixel {
+    column: u32,
+    row: u32,
+    direction: Vector,
+}
+
 impl Sight {
     /// What an eye at `origin` sees, with the near plane at the parameter `near`, u14.14.
     pub(super) fn new(origin: [i32; 3], directions: [Vector; 3], near: i64) -> Self {
         let [first, step, down] = directions;
         // A picture of a single ray has no such axes.
-        let normal = match across(step, down) {
-            [0, 0, 0] => unit(first),
+        let normal = match cross(step, down) {
+            [0, 0, 0] => unit(first.map(i64::from)),
             normal => unit(normal),
         };
         let a = match step {
-            [0, 0, 0] => unit(across(normal, smallest_axis(normal))),
-            step => unit(step),
+            [0, 0, 0] => perpendicular(&normal, &step),
+            step => unit(step.map(i64::from)),
         };
-        let b = unit(across(normal, a));
+        let b = perpendicular(&normal, &a);
         let behind = near + (near >> 16);
         let margin = Scaled::new((1 << 17) + 1, -17);
         Self {
             origin,
             directions,
-            near: behind,
-            disc: Scaled::new(near, -14).by(margin),
+            near: Scaled::new(behind.cast_unsigned(), -14),
+            disc: Scaled::new(near.cast_unsigned(), -14).by(margin),
             plane: [normal, a, b],
-            point: first.map(|part| nearest(behind * part, 28)),
+            point: first.map(|part| nearest(behind * i64::from(part), 28) as i32),
         }
     }
 
-    /// Computes the cones of a sphere, each of which a pixel sees only in a rectangle.
-    pub(super) fn cones(
-        &self,
-        number: u8,
-        sphere: &FixedSphere,
-        rectangle: Rectangle,
-        take: &mut dyn FnMut(Cone),
-    ) {
-        if rectangle.is_empty() {
+    /// Computes the cones of a sphere, whose number and rectangle are those of `cone`.
+    pub(super) fn cones(&self, sphere: &FixedSphere, cone: &mut Cone, take: &mut dyn FnMut(&Cone)) {
+        if cone.rectangle.is_empty() {
             return;
         }
-        let cones = [
-            self.outline(sphere, &rectangle),
-            self.disc(sphere, &rectangle),
-        ];
-        for cone in cones.into_iter().flatten() {
-            take(Cone {
-                number,
-                rectangle,
-                ..cone
-            });
+        // From the centre to the eye.
+        let place = [0, 1, 2].map(|i: usize| self.origin[i] - sphere.centre[i]);
+        let middle = self.pixel(cone.rectangle.middle());
+        if self.outline(cone, &place, sphere.radius, &middle) {
+            take(cone);
         }
-    }
-
-    /// The vector from a sphere's centre to the eye.
-    fn place(&self, sphere: &FixedSphere) -> Vector {
-        [0, 1, 2].map(|i: usize| i64::from(self.origin[i]) - i64::from(sphere.centre[i]))
-    }
-
-    /// The cone around a sphere; `None` for an eye inside.
-    fn outline(&self, sphere: &FixedSphere, rectangle: &Rectangle) -> Option<Cone> {
-        let q = self.place(sphere);
-        let radius = i64::from(sphere.radius.max(1));
-        let beyond = dot(q, q) - radius * radius;
-        if beyond < 0 {
-            return None;
-        }
-        let [_, step, _] = self.directions;
-        let forward = unit(q.map(|part| -part));
-        let side = match across(forward, step) {
-            // The direction does not change in the row, or it changes towards the centre.
-            [0, 0, 0] => across(forward, smallest_axis(forward)),
-            side => side,
-        };
-        let b = unit(side);
-        let a = unit(across(b, forward));
-        let length = Scaled::root(dot(q, q), -24);
-        let radius = Scaled::new(radius, -12);
-        let factor = Scaled::root(beyond, -24).over(radius);
-        let (cone, halvings) = self.cone(rectangle, [a, b], factor, [0, 0]);
-        let one = Scaled::ONE.halved(halvings);
-        Some(Cone {
-            forward: self.linear(rectangle, forward, one, 0, 0),
-            share: radius.over(length).fixed(SHARE).min((1 << SHARE) - 1),
-            distance: distance(Scaled::new(beyond, -24).over(length).halved(halvings)),
-            ..cone
-        })
-    }
-
-    /// The disc that is the part of a sphere in the near plane; `None` if the plane does not cut the sphere.
-    fn disc(&self, sphere: &FixedSphere, rectangle: &Rectangle) -> Option<Cone> {
-        let [normal, a, b] = self.plane;
-        // From the centre to the eye, and to the first ray's point in the plane, with 16 fraction bits.
-        let q = self.place(sphere).map(|part| part << 4);
+        // From the centre to the eye, with 16 fraction bits, and from the centre to the near plane.
+        let q = place.map(|part| part << 4);
         let point = [0, 1, 2].map(|i: usize| q[i] + self.point[i]);
+        let depth = rounded(product(&point, &self.plane[0]), 30);
         let radius = i64::from(sphere.radius) << 4;
-        let depth = along(point, normal);
-        if depth.abs() >= radius {
-            return None;
+        if depth.abs() < radius {
+            self.disc(cone, &q, radius * radius - depth * depth, &middle);
+            take(cone);
         }
-        let radius = Scaled::root(radius * radius - depth * depth, -32);
+    }
+
+    /// A pixel and its ray.
+    fn pixel(&self, [column, row]: [u32; 2]) -> Pixel {
+        let [first, step, down] = &self.directions;
+        Pixel {
+            column,
+            row,
+            direction: [0, 1, 2].map(|i: usize| {
+                let across = step[i].wrapping_mul(column as i32);
+                let down = down[i].wrapping_mul(row as i32);
+                first[i].wrapping_add(across).wrapping_add(down)
+            }),
+        }
+    }
+
+    /// Sets the numbers of the cone around a sphere, from whose centre `q` leads to the eye. Returns `false` for an eye inside.
+    fn outline(&self, cone: &mut Cone, q: &Vector, radius: i32, middle: &Pixel) -> bool {
+        let radius = i64::from(radius.max(1));
+        let square = product(q, q);
+        let beyond = square - radius * radius;
+        if beyond < 0 {
+            return false;
+        }
+        let forward = unit(q.map(|part| -i64::from(part)));
+        // The direction does not change in the row, or it changes towards the centre: then any perpendicular one.
+        let b = perpendicular(&forward, &self.directions[1]);
+        let a = perpendicular(&b, &forward);
+        // Quotients and roots are products with reciprocals of roots; that of the radius is also the root of its square.
+        let reciprocal = |square: i64| Scaled::inverse_root(square.cast_unsigned(), -24);
+        let inverse_length = reciprocal(square);
+        let inverse_radius = reciprocal(radius * radius);
+        let dividend = Scaled::new(beyond.cast_unsigned(), -24);
+        let factor = match beyond {
+            0 => dividend,
+            _ => dividend.by(reciprocal(beyond)).by(inverse_radius),
+        };
+        let halvings = self.set_sides(cone, middle, [&a, &b], factor, [0, 0]);
+        let [_, step, down] = &self.directions;
+        let one = Function {
+            axis: &forward,
+            factor: Scaled::ONE,
+            offset: 0,
+        };
+        let changes = [one.change(step), one.change(down)];
+        cone.forward = one.words(middle, changes, 0, halvings);
+        let radius = Scaled::new(radius.cast_unsigned(), -12);
+        cone.share = radius.by(inverse_length).fixed(SHARE).min((1 << SHARE) - 1);
+        cone.distance = distance(dividend.by(inverse_length).halved(halvings));
+        true
+    }
+
+    /// Sets the numbers of the cone of a disc in the near plane. `q` leads from the sphere's centre to the eye, with 16 fraction bits. `square`
+    /// is the square of the disc's radius, with 32 fraction bits.
+    // Not inlined, because most spheres do not reach the near plane.
+    #[inline(never)]
+    fn disc(&self, cone: &mut Cone, q: &Vector, square: i64, middle: &Pixel) {
+        let [_, a, b] = &self.plane;
+        let inverse_radius = Scaled::inverse_root(square.cast_unsigned(), -32);
         // From the centre to the eye, along a and b, in radii of the disc.
         let offsets = [a, b].map(|axis| {
-            let offset = along(q, axis);
-            let size = Scaled::new(offset.abs(), -16).over(radius);
+            let offset = rounded(product(q, axis), 30);
+            let size = Scaled::new(offset.unsigned_abs(), -16).by(inverse_radius);
             size.fixed(FRACTION) * offset.signum()
         });
-        let factor = Scaled::new(self.near, -14).over(radius);
-        let (cone, halvings) = self.cone(rectangle, [a, b], factor, offsets);
-        let forward = Linear {
+        let factor = self.near.by(inverse_radius);
+        let halvings = self.set_sides(cone, middle, [a, b], factor, offsets);
+        cone.forward = Linear {
             first: 1 << (FRACTION - halvings),
             ..Linear::default()
         };
+        cone.share = 0;
         // All rays have one divisor, 2^22 and a half if there are no halvings.
         let divisor = Scaled::new((1 << (23 - halvings)) + 1, -23);
-        Some(Cone {
-            forward,
-            distance: distance(self.disc.by(divisor)),
-            ..cone
-        })
+        cone.distance = distance(self.disc.by(divisor));
     }
 
-    /// A cone with the sides `factor`·(axis·D) + offset, and the number of halvings that make their words fit.
-    fn cone(
+    /// Sets the sides `factor`·(axis·D) + offset of a cone. Returns the number of times that the cone's numbers are halved, so that they fit
+    /// their words.
+    #[inline(never)]
+    fn set_sides(
         &self,
-        rectangle: &Rectangle,
-        axes: [Vector; 2],
+        cone: &mut Cone,
+        middle: &Pixel,
+        axes: [&Vector; 2],
         factor: Scaled,
         offsets: [i64; 2],
-    ) -> (Cone, u32) {
-        let [_, step, down] = self.directions;
-        let steps = axes.map(|axis| [step, down].map(|step| factor.times(dot(axis, step)).abs()));
-        let most = steps.as_flattened().iter().fold(0, |all, step| all | step);
-        let excess = (64 - most.leading_zeros()).saturating_sub(STEP);
-        let shift = excess.next_multiple_of(2).min(MOST_SHIFT);
-        let largest = offsets.iter().fold(1, |all, offset| all | offset.abs());
-        let side = factor.log2().max(largest.ilog2() as i32 - FRACTION as i32);
-        let halvings = (excess.saturating_sub(MOST_SHIFT) as i32)
+    ) -> u32 {
+        let [_, step, down] = &self.directions;
+        let sides = [0, 1].map(|i: usize| Function {
+            axis: axes[i],
+            factor,
+            offset: offsets[i],
+        });
+        let [a, b] = &sides;
+        // The second axis is perpendicular to the change per column.
+        let changes = [[a.change(step), a.change(down)], [0, b.change(down)]];
+        let sizes = changes.as_flattened().iter().map(|x| x.unsigned_abs());
+        let excess = (bits(sizes.fold(0, |all, size| all | size)) - STEP as i32).max(0);
+        cone.shift = excess.cast_unsigned().next_multiple_of(2).min(MOST_SHIFT);
+        let largest = offsets.iter().fold(1, |all, x| all | x.unsigned_abs());
+        let side = factor.log2().max(bits(largest) - 1 - FRACTION as i32);
+        let halvings = (excess - MOST_SHIFT as i32)
             .max(side + 1 - MOST_SIDE)
             .clamp(0, MOST_HALVINGS) as u32;
-        let factor = factor.halved(halvings);
-        let side = |i: usize| {
-            let offset = nearest(offsets[i], halvings as i32);
-            self.linear(rectangle, axes[i], factor, offset, shift)
-        };
-        let [a, b] = [side(0), side(1)];
-        let cone = Cone {
-            // The second axis is perpendicular to the change per column.
-            sides: [a, Linear { across: 0, ..b }],
-            shift,
-            ..Cone::default()
-        };
-        (cone, halvings)
+        for ((words, side), changes) in cone.sides.iter_mut().zip(&sides).zip(changes) {
+            *words = side.words(middle, changes, cone.shift, halvings);
+        }
+        halvings
+    }
+}
+
+/// The function `factor`·(axis·D) + offset of a direction D.
+struct Function<'a> {
+    axis: &'a Vector,
+    factor: Scaled,
+    /// 30 fraction bits.
+    offset: i64,
+}
+
+impl Function<'_> {
+    /// Its change with D, 30 fraction bits.
+    fn change(&self, step: &Vector) -> i64 {
+        self.factor.times(product(self.axis, step))
     }
 
-    /// `factor`·(axis·D) + offset, with changes in units of 2^`shift`. Rounding of the changes has the smallest effect in the middle of the
-    /// rectangle.
-    fn linear(
-        &self,
-        rectangle: &Rectangle,
-        axis: Vector,
-        factor: Scaled,
-        offset: i64,
-        shift: u32,
-    ) -> Linear {
-        let [first, step, down] = self.directions;
-        let [column, row] = rectangle.middle().map(i64::from);
-        let middle = [0, 1, 2].map(|i: usize| first[i] + column * step[i] + row * down[i]);
-        let change = |step| saturated(nearest(factor.times(dot(axis, step)), shift as i32), STEP);
-        let mut linear = Linear {
+    /// Its numbers, given its changes per column and row, after `halvings`, with its changes in units of 2^`shift`. Rounding of the changes
+    /// has the smallest effect in the middle of a sphere's rectangle.
+    #[inline(never)]
+    fn words(&self, middle: &Pixel, changes: [i64; 2], shift: u32, halvings: u32) -> Linear {
+        let lost = (halvings + shift) as i32;
+        let [across, down] = changes.map(|change| saturated(rounded(change, lost), STEP));
+        let changes = Linear {
             first: 0,
-            across: change(step),
-            down: change(down),
+            across,
+            down,
         };
-        let [column, row] = rectangle.middle();
-        linear.first = factor.times(dot(axis, middle)) + offset - linear.at(column, row, shift);
-        linear
+        let there = self.change(&middle.direction) + self.offset;
+        Linear {
+            first: rounded(there, halvings as i32) - changes.at(middle.column, middle.row, shift),
+            ..changes
+        }
     }
 }
 
@@ -299,16 +322,4 @@ fn distance(exact: Scaled) -> (i64, u32) {
     let mantissa = exact.fixed_at(exponent - DISTANCE_OFFSET);
     let mantissa = mantissa + (mantissa >> 19);
     (mantissa.min((1 << DISTANCE) - 1), exponent as u32)
-}
-
-/// The axis along which a vector is shortest.
-fn smallest_axis(vector: Vector) -> Vector {
-    let sizes = vector.map(i64::abs);
-    let axis = (0..3).min_by_key(|&i| sizes[i]).unwrap_or_default();
-    [0, 1, 2].map(|i: usize| i64::from(i == axis))
-}
-
-/// The component of a vector along a unit vector.
-fn along(vector: Vector, axis: Vector) -> i64 {
-    nearest(dot(vector, axis), 30)
 }

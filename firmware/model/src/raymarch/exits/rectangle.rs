@@ -2,7 +2,9 @@
 
 use glint_core::camera::View;
 use glint_core::field::units;
-use glint_core::fixed::{Q2_23, Q32_32};
+use glint_core::fixed::Q32_32;
+
+use super::vectors::{Scaled, product};
 
 /// Columns of a group. Rectangles consist of whole groups: the gateware finds the spheres of a group at once.
 const GROUP: u32 = 8;
@@ -47,63 +49,89 @@ impl Rectangle {
             rows: [0, height - 1],
         }
     }
+}
 
-    /// A rectangle around the pixels of a picture of this size that may see a sphere. `centre` and `radius` are in field units with 12
-    /// fraction bits, `scale` is the number of field units per world unit.
-    pub(super) fn around(
-        centre: [i32; 3],
-        radius: i32,
-        view: &View,
-        scale: Q32_32,
-        [width, height]: [u32; 2],
-    ) -> Self {
+/// The screen of an eye.
+pub(super) struct Screen {
+    /// The eye in field units, s13.12.
+    eye: [i32; 3],
+    /// The camera's axes u, v and n, s2.23.
+    axes: [[i32; 3]; 3],
+    /// Half the width of the picture at distance 1, u7.12.
+    half_width: i32,
+    /// Shift of the picture along u at distance 1, s3.12.
+    shift: i32,
+    /// Width and height in pixels.
+    size: [u32; 2],
+}
+
+impl Screen {
+    /// The screen of a camera for pictures of this size. `scale` is the number of field units per world unit.
+    pub(super) fn new(view: &View, scale: Q32_32, size: [u32; 2]) -> Self {
+        let axes = [view.u(), view.v(), view.n()];
+        Self {
+            eye: view.eye().map(|x| units(x, scale) as i32),
+            axes: axes.map(|axis| axis.map(|part| part.to_bits())),
+            half_width: ((view.half_width().to_bits() >> 16) as i32).max(1),
+            shift: view.shift().to_bits() >> 16,
+            size,
+        }
+    }
+
+    /// A rectangle around the pixels that may see a sphere. `centre` and `radius` are in field units with 12 fraction bits.
+    pub(super) fn around(&self, centre: [i32; 3], radius: i32) -> Rectangle {
         // The camera's axes may be longer than 1 by 10^−4.
-        let radius = i64::from(radius) + (i64::from(radius) >> 10) + 4;
-        let eye = view.eye().map(|x| units(x, scale));
-        let along = |axis: [Q2_23; 3]| -> i64 {
-            let sum: i64 = (0..3)
-                .map(|i| i64::from(axis[i].to_bits()) * (i64::from(centre[i]) - eye[i]))
-                .sum();
-            sum >> 23
-        };
-        let depth = along(view.n());
+        let radius = radius + (radius >> 10) + 4;
+        let place = [0, 1, 2].map(|i: usize| centre[i] - self.eye[i]);
+        // Of 26 bits at most.
+        let [right, down, depth] = self.axes.map(|axis| (product(&axis, &place) >> 23) as i32);
         if depth <= radius {
             // The sphere reaches the plane of the eye, or is behind it.
             return match depth < -radius {
-                true => Self::NONE,
-                false => Self::all([width, height]),
+                true => Rectangle::NONE,
+                false => Rectangle::all(self.size),
             };
         }
-        // Slopes of the two planes through the eye that touch the sphere, 12 fraction bits. Coordinates have 25 bits at most.
-        let divisor = depth * depth - radius * radius;
-        let slopes = |side: i64| {
-            let root = (side * side + divisor).max(0).isqrt();
-            [-1, 1].map(|sign| {
-                let dividend = side * depth + sign * radius * (root + 1);
-                // A dividend has 48 bits. A slope of 2^8 is far beyond the widest camera.
-                ((dividend << 12) / divisor.max(1)).clamp(-1 << 20, 1 << 20)
+        // Slopes of the two planes through the eye that touch the sphere, 12 fraction bits.
+        let wide = |a: i32, b: i32| i64::from(a) * i64::from(b);
+        let divisor = wide(depth, depth) - wide(radius, radius);
+        let reciprocal = |square: i64| Scaled::inverse_root(square.cast_unsigned(), 0);
+        let inverse_root = reciprocal(divisor);
+        let inverse = inverse_root.by(inverse_root);
+        let slopes = |side: i32| {
+            let square = wide(side, side) + divisor;
+            let root = Scaled::new(square.cast_unsigned(), 0).by(reciprocal(square));
+            // The root is rounded.
+            let reach = wide(radius, root.fixed(0) as i32 + 2);
+            [-reach, reach].map(|reach| {
+                let dividend = wide(side, depth) + reach;
+                let slope = Scaled::new(dividend.unsigned_abs(), 0)
+                    .by(inverse)
+                    .fixed(12);
+                // A slope of 2^8 is far beyond the widest camera.
+                let slope = slope.min(1 << 20) as i32;
+                if dividend < 0 { -slope } else { slope }
             })
         };
-        let half_width = view.half_width().to_bits() as i64 >> 16;
-        let range = |slopes: [i64; 2], count: u32| {
-            let pixel = |slope: i64| {
-                (slope * i64::from(width) / 2).div_euclid(half_width.max(1)) + i64::from(count) / 2
+        let [width, height] = self.size;
+        let range = |slopes: [i32; 2], count: u32| {
+            let pixel = |slope: i32| {
+                (slope * width as i32 / 2).div_euclid(self.half_width) + (count / 2) as i32
             };
             // A slope is rounded, and so are the camera's axes.
-            let margin = 2 + i64::from(width) / half_width.max(1);
+            let margin = 2 + width as i32 / self.half_width;
             let [first, last] = slopes.map(pixel);
-            let most = i64::from(count) - 1;
+            let most = count as i32 - 1;
             let (first, last) = (first - margin, last + margin);
             match first > most || last < 0 {
                 true => [1, 0],
                 false => [first.clamp(0, most) as u32, last.clamp(0, most) as u32],
             }
         };
-        let shift = i64::from(view.shift().to_bits()) >> 16;
-        let [first, last] = range(slopes(along(view.u())).map(|slope| slope - shift), width);
-        Self {
+        let [first, last] = range(slopes(right).map(|slope| slope - self.shift), width);
+        Rectangle {
             columns: [first / GROUP * GROUP, last | (GROUP - 1)],
-            rows: range(slopes(along(view.v())), height),
+            rows: range(slopes(down), height),
         }
     }
 }

@@ -12,7 +12,7 @@ use glint_core::stereo::Stereo;
 use super::cones::{Cone, Cones, Sight};
 use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
 use super::narrow::floor;
-use super::rectangle::Rectangle;
+use super::rectangle::{Rectangle, Screen};
 use super::words::Words;
 use crate::error::RenderError;
 use crate::raymarch::directions::{Directions, check};
@@ -145,10 +145,12 @@ impl Exits {
         words: Words,
     ) -> Result<Self, RenderError> {
         check(view, (width, height))?;
-        let (solid, scale) = match field {
-            Field::Primitive(primitive) => placed(primitive),
-            Field::Union(union) => placed(union.flat()),
+        let flat = match field {
+            Field::Primitive(primitive) => primitive,
+            Field::Union(union) => union.flat(),
         };
+        let world = flat.placed();
+        let (solid, scale) = placed(flat, &world);
         let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
         let rays = Directions::new(&views, width, height, false);
         let narrow = |direction: [i64; 3]| along(&solid, direction).map(|x| rays.narrow(x));
@@ -193,7 +195,12 @@ impl Exits {
             rectangles: [[Rectangle::NONE; SEEN_SPHERES]; 2],
         };
         let eyes = if stereo.is_some() { 2 } else { 1 };
-        exits.place_spheres(field, &views[..eyes]);
+        match field {
+            Field::Primitive(_) => exits.place_spheres(&world, &views[..eyes]),
+            Field::Union(union) => {
+                exits.place_spheres(&union.round().placed(), &views[..eyes]);
+            }
+        }
         Ok(exits)
     }
 
@@ -208,38 +215,35 @@ impl Exits {
         })
     }
 
-    /// Computes the constants of the spheres of a field. `views` are the cameras of the eyes.
-    fn place_spheres(&mut self, field: &Field, views: &[View]) {
-        let round = match field {
-            Field::Primitive(primitive) => primitive,
-            Field::Union(union) => union.round(),
-        };
+    /// Computes the constants of the spheres of a solid, if it has any. `views` are the cameras of the eyes.
+    fn place_spheres(&mut self, round: &Placed<Kind>, views: &[View]) {
         let Placed {
             solid: Kind::Spheres(spheres),
             scale,
             ..
-        } = round.placed()
+        } = round
         else {
             return;
         };
         if !SPHERES.is_built {
             return;
         }
-        // Scaled as the flat member of a union. Scales have four fraction bits.
+        self.spheres = *spheres;
         let own = self.scale;
-        let [to, from] = [own, scale].map(|scale| scale.to_bits() >> 28);
-        let rescaled = |x: i32| (2 * i64::from(x) * to + from).div_euclid(2 * from) as i32;
-        self.spheres = FixedSpheres {
-            list: spheres.list.map(|sphere| {
-                FixedSphere::new(sphere.centre.map(rescaled), rescaled(sphere.radius))
-            }),
-            ..spheres
-        };
+        if own != *scale {
+            // Scaled as the flat member of a union. Scales have four fraction bits.
+            let [to, from] = [own, *scale].map(|scale| scale.to_bits() >> 28);
+            let rescaled = |x: i32| (2 * i64::from(x) * to + from).div_euclid(2 * from) as i32;
+            for sphere in self.spheres.list.iter_mut().take(spheres.count) {
+                *sphere = FixedSphere::new(sphere.centre.map(rescaled), rescaled(sphere.radius));
+            }
+        }
         let size = [self.width, self.height];
         for (rectangles, view) in self.rectangles.iter_mut().zip(views) {
+            let screen = Screen::new(view, own, size);
             let spheres = self.spheres.list.iter().take(spheres.count);
             for (rectangle, sphere) in rectangles.iter_mut().zip(spheres) {
-                *rectangle = Rectangle::around(sphere.centre, sphere.radius, view, own, size);
+                *rectangle = screen.around(sphere.centre, sphere.radius);
             }
         }
     }
@@ -259,25 +263,27 @@ impl Exits {
     pub fn cones(&self) -> [Cones; 2] {
         [0, 1].map(|eye| {
             let mut cones = Cones::default();
-            self.each_cone(eye, &mut |cone| cones.push(cone));
+            self.each_cone(eye, &mut |cone| cones.push(*cone));
             cones
         })
     }
 
     /// Computes the cones in which an eye sees the spheres of a list, in the order of the list.
-    pub fn each_cone(&self, eye: usize, take: &mut dyn FnMut(Cone)) {
+    pub fn each_cone(&self, eye: usize, take: &mut dyn FnMut(&Cone)) {
         if !SPHERES.is_built || self.spheres.repeated || self.spheres.count == 0 {
             return;
         }
-        let world = |[x, y, z, _]: [i32; AXES]| [x, y, z].map(i64::from);
+        let world = |[x, y, z, _]: [i32; AXES]| [x, y, z];
         let [across, down] = self.steps.map(world);
         let Eye { origin, first, .. } = self.eyes[eye];
         // The bits of the parameter T that the constants use.
         let near = floor(self.near, self.words.parameter as i32 - 14);
         let sight = Sight::new(origin, [world(first), across, down], near);
         let spheres = self.spheres.list.iter().take(self.spheres.count);
+        let mut cone = Cone::default();
         for ((number, sphere), rectangle) in (0..).zip(spheres).zip(&self.rectangles[eye]) {
-            sight.cones(number, sphere, *rectangle, take);
+            (cone.number, cone.rectangle) = (number, *rectangle);
+            sight.cones(sphere, &mut cone, take);
         }
     }
 
@@ -402,9 +408,8 @@ fn along(solid: &Option<Solid>, [x, y, z]: [i64; 3]) -> [i64; AXES] {
     }
 }
 
-/// The solid of a field that has no list of spheres, and the field units per world unit.
-fn placed(primitive: &Primitive) -> (Option<Solid>, Q32_32) {
-    let world = primitive.placed();
+/// The solid of a field that has no list of spheres, and the field units per world unit. `world` is the field as rays that march see it.
+fn placed(primitive: &Primitive, world: &Placed<Kind>) -> (Option<Solid>, Q32_32) {
     let constants = match &world.solid {
         Kind::Flat(flat) => Some(flat.constants()),
         Kind::Spheres(_) => None,

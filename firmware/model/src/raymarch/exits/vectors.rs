@@ -1,42 +1,73 @@
 //! Vectors of integers, and positive numbers with an exponent, for the constants of a frame.
+//!
+//! The soft core computes cones mostly in the functions of this module. They are not inlined, so that their code stays in its instruction
+//! cache, and have no divisions, which it lacks for 64 bits.
+
+use glint_core::root::inverse_root;
+use glint_core::vector::{self, cross, dot};
 
 use super::narrow::nearest;
 
 /// A vector. A *unit vector* has the length 1 and 30 fraction bits.
-pub(super) type Vector = [i64; 3];
+pub(super) type Vector = [i32; 3];
 
 /// Fraction bits of a unit vector.
 const UNIT: u32 = 30;
 
-pub(super) fn dot(a: Vector, b: Vector) -> i64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-/// The cross product.
-pub(super) fn across(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        a[j] * b[k] - a[k] * b[j]
-    })
+/// The scalar product.
+#[inline(never)]
+pub(super) fn product(a: &Vector, b: &Vector) -> i64 {
+    dot(*a, *b)
 }
 
 /// The unit vector of the direction of a vector. The vector 0 has the direction of the z axis.
-pub(super) fn unit(vector: Vector) -> Vector {
-    let most = vector.iter().fold(0, |all, part| all | part.unsigned_abs());
-    if most == 0 {
-        return [0, 0, 1 << UNIT];
+pub(super) fn unit(vector: [i64; 3]) -> Vector {
+    vector::unit::<UNIT>(vector).unwrap_or([0, 0, 1 << UNIT])
+}
+
+/// The unit vector perpendicular to two vectors, or to the first one if they are parallel.
+#[inline(never)]
+pub(super) fn perpendicular(a: &Vector, b: &Vector) -> Vector {
+    unit(match cross(*a, *b) {
+        [0, 0, 0] => cross(*a, shortest_axis(a)),
+        vector => vector,
+    })
+}
+
+/// The axis along which a vector is shortest.
+fn shortest_axis(vector: &Vector) -> Vector {
+    let sizes = vector.map(i32::abs);
+    let axis = (0..3).min_by_key(|&i| sizes[i]).unwrap_or_default();
+    [0, 1, 2].map(|i: usize| i32::from(i == axis))
+}
+
+/// Returns x·2^−`bits`, rounded to nearest, halves up. For negative `bits` the number is multiplied.
+#[inline(never)]
+pub(super) const fn rounded(x: i64, bits: i32) -> i64 {
+    nearest(x, bits)
+}
+
+/// Number of bits from the first 1 on.
+#[inline(never)]
+pub(super) const fn bits(x: u64) -> i32 {
+    let (high, low) = ((x >> 32) as u32, x as u32);
+    let (mut word, mut bits) = if high == 0 { (low, 0) } else { (high, 32) };
+    // The soft core has no instruction that counts zeros.
+    let mut step = 16;
+    while step > 0 {
+        if word >> step != 0 {
+            word >>= step;
+            bits += step;
+        }
+        step /= 2;
     }
-    // The largest component has 30 bits.
-    let scaled = vector.map(|part| nearest(part, most.ilog2() as i32 + 1 - UNIT as i32));
-    // One division: its quotient has 33 bits at most, and a component 30.
-    let inverse = (1 << 62) / dot(scaled, scaled).isqrt();
-    scaled.map(|part| nearest(part * inverse, 32))
+    bits + word as i32
 }
 
 /// A number of at least 0: a mantissa of 31 bits, rounded down, and an exponent of 2. The mantissa 0 is the number 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scaled {
-    mantissa: i64,
+    mantissa: u32,
     exponent: i32,
 }
 
@@ -45,46 +76,48 @@ impl Scaled {
 
     pub(super) const ONE: Self = Self::new(1, 0);
 
-    /// x·2^`exponent`, x at least 0.
-    pub(super) const fn new(x: i64, exponent: i32) -> Self {
+    /// x·2^`exponent`.
+    #[inline(never)]
+    pub(super) const fn new(x: u64, exponent: i32) -> Self {
         if x == 0 {
             return Self {
                 mantissa: 0,
                 exponent: -64,
             };
         }
-        let excess = x.ilog2() as i32 + 1 - Self::BITS;
+        let excess = bits(x) - Self::BITS;
         let mantissa = if excess > 0 {
             x >> excess
         } else {
             x << -excess
         };
         Self {
-            mantissa,
+            mantissa: mantissa as u32,
             exponent: exponent + excess,
         }
     }
 
-    /// The square root of x·2^`exponent`, x at least 0 and the exponent even.
-    pub(super) const fn root(x: i64, exponent: i32) -> Self {
-        if x == 0 {
-            return Self::new(0, 0);
+    /// The reciprocal of the square root of x·2^`exponent`, x at least 1 and the exponent even. Its relative error is at most 5·10^−9.
+    #[inline(never)]
+    pub(super) fn inverse_root(x: u64, exponent: i32) -> Self {
+        // From 1 to below 4 with 30 fraction bits, times 2^(32 − shift).
+        let shift = (64 - bits(x)) & !1;
+        let root = inverse_root::<2>((x << shift >> 32) as u32);
+        Self {
+            mantissa: root.clamp(1 << (Self::BITS - 1), (1 << Self::BITS) - 1),
+            exponent: (shift - exponent) / 2 - 62,
         }
-        // Of 61 or 62 bits.
-        let shift = (61 - x.ilog2() as i32) & !1;
-        Self::new((x << shift).isqrt(), (exponent - shift) / 2)
-    }
-
-    /// The quotient. The divisor must not be 0.
-    pub(super) const fn over(self, divisor: Self) -> Self {
-        let quotient = (self.mantissa << Self::BITS) / divisor.mantissa;
-        Self::new(quotient, self.exponent - divisor.exponent - Self::BITS)
     }
 
     /// The product.
     pub(super) const fn by(self, factor: Self) -> Self {
-        let product = self.mantissa * factor.mantissa;
-        Self::new(product, self.exponent + factor.exponent)
+        let product = self.mantissa as u64 * factor.mantissa as u64;
+        // A product of 61 or 62 bits.
+        let excess = Self::BITS - 1 + (product >> (2 * Self::BITS - 1)) as i32;
+        Self {
+            mantissa: (product >> excess) as u32,
+            exponent: self.exponent + factor.exponent + excess,
+        }
     }
 
     pub(super) const fn halved(self, times: u32) -> Self {
@@ -106,17 +139,16 @@ impl Scaled {
 
     /// The number in units of 2^`exponent`, rounded to nearest.
     pub(super) const fn fixed_at(self, exponent: i32) -> i64 {
-        nearest(self.mantissa, exponent - self.exponent)
+        rounded(self.mantissa as i64, exponent - self.exponent)
     }
 
     /// The product with x, which has 60 fraction bits. The product has 30, rounded to nearest.
+    #[inline(never)]
     pub(super) const fn times(self, x: i64) -> i64 {
-        if x == 0 {
-            return 0;
-        }
-        let excess = 64 - x.unsigned_abs().leading_zeros() as i32 - Self::BITS;
-        let short = nearest(x, excess);
-        nearest(short * self.mantissa, 30 - excess - self.exponent)
+        // Without the last 32 bits of 95.
+        let low = (self.mantissa as u64 * (x as u32 as u64)) >> 32;
+        let high = self.mantissa as i64 * (x >> 32);
+        rounded(high + low as i64, -2 - self.exponent)
     }
 }
 
@@ -132,29 +164,22 @@ mod tests {
             [1 << 25, -7, 3],
             [1 << 55, 1 << 54, -9],
         ] {
-            let found = unit(vector).map(|part| part as f64 * (-30_f64).exp2());
+            let found = unit(vector).map(|part| f64::from(part) * (-30_f64).exp2());
             let length = found.map(|part| part * part).iter().sum::<f64>();
             assert!((length - 1.0).abs() < 1e-8, "{vector:?}: {found:?}");
         }
-        assert_eq!(across([1, 0, 0], [0, 1, 0]), [0, 0, 1]);
     }
 
     #[test]
     fn scaled_numbers_are_exact_to_30_bits() {
         let three = Scaled::new(3, 0);
-        assert_eq!(Scaled::root(9, 0).fixed(0), 3);
-        assert_eq!(Scaled::root(9 << 20, -24).fixed(2), 3);
-        assert_eq!(three.over(Scaled::new(1, 3)).fixed(16), 3 << 13);
+        assert_eq!(three.by(Scaled::new(1, 3)).fixed(0), 24);
         assert_eq!(three.halved(1).log2(), 0);
         assert_eq!(three.times(-5 << 58), -15 << 28);
-        assert_eq!(
-            (
-                Scaled::new(0, 0).times(1 << 60),
-                Scaled::root(0, 0).fixed(30)
-            ),
-            (0, 0)
-        );
-        let third = Scaled::ONE.over(three);
-        assert!((third.fixed(30) - (1 << 30) / 3).abs() <= 1);
+        assert_eq!(Scaled::new(0, 0).times(1 << 60), 0);
+        for (square, exponent) in [(9, 0), (9 << 20, -20), (9 << 60, -60)] {
+            let third = Scaled::inverse_root(square, exponent).fixed(30);
+            assert!((third - (1 << 30) / 3).abs() <= 2, "{third}");
+        }
     }
 }
