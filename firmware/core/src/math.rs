@@ -1,6 +1,7 @@
 //! Fixed-point numbers, vectors and matrices.
 
 pub mod cordic;
+pub mod division;
 pub mod fixed;
 pub mod matrix;
 pub mod root;

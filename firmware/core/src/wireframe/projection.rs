@@ -12,6 +12,7 @@
 //! A segment is first clipped at z = a, so z ≤ a < Ez: the divisor is positive, and z = Ez cannot occur.
 
 use super::program::Viewing;
+use crate::division::quotient;
 use crate::fixed::{Q5_11, Q12_20};
 use crate::picture::Size;
 
@@ -146,15 +147,21 @@ impl Fraction {
 
 /// Clips the segment's end `a` to the guard band: returns `a`, or the point in which the segment enters the guard band. `None` if
 /// the whole segment is outside.
-///
-/// For each side of the guard band between `a` and `b`, the position of the crossing on the other axis is exact. The crossing
-/// that lies within the guard band becomes the end; it is rounded last.
+// Not inlined, as `enter`, so that the code for a line takes few lines of the instruction cache.
+#[inline(never)]
 fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
     if a.iter().all(|axis| axis.inside().iter().all(|&d| d >= 0)) {
         return Some(a.map(Fraction::value));
     }
-    let [ax, ay] = a;
-    let [bx, by] = b;
+    enter(a, b)
+}
+
+/// Returns the point in which the segment from an end `a` outside of the guard band enters it; `None` if the whole segment is outside.
+///
+/// For each side of the guard band between `a` and `b`, the position of the crossing on the other axis is exact. The crossing
+/// that lies within the guard band becomes the end; it is rounded last.
+#[inline(never)]
+fn enter([ax, ay]: [Fraction; 2], [bx, by]: [Fraction; 2]) -> Option<[i32; 2]> {
     for (axis, (from, to), other) in [(0, (ax, bx), (ay, by)), (1, (ay, by), (ax, bx))] {
         for (side, (&out, &within)) in [-GUARD, GUARD]
             .iter()
@@ -192,8 +199,13 @@ fn crossing((a, b): (Fraction, Fraction), within: i128, out: i128) -> Option<i32
 }
 
 /// Divides by a positive number and rounds to nearest, half units up, even for negative quotients.
-const fn nearest(numerator: i64, denominator: i64) -> i64 {
-    let quotient = numerator.div_euclid(denominator);
-    let rest = numerator.rem_euclid(denominator);
-    quotient + (rest >= denominator - rest) as i64
+fn nearest(numerator: i64, denominator: i64) -> i64 {
+    let (size, divisor) = (numerator.unsigned_abs(), denominator.cast_unsigned());
+    let quotient = quotient(size, divisor);
+    let rest = size - quotient * divisor;
+    if numerator < 0 {
+        -(quotient + u64::from(rest > divisor - rest)).cast_signed()
+    } else {
+        (quotient + u64::from(rest >= divisor - rest)).cast_signed()
+    }
 }

@@ -1,6 +1,7 @@
 //! Distances to spheres from a table of square roots. Distances are rounded down, so that a ray that advances by the distance
 //! never passes a surface.
 
+use crate::division::quotient;
 use crate::feature::SPHERES;
 use crate::field::limits::MAX_SPHERES;
 use crate::field::surface::{FieldSample, Surface, magnitude};
@@ -23,11 +24,8 @@ impl FixedSphere {
     /// Makes a sphere from its centre and its radius, which is from 2^6 to 2^22 − 1 units of 2^−12.
     pub fn new(centre: [i32; 3], radius: i32) -> Self {
         let lead = radius.max(1).ilog2().clamp(6, 21);
-        let shifted = ((i64::from(radius.max(1)) << (21 - lead)) >> 1) as u32;
-        // (2^37 + shifted/2)/shifted in two divisions of 32 bits, which the soft core has.
-        let first = (1 << 31) / shifted;
-        let rest = ((1 << 31) - first * shifted) << 6;
-        let inverse = ((first << 6) + (rest + shifted / 2) / shifted).min((1 << 17) - 1);
+        let shifted = (radius.max(1) as u64) << (21 - lead) >> 1;
+        let inverse = quotient((1 << 37) + shifted / 2, shifted).min((1 << 17) - 1) as u32;
         Self {
             centre,
             radius,
