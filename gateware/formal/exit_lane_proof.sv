@@ -49,7 +49,7 @@ module exit_lane_proof (
     );
 
     stream_checker #(.WIDTH(1), .GIVEN(1)) given (.clk, .rst, .valid(in_valid), .ready(in_ready), .data(1'b0));
-    stream_checker #(.WIDTH(exit_pkg::LAND_END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
+    stream_checker #(.WIDTH(exit_pkg::END_BITS)) ends (.clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_end));
 
     logic       entered, left, here;
     logic [5:0] on_its_way, refused;

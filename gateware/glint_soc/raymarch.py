@@ -148,7 +148,7 @@ class Raymarcher(LiteXModule):
             CSRField("repeated", offset=12, description="The box repeats every 64 field units along each axis."),
             CSRField("is_round", offset=13, description="The field has spheres."),
             CSRField("flat_too", offset=14, description="The field is a union of the flat field and spheres."),
-            CSRField("spheres_repeated", offset=15, description="The sphere repeats every 64 field units along each axis."),
+            CSRField("spheres_repeated", offset=15, description="The first sphere repeats every 64 field units along each axis."),
             CSRField("last_sphere", size=3, offset=16, description="Number of the last sphere; 0 without spheres."),
             CSRField("last_light", size=2, offset=20, description="Number of the last light on spheres."),
             CSRField("kind", size=KIND_BITS, offset=22,
@@ -261,7 +261,8 @@ class Raymarcher(LiteXModule):
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
         no_rays = (exits.enable & int(not fields.has_exits)) | (~exits.enable & int(not fields.has_marching))
-        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (solid.is_round & ~solid.spheres_repeated & int(not fields.round)) |
+        has_list = solid.is_round & (~solid.spheres_repeated | (solid.last_sphere != 0))
+        self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (has_list & int(not fields.round)) |
                                   (exits.enable & (exits.rule == 3) & exits.depth[0] & int(not fields.lattice)) |
                                   (solid.is_round & lights["normals"] & int(not fields.normals)) |
                                   (solid.is_round & lights["highlight"] & int(not fields.highlight)) |
@@ -269,7 +270,7 @@ class Raymarcher(LiteXModule):
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
         constants = Struct("solid_t", "The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and "
             "`blend_inverse` is 1 / (2 * width), u1.16. `flat_too` is high if a flat field and spheres are united, `is_round` if the field "
-            "has spheres, and `spheres_repeated` if these are repeated. `kind` is the kind of the flat field, whose constants follow.", {
+            "has spheres, and `spheres_repeated` if the first one is repeated. `kind` is the kind of the flat field, whose constants follow.", {
             "blend_width": blend_width, "blend_inverse": blend_inverse,
             **{name: getattr(solid, name) for name in ("flat_too", "is_round", "spheres_repeated", "last_sphere", "kind", "levels")},
             "cube_half": self._cube_half.storage, "half": _contents(box_half),

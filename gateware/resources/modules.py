@@ -84,7 +84,7 @@ MODULES = [
     Module(top="exit_lane",
            variants={"exit_lane_all": {"LEVELS": 6, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1}, "exit_lane_lattice": {"LATTICE": 1},
                      "exit_lane_octahedron": {"OCTAHEDRON": 1}}),
-    Module(top="exit_landing"),
+    Module(top="exit_landing", variants={"exit_landing_round": {"ROUND": 1}}),
     Module(top="exit_reciprocal"),
     Module(top="sphere_unit", variants={"sphere_unit_one_eye": {"STEREO": 0}}),
     Module(top="raymarcher",

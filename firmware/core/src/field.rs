@@ -35,7 +35,7 @@ pub use union::Union;
 pub enum Field {
     /// A field of one kind.
     Primitive(Primitive),
-    /// A union of a flat field (with faces) and a round field (with spheres).
+    /// A union of a field with faces, or a lattice, and of spheres.
     Union(Union),
 }
 
@@ -52,7 +52,15 @@ impl Field {
     pub fn is_endless(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.placed().extent.is_none(),
-            Self::Union(_) => false,
+            Self::Union(union) => union.first().placed().extent.is_none(),
+        }
+    }
+
+    /// Whether the field is a union with spheres of a field that repeats.
+    pub fn is_repeated_union(&self) -> bool {
+        match self {
+            Self::Primitive(_) => false,
+            Self::Union(union) => union.first().placed().solid.is_repeated(),
         }
     }
 
@@ -68,7 +76,7 @@ impl Field {
     pub const fn moving(&mut self) -> Option<&mut MovingSphere> {
         let primitive = match self {
             Self::Primitive(primitive) => primitive,
-            Self::Union(union) => union.round_mut(),
+            Self::Union(union) => union.spheres_mut(),
         };
         match primitive {
             Primitive::Moving(sphere) if SPHERES.is_built => Some(sphere),

@@ -74,10 +74,11 @@ impl Missing {
             return Err(Self::Flat(kind));
         }
         if let Some(spheres) = setup.spheres() {
-            match spheres.repeated {
-                true if !capabilities.lattice => return Err(Self::Lattice),
-                false if !capabilities.round => return Err(Self::Round),
-                _ => (),
+            if spheres.repeated && !capabilities.lattice {
+                return Err(Self::Lattice);
+            }
+            if spheres.count > usize::from(spheres.repeated) && !capabilities.round {
+                return Err(Self::Round);
             }
             if lights.normals.is_some() && !capabilities.normals {
                 return Err(Self::Normals);
@@ -159,7 +160,7 @@ pub fn set_field(
                 .map(|half| half as u32),
             exit_form(exits),
             [exits.far as u32, exits.near as u32],
-            exits.eyes.map(|eye| [eye.place(), axes(eye.first)]),
+            exits.eyes.map(|eye| [eye.origin, axes(eye.first)]),
             exits.steps.map(axes),
         ),
         Form::Marching(marching) => (

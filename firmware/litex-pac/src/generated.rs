@@ -6251,7 +6251,7 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
-        /// `spheres_repeated`, bit 15: The sphere repeats every 64 field units along each axis.
+        /// `spheres_repeated`, bit 15: The first sphere repeats every 64 field units along each axis.
         #[inline]
         #[must_use]
         pub const fn spheres_repeated(self) -> bool {

@@ -2,13 +2,17 @@
 //
 //   end ─▶ exit_root ─▶ -q·D - root ─▶ times 1/|D|² ─▶ shift ─▶ T of the box + ─▶ FIFO ─▶ end
 //
-// All ends pass in order. A hit that is beyond `far_t` becomes a miss. One such unit is enough for all lanes, because a ray ends once. The
+// All ends pass in order. A hit that is beyond `far_t` becomes a miss. With ROUND each end has a limit of its own, beyond which the ray meets
+// the sphere of a list at this limit, if any. One such unit is enough for all lanes, because a ray ends once. The
 // streams are valid/ready; the pipeline cannot be stopped, and has a credit for each end. `far_t` must hold. Latency 21 clocks, throughput
 // one end per clock.
 
 `default_nettype none
 
-module exit_landing (
+module exit_landing #(
+    // Whether rays may meet spheres of a list.
+    parameter bit ROUND = 1'b0
+) (
     input  wire                           clk,
     input  wire                           rst,
     input  wire  [exit_pkg::T_BITS-1:0]   far_t,
@@ -76,6 +80,18 @@ module exit_landing (
         .clk, .enable(1'b1), .a({3'd0, distance_11[21:0]}), .b(inverse_11.mantissa), .c({4'd0, distance_13, 18'd0}), .p(product_14)
     );
 
+    logic [exit_pkg::T_BITS-1:0] limit_17;
+
+    if (ROUND) begin : own_limits
+        delay #(.WIDTH(exit_pkg::T_BITS), .CLOCKS(16)) limit_waits (.clk, .enable(1'b1), .in(end_1.limit), .out(limit_17));
+    end else begin : one_limit
+        assign limit_17 = far_t;
+    end
+
+    logic is_beyond_17;
+
+    assign is_beyond_17 = t_17 > {1'b0, limit_17};
+
     // The product has 33 fraction bits, and is multiplied by 2^(3 - shift).
     always_ff @(posedge clk) begin
         unique case (shift_14[1:0])
@@ -90,14 +106,14 @@ module exit_landing (
 
         end_17     <= end_16;
         end_18     <= end_17;
-        end_18.t   <= t_17[exit_pkg::T_BITS-1:0];
-        end_18.hit <= end_17.hit && t_17 <= {1'b0, far_t};
+        end_18.t   <= ROUND && is_beyond_17 ? limit_17 : t_17[exit_pkg::T_BITS-1:0];
+        end_18.hit <= end_17.hit && !is_beyond_17;
     end
 
     delay #(.WIDTH(exit_pkg::ROUND_END_BITS), .CLOCKS(15)) rest_waits (
         .clk, .enable(1'b1), .in(end_1[exit_pkg::ROUND_END_BITS-1:0]), .out(left_16)
     );
-    assign end_16 = exit_pkg::LAND_END_BITS'(left_16);
+    assign end_16 = exit_pkg::END_BITS'(left_16);
     assign t_16   = end_16.t;
 
     credit_fifo #(.WIDTH(exit_pkg::ROUND_END_BITS), .DEPTH(32)) landed (
@@ -105,10 +121,10 @@ module exit_landing (
         .out_valid, .out_ready, .out_data(kept)
     );
 
-    assign out_end = exit_pkg::LAND_END_BITS'(kept);
+    assign out_end = exit_pkg::END_BITS'(kept);
 
     wire _unused = &{1'b0, idle, along_10[exit_pkg::ALONG_BITS], root_10[1:0], product_14[43:41], product_14[15:0], shift_15[1:0],
-                     end_18.equation, end_18.lands};
+                     end_18.equation, end_18.lands, end_18.limit, end_1.limit, far_t};
 endmodule
 
 `default_nettype wire

@@ -397,11 +397,13 @@ module exit_lane #(
     assign end_in.round     = is_lattice;
     assign end_in.lands     = lands_22;
     assign end_in.equation  = equation_22;
+    assign end_in.limit     = sphere_22.t;
     assign end_in.met       = sphere_22.met;
     assign end_in.number    = sphere_22.number;
     assign end_in.direction = direction_22;
 
-    localparam int unsigned KEPT_BITS = LATTICE ? exit_pkg::LAND_END_BITS : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS;
+    localparam int unsigned KEPT_BITS = LATTICE && ROUND ? exit_pkg::END_BITS : LATTICE ? exit_pkg::LAND_END_BITS
+                                        : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS;
 
     logic [KEPT_BITS-1:0] kept;
 

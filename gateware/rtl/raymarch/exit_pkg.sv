@@ -127,8 +127,10 @@ package exit_pkg;
     // otherwise), the axis and the sign of the face's outward normal, the number of evaluations, and the ray's `height`. In a build with
     // spheres, `met` and `number` are those of the sphere that the ray meets at its limit, and `direction` is the ray's, s1.17. A hit on a
     // sphere of a lattice is `round`; its axis and sign have no meaning. Where the ray `lands`, T is that of the box about the sphere, and
-    // `equation` determines that of the sphere: exit_landing adds the difference.
+    // `equation` determines that of the sphere: exit_landing adds the difference. In a build with spheres of both kinds, `limit` is the T at
+    // which the ray meets the sphere of a list, or the far limit.
     typedef struct packed {
+        logic [T_BITS-1:0]     limit;
         equation_t             equation;
         logic                  lands;
         logic [2:0][DIRECTION_BITS-1:0] direction;
@@ -144,10 +146,11 @@ package exit_pkg;
         logic [7:0]            height;
     } end_t;
 
-    // Width of an end on a flat solid, of one on any solid, and of one that may land.
+    // Width of an end on a flat solid, of one on any solid, of one that may land, and of one that may land before its limit.
     localparam int unsigned FLAT_END_BITS  = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
     localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 4 + 3 * DIRECTION_BITS;
     localparam int unsigned LAND_END_BITS  = ROUND_END_BITS + 1 + EQUATION_BITS;
+    localparam int unsigned END_BITS       = LAND_END_BITS + T_BITS;
 
     // The code of an octahedron's face, as in raymarch_pkg::end_t: bit i is set if component i of the outward normal is positive. `axis` is
     // that of an end, and `positive` is set if the normal leads up along it.

@@ -8,7 +8,7 @@ package raymarch_registers_pkg;
     /* verilator lint_off UNUSEDPARAM */
     // The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and `blend_inverse` is 1 / (2 * width),
     // u1.16. `flat_too` is high if a flat field and spheres are united, `is_round` if the field has spheres, and
-    // `spheres_repeated` if these are repeated. `kind` is the kind of the flat field, whose constants follow.
+    // `spheres_repeated` if the first one is repeated. `kind` is the kind of the flat field, whose constants follow.
     typedef struct packed {
         logic [16:0] blend_width;
         logic [16:0] blend_inverse;

@@ -220,9 +220,23 @@ module raymarcher #(
     assign ray_ready = may_enter && lane_ready != '0;
 
     // The ends of the rays by exits and of the marching rays.
-    logic [LANES-1:0][exit_pkg::LAND_END_BITS-1:0] found;
+    logic [LANES-1:0][exit_pkg::END_BITS-1:0]      found;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0]  ring_end;
     logic [LANES-1:0]                              exit_valid, exit_taken, ring_valid, ring_taken;
+
+    // The eyes in a repeated solid: only the position in the cell about the origin counts for the solid, but not for the spheres of a list.
+    logic [1:0][2:0][exit_pkg::PLANE_BITS-1:0] places;
+
+    if (ROUND && ((FIELDS & fields_pkg::BOX) != 0 || LATTICE)) begin : cells
+        always_ff @(posedge clk) begin
+            places <= origins;
+            for (int eye = 0; eye < 2; eye++)
+                for (int axis = 0; axis < 3; axis++)
+                    if (rule == exit_pkg::CUBES) places[eye][axis][24:18] <= {7{origins[eye][axis][17]}};
+        end
+    end else begin : one_cell
+        assign places = origins;
+    end
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
         // Signals of the exit_lane and of the ring_lane.
@@ -237,7 +251,7 @@ module raymarcher #(
                 .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0 || LATTICE || OCTAHEDRON),
                 .STEREO(STEREO), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)
             ) lane (
-                .clk, .rst(reset), .origins, .solid({rule, levels, halves, borders}), .far_t(far_limit),
+                .clk, .rst(reset), .origins(places), .solid({rule, levels, halves, borders}), .far_t(far_limit),
                 .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
                 .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(ending),
                 .evaluates(exit_evaluates), .waits(exit_waits)
@@ -263,7 +277,7 @@ module raymarcher #(
                 .clk, .rst(reset), .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_data(exit_pkg::ROUND_END_BITS'(ending)),
                 .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_data(kept)
             );
-            assign found[i] = exit_pkg::LAND_END_BITS'(kept);
+            assign found[i] = exit_pkg::END_BITS'(kept);
             wire _unused = &{1'b0, ending};
             assign {exit_evaluates, exit_waits} = '0;
         end else begin : no_leaving
@@ -329,7 +343,7 @@ module raymarcher #(
     assign landed_taken = next_taken && by_exits;
 
     if (LATTICE) begin : landing
-        exit_landing land (
+        exit_landing #(.ROUND(ROUND)) land (
             .clk, .rst(reset), .far_t(far_limit), .in_valid(exit_valid[turn]), .in_ready(found_taken), .in_end(found[turn]),
             .out_valid(landed_valid), .out_ready(landed_taken), .out_end(landed)
         );
@@ -428,7 +442,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end,
+    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end, places,
                      last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 

@@ -24,7 +24,8 @@ module round_light #(
 ) (
     input  wire                      clk,
     input  wire                      rst,
-    // Frame. `exits` states the format of t: u14.14 of rays by exits, u11.12 of marching rays.
+    // Frame. `exits` states the format of t: u14.14 of rays by exits, u11.12 of marching rays. The first sphere may be `repeated` every 64
+    // units along each axis.
     input  wire  [1:0][2:0][24:0]    origins,
     input  wire                      exits,
     input  wire                      stereo,
@@ -121,6 +122,7 @@ module round_light #(
         end
         if (enable) begin
             centre_3    <= centres[number_2];
+            repeated_3  <= repeated && number_2 == '0;
             shift_9     <= shifts[number_8];
             inverse_12  <= inverses[number_11];
             material_19 <= materials[number_18];
@@ -129,7 +131,7 @@ module round_light #(
 
     // The suffix of a name is the signal's clock: 3 for the point where the ray ends; 4 for the point relative to the sphere's centre, and
     // for the direction of the light.
-    logic              eye_2;
+    logic              eye_2, repeated_3;
     logic [1:0]        light_3, light_14;
     kind_t             kind_3, kind_9, kind_14, kind_17, kind_18;
     logic              first_17;
@@ -189,7 +191,7 @@ module round_light #(
 
         always_ff @(posedge clk) begin
             if (enable) begin
-                apart_4[i]   <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
+                apart_4[i]   <= repeated_3 ? {{5{apart[17]}}, apart[17:0]} : apart;
                 towards_4[i] <= towards_3[18*i +: 18];
             end
         end

@@ -163,6 +163,10 @@ fn every_kind_of_field() {
     let unions = [
         "union:menger:3+sphere:0.9",
         "smooth:0.3,box:0.6,0.6,0.6+spheres:0.5,0,0.6,0.4;0,0,0,0.5",
+        "union:cubes:1,0.2+sphere:0.9",
+        "union:boxes:1,0.5,0.5,0.05+sphere:0.9",
+        "union:planes:1.5+sphere:0.9",
+        "union:lattice:1,0.3+spheres:0.5,0,0.6,0.4;0,0,0,0.5",
     ];
     for (number, text) in Primitive::EXAMPLES.into_iter().chain(unions).enumerate() {
         let field = Field::parse(text).unwrap();
@@ -188,6 +192,17 @@ fn two_eyes_and_large_pictures() {
     for (text, stereo, size) in [
         ("menger:2", Some("0.05,3,red-blue"), Size::W320),
         ("sphere:0.8", Some("0.1,2,red-cyan"), Size::W640),
+        // The eyes are in different cells.
+        (
+            "union:cubes:0.5,0.1+sphere:0.8",
+            Some("0.3,2,red-cyan"),
+            Size::W320,
+        ),
+        (
+            "union:lattice:0.5,0.1+sphere:0.8",
+            Some("0.3,2,red-blue"),
+            Size::W320,
+        ),
         ("menger:4", None, Size::W1280),
     ] {
         let field = Field::parse(text).unwrap();

@@ -205,7 +205,7 @@ impl Fields {
             Field::Primitive(primitive) => none.and(primitive),
             Field::Union(union) => Self {
                 fillets: union.blend() != 0,
-                ..none.and(union.flat()).and(union.round())
+                ..none.and(union.first()).and(union.spheres())
             },
         }
     }

@@ -316,7 +316,10 @@ fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     for (i, one) in spheres.list.iter().take(spheres.count).enumerate() {
         let mut sphere = module.record("sphere");
         sphere.set_all("centre", one.centre);
-        sphere.set("radius", one.radius);
+        // Rays by exits need no radius, which may be longer.
+        if setup.marching().is_some() {
+            sphere.set("radius", one.radius);
+        }
         sphere.set("inverse", one.inverse);
         sphere.set("shift", one.shift);
         sphere.set("material", colour(lights.materials[i]));
@@ -523,7 +526,7 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
             drive_eyes(module, "first", eyes.map(|eye| axes(eye.first)));
             module.drive_all("across", axes(exits.steps[0]));
             module.drive_all("down", axes(exits.steps[1]));
-            drive_eyes(module, "origins", eyes.map(|eye| eye.place()));
+            drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
             set_starts(module, exits);
             set_diagonals(module, exits);
             let count = 1 + usize::from(setup.stereo.is_some());

@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use super::limits::MAX_SPHERES;
 use crate::feature::Feature;
 use crate::fixed::Q32_32;
 
@@ -46,8 +45,13 @@ pub enum FieldError<'a> {
     },
     /// The text of a union does not name two kinds that a union accepts.
     Union,
-    /// The number of spheres is 0 or above [`MAX_SPHERES`].
-    Spheres,
+    /// The text of a smooth union does not name two kinds that a smooth union accepts.
+    Smooth,
+    /// The number of spheres is 0 or too large.
+    Spheres {
+        /// The largest number: [`MAX_SPHERES`](super::MAX_SPHERES), or one less in a union with a lattice.
+        most: usize,
+    },
     /// A number is out of its range.
     Range {
         /// Name of the number.
@@ -77,10 +81,13 @@ impl fmt::Display for FieldError<'_> {
                 write!(f, "{kind} has one number too many: {word}")
             }
             Self::Number { name, word } => write!(f, "{name} {word}: expected a number"),
-            Self::Union => {
-                f.write_str("union: expected menger or box, +, and sphere, spheres or moving")
+            Self::Union => f.write_str(
+                "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres or moving",
+            ),
+            Self::Smooth => {
+                f.write_str("smooth: expected menger or box, +, and sphere, spheres or moving")
             }
-            Self::Spheres => write!(f, "spheres: expected 1 to {MAX_SPHERES}"),
+            Self::Spheres { most } => write!(f, "spheres: expected 1 to {most}"),
             Self::Range { name, least, most } => {
                 write!(f, "{name}: expected {least} to {most}")
             }

@@ -10,6 +10,8 @@ pub const PERIOD: [Q32_32; 2] = [Q32_32::lit("0.25"), Q32_32::lit("16")];
 pub const SMALLEST: Q32_32 = Q32_32::lit("0.01");
 /// The largest number of spheres of a field.
 pub const MAX_SPHERES: usize = 8;
+/// The largest radius of a sphere, in field units.
+pub(in crate::field) const MAX_RADIUS: i32 = 1023;
 
 /// The largest accepted half side or radius in a field with this period: half the period minus one unit of coordinates
 /// (period/2^18), so that a gap between neighbours remains after rounding.

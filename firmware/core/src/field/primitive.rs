@@ -12,9 +12,10 @@ mod sphere;
 
 use super::argument::{Arguments, NumberText, Random};
 use super::error::FieldError;
-use super::shape::{FieldKind, FlatConstants, FlatSolid, Placed};
+use super::shape::{FieldKind, FlatConstants, FlatSolid, Member, Placed};
 use super::surface::FieldSample;
 use crate::feature::SPHERES;
+use crate::fixed::Q32_32;
 
 pub use boxes::{Boxes, Cubes};
 pub use cuboid::{Cuboid, FixedBox, Planes};
@@ -75,10 +76,18 @@ macro_rules! primitives {
                 }
             }
 
-            /// Whether the kind can be a member of a union.
-            pub const fn joins(&self) -> bool {
+            /// Which member of a union the field can be, if any.
+            pub const fn member(&self) -> Option<Member> {
                 match self {
-                    $(Self::$kind(_) => <$shape>::JOINS,)*
+                    $(Self::$kind(_) => <$shape>::MEMBER,)*
+                }
+            }
+
+            /// The spheres of a list, with this number of field units per world unit; `None` for other fields.
+            pub fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
+                match self {
+                    $(Self::$kind(shape) if is_built::<$shape>() => shape.spheres(scale),)*
+                    _ => None,
                 }
             }
 

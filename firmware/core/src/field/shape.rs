@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::argument::Arguments;
 use super::error::FieldError;
+use super::primitive::FixedSpheres;
 use super::surface::FieldSample;
 use crate::fixed::Q32_32;
 
@@ -21,8 +22,8 @@ pub trait FieldKind: Sized {
     const EXAMPLE: &'static str;
     /// The console commands that set camera and appearance for a picture of the example.
     const LOOK: &'static [&'static str] = &["camera 3.2 30 60"];
-    /// Whether the kind can be a member of a union: a flat kind is the first member, a round kind the second.
-    const JOINS: bool = false;
+    /// Which member of a union the kind can be, if any.
+    const MEMBER: Option<Member> = None;
     /// Whether the kind has spheres.
     const ROUND: bool = false;
     /// Whether the faces are perpendicular to the diagonals instead of the axes.
@@ -42,6 +43,21 @@ pub trait FieldKind: Sized {
 
     /// Converts the field to its solid in field units.
     fn placed(&self) -> Placed<Self::Solid>;
+
+    /// The spheres of a list with this number of field units per world unit; `None` for a kind that is no second member of a union.
+    fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
+        let _ = scale;
+        None
+    }
+}
+
+/// Which of the two members of a union a field can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Member {
+    /// The first: a solid with flat faces, or a lattice.
+    First,
+    /// The second: one or several spheres.
+    Second,
 }
 
 /// A solid with lengths in field units, with its scale and its bounding box in the world.

@@ -1,20 +1,23 @@
-//! `union:A+B` and `smooth:K,A+B`: the union of a flat field and a round field, without or with a fillet (a rounded transition).
+//! `union:A+B` and `smooth:K,A+B`: the union of a field and of spheres, without or with a fillet (a rounded transition).
 
 use core::fmt;
 
 use super::argument::{Arguments, NumberText, check};
 use super::error::FieldError;
+use super::limits::{MAX_RADIUS, MAX_SPHERES, SMALLEST};
 use super::primitive::Primitive;
+use super::shape::Member;
+use super::surface::FRACTION;
 use crate::fixed::Q32_32;
 
 /// Smallest and largest accepted width of a fillet, in world units.
 const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 
-/// The union of a flat field and a round field.
+/// The union of a field with flat faces, or a lattice, and of spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Union {
-    flat: Primitive,
-    round: Primitive,
+    first: Primitive,
+    spheres: Primitive,
     blend: Q32_32,
 }
 
@@ -23,11 +26,11 @@ impl Union {
     pub(super) const KINDS: [(&str, &str); 2] = [
         (
             "union:A+B",
-            "A menger or box, B sphere, spheres or moving, both together",
+            "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres or moving, both together",
         ),
         (
             "smooth:K,A+B",
-            "the same with a fillet of the width K between them",
+            "A menger or box, with a fillet of the width K between A and B",
         ),
     ];
 
@@ -42,35 +45,59 @@ impl Union {
 
     /// Makes a union of two fields (its members) with a fillet of the width `blend` in world units; 0 means no fillet.
     ///
-    /// # Errors `flat` or `round` is of a kind that unions do not accept, or the width is out of range.
+    /// # Errors
+    /// `first` or `spheres` is of a kind that unions do not accept, or that unions with fillets do not accept. The width is out of range.
+    /// In a field with a period, a radius is longer than the formats allow, or there is a sphere too many for a lattice.
     pub fn new(
-        flat: Primitive,
-        round: Primitive,
+        first: Primitive,
+        spheres: Primitive,
         blend: Q32_32,
     ) -> Result<Self, FieldError<'static>> {
+        if first.member() != Some(Member::First) || spheres.member() != Some(Member::Second) {
+            return Err(kind_error(blend));
+        }
+        let place = first.placed();
         if blend != Q32_32::ZERO {
             check("k", blend, BLEND)?;
+            place.extent.ok_or(FieldError::Smooth)?;
         }
-        if flat.joins() && !flat.is_round() && round.joins() && round.is_round() {
-            Ok(Self { flat, round, blend })
-        } else {
-            Err(FieldError::Union)
+        if let Some(list) = spheres.spheres(place.scale) {
+            // The sphere of a lattice takes a place in the list.
+            let most = MAX_SPHERES - usize::from(first.is_round());
+            if list.count > most {
+                return Err(FieldError::Spheres { most });
+            }
+            let largest = (list.list.iter().take(list.count))
+                .map(|sphere| sphere.radius)
+                .max();
+            if largest > Some(MAX_RADIUS << FRACTION) {
+                return Err(FieldError::Range {
+                    name: "radius",
+                    least: SMALLEST,
+                    most: Q32_32::from_num(MAX_RADIUS) / place.scale,
+                });
+            }
         }
+        Ok(Self {
+            first,
+            spheres,
+            blend,
+        })
     }
 
-    /// The flat member of the union.
-    pub const fn flat(&self) -> &Primitive {
-        &self.flat
+    /// The first member of the union: a field with flat faces, or a lattice.
+    pub const fn first(&self) -> &Primitive {
+        &self.first
     }
 
-    /// The round member of the union.
-    pub const fn round(&self) -> &Primitive {
-        &self.round
+    /// The second member of the union: the spheres.
+    pub const fn spheres(&self) -> &Primitive {
+        &self.spheres
     }
 
-    /// The round member of the union, for motion: a change must keep its kind and its extent.
-    pub(super) const fn round_mut(&mut self) -> &mut Primitive {
-        &mut self.round
+    /// The second member of the union, for motion: a change must keep its kind and its extent.
+    pub(super) const fn spheres_mut(&mut self) -> &mut Primitive {
+        &mut self.spheres
     }
 
     /// Width of the fillet in world units: the fillet covers points whose distances to the two members differ by at most this
@@ -86,28 +113,37 @@ impl Union {
 
     /// Parses the width and the members after `smooth:`.
     pub(super) fn parse_smooth(text: &str) -> Result<Self, FieldError<'_>> {
-        let (blend, members) = text.split_once(',').ok_or(FieldError::Union)?;
+        let (blend, members) = text.split_once(',').ok_or(FieldError::Smooth)?;
         let blend = NumberText::new("smooth", blend).number("k", BLEND)?;
         Self::parse(members, blend)
     }
 
     fn parse(text: &str, blend: Q32_32) -> Result<Self, FieldError<'_>> {
-        let (flat, round) = text.split_once('+').ok_or(FieldError::Union)?;
-        let member = |text| Primitive::parse(text).unwrap_or(Err(FieldError::Union));
-        Self::new(member(flat)?, member(round)?, blend)
+        let kind = kind_error(blend);
+        let (first, spheres) = text.split_once('+').ok_or(kind)?;
+        let member = |text| Primitive::parse(text).unwrap_or(Err(kind));
+        Self::new(member(first)?, member(spheres)?, blend)
     }
 
     /// Makes a union of the given members with a random fillet, or without one.
     pub(super) fn draw(
-        flat: Primitive,
-        round: Primitive,
+        first: Primitive,
+        spheres: Primitive,
         numbers: &mut impl Arguments<'static>,
     ) -> Result<Self, FieldError<'static>> {
         let blend = match numbers.integer("fillet", [0, 1])? {
             0 => Q32_32::ZERO,
             _ => numbers.number("k", BLEND)?,
         };
-        Self::new(flat, round, blend)
+        Self::new(first, spheres, blend)
+    }
+}
+
+/// The error of members that a union with a fillet of this width does not accept.
+fn kind_error(blend: Q32_32) -> FieldError<'static> {
+    match blend == Q32_32::ZERO {
+        true => FieldError::Union,
+        false => FieldError::Smooth,
     }
 }
 
@@ -118,6 +154,6 @@ impl fmt::Display for Union {
         } else {
             write!(f, "smooth:{},", self.blend)?;
         }
-        write!(f, "{}+{}", self.flat, self.round)
+        write!(f, "{}+{}", self.first, self.spheres)
     }
 }

@@ -48,9 +48,18 @@ fn spheres_are_checked_one_by_one() {
     };
     let all = [sphere(-4, 2); MAX_SPHERES + 1];
     assert!(Spheres::new(&all[1..]).is_ok());
-    assert_eq!(Spheres::new(&all), Err(FieldError::Spheres));
-    assert_eq!(Spheres::new(&[]), Err(FieldError::Spheres));
-    assert_eq!(Field::parse("spheres"), Err(FieldError::Spheres));
+    assert_eq!(
+        Spheres::new(&all),
+        Err(FieldError::Spheres { most: MAX_SPHERES })
+    );
+    assert_eq!(
+        Spheres::new(&[]),
+        Err(FieldError::Spheres { most: MAX_SPHERES })
+    );
+    assert_eq!(
+        Field::parse("spheres"),
+        Err(FieldError::Spheres { most: MAX_SPHERES })
+    );
     assert!(Spheres::new(&[sphere(0, 12)]).is_ok());
     let beyond = Spheres::new(&[sphere(0, 1), sphere(1, 12)]).unwrap_err();
     assert_eq!(beyond.to_string(), "centre: expected 0 to 0");
@@ -77,7 +86,23 @@ fn mistakes_say_what_was_expected() {
         ("moving:11,1.5", "orbit: expected 0 to 1"),
         (
             "smooth:0.1",
-            "union: expected menger or box, +, and sphere, spheres or moving",
+            "smooth: expected menger or box, +, and sphere, spheres or moving",
+        ),
+        (
+            "union:octahedron:1+sphere:1",
+            "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres or moving",
+        ),
+        (
+            "smooth:0.1,cubes:2,0.4+sphere:1",
+            "smooth: expected menger or box, +, and sphere, spheres or moving",
+        ),
+        (
+            "union:lattice:1,0.1+spheres:0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1",
+            "spheres: expected 1 to 7",
+        ),
+        (
+            "union:cubes:0.25,0.1+sphere:4",
+            "radius: expected 0.01 to 3.99609375",
         ),
     ] {
         let error = Field::parse(text).expect_err(text);

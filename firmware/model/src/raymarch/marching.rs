@@ -46,6 +46,12 @@ pub struct Marching {
 }
 
 impl Marching {
+    /// Whether rays can march in a field: in all fields but unions with a field that repeats, in which the eye's position is that in the cell
+    /// about the origin.
+    pub fn draws(field: &Field) -> bool {
+        !field.is_repeated_union()
+    }
+
     /// Computes the constants for a field in the form of [`placed`], and for the cameras of the two eyes with their rays. `nearest` is the
     /// depth of the nearest corner of the field's bounding box, with 37 fraction bits.
     pub(super) fn new(
@@ -156,18 +162,18 @@ impl Marching {
 pub(super) fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
     let union = match field {
         Field::Primitive(primitive) => return (primitive.placed(), None),
-        Field::Union(union) if !SPHERES.is_built => return (union.flat().placed(), None),
+        Field::Union(union) if !SPHERES.is_built => return (union.first().placed(), None),
         Field::Union(union) => union,
     };
-    let [flat, round] = [union.flat(), union.round()].map(Primitive::placed);
+    let [first, round] = [union.first(), union.spheres()].map(Primitive::placed);
     // A fillet extends beyond both members of the union by at most a quarter of its width.
-    let extent = flat
+    let extent = first
         .extent
         .zip(round.extent)
-        .map(|(flat, round)| [0, 1, 2].map(|i: usize| flat[i].max(round[i]) + union.blend() / 4));
-    let beside = round.solid.spheres().map(|&spheres| Beside {
+        .map(|(first, round)| [0, 1, 2].map(|i: usize| first[i].max(round[i]) + union.blend() / 4));
+    let beside = union.spheres().spheres(first.scale).map(|spheres| Beside {
         spheres,
-        blend: Blend::new(units(union.blend(), flat.scale) as u32),
+        blend: Blend::new(units(union.blend(), first.scale) as u32),
     });
-    (Placed { extent, ..flat }, beside)
+    (Placed { extent, ..first }, beside)
 }

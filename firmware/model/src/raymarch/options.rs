@@ -69,7 +69,7 @@ const MARK: [u8; 3] = [255, 0, 255];
 pub struct FieldOptions {
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
-    /// Whether rays march also in a field that is drawn by exits, to compare both.
+    /// Whether rays march also in a field that is drawn by exits, to compare both, where they can ([`Marching::draws`](super::Marching::draws)).
     pub marches: bool,
     /// Precision of the march of rays.
     pub tuning: Tuning,

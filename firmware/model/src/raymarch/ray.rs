@@ -267,8 +267,7 @@ impl Marching {
             return None;
         };
         let (spheres, number) = (self.spheres()?, surface.number()?);
-        let sphere = spheres.list.get(usize::from(number))?;
-        Some(spheres.from(sphere, self.point(ray, end.t & !3)))
+        Some(spheres.from(number, self.point(ray, end.t & !3)))
     }
 
     /// Depth along the camera's forward axis n of a ray's point at t, in field units times 2^e with the exponent e of this

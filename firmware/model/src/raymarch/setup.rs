@@ -63,7 +63,8 @@ impl FieldSetup {
         let stereo = options.stereo.filter(|_| STEREO.is_built);
         let solid = placed(field);
         let nearest = nearest(view, solid.0.extent);
-        let (form, scale, exponent) = if Exits::draws(field) && !options.marches {
+        let marches = options.marches && Marching::draws(field);
+        let (form, scale, exponent) = if Exits::draws(field) && !marches {
             let exits = Exits::new(field, view, (width, height), stereo, Words::CHOSEN)?;
             (Form::Exits(exits), exits.scale, exits.exponent)
         } else {

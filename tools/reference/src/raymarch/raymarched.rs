@@ -94,7 +94,7 @@ impl Field {
         match scene {
             Scene::Primitive(primitive) => Self::of_primitive(primitive),
             Scene::Union(union) => {
-                let [a, b] = [union.flat(), union.round()]
+                let [a, b] = [union.first(), union.spheres()]
                     .map(|member| Box::new(Self::of_primitive(member)));
                 match union.blend().to_num() {
                     0.0 => Self::Union(a, b),

@@ -12,7 +12,7 @@ use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
 use glint_testbench::{Bits, Layout, Module, Pipe, Record};
 use glint_vectors::Random;
 
-use crate::scenes::{FIELDS, SPONGES, UNIONS, camera, size, stereo};
+use crate::scenes::{ENDLESS_UNIONS, FIELDS, SPONGES, UNIONS, camera, size, stereo};
 
 /// Number of rays in a frame.
 const RAYS: usize = 2_000;
@@ -27,7 +27,7 @@ fn fields() -> Vec<&'static str> {
 /// Fields of a lane that draws sponges up to depth 6, and whose rays may meet spheres.
 fn all_fields() -> Vec<&'static str> {
     let is_union = |field: &&str| field.starts_with("union:");
-    let unions = UNIONS.into_iter().filter(is_union);
+    let unions = UNIONS.into_iter().chain(ENDLESS_UNIONS).filter(is_union);
     [&SPONGES[..], &FIELDS, &LATTICES, &OCTAHEDRA]
         .concat()
         .into_iter()
@@ -218,9 +218,12 @@ impl Bench {
         let (rays, ends) = (("in", &["ray"][..]), ("out", &["end"][..]));
         Self {
             pipe: Pipe::new(name, seed, rays, ends, stalls),
-            landing: [ALL, "exit_lane_lattice"]
-                .contains(&name)
-                .then(|| Pipe::new("exit_landing", seed, ("in", &["end"]), ends, stalls)),
+            landing: match name {
+                ALL => Some("exit_landing_round"),
+                "exit_lane_lattice" => Some("exit_landing"),
+                _ => None,
+            }
+            .map(|landing| Pipe::new(landing, seed, ("in", &["end"]), ends, stalls)),
             has_limits: name == ALL,
         }
     }

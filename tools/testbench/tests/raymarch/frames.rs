@@ -4,7 +4,9 @@ use glint_model::raymarch::{Lights, Palette, Shine, State};
 use glint_testbench::{Raymarcher, Taken};
 use glint_vectors::Random;
 
-use crate::scenes::{FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, limit_steps, setup};
+use crate::scenes::{
+    ENDLESS_UNIONS, FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, limit_steps, setup,
+};
 
 /// Number of lanes of the module `raymarcher_sponge`.
 const LANES: u64 = 4;
@@ -68,6 +70,26 @@ fn frames_of_round_fields_in_all_lights() {
         };
         let stalls = (frame % 2 == 1).then_some(&mut random);
         bench.draw(stalls, &setup, &palette);
+    }
+}
+
+/// Spheres in a repeated field need the eye's position in the world, the field that in its cell.
+#[test]
+fn frames_of_spheres_in_endless_fields() {
+    let mut random = Random(14);
+    let mut bench = Raymarcher::new("raymarcher", 1);
+    for text in ENDLESS_UNIONS {
+        let setup = loop {
+            let setup = setup(&mut random, &[text]);
+            if setup.width == 320 {
+                break setup;
+            }
+        };
+        let palette = Palette {
+            lights: lights(&mut random, setup.stereo.is_some()),
+            ..Palette::default()
+        };
+        bench.draw(None, &setup, &palette);
     }
 }
 

@@ -25,7 +25,7 @@ pub const ROUND: [&str; 8] = [
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
-/// Unions of a field with flat faces and a field with spheres.
+/// Unions of a bounded field with flat faces and of spheres.
 pub const UNIONS: [&str; 7] = [
     "union:menger:4+sphere:0.75",
     "union:menger:2+moving:0.25,1,-75",
@@ -34,6 +34,16 @@ pub const UNIONS: [&str; 7] = [
     "smooth:0.25,menger:2+sphere:1",
     "smooth:0.5,menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
     "smooth:0.01,menger:1+moving:1,0.5,30",
+];
+
+/// Unions of an unbounded field and of spheres.
+pub const ENDLESS_UNIONS: [&str; 6] = [
+    "union:cubes:2,0.4+sphere:1.1",
+    "union:cubes:0.25,0.1+spheres:0,0,0,0.3;1,1,0,3.9",
+    "union:boxes:1,0.5,0.5,0.05+spheres:0,0,0.3,0.4;3,-3,0.5,0.8",
+    "union:lattice:1,0.3+moving:0.45,0.75,40",
+    "union:lattice:2,0.5+spheres:0,0,0,0.6;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;8,-8,8,3.5",
+    "union:planes:1+spheres:0,0,-0.7,0.5;2,1,1,0.4",
 ];
 
 /// Fields with faces perpendicular to the axes.
@@ -64,17 +74,26 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Returns fields of all kinds: `FIELDS`, `ROUND` and `UNIONS`, unions with a box, an example of each kind, and random fields, some
-/// with values at the ends of their ranges.
+/// Returns fields of all kinds in which rays can march: `FIELDS`, `ROUND`, unions, an example of each kind, and random fields, some with values at the ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
         "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
     ];
     let mut random = Random(17);
-    let fixed = [&FIELDS[..], &ROUND, &UNIONS, &boxes, &Primitive::EXAMPLES].concat();
+    let fixed = [
+        &FIELDS[..],
+        &ROUND,
+        &UNIONS,
+        &ENDLESS_UNIONS,
+        &boxes,
+        &Primitive::EXAMPLES,
+    ]
+    .concat();
     let drawn = (0..60).map(|_| Field::draw(|| random.bits() as u32).to_string());
-    fixed.into_iter().map(String::from).chain(drawn).collect()
+    let all = fixed.into_iter().map(String::from).chain(drawn);
+    all.filter(|text| Marching::draws(&Field::parse(text).unwrap()))
+        .collect()
 }
 
 /// Makes a random camera inside or outside of a field, with any direction.

@@ -9,7 +9,7 @@ use glint_testbench::raymarch::set_cones;
 use glint_testbench::{Module, Sink, Stalls, step};
 use glint_vectors::Random;
 
-use crate::scenes::{ROUND, UNIONS, camera, size, stereo};
+use crate::scenes::{ENDLESS_UNIONS, ROUND, UNIONS, camera, size, stereo};
 
 /// The largest component of a direction.
 const ONE: i32 = (1 << 24) - 1;
@@ -19,7 +19,12 @@ const RADIUS: i32 = 81 << 11;
 /// Fields with a list of spheres.
 fn fields() -> Vec<&'static str> {
     let is_list = |field: &&str| !field.starts_with("lattice");
-    ROUND.into_iter().chain(UNIONS).filter(is_list).collect()
+    ROUND
+        .into_iter()
+        .chain(UNIONS)
+        .chain(ENDLESS_UNIONS)
+        .filter(is_list)
+        .collect()
 }
 
 /// A part of a picture, of whole groups of 8 columns.

@@ -6,7 +6,7 @@ use super::cuboid::FixedBox;
 use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::limits::{PERIOD, SMALLEST, largest_half};
-use crate::field::shape::{FieldKind, Placed, scale_of};
+use crate::field::shape::{FieldKind, Member, Placed, scale_of};
 use crate::field::surface::units;
 use crate::fixed::Q32_32;
 
@@ -44,6 +44,7 @@ impl FieldKind for Cubes {
         "background sky",
         "fog 0.15",
     ];
+    const MEMBER: Option<Member> = Some(Member::First);
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let period = numbers.number("period", PERIOD)?;
@@ -78,6 +79,7 @@ impl FieldKind for Boxes {
         "background sky",
         "fog 0.1",
     ];
+    const MEMBER: Option<Member> = Some(Member::First);
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let period = numbers.number("period", PERIOD)?;

@@ -6,7 +6,7 @@ use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
 use crate::field::limits::{MAX_EXTENT, SMALLEST};
-use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed, SCALE};
+use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Member, Placed, SCALE};
 use crate::field::surface::{FRACTION, FieldSample, cropped, units};
 use crate::fixed::Q32_32;
 
@@ -31,7 +31,7 @@ impl FieldKind for Cuboid {
     const FORM: &'static str = "box:X,Y,Z";
     const ABOUT: &'static str = "a box about the origin, by half its sides";
     const EXAMPLE: &'static str = "box:1,0.5,0.25";
-    const JOINS: bool = true;
+    const MEMBER: Option<Member> = Some(Member::First);
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let mut side = |name| numbers.number(name, [SMALLEST, MAX_EXTENT]);
@@ -69,6 +69,7 @@ impl FieldKind for Planes {
         "background sky",
         "fog 0.2",
     ];
+    const MEMBER: Option<Member> = Some(Member::First);
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let half = numbers.number("half", [SMALLEST, MAX_EXTENT])?;

@@ -4,7 +4,7 @@
 use crate::division::quotient;
 use crate::feature::SPHERES;
 use crate::field::limits::MAX_SPHERES;
-use crate::field::surface::{FieldSample, Surface, magnitude};
+use crate::field::surface::{FRACTION, FieldSample, Surface, cropped, magnitude};
 
 /// A sphere with lengths in field units, which have 12 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,9 +40,9 @@ impl FixedSphere {
 pub struct FixedSpheres {
     /// The spheres are in the first `count` entries; the other entries are not used.
     pub list: [FixedSphere; MAX_SPHERES],
-    /// Number of spheres, 1 to 8.
+    /// Number of spheres, at most 8.
     pub count: usize,
-    /// Whether the solid is periodic with 64 field units along each axis. A periodic solid has one sphere, about the origin.
+    /// Whether the first sphere, about the origin, is periodic with 64 field units along each axis.
     pub repeated: bool,
 }
 
@@ -50,6 +50,15 @@ pub struct FixedSpheres {
 const MOST: i32 = (1 << 21) - 1;
 
 impl FixedSpheres {
+    /// Adds the spheres of a list, as many as there is room for.
+    pub fn add(&mut self, list: &Self) {
+        let places = self.list.iter_mut().skip(self.count);
+        for (place, sphere) in places.zip(list.list.iter().take(list.count)) {
+            *place = *sphere;
+            self.count += 1;
+        }
+    }
+
     /// Returns the distance of a point from the nearest sphere, and the number of this sphere; of equally near spheres the first.
     pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         let mut nearest = FieldSample {
@@ -59,7 +68,7 @@ impl FixedSpheres {
         let count = if SPHERES.is_built { self.count } else { 0 };
         for (number, sphere) in (0..).zip(self.list.iter().take(count)) {
             // Before saturation to `MOST`, the distance is below 2^23.
-            let distance = length(self.from(sphere, point)) - sphere.radius;
+            let distance = length(self.from(number, point)) - sphere.radius;
             if distance < nearest.distance {
                 nearest = FieldSample {
                     distance,
@@ -70,12 +79,16 @@ impl FixedSpheres {
         nearest
     }
 
-    /// Returns the vector from a sphere's centre to a point, s11.12.
-    pub fn from(&self, sphere: &FixedSphere, point: [i32; 3]) -> [i32; 3] {
+    /// Returns the vector from the centre of sphere `number` to a point, s11.12, modulo 2^23.
+    pub fn from(&self, number: u8, point: [i32; 3]) -> [i32; 3] {
         // A period of 64 field units is 2^18 in this format. Therefore the lowest 18 bits of a coordinate, as a signed number,
         // are the coordinate relative to the centre of its cell.
-        let beyond = if self.repeated { 14 } else { 9 };
-        [0, 1, 2].map(|i: usize| (point[i] - sphere.centre[i]) << beyond >> beyond)
+        let bits = match self.repeated && number == 0 {
+            true => 6 + FRACTION,
+            false => 23,
+        };
+        let centre = self.list[usize::from(number) % MAX_SPHERES].centre;
+        [0, 1, 2].map(|i: usize| cropped(point[i] - centre[i], bits))
     }
 }
 

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
-use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Placed};
+use crate::field::shape::{FieldKind, FlatConstants, FlatSolid, Member, Placed};
 use crate::field::surface::{FRACTION, FieldSample, magnitude};
 use crate::fixed::Q32_32;
 
@@ -27,7 +27,7 @@ impl FieldKind for Menger {
     const ABOUT: &'static str = "the Menger sponge in [-1, 1]^3, depth 1 to 6";
     const EXAMPLE: &'static str = "menger:4";
     const LOOK: &'static [&'static str] = &["camera 4 30 60"];
-    const JOINS: bool = true;
+    const MEMBER: Option<Member> = Some(Member::First);
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let depth = numbers.integer("depth", [1, MAX_DEPTH])?;

@@ -7,7 +7,7 @@ use super::fixed_sphere::{FixedSphere, FixedSpheres};
 use crate::field::argument::{Arguments, check};
 use crate::field::error::FieldError;
 use crate::field::limits::{MAX_EXTENT, MAX_SPHERES, PERIOD, SMALLEST, largest_half};
-use crate::field::shape::{FieldKind, Placed, SCALE, scale_of};
+use crate::field::shape::{FieldKind, Member, Placed, SCALE, scale_of};
 use crate::field::surface::units;
 use crate::fixed::{Q2_30, Q32_32, Turns};
 use crate::trig::sin_cos_q30;
@@ -57,7 +57,7 @@ impl Spheres {
         let mut list = [Sphere::default(); MAX_SPHERES];
         let count = spheres.len();
         if count == 0 || count > MAX_SPHERES {
-            return Err(FieldError::Spheres);
+            return Err(FieldError::Spheres { most: MAX_SPHERES });
         }
         for (place, sphere) in list.iter_mut().zip(spheres) {
             *place = sphere.checked()?;
@@ -91,6 +91,29 @@ pub struct MovingSphere {
     pub angle: Turns,
 }
 
+impl CentredSphere {
+    fn sphere(&self) -> Sphere {
+        Sphere {
+            radius: self.radius,
+            ..Sphere::default()
+        }
+    }
+}
+
+impl MovingSphere {
+    fn sphere(&self) -> Sphere {
+        let (sine, cosine) = sin_cos_q30(self.angle);
+        // The orbit's radius is at most 12 and is used with 20 fraction bits; sine and cosine have 30 fraction bits.
+        let along = |part: Q2_30| {
+            Q32_32::from_bits(((self.orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
+        };
+        Sphere {
+            centre: [along(cosine), along(sine), Q32_32::ZERO],
+            radius: self.radius,
+        }
+    }
+}
+
 impl FieldKind for CentredSphere {
     type Solid = FixedSpheres;
 
@@ -98,7 +121,7 @@ impl FieldKind for CentredSphere {
     const FORM: &'static str = "sphere:R";
     const ABOUT: &'static str = "a sphere about the origin";
     const EXAMPLE: &'static str = "sphere:1";
-    const JOINS: bool = true;
+    const MEMBER: Option<Member> = Some(Member::Second);
     const ROUND: bool = true;
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
@@ -111,10 +134,11 @@ impl FieldKind for CentredSphere {
     }
 
     fn placed(&self) -> Placed<FixedSpheres> {
-        placed(&[Sphere {
-            radius: self.radius,
-            ..Sphere::default()
-        }])
+        Placed::bounded(fixed(&[self.sphere()], SCALE), [self.radius; 3])
+    }
+
+    fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
+        Some(fixed(&[self.sphere()], scale))
     }
 }
 
@@ -125,7 +149,7 @@ impl FieldKind for Spheres {
     const FORM: &'static str = "spheres:X,Y,Z,R;...";
     const ABOUT: &'static str = "up to 8 spheres";
     const EXAMPLE: &'static str = "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25";
-    const JOINS: bool = true;
+    const MEMBER: Option<Member> = Some(Member::Second);
     const ROUND: bool = true;
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
@@ -139,7 +163,9 @@ impl FieldKind for Spheres {
                 .iter()
                 .fold(MAX_EXTENT, |left, x| left.min(MAX_EXTENT - x.abs()));
             let radius = numbers.number("radius", [SMALLEST, beside])?;
-            *list.get_mut(count).ok_or(FieldError::Spheres)? = Sphere { centre, radius };
+            *list
+                .get_mut(count)
+                .ok_or(FieldError::Spheres { most: MAX_SPHERES })? = Sphere { centre, radius };
             count += 1;
         }
         Self::new(list.get(..count).unwrap_or_default())
@@ -154,7 +180,14 @@ impl FieldKind for Spheres {
     }
 
     fn placed(&self) -> Placed<FixedSpheres> {
-        placed(self.iter())
+        let extent = self.iter().fold([Q32_32::ZERO; 3], |extent, sphere| {
+            [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius))
+        });
+        Placed::bounded(fixed(self.iter(), SCALE), extent)
+    }
+
+    fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
+        Some(fixed(self.iter(), scale))
     }
 }
 
@@ -171,6 +204,7 @@ impl FieldKind for Lattice {
         "background sky",
         "fog 0.15",
     ];
+    const MEMBER: Option<Member> = Some(Member::First);
     const ROUND: bool = true;
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
@@ -206,7 +240,7 @@ impl FieldKind for MovingSphere {
     const FORM: &'static str = "moving:R,ORBIT[,DEGREES]";
     const ABOUT: &'static str = "a sphere that circles about the z axis";
     const EXAMPLE: &'static str = "moving:0.5,0.75,-60";
-    const JOINS: bool = true;
+    const MEMBER: Option<Member> = Some(Member::Second);
     const ROUND: bool = true;
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
@@ -227,41 +261,29 @@ impl FieldKind for MovingSphere {
     }
 
     fn placed(&self) -> Placed<FixedSpheres> {
-        let (sine, cosine) = sin_cos_q30(self.angle);
-        // The orbit's radius is at most 12 and is used with 20 fraction bits; sine and cosine have 30 fraction bits.
-        let along = |part: Q2_30| {
-            Q32_32::from_bits(((self.orbit.to_bits() >> 12) * i64::from(part.to_bits())) >> 18)
-        };
         // The bounding box contains the sphere at all angles of the orbit, so the scale is the same in every frame.
         let reach = self.orbit + self.radius;
-        Placed {
-            extent: Some([reach, reach, self.radius]),
-            ..placed(&[Sphere {
-                centre: [along(cosine), along(sine), Q32_32::ZERO],
-                radius: self.radius,
-            }])
-        }
+        let extent = [reach, reach, self.radius];
+        Placed::bounded(fixed(&[self.sphere()], SCALE), extent)
+    }
+
+    fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
+        Some(fixed(&[self.sphere()], scale))
     }
 }
 
-/// Converts spheres from world units to field units, and computes their bounding box.
-fn placed<'a>(spheres: impl IntoIterator<Item = &'a Sphere>) -> Placed<FixedSpheres> {
+/// Converts spheres from world units to field units.
+fn fixed<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, scale: Q32_32) -> FixedSpheres {
     let mut list = [FixedSphere::default(); MAX_SPHERES];
-    let mut extent = [Q32_32::ZERO; 3];
     let mut count = 0;
     for (fixed, sphere) in list.iter_mut().zip(spheres) {
-        let length = |x: Q32_32| units(x, SCALE) as i32;
+        let length = |x: Q32_32| units(x, scale) as i32;
         *fixed = FixedSphere::new(sphere.centre.map(length), length(sphere.radius));
-        extent = [0, 1, 2].map(|i: usize| extent[i].max(sphere.centre[i].abs() + sphere.radius));
         count += 1;
     }
-    Placed {
-        solid: (FixedSpheres {
-            list,
-            count,
-            repeated: false,
-        }),
-        scale: SCALE,
-        extent: Some(extent),
+    FixedSpheres {
+        list,
+        count,
+        repeated: false,
     }
 }

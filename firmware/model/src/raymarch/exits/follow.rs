@@ -94,12 +94,12 @@ impl Exits {
         let State::Hit(surface) = end.state else {
             return None;
         };
-        let sphere = self.spheres.list.get(usize::from(surface.number()?))?;
+        let number = surface.number()?;
         let t = floor(end.t, self.words.parameter as i32 - 10);
         let direction = beam.direction();
         let origin = &self.eyes[beam.eye].origin;
         let place =
             [0, 1, 2].map(|i: usize| origin[i] + floor(t * i64::from(direction[i]), 15) as i32);
-        Some(self.spheres.from(sphere, place))
+        Some(self.spheres.from(number, place))
     }
 }

@@ -1,13 +1,16 @@
 //! Rectangles on the screen around spheres.
 
 use glint_core::camera::View;
-use glint_core::field::units;
+use glint_core::field::{FRACTION, units};
 use glint_core::fixed::Q32_32;
 
 use super::vectors::{Scaled, product};
 
 /// Columns of a group. Rectangles consist of whole groups: the gateware finds the spheres of a group at once.
 const GROUP: u32 = 8;
+
+/// Far limit, as an exponent of the depth in field units.
+pub(super) const FAR: u32 = 11;
 
 /// Pixels from a first to a last column and row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,8 +86,11 @@ impl Screen {
         // The camera's axes may be longer than 1 by 10^−4.
         let radius = radius + (radius >> 10) + 4;
         let place = [0, 1, 2].map(|i: usize| centre[i] - self.eye[i]);
-        // Of 26 bits at most.
+        // Of 27 bits at most.
         let [right, down, depth] = self.axes.map(|axis| (product(&axis, &place) >> 23) as i32);
+        if depth - radius >= 1 << (FAR + FRACTION) {
+            return Rectangle::NONE;
+        }
         if depth <= radius {
             // The sphere reaches the plane of the eye, or is behind it.
             return match depth < -radius {

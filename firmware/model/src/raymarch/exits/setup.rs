@@ -12,7 +12,7 @@ use glint_core::stereo::Stereo;
 use super::cones::{Cone, Cones, Sight};
 use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
 use super::narrow::floor;
-use super::rectangle::{Rectangle, Screen};
+use super::rectangle::{FAR, Rectangle, Screen};
 use super::words::Words;
 use crate::error::RenderError;
 use crate::raymarch::directions::{Directions, check};
@@ -20,15 +20,13 @@ use crate::raymarch::directions::{Directions, check};
 /// Largest number of spheres that are met in cones.
 const SEEN_SPHERES: usize = if SPHERES.is_built { MAX_SPHERES } else { 0 };
 
-/// Far limit, as an exponent of the depth in field units.
-const FAR: u32 = 11;
-
 /// Position of an eye, and direction of its first ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Eye {
-    /// Position in field units, s13.12.
+    /// Position in field units, s13.12: in x, y and z, or along the first three diagonals of an octahedron.
     pub origin: [i32; 3],
-    /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis.
+    /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis; of a repeated solid, the position in the
+    /// cell about the origin.
     pub corners: [[i64; AXES]; 2],
     /// Direction D of the first pixel's ray along each axis, s2.30. The fourth number is not used: a ray's component along the fourth axis is
     /// the sum of the three others.
@@ -65,24 +63,26 @@ pub struct Side {
 impl Eye {
     /// An eye at a position in field units, s13.12, with the directions of its rays and its prism still to be set.
     pub fn at(origin: [i32; 3], solid: &Option<Solid>) -> Self {
-        Self {
-            origin,
-            ..Self::placed(along(solid, origin.map(i64::from)), solid)
-        }
+        Self::placed(along(solid, origin.map(i64::from)), solid)
     }
 
-    /// As [`at`](Self::at), from the position along the axes of the solid; without `origin`, which only spheres need, for an octahedron.
+    /// As [`at`](Self::at), from the position along the axes of the solid.
     pub fn placed(place: [i64; AXES], solid: &Option<Solid>) -> Self {
         let half = solid.map_or([0; AXES], |solid| solid.side.map(|side| side / 2));
         let [x, y, z, _] = place.map(|part| part as i32);
+        let within = match solid.map(|solid| solid.rule) {
+            Some(Rule::Repeated { .. }) => [x, y, z, 0].map(|part| cropped(part, PERIOD).into()),
+            _ => place,
+        };
         Self {
             origin: [x, y, z],
-            corners: [1, -1].map(|sign| [0, 1, 2, 3].map(|i: usize| half[i] + sign * place[i])),
+            corners: [1, -1].map(|sign| [0, 1, 2, 3].map(|i: usize| half[i] + sign * within[i])),
             ..Self::default()
         }
     }
 
-    /// The position from the solid's centre along the first three axes, s13.12: in x, y and z, or along diagonals of an octahedron.
+    /// The position from the solid's centre along the first three axes, s13.12: in x, y and z, or along diagonals of an octahedron. In a
+    /// repeated solid, the position in the cell about the origin.
     pub fn place(&self) -> [i32; 3] {
         let [up, down] = &self.corners;
         [0, 1, 2].map(|axis: usize| ((up[axis] - down[axis]) / 2) as i32)
@@ -117,9 +117,9 @@ pub struct Exits {
     pub far: i64,
     /// The flat solid or the lattice; `None` for a list of spheres alone.
     pub solid: Option<Solid>,
-    /// The spheres: those of a list, that of a lattice, or none.
+    /// The spheres: that of a lattice, and those of a list.
     pub spheres: FixedSpheres,
-    /// The pixels by which each eye may see each sphere of a list; none for the right eye without stereo.
+    /// The pixels by which each eye may see each sphere of `spheres` that is one of a list; none for the right eye without stereo.
     pub rectangles: [[Rectangle; SEEN_SPHERES]; 2],
 }
 
@@ -145,24 +145,24 @@ impl Exits {
         words: Words,
     ) -> Result<Self, RenderError> {
         check(view, (width, height))?;
-        let flat = match field {
+        let member = match field {
             Field::Primitive(primitive) => primitive,
-            Field::Union(union) => union.flat(),
+            Field::Union(union) => union.first(),
         };
-        let world = flat.placed();
-        let (solid, scale) = placed(flat, &world);
+        let world = member.placed();
+        let (solid, scale) = placed(member, &world);
         let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
         let rays = Directions::new(&views, width, height, false);
         let narrow = |direction: [i64; 3]| along(&solid, direction).map(|x| rays.narrow(x));
         let steps = [narrow(rays.across), narrow(rays.down)];
         let eye = |i: usize| {
-            let origin = views[i].eye().map(|x| units(x, scale) as i32);
-            let origin = match solid.map(|solid| solid.rule) {
-                Some(Rule::Repeated { .. }) => origin.map(|x| cropped(x, PERIOD)),
-                _ => origin,
-            };
-            let eye = Eye::at(origin, &solid);
+            let eye = Eye::at(views[i].eye().map(|x| units(x, scale) as i32), &solid);
             Eye {
+                // Only spheres of a list need the position in the world, so only builds with such spheres can reduce it themselves.
+                origin: match field.is_repeated_union() {
+                    true => eye.origin,
+                    false => eye.place(),
+                },
                 first: first(&rays, i, [width / 2, height / 2], &steps, narrow),
                 start: solid.map_or_else(Start::away, |solid| Start::new(&solid, &eye.corners)),
                 ..eye
@@ -195,11 +195,16 @@ impl Exits {
             rectangles: [[Rectangle::NONE; SEEN_SPHERES]; 2],
         };
         let eyes = if stereo.is_some() { 2 } else { 1 };
-        match field {
-            Field::Primitive(_) => exits.place_spheres(&world, &views[..eyes]),
-            Field::Union(union) => {
-                exits.place_spheres(&union.round().placed(), &views[..eyes]);
+        if SPHERES.is_built {
+            if let Kind::Spheres(spheres) = &world.solid {
+                exits.spheres = *spheres;
             }
+            if let Field::Union(union) = field
+                && let Some(list) = union.spheres().spheres(scale)
+            {
+                exits.spheres.add(&list);
+            }
+            exits.place_rectangles(&views[..eyes]);
         }
         Ok(exits)
     }
@@ -215,34 +220,14 @@ impl Exits {
         })
     }
 
-    /// Computes the constants of the spheres of a solid, if it has any. `views` are the cameras of the eyes.
-    fn place_spheres(&mut self, round: &Placed<Kind>, views: &[View]) {
-        let Placed {
-            solid: Kind::Spheres(spheres),
-            scale,
-            ..
-        } = round
-        else {
-            return;
-        };
-        if !SPHERES.is_built {
-            return;
-        }
-        self.spheres = *spheres;
-        let own = self.scale;
-        if own != *scale {
-            // Scaled as the flat member of a union. Scales have four fraction bits.
-            let [to, from] = [own, *scale].map(|scale| scale.to_bits() >> 28);
-            let rescaled = |x: i32| (2 * i64::from(x) * to + from).div_euclid(2 * from) as i32;
-            for sphere in self.spheres.list.iter_mut().take(spheres.count) {
-                *sphere = FixedSphere::new(sphere.centre.map(rescaled), rescaled(sphere.radius));
-            }
-        }
+    /// Computes the rectangles of the spheres of a list. `views` are the cameras of the eyes.
+    fn place_rectangles(&mut self, views: &[View]) {
+        let lattice = usize::from(self.spheres.repeated);
         let size = [self.width, self.height];
         for (rectangles, view) in self.rectangles.iter_mut().zip(views) {
-            let screen = Screen::new(view, own, size);
-            let spheres = self.spheres.list.iter().take(spheres.count);
-            for (rectangle, sphere) in rectangles.iter_mut().zip(spheres) {
+            let screen = Screen::new(view, self.scale, size);
+            let seen = rectangles.iter_mut().zip(&self.spheres.list);
+            for (rectangle, sphere) in seen.take(self.spheres.count).skip(lattice) {
                 *rectangle = screen.around(sphere.centre, sphere.radius);
             }
         }
@@ -270,7 +255,8 @@ impl Exits {
 
     /// Computes the cones in which an eye sees the spheres of a list, in the order of the list.
     pub fn each_cone(&self, eye: usize, take: &mut dyn FnMut(&Cone)) {
-        if !SPHERES.is_built || self.spheres.repeated || self.spheres.count == 0 {
+        let lattice = usize::from(self.spheres.repeated);
+        if !SPHERES.is_built || self.spheres.count <= lattice {
             return;
         }
         let world = |[x, y, z, _]: [i32; AXES]| [x, y, z];
@@ -280,8 +266,9 @@ impl Exits {
         let near = floor(self.near, self.words.parameter as i32 - 14);
         let sight = Sight::new(origin, [world(first), across, down], near);
         let spheres = self.spheres.list.iter().take(self.spheres.count);
+        let seen = (0..).zip(spheres).zip(&self.rectangles[eye]);
         let mut cone = Cone::default();
-        for ((number, sphere), rectangle) in (0..).zip(spheres).zip(&self.rectangles[eye]) {
+        for ((number, sphere), rectangle) in seen.skip(lattice) {
             (cone.number, cone.rectangle) = (number, *rectangle);
             sight.cones(sphere, &mut cone, take);
         }
@@ -297,12 +284,16 @@ impl Exits {
                 solid.place(&intervals) == Place::Solid
             })
         };
-        let in_sphere = |sphere: &FixedSphere| {
-            let apart = |i: usize| i64::from(eye.origin[i]) - i64::from(sphere.centre[i]);
+        let in_sphere = |(number, sphere): (usize, &FixedSphere)| {
+            let place = match self.spheres.repeated && number == 0 {
+                true => eye.place(),
+                false => eye.origin,
+            };
+            let apart = |i: usize| i64::from(place[i]) - i64::from(sphere.centre[i]);
             let square: i64 = (0..3).map(|i| apart(i).pow(2)).sum();
             square < i64::from(sphere.radius).pow(2)
         };
-        let mut spheres = self.spheres.list.iter().take(self.spheres.count);
+        let mut spheres = (self.spheres.list.iter().take(self.spheres.count)).enumerate();
         self.solid.as_ref().is_some_and(in_solid) || spheres.any(in_sphere)
     }
 

@@ -16,7 +16,7 @@ use crate::common::{mesh, plain, renderer, running_board};
 use glint_vectors::Camera;
 
 /// Representative fields.
-const FIELDS: [&str; 13] = [
+const FIELDS: [&str; 17] = [
     "menger:4",
     "menger:6",
     "menger:1",
@@ -30,6 +30,10 @@ const FIELDS: [&str; 13] = [
     "moving:0.5,0.75,-60",
     "sphere:1",
     "smooth:0.3,menger:1+sphere:1.2",
+    "union:cubes:2,0.4+sphere:0.9",
+    "union:boxes:1,0.5,0.5,0.05+spheres:0.75,0.5,0.25,0.5;-0.5,1,0,0.25",
+    "union:planes:0.9+moving:0.5,0.75,100",
+    "union:lattice:1,0.3+moving:0.45,0.75,-60",
 ];
 
 /// Returns all tested fields: the fields in `FIELDS`, and an example of each kind of field that is not in `FIELDS`.
