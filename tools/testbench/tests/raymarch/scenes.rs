@@ -37,11 +37,12 @@ pub const UNIONS: [&str; 7] = [
 ];
 
 /// Unions of an unbounded field and of spheres.
-pub const ENDLESS_UNIONS: [&str; 6] = [
+pub const ENDLESS_UNIONS: [&str; 7] = [
     "union:cubes:2,0.4+sphere:1.1",
     "union:cubes:0.25,0.1+spheres:0,0,0,0.3;1,1,0,3.9",
     "union:boxes:1,0.5,0.5,0.05+spheres:0,0,0.3,0.4;3,-3,0.5,0.8",
-    "union:lattice:1,0.3+moving:0.45,0.75,40",
+    "union:lattice:1,0.1+moving:0.9,0.75,40",
+    "union:lattice:4,1+spheres:0.2,0.1,-0.15,1;0,0,0,0.9;4,0,0.1,1",
     "union:lattice:2,0.5+spheres:0,0,0,0.6;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;8,-8,8,3.5",
     "union:planes:1+spheres:0,0,-0.7,0.5;2,1,1,0.4",
 ];
