@@ -120,9 +120,9 @@ impl Shape {
             }
             Self::Torus => {
                 let (sin, cos) = turned(number << 28);
-                let tube = |x: i32| scaled(Q2_14::lit("0.15"), x);
+                let tube = |x: i32| scaled(const { Q2_14::lit("0.15") }, x);
                 (number <= 16).then_some(Ring {
-                    radius: i32::from(Q2_14::lit("0.35").to_bits()) + tube(cos),
+                    radius: i32::from(const { Q2_14::lit("0.35") }.to_bits()) + tube(cos),
                     height: tube(sin),
                     normal: [cos, sin],
                 })
@@ -130,7 +130,7 @@ impl Shape {
             Self::Cylinder => {
                 // The centres of both ends, two rings with different normals at the edge of each end, and 14 rings between the
                 // ends.
-                let edge = i32::from(Q2_14::lit("0.3").to_bits());
+                let edge = i32::from(const { Q2_14::lit("0.3") }.to_bits());
                 let half = one / 2;
                 let (radius, height, normal) = match number {
                     0 => (0, -half, [0, -one]),
