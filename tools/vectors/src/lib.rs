@@ -7,6 +7,7 @@ pub mod meshes;
 pub mod model;
 pub mod picture;
 pub mod random;
+pub mod rays;
 pub mod scenes;
 pub mod segments;
 pub mod triangles;

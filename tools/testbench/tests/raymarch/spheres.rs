@@ -1,18 +1,15 @@
 //! Tests of the sphere unit: each pixel has the model's sphere and parameter, in order, under any back-pressure, and takes no more clocks
 //! than its cones.
 
-use glint_core::camera::View;
 use glint_core::field::Field;
-use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::exits::{Cone, Exits, Linear, Words};
 use glint_testbench::raymarch::set_cones;
 use glint_testbench::{Module, Sink, Stalls, step};
 use glint_vectors::Random;
+use glint_vectors::rays::{self, ONE};
 
 use crate::scenes::{ENDLESS_UNIONS, ROUND, UNIONS, camera, size, stereo};
 
-/// The largest component of a direction.
-const ONE: i32 = (1 << 24) - 1;
 /// The radius of `sphere:1`, with 12 fraction bits.
 const RADIUS: i32 = 81 << 11;
 
@@ -229,23 +226,6 @@ fn lines_take_a_clock_for_each_cone() {
     }
 }
 
-/// A frame in which all rays start at `eye` and have one direction. The near plane is at the parameter `near`, with 14 fraction bits.
-fn frame(field: &str, eye: [i32; 3], direction: [i32; 3], near: i64) -> Exits {
-    let field = Field::parse(field).expect("a field");
-    let old = View::spherical(Q32_32::from_num(4), Default::default(), Default::default())
-        .expect("a camera");
-    let exits =
-        |view: &View| Exits::new(&field, view, (320, 180), None, Words::CHOSEN).expect("a frame");
-    let scale = exits(&old).scale.to_num::<f64>();
-    let place = eye.map(|x| Q32_32::from_num(f64::from(x) / 4096.0 / scale));
-    let lens = (old.half_width(), U4_28::from_num(0.01));
-    let view = View::new_checked(place, old.u(), old.v(), old.n(), lens.0, lens.1);
-    let mut exits = exits(&view.expect("an eye within its range"));
-    exits.near = near;
-    exits.aim(direction.map(|part| part << 6));
-    exits
-}
-
 #[test]
 fn directed_rays() {
     let along = [ONE, 0, 0];
@@ -282,7 +262,8 @@ fn directed_rays() {
         size: [8, 1],
     };
     for (field, eye, direction, near, is_met) in cases {
-        let exits = frame(field, eye, direction, near);
+        let mut exits = rays::frame(field, eye, direction);
+        exits.near = near;
         let [_, _, hits, _] = bench.check(&exits, window, 1);
         assert_eq!(
             hits,
@@ -291,7 +272,7 @@ fn directed_rays() {
         );
     }
     // A list without a radius.
-    let mut exits = frame("sphere:1", [-4 * RADIUS, 0, 0], along, 0);
+    let mut exits = rays::frame("sphere:1", [-4 * RADIUS, 0, 0], along);
     exits.spheres.list[0].radius = 0;
     exits.aim(along.map(|part| part << 6));
     bench.check(&exits, window, 1);

@@ -16,6 +16,7 @@ mod memory;
 mod motions;
 mod objects;
 mod panel;
+mod rays;
 mod steering;
 mod texts;
 mod transfers;
@@ -43,6 +44,7 @@ pub fn all() -> Vec<Kind> {
         motions::kinds(),
         objects::kinds(),
         panel::kinds(),
+        rays::kinds(),
         steering::kinds(),
         texts::kinds(),
         transfers::kinds(),
