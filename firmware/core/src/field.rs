@@ -56,6 +56,14 @@ impl Field {
         }
     }
 
+    /// Whether the field is a bent union, which no gateware draws.
+    pub const fn is_bent(&self) -> bool {
+        match self {
+            Self::Primitive(_) => false,
+            Self::Union(union) => union.bend() != 0,
+        }
+    }
+
     /// Whether the field is a union with spheres of a field that repeats.
     pub fn is_repeated_union(&self) -> bool {
         match self {
@@ -91,12 +99,13 @@ impl Field {
     pub fn parse(text: &str) -> Result<Self, FieldError<'_>> {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
         match kind {
-            "union" | "smooth" if !SPHERES.is_built => Err(FieldError::LeftOut {
+            "union" | "smooth" | "bent" if !SPHERES.is_built => Err(FieldError::LeftOut {
                 kind,
                 feature: SPHERES,
             }),
             "union" => Union::parse_sharp(numbers).map(Self::Union),
             "smooth" => Union::parse_smooth(numbers).map(Self::Union),
+            "bent" => Union::parse_bent(numbers).map(Self::Union),
             kind => Primitive::parse(text)
                 .unwrap_or(Err(FieldError::Kind {
                     kind,

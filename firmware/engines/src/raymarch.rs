@@ -26,6 +26,8 @@ pub enum Missing {
     Lattice,
     /// Fillets between spheres and flat fields.
     Blend,
+    /// Distances that are too long, which no build has.
+    Bend,
     /// Spheres coloured by their normals.
     Normals,
     /// A highlight on spheres.
@@ -45,6 +47,7 @@ impl fmt::Display for Missing {
             Self::Round => f.write_str("no spheres"),
             Self::Lattice => f.write_str("no lattices"),
             Self::Blend => f.write_str("no smooth unions"),
+            Self::Bend => f.write_str("no bent unions"),
             Self::Normals => f.write_str("no spheres coloured by normals"),
             Self::Highlight => f.write_str("no highlight on spheres"),
             Self::Stereo => f.write_str("no stereo"),
@@ -90,6 +93,9 @@ impl Missing {
         if let Form::Marching(marching) = &setup.form {
             if marching.blend().width != 0 && !capabilities.blend {
                 return Err(Self::Blend);
+            }
+            if marching.beside.is_some_and(|beside| beside.bend != 0) {
+                return Err(Self::Bend);
             }
             if !capabilities.blend {
                 return Err(Self::Marching);

@@ -11,7 +11,7 @@ use glint_core::light::{Background, Material};
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
-use glint_engines::raymarch::{ray_counts, set_field};
+use glint_engines::raymarch::{Missing, ray_counts, set_field};
 use glint_engines::triangle::size_code;
 use glint_hal::raymarch::Raymarcher;
 use glint_hal::triangle::{EngineError, Raster, TriangleEngine as Driver};
@@ -183,6 +183,23 @@ fn every_kind_of_field() {
         };
         check(&mut bench, subject, None, Size::W320);
     }
+}
+
+#[test]
+fn a_bent_union_is_left_to_the_soft_core() {
+    let mut bench = Bench::new();
+    let field = Field::parse("bent:3,box:1,1,0.2+sphere:0.6").unwrap();
+    let appearance = Appearance::default();
+    let subject = FieldSubject {
+        field: &field,
+        appearance: &appearance,
+        quality: Quality::default(),
+    };
+    let frame = Frame::new(Subject::Field(subject), view(), Size::W320);
+    let constants = frame.constants().unwrap();
+    let field = constants.field().unwrap();
+    let set = set_field(&mut bench.raymarcher, &field.setup, &field.palette, false);
+    assert_eq!(set, Err(Missing::Bend));
 }
 
 #[test]

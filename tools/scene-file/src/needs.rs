@@ -130,6 +130,7 @@ impl SceneFile {
             || clip != Clip::Guard
             || winding == Winding::Screen
             || scene.view.projection() == Projection::Orthographic
+            || scene.field.is_some_and(|field| field.is_bent())
         {
             features.insert(CPU);
         }

@@ -47,6 +47,8 @@ pub enum FieldError<'a> {
     Union,
     /// The text of a smooth union does not name two kinds that a smooth union accepts.
     Smooth,
+    /// The text of a bent union does not name two kinds that a bent union accepts.
+    Bent,
     /// The number of spheres is 0 or too large.
     Spheres {
         /// The largest number: [`MAX_SPHERES`](super::MAX_SPHERES), or one less in a union with a lattice.
@@ -87,6 +89,9 @@ impl fmt::Display for FieldError<'_> {
             Self::Smooth => {
                 f.write_str("smooth: expected menger or box, +, and sphere, spheres or moving")
             }
+            Self::Bent => f.write_str(
+                "bent: expected menger or box, +, and sphere, spheres or moving",
+            ),
             Self::Spheres { most } => write!(f, "spheres: expected 1 to {most}"),
             Self::Range { name, least, most } => {
                 write!(f, "{name}: expected {least} to {most}")

@@ -1,4 +1,5 @@
-//! `union:A+B` and `smooth:K,A+B`: the union of a field and of spheres, without or with a fillet (a rounded transition).
+//! `union:A+B`, `smooth:K,A+B` and `bent:N,A+B`: the union of a field and of spheres, sharp, with a fillet (a rounded transition), or with
+//! a distance to the field that is too long.
 
 use core::fmt;
 
@@ -13,17 +14,21 @@ use crate::fixed::Q32_32;
 /// Smallest and largest accepted width of a fillet, in world units.
 const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 
+/// Largest exponent of a distance that is too long.
+const MOST_BEND: u8 = 6;
+
 /// The union of a field with flat faces, or a lattice, and of spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Union {
     first: Primitive,
     spheres: Primitive,
     blend: Q32_32,
+    bend: u8,
 }
 
 impl Union {
-    /// Text forms and descriptions of the sharp and the smooth union.
-    pub(super) const KINDS: [(&str, &str); 2] = [
+    /// Text forms and descriptions of the sharp, the smooth and the bent union.
+    pub(super) const KINDS: [(&str, &str); 3] = [
         (
             "union:A+B",
             "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres or moving, both together",
@@ -32,12 +37,17 @@ impl Union {
             "smooth:K,A+B",
             "A menger or box, with a fillet of the width K between A and B",
         ),
+        (
+            "bent:N,A+B",
+            "A menger or box, with a distance to A that is 2^N times too long, N 1 to 6: planes that bend about B",
+        ),
     ];
 
-    /// An example of the sharp and of the smooth union.
-    pub(super) const EXAMPLES: [&str; 2] = [
+    /// An example of the sharp, of the smooth and of the bent union.
+    pub(super) const EXAMPLES: [&str; 3] = [
         "union:box:1.2,1.2,0.15+sphere:0.7",
         "smooth:0.3,box:1.2,1.2,0.15+sphere:0.7",
+        "bent:4,box:3,3,0.5+spheres:0,0,1.3,0.4;1.2,-1,1,0.25",
     ];
 
     /// The console commands that set camera and appearance for pictures of the examples.
@@ -82,7 +92,20 @@ impl Union {
             first,
             spheres,
             blend,
+            bend: 0,
         })
+    }
+
+    /// Makes a union in which the distance to the first member is multiplied by 2^`bend`, 1 to 6.
+    ///
+    /// # Errors
+    /// `first` or `spheres` is of a kind that bent unions do not accept.
+    fn bent(first: Primitive, spheres: Primitive, bend: u8) -> Result<Self, FieldError<'static>> {
+        let union = Self::new(first, spheres, Q32_32::ZERO).map_err(|_| FieldError::Bent)?;
+        if first.placed().extent.is_none() {
+            return Err(FieldError::Bent);
+        }
+        Ok(Self { bend, ..union })
     }
 
     /// The first member of the union: a field with flat faces, or a lattice.
@@ -106,6 +129,11 @@ impl Union {
         self.blend
     }
 
+    /// Exponent of the power of two by which the distance to the first member is too long: 0 for an exact distance, 1 to 6 otherwise.
+    pub const fn bend(&self) -> u8 {
+        self.bend
+    }
+
     /// Parses the members after `union:`.
     pub(super) fn parse_sharp(text: &str) -> Result<Self, FieldError<'_>> {
         Self::parse(text, Q32_32::ZERO)
@@ -116,6 +144,15 @@ impl Union {
         let (blend, members) = text.split_once(',').ok_or(FieldError::Smooth)?;
         let blend = NumberText::new("smooth", blend).number("k", BLEND)?;
         Self::parse(members, blend)
+    }
+
+    /// Parses the exponent and the members after `bent:`.
+    pub(super) fn parse_bent(text: &str) -> Result<Self, FieldError<'_>> {
+        let (bend, members) = text.split_once(',').ok_or(FieldError::Bent)?;
+        let bend = NumberText::new("bent", bend).integer("n", [1, MOST_BEND])?;
+        let (first, spheres) = members.split_once('+').ok_or(FieldError::Bent)?;
+        let member = |text| Primitive::parse(text).unwrap_or(Err(FieldError::Bent));
+        Self::bent(member(first)?, member(spheres)?, bend)
     }
 
     fn parse(text: &str, blend: Q32_32) -> Result<Self, FieldError<'_>> {
@@ -149,7 +186,9 @@ fn kind_error(blend: Q32_32) -> FieldError<'static> {
 
 impl fmt::Display for Union {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        if self.blend == Q32_32::ZERO {
+        if self.bend != 0 {
+            write!(f, "bent:{},", self.bend)?;
+        } else if self.blend == Q32_32::ZERO {
             f.write_str("union:")?;
         } else {
             write!(f, "smooth:{},", self.blend)?;

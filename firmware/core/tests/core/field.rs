@@ -93,6 +93,11 @@ fn mistakes_say_what_was_expected() {
             "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres or moving",
         ),
         (
+            "bent:5,planes:2+sphere:1",
+            "bent: expected menger or box, +, and sphere, spheres or moving",
+        ),
+        ("bent:7,box:1,1,1+sphere:1", "n: expected 1 to 6"),
+        (
             "smooth:0.1,cubes:2,0.4+sphere:1",
             "smooth: expected menger or box, +, and sphere, spheres or moving",
         ),
@@ -116,7 +121,8 @@ fn every_kind_has_an_example_and_its_look() {
     for ((form, _), example) in KINDS.iter().zip(&EXAMPLES) {
         let kind = |text: &str| text.split(':').next().unwrap().to_owned();
         assert_eq!(kind(form), kind(example.field));
-        Field::parse(example.field).expect(example.field);
+        let field = Field::parse(example.field).expect(example.field);
+        assert_eq!(Field::parse(&field.to_string()), Ok(field));
         assert!(!example.look.is_empty());
         for line in example.look {
             let command = Command::parse(line).expect(line);

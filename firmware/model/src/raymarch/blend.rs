@@ -14,6 +14,23 @@ pub struct Beside {
     pub spheres: FixedSpheres,
     /// The fillet between the spheres and the flat solid.
     pub blend: Blend,
+    /// Exponent of the power of two by which the distance to the flat solid is too long, 0 to 6.
+    pub bend: u32,
+}
+
+/// Largest distance from a flat solid, s10.12.
+const MOST: i32 = (1 << 21) - 1;
+
+impl Beside {
+    /// Combines the samples of a flat solid and of a sphere at one point. A distance that is too long saturates.
+    pub fn union(&self, flat: FieldSample, round: FieldSample) -> FieldSample {
+        let distance = i64::from(flat.distance) << self.bend;
+        let flat = FieldSample {
+            distance: distance.clamp(!i64::from(MOST), MOST.into()) as i32,
+            ..flat
+        };
+        self.blend.union(flat, round)
+    }
 }
 
 /// A fillet: the blended transition between two surfaces, described at the top of this file.

@@ -150,9 +150,7 @@ impl Marching {
     pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         let flat = self.solid.sample(point);
         match &self.beside {
-            Some(beside) if SPHERES.is_built => {
-                beside.blend.union(flat, beside.spheres.sample(point))
-            }
+            Some(beside) if SPHERES.is_built => beside.union(flat, beside.spheres.sample(point)),
             _ => flat,
         }
     }
@@ -174,6 +172,7 @@ pub(super) fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
     let beside = union.spheres().spheres(first.scale).map(|spheres| Beside {
         spheres,
         blend: Blend::new(units(union.blend(), first.scale) as u32),
+        bend: union.bend().into(),
     });
     (Placed { extent, ..first }, beside)
 }

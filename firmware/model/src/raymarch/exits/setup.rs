@@ -134,7 +134,7 @@ impl Exits {
     pub fn draws(field: &Field) -> bool {
         match field {
             Field::Primitive(_) => true,
-            Field::Union(union) => union.blend() == Q32_32::ZERO,
+            Field::Union(union) => union.blend() == Q32_32::ZERO && !field.is_bent(),
         }
     }
 

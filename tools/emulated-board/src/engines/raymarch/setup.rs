@@ -205,6 +205,7 @@ fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) 
     let beside = register.is_round().then_some(Beside {
         spheres: round,
         blend: spheres.blend,
+        bend: 0,
     });
     (flat, beside)
 }
