@@ -122,6 +122,10 @@ def _ring(old, new, fails):
     return Mutation("ring_lane.sv", old, new, fails)
 
 
+def _shadow(old, new, fails):
+    return Mutation("exit_shadow.sv", old, new, fails)
+
+
 def _exits(old, new, fails):
     return Mutation("exit_lane.sv", old, new, fails)
 
@@ -240,7 +244,7 @@ MUTATIONS = {
     ],
     "exit_lane": [
         _exits("again || enter}", "again || in_valid}", "none_made_up"),
-        _exits("if (!again) begin", "if (!again || in_valid) begin", "none_twice"),
+        _exits("if (!again) cargos", "if (!again || in_valid) cargos", "none_twice"),
         _exits("assign in_ready = !again && places", "assign in_ready = places", "none_lost"),
         _exits("!again && places != '0;\n    assign enter", "!again;\n    assign enter", "no_more_than_fit"),
         _exits("occupied[LAST] && finished;", "occupied[LAST] && finished && !in_valid;", "none_lost"),
@@ -255,6 +259,19 @@ MUTATIONS = {
         _exits("+ 8'(again || !in_ray.over);", "+ 8'd1;", "counts_steps"),
         Mutation("fifo.sv", "stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
         Mutation("fifo.sv", "load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
+    ],
+    "exit_shadow": [
+        _shadow("in_end.hit && !in_end.round", "in_end.hit", "in_the_shade"),
+        _shadow("= wants ? lane_ready : pass_ready", "= lane_ready && pass_ready", "none_twice"),
+        _shadow(".in_valid(in_valid && !wants)", ".in_valid(in_valid)", "none_twice"),
+        _shadow("found_valid || passed_valid", "found_valid || passed_valid || in_valid", "none_made_up"),
+        _shadow(".in_data(in_end[KEPT_BITS-1:0])", ".in_data(in_end[KEPT_BITS-1:0] ^ KEPT_BITS'(1 << 16))", "none_changed"),
+        _shadow("= found_valid || passed_valid", "= is_found ? found_valid : passed_valid && !found_valid", "ends.valid_stays"),
+        _shadow("stays ? was_found : found_valid", "found_valid", "ends.payload_stable"),
+        _shadow(".out_ready(out_ready && !is_found)", ".out_ready(out_ready)", "none_lost"),
+        _shadow("is_found && found.hit}", "is_found}", "in_the_shade"),
+        _shadow("if (is_found || ending.hit)", "if (is_found)", "in_the_shade"),
+        _shadow("assign out_valid = found_valid || passed_valid", "assign out_valid = found_valid", "none_lost"),
     ],
     "read_port": [
         _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "commands.valid_stays"),

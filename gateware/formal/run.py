@@ -80,6 +80,7 @@ class Proof:
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 35, ("any_product", "any_field"), engine=_WORDS),
     Proof("exit_lane", "exit_lane_proof", 54, ("any_product", "any_solid")),
+    Proof("exit_shadow", "exit_shadow_proof", 14, ("any_lane",)),
     Proof("line_raster", "line_raster_proof", 23),
     Proof("line_setup", "line_setup_proof", 47, ("any_product",)),
     Proof("band_flush", "band_flush_proof", 20),

@@ -20,7 +20,7 @@ IDENT = int.from_bytes(b"MARC", "big")
 
 _ERRORS = [
     ("0", "none", "all requested features are built"),
-    ("1", "field", "the flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals or a highlight are not built"),
+    ("1", "field", "the flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals, a highlight or shadows are not built"),
     ("2", "stereo", "two eyes are not built"),
 ]
 
@@ -37,7 +37,7 @@ INTERVAL_BITS = 13
 class Fields:
     """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
     include the sponge if it has levels), spheres of a list, spheres of a lattice, fillets between spheres and flat fields, two eyes,
-    colours of spheres by their normals, a highlight on spheres."""
+    colours of spheres by their normals, a highlight on spheres, shadows on faces."""
 
     lanes: int = 2
     levels: int = 6
@@ -48,6 +48,7 @@ class Fields:
     stereo: bool = True
     normals: bool = True
     highlight: bool = True
+    shadow: bool = True
 
     @property
     def has_exits(self):
@@ -70,24 +71,25 @@ class Fields:
         return {"FIELDS": mask(values.pop("flat")), **{name.upper(): int(value) for name, value in values.items()}}
 
 
-_FACES_ALONE = dict.fromkeys(("round", "lattice", "blend", "normals", "highlight"), False)
+_FACES_ALONE = dict.fromkeys(("round", "lattice", "blend", "normals", "highlight", "shadow"), False)
 
 BUILDS = {
     "all": Fields(),
-    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False, highlight=False),
+    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False, highlight=False, shadow=False),
     "faces": Fields(levels=4, flat=("menger", "box"), **_FACES_ALONE),
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), **_FACES_ALONE),
 }
 """Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
 
-_FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo", "normals": "normals", "highlight": "highlight"}
+_FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo", "normals": "normals", "highlight": "highlight",
+             "shadow": "shadow"}
 
 
 def build(text, lanes=None):
     """Returns the build options that `text` names, with the number of `lanes` if it is given.
 
     `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
-    fields, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`.
+    fields, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`.
     """
     if text in BUILDS:
         fields = BUILDS[text]
@@ -122,6 +124,7 @@ class Raymarcher(LiteXModule):
             CSRField("lattice", offset=12, reset=int(fields.lattice), description="Spheres of a lattice."),
             CSRField("normals", offset=13, reset=int(fields.normals), description="Colours of spheres by their normals."),
             CSRField("highlight", offset=14, reset=int(fields.highlight), description="A highlight on spheres."),
+            CSRField("shadow", offset=15, reset=int(fields.shadow), description="Shadows on faces."),
             CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if the flat field of kind k in "
                                                            "`solid` is built."),
         ], description="What this block can do.")
@@ -164,6 +167,7 @@ class Raymarcher(LiteXModule):
             *(CSRField(f"{eye}_exit", size=2, offset=8 + 2 * number, values=_EXITS,
                        description=f"By which of its planes a ray leaves the prism around the {eye} eye.")
               for number, eye in enumerate(("left", "right"))),
+            CSRField("shadow", offset=12, description="Faces of a sponge and of repeated boxes may be in the shadow of the first light."),
         ], description="Rays by exits: the solid whose empty prisms they leave.")
         border = [self._register(f"border_{axis}", 22, f"By exits, the coordinate of a plane perpendicular to {axis}, s9.12: the lower plane "
                                  "of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes.")
@@ -228,7 +232,10 @@ class Raymarcher(LiteXModule):
                      "the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: "
                      "colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to "
                      "light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are "
-                     "lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour."),
+                     "lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour. "
+                     "40, 41, 42: colours of faces perpendicular to x, y, z that are turned to light 0 and in its shadow. 43, 44, 45: direction "
+                     "to light 0, s1.14, for shadows. 46, 47, 48: the lowest 24 bits of the reciprocals of half its components "
+                     "(rtl/raymarch/exit_pkg.sv). 49, 50, 51: their highest 8 bits."),
         ], description="Writing sets a constant of spheres, lights or faces.")
 
         self._cone_address = Parameter(9, name="cone_address", description="Address of the next write to `cone_value`: the eye in bit 8, the "
@@ -254,6 +261,7 @@ class Raymarcher(LiteXModule):
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
         solid, exits, tuning = self._solid.fields, self._exits.fields, self._tuning.fields
+        shadow, shadow_colours = self._shadow(fields, exits.shadow)
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
         cone_write, cone_address = self._cones(fields)
         # Kind 0, the sponge, is accepted by every build: without levels it is an empty field, which a frame of spheres alone
@@ -263,6 +271,7 @@ class Raymarcher(LiteXModule):
         no_rays = (exits.enable & int(not fields.has_exits)) | (~exits.enable & int(not fields.has_marching))
         has_list = solid.is_round & (~solid.spheres_repeated | (solid.last_sphere != 0))
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (has_list & int(not fields.round)) |
+                                  (exits.enable & exits.shadow & int(not fields.shadow)) |
                                   (exits.enable & (exits.rule == 3) & exits.depth[0] & int(not fields.lattice)) |
                                   (solid.is_round & lights["normals"] & int(not fields.normals)) |
                                   (solid.is_round & lights["highlight"] & int(not fields.highlight)) |
@@ -277,10 +286,11 @@ class Raymarcher(LiteXModule):
             **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
         limits = Struct("tuning_t", "Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.", {
             **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage[:23]})
-        colours = Struct("palette_t", "Colours, {blue, green, red}, of the zenith, of undecided rays, and of the faces by surface.", {
+        colours = Struct("palette_t", "Colours, {blue, green, red}, of the zenith, of undecided rays, of the faces by surface, and "
+            "of faces in the shadow by axis.", {
             "zenith": palette[7].storage, "undecided": palette[6].storage,
-            "faces": [*_contents(palette[:6]), *self._octants(fields)]})
-        self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
+            "faces": [*_contents(palette[:6]), *self._octants(fields)], "shadows": shadow_colours})
+        self.package = Package("raymarch", structs=[constants, sphere, lights, shadow, limits, colours, self.counters.events])
         # The registers that this build reads, without registers whose writes take effect at once.
         eyes = 2 if fields.stereo else 1
         registers = [*box_half, self._far, self._near, *origins[:3*eyes], *first[:3*eyes], *across, *down, self._depth_scale, *palette,
@@ -343,6 +353,7 @@ class Raymarcher(LiteXModule):
             i_sphere_number  = number,
             i_sphere         = sphere.value,
             i_lights         = lights.value,
+            i_shadow         = shadow.value,
             i_last_cone      = Cat(solid.last_cone_left, solid.last_cone_right),
             i_cone_write     = cone_write,
             i_cone_address   = cone_address,
@@ -392,6 +403,20 @@ class Raymarcher(LiteXModule):
             "normals": normals, "lit": lit, "highlight": highlight, "steepness": steepness, "shine": shine, "half": half,
             "last_light": last_light, "ambient": ambient, "colours": colours, "directions": directions})
         return write, entry[:3], sphere, lights, blend
+
+    def _shadow(self, fields, enable):
+        """Decodes writes to the register `sphere` for shadows. Returns the rays to the light and the colours of faces in the shadow; constants
+        in builds without shadows."""
+        colours, directions = [Signal(24) for _ in range(3)], [Signal(16) for _ in range(3)]
+        low, high = [Signal(24) for _ in range(3)], [Signal(8) for _ in range(3)]
+        if fields.shadow:
+            places = dict(enumerate([*colours, *directions, *low, *high], start=40))
+            self.sync += If(self._sphere.re, Case(self._sphere.fields.entry, {
+                number: place.eq(self._sphere.fields.value) for number, place in places.items()}))
+        shadow = Struct("shadow_t", "Rays to the first light: reciprocals of half the components of the direction to it (exit_pkg), in the order x, "
+            "y, z from the lowest bits; this direction, s1.14; and whether there are shadows.", {
+            "inverse": Cat(*(part for pair in zip(low, high) for part in pair)), "direction": Cat(*directions), "enable": enable})
+        return shadow, colours
 
     def _cones(self, fields):
         """Returns the strobe of a write to `cone_value`, and the address that it writes."""

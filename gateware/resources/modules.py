@@ -38,7 +38,7 @@ _LINES_ALONE = {"TRIANGLES": 0, "LINES": 1}
 _NO_GEOMETRY = {"GEOMETRY": 0}
 # Parameters of builds with every field: of a lane (ring_lane), and of the module that computes the colours of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND")}
-_ALL_PAINT = {"MARCH": 1, "ROUND": 1, "BLEND": 1, "OCTANTS": int(has_octants(NAMES))}
+_ALL_PAINT = {"MARCH": 1, "ROUND": 1, "BLEND": 1, "OCTANTS": int(has_octants(NAMES)), "SHADOW": 1}
 
 MODULES = [
     Module(
@@ -77,13 +77,14 @@ MODULES = [
     Module(top="field_sphere", measured=("field_sphere",)),
     Module(top="ray_generator",
            variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1, "BLEND": 1}}),
-    Module(top="ray_paint", variants={"ray_paint_march": {"MARCH": 1}, "ray_paint_all": _ALL_PAINT}),
+    Module(top="ray_paint", variants={"ray_paint_march": {"MARCH": 1}, "ray_paint_shadow": {"SHADOW": 1}, "ray_paint_all": _ALL_PAINT}),
     Module(top="round_light", variants={"round_light_plain": {"NORMALS": 0}, "round_light_all": {"HIGHLIGHT": 1, "BLEND": 1}},
            measured=("round_light", "round_light_plain", "round_light_all")),
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="exit_lane",
            variants={"exit_lane_all": {"LEVELS": 6, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1}, "exit_lane_lattice": {"LATTICE": 1},
                      "exit_lane_octahedron": {"OCTAHEDRON": 1}}),
+    Module(top="exit_shadow", variants={"exit_shadow_sponge": {"BOXES": 0}}, measured=("exit_shadow", "exit_shadow_sponge")),
     Module(top="exit_landing", variants={"exit_landing_round": {"ROUND": 1}}),
     Module(top="exit_reciprocal"),
     Module(top="sphere_unit", variants={"sphere_unit_one_eye": {"STEREO": 0}}),

@@ -32,6 +32,8 @@ pub enum Missing {
     Normals,
     /// A highlight on spheres.
     Highlight,
+    /// Shadows on faces.
+    Shadow,
     /// Two eyes.
     Stereo,
     /// Marching rays of fields that are drawn by exits.
@@ -50,6 +52,7 @@ impl fmt::Display for Missing {
             Self::Bend => f.write_str("no bent unions"),
             Self::Normals => f.write_str("no spheres coloured by normals"),
             Self::Highlight => f.write_str("no highlight on spheres"),
+            Self::Shadow => f.write_str("no shadows"),
             Self::Stereo => f.write_str("no stereo"),
             Self::Marching => f.write_str("no marching rays for this field"),
         }
@@ -89,6 +92,9 @@ impl Missing {
             if lights.highlight.is_some() && !capabilities.highlight {
                 return Err(Self::Highlight);
             }
+        }
+        if setup.exits().is_some_and(|exits| exits.sun.is_some()) && !capabilities.shadow {
+            return Err(Self::Shadow);
         }
         if let Form::Marching(marching) = &setup.form {
             if marching.blend().width != 0 && !capabilities.blend {
@@ -157,18 +163,21 @@ pub fn set_field(
     );
     let axes = |[x, y, z, _]: [i32; AXES]| [x, y, z];
     let (solid, half, form, limits, eyes, steps) = match &setup.form {
-        Form::Exits(exits) => (
-            with_cones(raymarcher, exits, solid, setup.stereo.is_some()),
-            exits
-                .solid
-                .unwrap_or_default()
-                .half()
-                .map(|half| half as u32),
-            exit_form(exits),
-            [exits.far as u32, exits.near as u32],
-            exits.eyes.map(|eye| [eye.origin, axes(eye.first)]),
-            exits.steps.map(axes),
-        ),
+        Form::Exits(exits) => {
+            set_shadow(raymarcher, exits, palette);
+            (
+                with_cones(raymarcher, exits, solid, setup.stereo.is_some()),
+                exits
+                    .solid
+                    .unwrap_or_default()
+                    .half()
+                    .map(|half| half as u32),
+                exit_form(exits),
+                [exits.far as u32, exits.near as u32],
+                exits.eyes.map(|eye| [eye.origin, axes(eye.first)]),
+                exits.steps.map(axes),
+            )
+        }
         Form::Marching(marching) => (
             with_flat(marching, solid),
             constants(&marching.solid).half,
@@ -232,7 +241,8 @@ fn exit_form(exits: &Exits) -> driver::Form<'_> {
             .with_rule(rule)
             .with_depth(solid.rule.levels() as u8)
             .with_left_exit(exit(&left.start))
-            .with_right_exit(exit(&right.start)),
+            .with_right_exit(exit(&right.start))
+            .with_shadow(exits.sun.is_some()),
         borders: solid.borders(),
         prisms: [prism(left), prism(right)],
     }
@@ -305,6 +315,22 @@ fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool
     solid
         .with_last_cone_left(last[0])
         .with_last_cone_right(last[1])
+}
+
+/// Writes the rays to the first light, and the colours of faces in its shadow.
+fn set_shadow(raymarcher: &Raymarcher, exits: &Exits, palette: &Palette) {
+    let Some(sun) = &exits.sun else {
+        return;
+    };
+    for (axis, tint) in (0..).zip(palette.shadows) {
+        raymarcher.set_constant(40 + axis, colour(tint));
+    }
+    for (axis, (part, inverse)) in (0..).zip(sun.direction.iter().zip(sun.inverse)) {
+        let word = inverse.word();
+        raymarcher.set_constant(43 + axis, u32::from(part.cast_unsigned()));
+        raymarcher.set_constant(46 + axis, word & 0xFF_FFFF);
+        raymarcher.set_constant(49 + axis, word >> 24);
+    }
 }
 
 /// Writes the constants of the spheres, their fillet with the flat solid, and their lights.

@@ -33,6 +33,8 @@ pub struct Capabilities {
     pub normals: bool,
     /// Whether this build draws a highlight on spheres.
     pub highlight: bool,
+    /// Whether this build draws shadows on faces.
+    pub shadow: bool,
 }
 
 /// The planes of the prism around an eye, along each axis and along each mirrored axis; the fourth axis is that of an octahedron.
@@ -142,6 +144,7 @@ impl Raymarcher {
             blend: caps.blend(),
             normals: caps.normals(),
             highlight: caps.highlight(),
+            shadow: caps.shadow(),
         };
         Ok(Self {
             registers,

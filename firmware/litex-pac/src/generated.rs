@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xea70_0490;
+pub const BUILD_ID: u32 = 0x6882_a5c8;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4971,7 +4971,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_581c) }
         }
 
-        /// `exits`, 12 bits: Rays by exits: the solid whose empty prisms they leave. Reads as 0.
+        /// `exits`, 13 bits: Rays by exits: the solid whose empty prisms they leave. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn exits(&self) -> Register<Exits, ReadWrite> {
@@ -5959,6 +5959,20 @@ pub mod raymarch {
             Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
+        /// `shadow`, bit 15: Shadows on faces.
+        #[inline]
+        #[must_use]
+        pub const fn shadow(self) -> bool {
+            (self.0 >> 15) & 1 != 0
+        }
+
+        /// This value with another `shadow`.
+        #[inline]
+        #[must_use]
+        pub const fn with_shadow(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
+        }
+
         /// `flat`, bits 23 to 16: Bit k is set if the flat field of kind k in `solid` is built.
         #[inline]
         #[must_use]
@@ -6420,6 +6434,20 @@ pub mod raymarch {
         pub const fn with_right_exit(self, value: Exit) -> Self {
             Self(self.0 & !(0x3 << 10) | (value as u32 & 0x3) << 10)
         }
+
+        /// `shadow`, bit 12: Faces of a sponge and of repeated boxes may be in the shadow of the first light.
+        #[inline]
+        #[must_use]
+        pub const fn shadow(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
+
+        /// This value with another `shadow`.
+        #[inline]
+        #[must_use]
+        pub const fn with_shadow(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
     }
 
     /// A value of `tuning`.
@@ -6597,7 +6625,7 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour.
+        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour. 40, 41, 42: colours of faces perpendicular to x, y, z that are turned to light 0 and in its shadow. 43, 44, 45: direction to light 0, s1.14, for shadows. 46, 47, 48: the lowest 24 bits of the reciprocals of half its components (rtl/raymarch/exit_pkg.sv). 49, 50, 51: their highest 8 bits.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {
@@ -6667,7 +6695,7 @@ pub mod raymarch {
     pub enum Error {
         /// All requested features are built.
         None = 0,
-        /// The flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals or a highlight are not built.
+        /// The flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals, a highlight or shadows are not built.
         Field = 1,
         /// Two eyes are not built.
         Stereo = 2,
@@ -6704,7 +6732,7 @@ pub mod raymarch {
         pub const fn text(self) -> &'static str {
             match self {
                 Self::None => "all requested features are built",
-                Self::Field => "the flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals or a highlight are not built",
+                Self::Field => "the flat field, the depth of the sponge, spheres, a lattice, fillets, colours by normals, a highlight or shadows are not built",
                 Self::Stereo => "two eyes are not built",
             }
         }

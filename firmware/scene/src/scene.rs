@@ -321,6 +321,7 @@ impl Scene {
             Setting::Light { light: None } => self.appearance.lights.clear(),
             Setting::Ambient { colour } => self.appearance.ambient = colour,
             Setting::Highlight { highlight } => self.appearance.highlight = highlight,
+            Setting::Shadow { on } => self.appearance.shadow = on,
             Setting::Background { background } => self.appearance.background = background,
             Setting::Fog { density } => self.appearance.fog = density.unwrap_or_default(),
             Setting::Occlusion { on } => self.appearance.occlusion = on,

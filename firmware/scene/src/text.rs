@@ -157,6 +157,9 @@ impl Scene {
             OptionName::Highlight => {
                 self.put(name, from, out, |scene| OrOff(scene.appearance.highlight))
             }
+            OptionName::Shadow => self.put(name, from, out, |scene| {
+                switch_name(scene.appearance.shadow)
+            }),
             OptionName::Background => self.put(name, from, out, |scene| {
                 OrDefault(scene.appearance.background)
             }),

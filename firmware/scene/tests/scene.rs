@@ -103,6 +103,8 @@ fn line() -> impl Strategy<Value = String> {
             "background sky",
             "background default",
             "background 405060",
+            "shadow on",
+            "shadow off",
             "highlight off",
             "highlight 0.6,32",
             "fog off",

@@ -124,7 +124,7 @@ module exit_landing #(
     assign out_end = exit_pkg::END_BITS'(kept);
 
     wire _unused = &{1'b0, idle, along_10[exit_pkg::ALONG_BITS], root_10[1:0], product_14[43:41], product_14[15:0], shift_15[1:0],
-                     end_18.equation, end_18.lands, end_18.limit, end_1.limit, far_t};
+                     end_18.equation, end_18.lands, end_18.limit, end_1.limit, far_t, end_18.spot, end_1.spot};
 endmodule
 
 `default_nettype wire

@@ -19,6 +19,10 @@
 // With OCTAHEDRON, a box may have a fourth pair of faces, perpendicular to the sum of its axes. A ray enters its slab with the prism around
 // the eye (exit_start), so only its upper border is compared.
 //
+// With SPOT, the end of a ray has the point of its hit. A lane with CARRIED has the rays to the light that begin there (exit_shadow): each
+// has an origin of its own and carries CARRIED bits to its end, of which only `hit` is defined. All these rays have the direction of
+// `in_ray`, which must hold while they are in the ring.
+//
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
 // registers. Parameters hold while rays are in the ring. `origins` has each eye's position from the solid's centre. `rst` discards all
 // rays.
@@ -35,6 +39,8 @@ module exit_lane #(
     parameter bit          LATTICE = 1'b0,
     // Whether there may be an octahedron, with BOXES.
     parameter bit          OCTAHEDRON = 1'b0,
+    parameter bit SPOT = 1'b0,
+    parameter int unsigned CARRIED = 0,
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = 32
 ) (
@@ -47,10 +53,14 @@ module exit_lane #(
     input  wire                                           in_valid,
     output logic                                          in_ready,
     input  wire exit_pkg::ray_t                           in_ray,
+    // With CARRIED, the origin of the ray, from the solid's centre.
+    input  wire  [2:0][exit_pkg::PLANE_BITS-1:0]          in_origin,
+    input  wire  [(CARRIED == 0 ? 1 : CARRIED)-1:0]       in_carried,
     // Ends.
     output logic                                          out_valid,
     input  wire                                           out_ready,
     output exit_pkg::end_t                                out_end,
+    output logic [(CARRIED == 0 ? 1 : CARRIED)-1:0]       out_carried,
     // Events.
     output logic                                          evaluates,
     output logic                                          waits
@@ -139,8 +149,6 @@ module exit_lane #(
     localparam int unsigned CARGO_BITS = raymarch_pkg::PLACE_BITS + 3 + 8;
     localparam int unsigned STATE_BITS = exit_pkg::T_BITS + 2 + 8 + 1;
 
-    (* ram_style = "distributed" *) logic [AIM_BITS-1:0]                 aims     [0:2**SLOT_BITS-1];
-    (* ram_style = "distributed" *) logic [3*exit_pkg::INVERSE_BITS-1:0] inverses [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [CARGO_BITS-1:0]               cargos   [0:2**SLOT_BITS-1];
     (* ram_style = "distributed" *) logic [STATE_BITS-1:0]               states   [0:2**SLOT_BITS-1];
 
@@ -151,17 +159,28 @@ module exit_lane #(
     logic [raymarch_pkg::PLACE_BITS-1:0]    place_22;
     logic [7:0]                             height_22;
 
-    assign {eye_0, down_0, speed_0}             = aims[slot_0];
-    assign inverse_14                           = inverses[slot_14];
+    if (CARRIED != 0) begin : one_direction
+        assign {eye_0, down_0, speed_0} = {1'b0, in_ray.down, in_ray.speed};
+        assign inverse_14               = in_ray.inverse;
+
+        wire _unused = &{1'b0, slot_14};
+    end else begin : own_directions
+        (* ram_style = "distributed" *) logic [AIM_BITS-1:0]                 aims     [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [3*exit_pkg::INVERSE_BITS-1:0] inverses [0:2**SLOT_BITS-1];
+
+        always_ff @(posedge clk) begin
+            if (!again) aims[slot_22]     <= {in_ray.place[17], in_ray.down, in_ray.speed};
+            if (!again) inverses[slot_22] <= in_ray.inverse;
+        end
+        assign {eye_0, down_0, speed_0} = aims[slot_0];
+        assign inverse_14               = inverses[slot_14];
+    end
+
     assign {place_22, down_22, height_22}       = cargos[slot_22];
     assign {t_21, axis_21, steps_21, over_21}   = states[slot_21];
 
     always_ff @(posedge clk) begin
-        if (!again) begin
-            aims[slot_22]     <= {in_ray.place[17], in_ray.down, in_ray.speed};
-            inverses[slot_22] <= in_ray.inverse;
-            cargos[slot_22]   <= {in_ray.place, in_ray.down, in_ray.height};
-        end
+        if (!again) cargos[slot_22] <= {in_ray.place, in_ray.down, in_ray.height};
         states[slot_0] <= {t_0, axis_0, steps_0, over_0};
         {t_22, axis_22, steps_22, over_22} <= {t_21, axis_21, steps_21, over_21};
     end
@@ -210,6 +229,32 @@ module exit_lane #(
     delay #(.WIDTH(4), .CLOCKS(4)) signs (.clk, .enable(1'b1), .in({eye_0, down_0}), .out({eye_4, down_4}));
     delay #(.WIDTH(4), .CLOCKS(9)) signs_wait (.clk, .enable(1'b1), .in({eye_4, down_4}), .out({eye_13, down_13}));
 
+    // The eye, or the origin of a ray to the light, from the solid's centre.
+    logic [2:0][exit_pkg::PLANE_BITS-1:0] place_4, place_13;
+
+    if (CARRIED != 0) begin : own_origins
+        (* ram_style = "distributed" *) logic [3*exit_pkg::PLANE_BITS-1:0] near_places [0:2**SLOT_BITS-1];
+        (* ram_style = "distributed" *) logic [3*exit_pkg::PLANE_BITS-1:0] far_places  [0:2**SLOT_BITS-1];
+
+        logic [SLOT_BITS-1:0] slot_4;
+
+        assign place_4  = near_places[slot_4];
+        assign place_13 = far_places[slot_13];
+
+        always_ff @(posedge clk) begin
+            slot_4 <= following(slot_4);
+            if (rst) slot_4 <= SLOT_BITS'(SLOTS - 4);
+            if (!again) near_places[slot_22] <= in_origin;
+            if (!again) far_places[slot_22]  <= in_origin;
+        end
+        wire _unused = &{1'b0, origins, eye_4, eye_13};
+    end else begin : eyes
+        assign place_4  = STEREO && eye_4 ? origins[1] : origins[0];
+        assign place_13 = STEREO && eye_13 ? origins[1] : origins[0];
+
+        wire _unused = &{1'b0, in_origin};
+    end
+
     // The point O + T·D, from two products for each axis, rounded down, and in a lattice to nearest. O is the sum of half the side and the
     // eye's position with a sign; in the sums, a bit after the point completes the complement.
     logic [10:0] t_high_1;
@@ -226,7 +271,7 @@ module exit_lane #(
         logic signed [exit_pkg::PLANE_BITS:0] origin_4;
         logic                                 unused_5;
 
-        assign origin_4 = {STEREO && eye_4 ? origins[1][i] : origins[0][i], 1'b0} ^ {exit_pkg::PLANE_BITS + 1{down_4[i]}};
+        assign origin_4 = {place_4[i], 1'b0} ^ {exit_pkg::PLANE_BITS + 1{down_4[i]}};
 
         multiply_add low_part (
             .clk, .enable(1'b1), .a({1'b0, speed_0[i], 1'b1}), .b({1'b0, t_0[16:0]}), .c({1'b0, solid.half[i], is_lattice, 25'd0}), .p(low_3)
@@ -360,7 +405,7 @@ module exit_lane #(
         logic [exit_pkg::PLANE_BITS:0] origin_13;
         logic                          unused_14;
 
-        assign origin_13 = {STEREO && eye_13 ? origins[1][i] : origins[0][i], 1'b0} ^ {exit_pkg::PLANE_BITS + 1{!down_13[i]}};
+        assign origin_13 = {place_13[i], 1'b0} ^ {exit_pkg::PLANE_BITS + 1{!down_13[i]}};
 
         always_ff @(posedge clk)
             {distance_14[i], unused_14} <= {at_13[i], 1'b1} + origin_13;
@@ -402,16 +447,66 @@ module exit_lane #(
     assign end_in.number    = sphere_22.number;
     assign end_in.direction = direction_22;
 
-    localparam int unsigned KEPT_BITS = LATTICE && ROUND ? exit_pkg::END_BITS : LATTICE ? exit_pkg::LAND_END_BITS
-                                        : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS;
+    if (SPOT) begin : spotted
+        (* ram_style = "distributed" *) logic [3*exit_pkg::SPOT_BITS-1:0] spots [0:2**SLOT_BITS-1];
 
-    logic [KEPT_BITS-1:0] kept;
+        logic [SLOT_BITS-1:0]                   slot_6;
+        logic [2:0][exit_pkg::SPOT_BITS-1:0]    at_6;
+
+        assign end_in.spot.at   = spots[slot_22];
+        assign end_in.spot.down = down_22;
+
+        always_ff @(posedge clk) begin
+            slot_6 <= following(slot_6);
+            if (rst) slot_6 <= SLOT_BITS'(SLOTS - 6);
+            for (int i = 0; i < 3; i++)
+                at_6[i] <= point_5[i][exit_pkg::SPOT_BITS-1:0] & {exit_pkg::SPOT_BITS{!point_5[i][exit_pkg::POINT_BITS-1]}};
+            spots[slot_6] <= at_6;
+        end
+    end else begin : no_spot
+        assign end_in.spot = '0;
+    end
 
     // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
-    fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) ends (
-        .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(KEPT_BITS'(end_in)), .out_valid, .out_ready, .out_data(kept)
-    );
-    assign out_end = $bits(out_end)'(kept);
+    if (CARRIED != 0) begin : carrying
+        (* ram_style = "distributed" *) logic [CARRIED-1:0] loads [0:2**SLOT_BITS-1];
+        logic hit;
+
+        always_ff @(posedge clk) if (!again) loads[slot_22] <= in_carried;
+
+        fifo #(.WIDTH(CARRIED + 1), .DEPTH(PLACES)) ends (
+            .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data({end_in.hit, loads[slot_22]}), .out_valid, .out_ready,
+            .out_data({hit, out_carried})
+        );
+
+        always_comb begin
+            out_end     = '0;
+            out_end.hit = hit;
+        end
+    end else begin : ending
+        localparam int unsigned KEPT_BITS = LATTICE && ROUND ? exit_pkg::LIMIT_END_BITS : LATTICE ? exit_pkg::LAND_END_BITS : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS;
+        localparam int unsigned HERE_BITS = SPOT ? exit_pkg::HIT_SPOT_BITS : 1;
+
+        logic [KEPT_BITS-1:0] kept;
+        logic [HERE_BITS-1:0] here;
+
+        if (SPOT) begin : with_spot
+            fifo #(.WIDTH(HERE_BITS + KEPT_BITS), .DEPTH(PLACES)) ends (
+                .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data({end_in.spot, KEPT_BITS'(end_in)}), .out_valid, .out_ready,
+                .out_data({here, kept})
+            );
+        end else begin : alone
+            fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) ends (
+                .clk, .rst, .in_valid(ended), .in_ready(end_ready), .in_data(KEPT_BITS'(end_in)), .out_valid, .out_ready, .out_data(kept)
+            );
+            assign here = '0;
+        end
+
+        assign out_end     = {exit_pkg::HIT_SPOT_BITS'(here), exit_pkg::LIMIT_END_BITS'(kept)};
+        assign out_carried = '0;
+
+        wire _unused = &{1'b0, in_carried};
+    end
 
     wire _unused = &{1'b0, end_ready, end_in};
 endmodule

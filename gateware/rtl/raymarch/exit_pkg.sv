@@ -123,13 +123,26 @@ package exit_pkg;
 
     localparam int unsigned EQUATION_BITS = INVERSE_SQUARE_BITS + ALONG_BITS + REST_BITS;
 
+    // The point of a hit, for a ray to the light: along each mirrored axis, the coordinate from the solid's lower corner, u7.12, 0 if it is
+    // negative; and the mirrored axes.
+    localparam int unsigned SPOT_BITS = 19;
+
+    typedef struct packed {
+        logic [2:0]                down;
+        logic [2:0][SPOT_BITS-1:0] at;
+    } spot_t;
+
+    localparam int unsigned HIT_SPOT_BITS = 3 + 3 * SPOT_BITS;
+
     // The end of a ray: whether it has hit the solid, at which T (without a hit, its limit if rays have limits of their own, and any T
     // otherwise), the axis and the sign of the face's outward normal, the number of evaluations, and the ray's `height`. In a build with
     // spheres, `met` and `number` are those of the sphere that the ray meets at its limit, and `direction` is the ray's, s1.17. A hit on a
     // sphere of a lattice is `round`; its axis and sign have no meaning. Where the ray `lands`, T is that of the box about the sphere, and
     // `equation` determines that of the sphere: exit_landing adds the difference. In a build with spheres of both kinds, `limit` is the T at
-    // which the ray meets the sphere of a list, or the far limit.
+    // which the ray meets the sphere of a list, or the far limit. In a build with shadows, `spot` is the point of a hit, until exit_shadow
+    // replaces `height` of a hit by 1 in the shadow, and by 0 in the light.
     typedef struct packed {
+        spot_t                 spot;
         logic [T_BITS-1:0]     limit;
         equation_t             equation;
         logic                  lands;
@@ -150,7 +163,8 @@ package exit_pkg;
     localparam int unsigned FLAT_END_BITS  = PLACE_BITS + 1 + T_BITS + 2 + 1 + 8 + 8;
     localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 4 + 3 * DIRECTION_BITS;
     localparam int unsigned LAND_END_BITS  = ROUND_END_BITS + 1 + EQUATION_BITS;
-    localparam int unsigned END_BITS       = LAND_END_BITS + T_BITS;
+    localparam int unsigned LIMIT_END_BITS = LAND_END_BITS + T_BITS;
+    localparam int unsigned END_BITS       = LIMIT_END_BITS + HIT_SPOT_BITS;
 
     // The code of an octahedron's face, as in raymarch_pkg::end_t: bit i is set if component i of the outward normal is positive. `axis` is
     // that of an end, and `positive` is set if the normal leads up along it.

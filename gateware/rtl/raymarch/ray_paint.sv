@@ -29,6 +29,8 @@ module ray_paint #(
     parameter bit BLEND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0,
+    // Whether faces may be in the shadow of the first light.
+    parameter bit SHADOW  = 1'b0,
     // Depth of the FIFO of pixels after the pipeline.
     parameter int unsigned PLACES = 64
 ) (
@@ -199,7 +201,7 @@ module ray_paint #(
     logic       hit_7;
     logic [2:0] number_7;
 
-    assign hit_7    = state_7 == raymarch_pkg::HIT;
+    assign hit_7    = state_7[0];
     assign number_7 = hit_7 ? surface_7 : {2'b11, state_7 == raymarch_pkg::MISS};
 
     always_ff @(posedge clk) begin
@@ -208,17 +210,21 @@ module ray_paint #(
         lower_colour_8 <= one_of_four(palette.faces[3:0], number_7[1:0]);
         if (OCTANTS && hit_7) upper_colour_8 <= one_of_four(palette.faces[7:4], surface_7[1:0]);
         else                  upper_colour_8 <= one_of_four({palette.zenith, palette.undecided, palette.faces[5:4]}, number_7[1:0]);
+        if (SHADOW && state_7 == raymarch_pkg::SHADED) begin
+            upper_8        <= 1'b0;
+            lower_colour_8 <= one_of_four({24'd0, palette.shadows}, surface_7[2:1]);
+        end
     end
     assign plain_8 = upper_8 ? upper_colour_8 : lower_colour_8;
 
-    assign fog_part = state_9 == raymarch_pkg::HIT ? fog_9 : ~height_9;
+    assign fog_part = state_9[0] ? fog_9 : ~height_9;
 
     always_ff @(posedge clk) begin
         state_9  <= state_8;
         colour_9 <= lit_8 ? lit_colour_8 : plain_8;
 
         colour_10 <= colour_9;
-        light_10  <= state_9 == raymarch_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
+        light_10  <= state_9[0] ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
         fog_10    <= state_9 == raymarch_pkg::UNDECIDED ? '0 : {1'b0, fog_part} + 9'(fog_part[7]);
     end
 
@@ -273,7 +279,7 @@ module ray_paint #(
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26 - BEGIN)) place_waits (.clk, .enable(1'b1), .in(ending.place), .out(place_26));
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable(1'b1), .in(place_26), .out(place_29));
     delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable(1'b1), .in(place_26.column[10:3]), .out(column_28));
-    delay #(.WIDTH(1), .CLOCKS(28 - BEGIN)) hit_waits (.clk, .enable(1'b1), .in(ending.state == raymarch_pkg::HIT), .out(hit_28));
+    delay #(.WIDTH(1), .CLOCKS(28 - BEGIN)) hit_waits (.clk, .enable(1'b1), .in(ending.state[0]), .out(hit_28));
 
     always_ff @(posedge clk) begin
         line_times_5 <= {1'b0, place_26.line, 2'd0} + 9'(place_26.line);

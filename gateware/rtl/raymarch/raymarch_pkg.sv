@@ -35,7 +35,8 @@ package raymarch_pkg;
 
     localparam int unsigned RAY_BITS = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS;
 
-    typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
+    // The state of an end; a hit on a face that is SHADED is in the shadow of the first light. The lowest bit is 1 for hits.
+    typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2, SHADED = 2'd3} state_t;
 
     // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `t` is T, u14.14, of a ray that leaves empty
     // prisms, and u11.12 of a marching ray. `surface` is {axis, positive} of a face, or the number of a sphere. For a miss, `t` is the sine

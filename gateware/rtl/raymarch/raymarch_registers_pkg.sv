@@ -51,6 +51,14 @@ package raymarch_registers_pkg;
         logic [3:0][2:0][17:0] directions;
     } lights_t;
 
+    // Rays to the first light: reciprocals of half the components of the direction to it (exit_pkg), in the order x, y, z from
+    // the lowest bits; this direction, s1.14; and whether there are shadows.
+    typedef struct packed {
+        logic [95:0] inverse;
+        logic [47:0] direction;
+        logic enable;
+    } shadow_t;
+
     // Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.
     typedef struct packed {
         logic [15:0] threshold;
@@ -59,11 +67,13 @@ package raymarch_registers_pkg;
         logic [22:0] far_limit;
     } tuning_t;
 
-    // Colours, {blue, green, red}, of the zenith, of undecided rays, and of the faces by surface.
+    // Colours, {blue, green, red}, of the zenith, of undecided rays, of the faces by surface, and of faces in the shadow by
+    // axis.
     typedef struct packed {
         logic [23:0] zenith;
         logic [23:0] undecided;
         logic [7:0][23:0] faces;
+        logic [2:0][23:0] shadows;
     } palette_t;
 
     // Increment of each counter in this clock.

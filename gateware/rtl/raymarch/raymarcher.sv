@@ -43,6 +43,7 @@ module raymarcher #(
     parameter bit          STEREO  = 1'b1,
     parameter bit          NORMALS   = 1'b1,
     parameter bit          HIGHLIGHT = 1'b1,
+    parameter bit          SHADOW    = 1'b1,
     parameter int unsigned EARLY   = BLEND ? 1024 : 512
 ) (
     input  wire                       clk,
@@ -87,6 +88,8 @@ module raymarcher #(
     input  wire  [2:0]                sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire raymarch_registers_pkg::lights_t lights,
+    // Shadows of the first light on faces of the solid. Used with SHADOW.
+    input  wire raymarch_registers_pkg::shadow_t shadow,
     // Cones in which the eyes see the spheres (sphere_unit), for rays by exits.
     input  wire  [1:0][3:0]           last_cone,
     input  wire                       cone_write,
@@ -244,16 +247,18 @@ module raymarcher #(
 
         if (LEAVES) begin : leaving
             exit_pkg::end_t ending;
+            logic           nothing;
 
             assign found[i] = ending;
+            wire _unused = nothing;
 
             exit_lane #(
                 .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0 || LATTICE || OCTAHEDRON),
-                .STEREO(STEREO), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)
+                .STEREO(STEREO), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .SPOT(SHADOW)
             ) lane (
                 .clk, .rst(reset), .origins(places), .solid({rule, levels, halves, borders}), .far_t(far_limit),
-                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray),
-                .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(ending),
+                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray), .in_origin('0), .in_carried('0),
+                .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(ending), .out_carried(nothing),
                 .evaluates(exit_evaluates), .waits(exit_waits)
             );
         end else if (ROUND) begin : passing
@@ -335,22 +340,39 @@ module raymarcher #(
 
     always_ff @(posedge clk) turn <= reset || turn == TURN_BITS'(LANES - 1) ? '0 : turn + 1'b1;
 
-    // The next end by exits: exit_landing completes those on spheres of a lattice.
-    exit_pkg::end_t     landed;
+    // The next end by exits: exit_shadow finds the shadows on faces, and exit_landing completes ends on spheres of a lattice.
+    exit_pkg::end_t     shaded, landed;
     raymarch_pkg::end_t exit_end;
-    logic               found_taken, landed_valid, landed_taken;
+    logic               found_taken, shaded_valid, shaded_taken, landed_valid, landed_taken, shadow_evaluates, shadow_waits;
 
     assign landed_taken = next_taken && by_exits;
 
+    if (SHADOW && LEAVES) begin : shadows
+        exit_shadow #(
+            .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0),
+            .KEPT_BITS(LATTICE && ROUND ? exit_pkg::LIMIT_END_BITS : LATTICE ? exit_pkg::LAND_END_BITS : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS)
+        ) shade (
+            .clk, .rst(reset), .solid({rule, levels, halves, borders}), .shadow, .in_valid(exit_valid[turn]), .in_ready(found_taken),
+            .in_end(found[turn]), .out_valid(shaded_valid), .out_ready(shaded_taken), .out_end(shaded),
+            .evaluates(shadow_evaluates), .waits(shadow_waits)
+        );
+    end else begin : no_shadows
+        assign shaded       = found[turn];
+        assign shaded_valid = exit_valid[turn];
+        assign found_taken  = shaded_taken;
+        assign {shadow_evaluates, shadow_waits} = '0;
+        wire _unused = &{1'b0, shadow};
+    end
+
     if (LATTICE) begin : landing
         exit_landing #(.ROUND(ROUND)) land (
-            .clk, .rst(reset), .far_t(far_limit), .in_valid(exit_valid[turn]), .in_ready(found_taken), .in_end(found[turn]),
+            .clk, .rst(reset), .far_t(far_limit), .in_valid(shaded_valid), .in_ready(shaded_taken), .in_end(shaded),
             .out_valid(landed_valid), .out_ready(landed_taken), .out_end(landed)
         );
     end else begin : no_landing
-        assign landed       = found[turn];
-        assign landed_valid = exit_valid[turn];
-        assign found_taken  = landed_taken;
+        assign landed       = shaded;
+        assign landed_valid = shaded_valid;
+        assign shaded_taken = landed_taken;
     end
 
     always_comb begin
@@ -359,6 +381,7 @@ module raymarcher #(
         exit_end.t         = landed.hit || landed.met ? landed.t : raymarch_pkg::END_T_BITS'(landed.height);
         exit_end.steps     = landed.steps;
         exit_end.state     = landed.hit || landed.met ? raymarch_pkg::HIT : raymarch_pkg::MISS;
+        if (SHADOW && landed.hit && !landed.round && landed.height[0]) exit_end.state = raymarch_pkg::SHADED;
         exit_end.surface   = !landed.hit ? landed.number : landed.round ? '0
                              : diagonals ? exit_pkg::octant(landed.axis, landed.positive) : {landed.axis, landed.positive};
         exit_end.round     = !landed.hit || landed.round;
@@ -412,7 +435,7 @@ module raymarcher #(
         wire _unused = &{1'b0, lights};
     end
 
-    ray_paint #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(LIT), .BLEND(BLEND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
+    ray_paint #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(LIT), .BLEND(BLEND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0), .SHADOW(SHADOW)) paint (
         .clk, .rst(reset), .stereo, .exits, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
@@ -432,12 +455,12 @@ module raymarcher #(
     always_comb begin
         events = '0;
         events.cycles_busy    = busy;
-        events.cycles_stalled = waits != '0;
+        events.cycles_stalled = waits != '0 || shadow_waits;
         events.items_in       = ray_moves;
         events.items_out      = group_moves;
         events.cycles_idle    = busy ? ones(idles) : '0;
-        events.evaluations    = ones(evaluates);
-        events.hits           = ended && paint_end.state == raymarch_pkg::HIT;
+        events.evaluations    = ones(evaluates) + 3'(shadow_evaluates);
+        events.hits           = ended && paint_end.state[0];
         events.misses         = ended && paint_end.state == raymarch_pkg::MISS;
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end

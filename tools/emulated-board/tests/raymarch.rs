@@ -7,7 +7,7 @@ use emulated_board::{Device, MainMemory, TriangleEngine};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
-use glint_core::light::{Background, Material};
+use glint_core::light::{Background, Highlight, Light, Material};
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
@@ -174,6 +174,8 @@ fn every_kind_of_field() {
             material: [Material::Normal, Material::Jade][number % 2],
             background: [None, Some(Background::Sky)][number % 2],
             occlusion: number % 3 == 0,
+            highlight: Highlight::parse("0.6,30"),
+            shadow: true,
             ..Appearance::default()
         };
         let subject = FieldSubject {
@@ -182,6 +184,16 @@ fn every_kind_of_field() {
             quality: Quality::default(),
         };
         check(&mut bench, subject, None, Size::W320);
+    }
+}
+
+/// Colours by normals, in a light with a highlight and shadows.
+fn lit() -> Appearance {
+    Appearance {
+        lights: Light::parse("-2,1,1.5,c0a0ff").into_iter().collect(),
+        highlight: Highlight::parse("0.4,9"),
+        shadow: true,
+        ..Appearance::default()
     }
 }
 
@@ -205,7 +217,7 @@ fn a_bent_union_is_left_to_the_soft_core() {
 #[test]
 fn two_eyes_and_large_pictures() {
     let mut bench = Bench::new();
-    let appearance = Appearance::default();
+    let appearance = lit();
     for (text, stereo, size) in [
         ("menger:2", Some("0.05,3,red-blue"), Size::W320),
         ("sphere:0.8", Some("0.1,2,red-cyan"), Size::W640),
@@ -246,7 +258,7 @@ fn random_fields() {
         });
         let subject = FieldSubject {
             field: &field,
-            appearance: &Appearance::default(),
+            appearance: &lit(),
             quality: Quality::default(),
         };
         check(&mut bench, subject, None, Size::W320);

@@ -39,6 +39,8 @@ pub struct Fields {
     pub normals: bool,
     /// A highlight on spheres.
     pub highlight: bool,
+    /// Shadows on faces.
+    pub shadow: bool,
 }
 
 /// Gateware and firmware that scenes require.
@@ -80,13 +82,18 @@ impl SceneFile {
         }
         let has = |block| blocks.contains(&block);
         let (has_triangles, has_fields) = (has(Block::Triangle), has(Block::Raymarch));
-        let fields = scene.field.filter(|_| has_fields).map(|field| Fields {
-            lanes: self.lanes.unwrap_or(LANES),
-            // A mesh in a field is drawn for one eye after the other.
-            stereo: scene.stereo.is_some() && !has_triangles,
-            normals: field.is_round() && scene.appearance.material == Material::Normal,
-            highlight: field.is_round() && scene.appearance.has_highlight(),
-            ..Fields::of(&field)
+        let fields = scene.field.filter(|_| has_fields).map(|field| {
+            let fields = Fields::of(&field);
+            let appearance = &scene.appearance;
+            Fields {
+                lanes: self.lanes.unwrap_or(LANES),
+                // A mesh in a field is drawn for one eye after the other.
+                stereo: scene.stereo.is_some() && !has_triangles,
+                normals: field.is_round() && appearance.material == Material::Normal,
+                highlight: field.is_round() && appearance.has_highlight(),
+                shadow: fields.shadow && !fields.fillets && appearance.has_shadows(),
+                ..fields
+            }
         });
         Needs {
             features: self.needed_features(),
@@ -189,7 +196,7 @@ impl Needs {
 }
 
 impl Fields {
-    /// The features that a field requires, for one eye.
+    /// The features that a field requires, for one eye and with shadows.
     fn of(field: &Field) -> Self {
         let none = Self {
             lanes: LANES,
@@ -201,6 +208,7 @@ impl Fields {
             stereo: false,
             normals: false,
             highlight: false,
+            shadow: false,
         };
         match field {
             Field::Primitive(primitive) => none.and(primitive),
@@ -226,9 +234,11 @@ impl Fields {
             Some(Kind::Menger) | None => {
                 let levels = 8 - constants.levels.leading_zeros() as u8;
                 self.levels = self.levels.max(levels);
+                self.shadow = true;
             }
             Some(kind) => {
                 self.flat.insert(kind.name());
+                self.shadow |= constants.repeated;
             }
         }
     }
@@ -248,6 +258,7 @@ impl Fields {
             stereo: self.stereo || other.stereo,
             normals: self.normals || other.normals,
             highlight: self.highlight || other.highlight,
+            shadow: self.shadow || other.shadow,
         }
     }
 
@@ -265,6 +276,7 @@ impl Fields {
             ("stereo", self.stereo),
             ("normals", self.normals),
             ("highlight", self.highlight),
+            ("shadow", self.shadow),
         ];
         let built = features.into_iter().filter(|(_, is_built)| *is_built);
         names.extend(built.map(|(name, _)| name.to_owned()));

@@ -354,6 +354,9 @@ fn needs_follow_from_the_keys() {
         field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
         field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres,normals --lanes 1
         field = "sphere:1"; material = "jade"; highlight = "0.5,9" → --blocks scanout raymarch --no-depths --fields spheres,highlight --lanes 2
+        field = "menger:3"; shadow = true; material = "ivory" → --blocks scanout raymarch --no-depths --fields menger:3,shadow --lanes 2
+        field = "menger:3"; shadow = true → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
+        field = "box:1,1,1"; shadow = true; material = "ivory" → --blocks scanout raymarch --no-depths --fields box --lanes 2
         field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
         field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box --lanes 2
         field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2

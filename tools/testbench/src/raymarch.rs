@@ -116,9 +116,7 @@ fn set_length(record: &mut Record, beam: &Beam) {
 /// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
 #[must_use]
 pub fn reciprocal(inverse: Inverse) -> u64 {
-    let Inverse { mantissa, exponent } = inverse;
-    let scale = (exponent / 8) as u64;
-    scale << 30 | u64::from(mantissa) << (exponent % 8)
+    inverse.word().into()
 }
 
 /// Clears what has no meaning: the start of a ray that is over, the number of no sphere, and the length of a direction outside of lattices.
@@ -156,13 +154,16 @@ pub enum Kind {
     Hit,
     /// The ray reached the step limit.
     Undecided,
+    /// The ray reached a face in the shadow of the first light.
+    Shaded,
 }
 
 impl Kind {
-    const NAMES: [(Self, &str); 3] = [
+    const NAMES: [(Self, &str); 4] = [
         (Self::Miss, "MISS"),
         (Self::Hit, "HIT"),
         (Self::Undecided, "UNDECIDED"),
+        (Self::Shaded, "SHADED"),
     ];
 
     fn name(self) -> &'static str {
@@ -491,10 +492,30 @@ pub fn set_raymarcher(module: &mut Module, setup: &FieldSetup) {
                 .with("spheres_repeated", exits.spheres.repeated);
             module.drive_bits("solid", solid);
             set_solid(module, exits);
+            set_shadow(module, exits);
         }
         Form::Marching(_) => set_lane(module, setup),
     }
     set_rays(module, setup);
+}
+
+/// Drives the rays to the first light.
+pub fn set_shadow(module: &mut Module, exits: &Exits) {
+    let mut record = module.record("shadow");
+    record.set("enable", u64::from(exits.sun.is_some()));
+    if let Some(sun) = &exits.sun {
+        let joined = |parts: [i128; 3], bits: usize| {
+            let [x, y, z] = parts;
+            x | y << bits | z << (2 * bits)
+        };
+        let parts = sun.direction.map(|part| i128::from(part.cast_unsigned()));
+        record.set("direction", joined(parts, 16));
+        record.set(
+            "inverse",
+            joined(sun.inverse.map(|inverse| inverse.word().into()), 32),
+        );
+    }
+    module.drive_bits("shadow", record);
 }
 
 /// Drives the frame constants of the ray generator, with bands of `band_lines` lines.
@@ -549,7 +570,7 @@ pub fn exit_end(layout: &Layout, place: RayPlace, end: &RayEnd) -> Bits {
     let mut record = layout.record();
     let (kind, surface, t) = match end.state {
         State::Hit(surface) => (
-            Kind::Hit,
+            if end.shadow { Kind::Shaded } else { Kind::Hit },
             surface.face().or(surface.number()).unwrap_or_default(),
             end.depth >> 7,
         ),
@@ -592,6 +613,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     colours.set("zenith", colour(palette.zenith));
     colours.set("undecided", colour(palette.undecided));
     colours.set_all("faces", palette.faces.map(colour));
+    colours.set_all("shadows", palette.shadows.map(colour));
     module.drive_bits("palette", colours);
     module.drive("horizon", colour(palette.horizon));
     module.drive("stereo", setup.stereo.is_some());

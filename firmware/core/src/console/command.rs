@@ -95,6 +95,9 @@ commands! {
             => key(Order::Option, "0.6,32").with(FIELD)
                 .host(option("highlight", "STRENGTH,EXPONENT", "Highlight of the first light on a field: its strength, from 0 to 1, and its sharpness, a whole number from 1 to 128. `normal` without a --light has none")
                     .expects("a highlight STRENGTH,EXPONENT such as 0.6,32"));
+        shadow Shadow(on: bool) or show in LIGHT: "turn the shadows of the first light in a field on or off, or show the setting"
+            => key(Order::Option, "on").with(FIELD)
+                .host(switch("shadow", "on", "Shadows of the first light in a field: sponges, `boxes` and `cubes` throw shadows on their own faces. `normal` without a --light has none"));
         background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes, which have one colour"
             => key(Order::Option, "sky").with(LIT)
                 .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")

@@ -20,6 +20,8 @@ pub struct Appearance {
     pub ambient: Option<Rgb>,
     /// Highlight of the first light on a field.
     pub highlight: Option<Highlight>,
+    /// Whether the first light throws shadows in a field.
+    pub shadow: bool,
     /// Background; `None` selects white for a field and black for meshes.
     pub background: Option<Background>,
     /// Density of the fog per world unit: over a distance d, the fog transmits the fraction exp(−d · density) of the light. 0
@@ -54,6 +56,11 @@ impl Appearance {
     pub fn has_highlight(&self) -> bool {
         let lighting = self.lighting();
         lighting.highlight.is_some() && !lighting.lights.is_empty()
+    }
+
+    /// Whether fields may have shadows: there are some if there are lights.
+    pub fn has_shadows(&self) -> bool {
+        self.shadow && !self.lighting().lights.is_empty()
     }
 
     /// Returns the lighting of meshes: the first light, or white light at the camera if the list is empty. The default ambient

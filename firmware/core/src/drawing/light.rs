@@ -2,7 +2,7 @@
 //!
 //! Faces perpendicular to the axes have only six directions, so their six lit colours are computed once per frame, and no
 //! lighting is computed per pixel. Spheres are lit per pixel, and meshes per triangle or vertex, in `glint-model` and in the
-//! gateware. Light depends only on the angles between the normal, the direction to the light and that to the camera; there are no shadows.
+//! gateware. Light depends only on the angles between the normal, the direction to the light and that to the camera, and on shadows.
 
 use core::fmt;
 
@@ -263,6 +263,20 @@ impl Lighting {
                 if face % 2 == 1 { along } else { -along }
             })
         })
+    }
+
+    /// Computes the colours of the faces perpendicular to the axes x, y and z that are turned to the first light and in its shadow.
+    pub fn shadows(&self, faces: &[Rgb; 6]) -> [Rgb; 3] {
+        let Some((first, rest)) = self.lights.split_first() else {
+            return [[0; 3]; 3];
+        };
+        let others = Self {
+            ambient: self.ambient,
+            lights: rest.iter().copied().collect(),
+            ..Self::PLAIN
+        };
+        let lit = others.shine_on(faces);
+        core::array::from_fn(|axis| lit[2 * axis + usize::from(first.direction[axis] >= 0)])
     }
 
     /// Computes the lit colours of the eight faces perpendicular to the diagonals, from their colours in full light. Bit i of a

@@ -22,8 +22,11 @@ pub struct RayEnd {
     pub depth: u64,
     /// Number of steps.
     pub steps: u32,
-    /// Number of evaluations of the field: with several spheres, a step of a marching ray takes one for each sphere.
+    /// Number of evaluations of the field: with several spheres, a step of a marching ray takes one for each sphere. Includes those of a
+    /// ray to the light.
     pub evaluations: u32,
+    /// Whether a face is in the shadow of the first light.
+    pub shadow: bool,
     /// How far up a ray leads: the component along z of its direction in the maximum norm, or in the Euclidean norm for a marching ray in
     /// a scene with spheres; u0.8, rounded down, 0 for a ray that leads down. The colour of the sky depends on it.
     pub height: u8,

@@ -22,8 +22,11 @@ mod lattice;
 mod narrow;
 mod ray;
 mod rectangle;
+mod seen;
 mod setup;
+mod shadow;
 mod spheres;
+mod sun;
 mod vectors;
 mod words;
 
@@ -35,4 +38,5 @@ pub use ray::{Beam, Way};
 pub use rectangle::Rectangle;
 pub use setup::{Exits, Eye, Side, Start};
 pub use spheres::Met;
+pub use sun::Sun;
 pub use words::{Inverse, Words};

@@ -4,7 +4,7 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::field::{FRACTION, Field};
 use glint_core::fixed::U4_28;
-use glint_core::light::{Background, Lighting, Material};
+use glint_core::light::{Background, Light, Lighting, Material};
 use glint_core::quality::{Quality, Threshold};
 use glint_core::stereo::Stereo;
 
@@ -75,6 +75,8 @@ pub struct FieldOptions {
     pub tuning: Tuning,
     /// Colours, without fog.
     pub palette: Palette,
+    /// Direction to the first light, s1.14, of length 1, if it throws shadows.
+    pub sun: Option<[i16; 3]>,
     /// Density of the fog per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog.
     pub fog: U4_28,
 }
@@ -102,6 +104,7 @@ impl FieldOptions {
             fog,
             occlusion,
             undecided,
+            shadow,
             ..
         } = appearance;
         let lighting = appearance.lighting().seen_from(view);
@@ -116,6 +119,11 @@ impl FieldOptions {
             stereo,
             marches: false,
             palette,
+            sun: lighting
+                .lights
+                .first()
+                .filter(|_| shadow)
+                .map(Light::direction),
             fog,
             tuning: Tuning::of(field, quality),
         }
@@ -129,6 +137,7 @@ impl Default for FieldOptions {
             marches: false,
             tuning: DEFAULT_TUNING,
             palette: Palette::default(),
+            sun: None,
             fog: U4_28::ZERO,
         }
     }

@@ -32,9 +32,10 @@ fn surface_colour(
     end: &RayEnd,
     surface: Surface,
 ) -> [u8; 3] {
-    let face = surface
-        .face()
-        .map_or([0; 3], |face| palette.faces[usize::from(face) % 8]);
+    let face = surface.face().map_or([0; 3], |face| match end.shadow {
+        true => palette.shadows[usize::from(face) / 2 % 3],
+        false => palette.faces[usize::from(face) % 8],
+    });
     let Some(round) = lit(setup, palette, end, surface) else {
         return face;
     };

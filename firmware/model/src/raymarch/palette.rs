@@ -14,6 +14,8 @@ pub struct Palette {
     /// Lit colours of the faces, by [`Surface::face`](glint_core::field::Surface::face): six perpendicular to the axes,
     /// or eight perpendicular to the diagonals.
     pub faces: [[u8; 3]; 8],
+    /// Lit colours of the faces perpendicular to each axis that are in the shadow of the first light.
+    pub shadows: [[u8; 3]; 3],
     /// Lights on the spheres, and materials of the spheres.
     pub lights: Lights,
     /// Colour of an undecided ray, which has reached its step limit. This is the horizon's colour, because most such rays run along a face
@@ -44,11 +46,13 @@ impl Palette {
     /// Faces of a material in the given light on a background, without fog or occlusion.
     pub fn new(material: Material, lighting: &Lighting, background: Background) -> Self {
         let [zenith, horizon] = background.colours();
+        let faces = material.faces();
         Self {
             faces: {
-                let [a, b, c, d, e, f] = lighting.shine_on(&material.faces());
+                let [a, b, c, d, e, f] = lighting.shine_on(&faces);
                 [a, b, c, d, e, f, [0; 3], [0; 3]]
             },
+            shadows: lighting.shadows(&faces),
             lights: Lights::new(material, lighting),
             undecided: horizon,
             zenith,
@@ -96,6 +100,7 @@ impl Palette {
         let grey = |colour| [luminance(colour); 3];
         Self {
             faces: self.faces.map(grey),
+            shadows: self.shadows.map(grey),
             lights: self.lights.grey(),
             undecided: grey(self.undecided),
             zenith: grey(self.zenith),

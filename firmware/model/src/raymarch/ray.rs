@@ -251,6 +251,7 @@ impl Marching {
     /// The end of a ray as a picture shows it.
     pub fn seen(&self, ray: &Ray, end: &RayResult) -> RayEnd {
         RayEnd {
+            shadow: false,
             state: end.state,
             depth: self.depth_of(ray, end.reached()),
             steps: end.steps,

@@ -66,6 +66,10 @@ impl FieldSetup {
         let marches = options.marches && Marching::draws(field);
         let (form, scale, exponent) = if Exits::draws(field) && !marches {
             let exits = Exits::new(field, view, (width, height), stereo, Words::CHOSEN)?;
+            let exits = match options.sun {
+                Some(direction) => exits.with_shadows(direction),
+                None => exits,
+            };
             (Form::Exits(exits), exits.scale, exits.exponent)
         } else {
             let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));

@@ -1,18 +1,20 @@
 //! Compares the model's rays by exits with exact hits.
 
-use glint_core::field::Field as Scene;
+use glint_core::field::{Field as Scene, Surface};
 use glint_core::fixed::Q32_32;
+use glint_core::light::Light;
 use glint_model::raymarch::exits::{Exits, Words};
-use glint_model::raymarch::{Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, State, Stereo, Tint};
 use glint_reference::camera::{self, Camera, Side, Size};
 use glint_reference::raymarch::metrics::RayOutcome;
+use glint_reference::raymarch::raymarched::Subject;
 use glint_reference::raymarch::{Face, Field, Hit, exited};
 use glint_reference::report::experiments::raymarch::requirements::SMALL;
 use glint_reference::report::experiments::raymarch::words;
 use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
 use glint_vectors::Random;
-use glint_vectors::math::{dot, length};
+use glint_vectors::math::{add_scaled, dot, length};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -161,6 +163,71 @@ fn pictures_meet_the_targets() {
         assert!(
             (p99 - committed.depth_p99.unwrap_or_default()).abs() < 1e-9,
             "{name}: {p99}"
+        );
+    }
+}
+
+/// Shadows on the faces of sponges and repeated boxes against exact ones: the share of the compared hits whose shadow differs. A shadow may
+/// differ where a ray to the light passes an edge within the rounding of the hit.
+#[test]
+fn shadows_are_where_they_are() {
+    let sun = Light::parse("1,-2,3").expect("a light").direction();
+    let towards = sun.map(|part| f64::from(part) / 16384.0);
+    let options = FieldOptions {
+        sun: Some(sun),
+        ..FieldOptions::default()
+    };
+    for (scene, eye, target, limit) in [
+        ("menger:4", [2.0, -2.2, 1.6], [0.0; 3], 0.0001),
+        ("menger:6", [1.2, -1.3, 1.1], [0.2, -0.1, 0.3], 0.001),
+        ("menger:2", [0.9, -0.1, 0.05], [-1.0, 0.2, 0.1], 0.0001),
+        ("cubes:2,0.08", [1.0, -1.0, 1.0], [-1.0, 1.2, -1.5], 0.0001),
+        (
+            "boxes:2,0.7,0.3,0.12",
+            [1.0, -1.0, 1.1],
+            [-1.0, 1.2, -0.5],
+            0.0001,
+        ),
+    ] {
+        let camera = Camera::looking(eye, target, 0.7, 0.05);
+        let subject = Subject::new("lit", scene, &camera, (640, 360));
+        let setup = subject.setup(&options);
+        let tracer = setup.tracer();
+        let (mut compared, mut shaded, mut wrong) = (0, 0, 0);
+        for (number, expected) in (0..).zip(&subject.expected) {
+            let (x, y) = (number % 640, number / 640);
+            let found = tracer.trace(0, x, y);
+            let (Some(hit), State::Hit(Surface::Face { axis, positive })) =
+                (expected.hit, found.state)
+            else {
+                continue;
+            };
+            let axis = usize::from(axis);
+            let is_same = hit.face == Face::Axis { axis, positive };
+            let is_lit = towards[axis] * if positive { 1.0 } else { -1.0 } > 0.0;
+            if !is_same || !is_lit {
+                assert!(is_lit || !found.shadow, "a face turned away");
+                continue;
+            }
+            let ray = subject.camera.ray(
+                [x, y].map(f64::from),
+                Size {
+                    width: 640,
+                    height: 360,
+                },
+            );
+            let mut from = add_scaled(ray.origin, ray.direction, hit.t);
+            from[axis] += if positive { 1e-9 } else { -1e-9 };
+            let is_shaded = subject.field.hit(from, towards, 0.0, 40.0).is_some();
+            compared += 1;
+            shaded += u32::from(is_shaded);
+            wrong += u32::from(is_shaded != found.shadow);
+        }
+        let [wrong, shaded] = [wrong, shaded].map(|count| f64::from(count) / f64::from(compared));
+        println!("{scene}: {compared} hits, {shaded:.3} in the shadow, {wrong:.5} wrong");
+        assert!(
+            compared > 1_000 && shaded > 0.01 && wrong <= limit,
+            "{scene}: {wrong}"
         );
     }
 }

@@ -6,6 +6,7 @@ use glint_vectors::Random;
 
 use crate::scenes::{
     ENDLESS_UNIONS, FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, limit_steps, setup,
+    unshaded_setup,
 };
 
 /// Number of lanes of the module `raymarcher_sponge`.
@@ -50,7 +51,7 @@ fn frames_of_sponges_with_stalls() {
     let mut random = Random(12);
     let mut bench = Raymarcher::new("raymarcher_sponge", 2);
     for _ in 0..3 {
-        let mut setup = setup(&mut random, &SPONGES);
+        let mut setup = unshaded_setup(&mut random, &SPONGES);
         limit_steps(&mut setup, 20);
         bench.draw(Some(&mut random), &setup, &Palette::default());
     }
@@ -65,6 +66,7 @@ fn frames_of_round_fields_in_all_lights() {
         let mut setup = setup(&mut random, fields);
         limit_steps(&mut setup, 20);
         let palette = Palette {
+            shadows: [[10, 20, 30], [40, 50, 60], [70, 80, 90]],
             lights: lights(&mut random, setup.stereo.is_some()),
             ..Palette::default()
         };
@@ -128,7 +130,7 @@ fn sponges_keep_the_lanes_busy() {
     let mut random = Random(10);
     let mut bench = Raymarcher::new("raymarcher_sponge", 1);
     for frame in 0..2 {
-        let setup = setup(&mut random, &SPONGES);
+        let setup = unshaded_setup(&mut random, &SPONGES);
         let taken = bench.draw(None, &setup, &Palette::default());
         println!("frame {frame}: {}", busy(&taken));
         // Below 8 evaluations per ray, the ray generator limits the speed, not the lanes.

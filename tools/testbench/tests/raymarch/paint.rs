@@ -13,6 +13,7 @@ fn palette(random: &mut Random) -> Palette {
     let mut colour = || [0; 3].map(|_| random.bits() as u8);
     let mut palette = Palette {
         faces: [0; 8].map(|_| colour()),
+        shadows: [0; 3].map(|_| colour()),
         undecided: colour(),
         zenith: colour(),
         horizon: colour(),
@@ -68,6 +69,7 @@ fn exit_ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayE
         depth: (random.logarithmic(1.0, 268_435_456.0) as u64) << 7,
         steps: random.integer(1, 255) as u32,
         height: random.bits() as u8,
+        shadow: random.coin() && matches!(state, State::Hit(_)),
         ..end
     }
 }
@@ -116,12 +118,17 @@ fn check(
 
 #[test]
 fn ends_of_random_rays_by_exits() {
-    for name in ["ray_paint", "ray_paint_march"] {
+    for (name, has_shadows) in [
+        ("ray_paint", false),
+        ("ray_paint_march", false),
+        ("ray_paint_shadow", true),
+    ] {
         check(
             name,
             |random| setup(random, &FIELDS),
             |random, layout, setup, place| {
-                let end = exit_ending(random, setup, place);
+                let mut end = exit_ending(random, setup, place);
+                end.shadow &= has_shadows;
                 (exit_end(layout, place, &end), end)
             },
         );

@@ -130,6 +130,15 @@ pub fn limit_steps(setup: &mut FieldSetup, cap: u32) {
     }
 }
 
+/// Makes random frame constants as [`setup`], without shadows.
+pub fn unshaded_setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
+    let mut setup = setup(random, fields);
+    if let Form::Exits(exits) = &mut setup.form {
+        exits.sun = None;
+    }
+    setup
+}
+
 /// Makes random frame constants, with random tuning and one or two eyes.
 pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_of(random, fields, false)
@@ -147,6 +156,7 @@ fn setup_of(random: &mut Random, fields: &[impl AsRef<str>], marches: bool) -> F
         ..FieldOptions::of(&field)
     };
     options.stereo = random.coin().then(|| stereo(random));
+    options.sun = random.coin().then(|| sun(random));
     if random.coin() {
         let tuning = &mut options.tuning;
         tuning.threshold = random.logarithmic(1.0, 65536.0) as u32;
@@ -156,6 +166,18 @@ fn setup_of(random: &mut Random, fields: &[impl AsRef<str>], marches: bool) -> F
     }
     let camera = camera(random);
     FieldSetup::new(&field, &camera, size(random), &options).unwrap()
+}
+
+/// Makes a random direction to a light, along an axis in some cases.
+fn sun(random: &mut Random) -> [i16; 3] {
+    if random.bits().is_multiple_of(4) {
+        let mut direction = [0; 3];
+        direction[random.bits() as usize % 3] = if random.coin() { 1 << 14 } else { -(1 << 14) };
+        return direction;
+    }
+    random
+        .direction()
+        .map(|part| (part * 16384.0).round() as i16)
 }
 
 /// Makes a random size of a picture.

@@ -5,11 +5,10 @@ use glint_core::field::Surface;
 use super::cones::Cones;
 use super::intervals::Place;
 use super::lattice;
-use super::narrow::floor;
 use super::ray::Beam;
 use super::setup::Exits;
 use super::spheres::Met;
-use crate::raymarch::{RayEnd, State};
+use crate::raymarch::State;
 
 /// The end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,14 +24,14 @@ pub struct End {
 impl Exits {
     /// The end of a ray, with the [cones](Self::cones) of the frame.
     pub fn end(&self, cones: &[Cones; 2], beam: &Beam) -> End {
-        self.follow(beam, self.meet(cones, beam).0)
+        let met = self.meet(cones, beam).0;
+        self.follow(beam, met, met.map_or(self.far, |met| met.t))
     }
 
-    /// Follows a ray to its end. `met` is the sphere of a list that it meets.
+    /// Follows a ray to its end, up to the parameter `limit`. `met` is the sphere of a list that it meets there.
     ///
     /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
-    fn follow(&self, beam: &Beam, met: Option<Met>) -> End {
-        let limit = met.map_or(self.far, |met| met.t);
+    pub(super) fn follow(&self, beam: &Beam, met: Option<Met>, limit: i64) -> End {
         let end = |state, t, steps| End { state, t, steps };
         // The end of a ray that meets nothing but possibly a sphere of the list.
         let beyond = |t, steps| match met {
@@ -74,32 +73,5 @@ impl Exits {
             way = self.left(beam, &way, &prism);
         }
         beyond(way.t, steps)
-    }
-
-    /// The end of a ray as a picture shows it.
-    pub fn seen(&self, beam: &Beam, end: &End) -> RayEnd {
-        RayEnd {
-            state: end.state,
-            depth: self.depth_of(end.t),
-            steps: end.steps,
-            evaluations: end.steps,
-            height: beam.height(),
-            normal: self.normal(beam, end),
-        }
-    }
-
-    /// The vector from the centre of the sphere that was hit to the hit, in field units with 12 fraction bits; `None` if the ray hit no
-    /// sphere. It is about as long as the radius. T has 10 fraction bits.
-    pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i32; 3]> {
-        let State::Hit(surface) = end.state else {
-            return None;
-        };
-        let number = surface.number()?;
-        let t = floor(end.t, self.words.parameter as i32 - 10);
-        let direction = beam.direction();
-        let origin = &self.eyes[beam.eye].origin;
-        let place =
-            [0, 1, 2].map(|i: usize| origin[i] + floor(t * i64::from(direction[i]), 15) as i32);
-        Some(self.spheres.from(number, place))
     }
 }

@@ -64,6 +64,12 @@ impl Rule {
         matches!(self, Self::Repeated { round: true })
     }
 
+    /// Whether the solid throws shadows on its own faces. Boxes and octahedra are convex, the room between planes has no light from outside,
+    /// and spheres have no shadows.
+    pub const fn has_shadows(&self) -> bool {
+        matches!(self, Self::Sponge { .. } | Self::Repeated { round: false })
+    }
+
     /// Number of levels of a sponge; 1 of spheres in place of cubes and of an octahedron in place of a box, by which the gateware tells them
     /// apart; 0 for other solids.
     pub const fn levels(&self) -> u32 {

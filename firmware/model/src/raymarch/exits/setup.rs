@@ -13,6 +13,7 @@ use super::cones::{Cone, Cones, Sight};
 use super::intervals::{AXES, Border, Exit, PERIOD, Place, Rule, Solid};
 use super::narrow::floor;
 use super::rectangle::{FAR, Rectangle, Screen};
+use super::sun::Sun;
 use super::words::Words;
 use crate::error::RenderError;
 use crate::raymarch::directions::{Directions, check};
@@ -123,6 +124,8 @@ pub struct Exits {
     pub far: i64,
     /// The flat solid or the lattice; `None` for a list of spheres alone.
     pub solid: Option<Solid>,
+    /// The rays to the first light; `None` without shadows.
+    pub sun: Option<Sun>,
     /// The spheres: that of a lattice, and those of a list.
     pub spheres: FixedSpheres,
     /// The pixels by which each eye may see each sphere of `spheres` that is one of a list; none for the right eye without stereo.
@@ -193,6 +196,7 @@ impl Exits {
             // A saturated parameter is beyond the far limit.
             far: (1 << (FAR + rays.exponent + fraction)) - 2,
             solid,
+            sun: None,
             spheres: FixedSpheres {
                 list: [FixedSphere::default(); MAX_SPHERES],
                 count: 0,
@@ -213,6 +217,16 @@ impl Exits {
             exits.place_rectangles(&views[..eyes]);
         }
         Ok(exits)
+    }
+
+    /// Lets faces that the first light shines on have shadows, if the solid throws any. `direction` is that to the light, s1.14, of length 1.
+    #[must_use]
+    pub fn with_shadows(self, direction: [i16; 3]) -> Self {
+        let has_shadows = self.solid.is_some_and(|solid| solid.rule.has_shadows());
+        Self {
+            sun: has_shadows.then(|| Sun::new(direction, &self.words)),
+            ..self
+        }
     }
 
     /// The direction D of pixel (x, y) along each of the first three axes, s2.30.

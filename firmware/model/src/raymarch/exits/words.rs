@@ -56,6 +56,20 @@ pub struct Inverse {
 }
 
 impl Inverse {
+    /// The reciprocal as the gateware has it: the mantissa, shifted by the exponent modulo 8, in 30 bits, and before it a scale of powers of
+    /// 2^8.
+    pub const fn word(self) -> u32 {
+        (self.exponent as u32 / 8) << 30 | self.mantissa << (self.exponent % 8)
+    }
+
+    /// The reciprocal of a [`word`](Self::word). Its mantissa may be larger, with a smaller exponent.
+    pub const fn of_word(word: u32) -> Self {
+        Self {
+            mantissa: word & ((1 << 30) - 1),
+            exponent: 8 * (word >> 30) as i32,
+        }
+    }
+
     /// The reciprocal of x, u0.25. An x of 0 counts as 2^−25.
     pub const fn of(x: u32, words: &Words) -> Self {
         let x = x | (x == 0) as u32;

@@ -112,6 +112,7 @@ fn leaving(
         near: parameters.unsigned(offset::NEAR, 28).into(),
         far: parameters.unsigned(offset::FAR, 28).into(),
         solid: Some(solid),
+        sun: register.shadow().then(|| spheres.sun()),
         spheres: round(field, spheres),
         rectangles: Default::default(),
     }
@@ -234,6 +235,7 @@ pub fn palette(
     let [fog, occlusion] = *tables;
     Palette {
         faces: [a, b, c, d, e, f, g, h],
+        shadows: spheres.shadows,
         lights: spheres.lights(register.last_light(), is_stereo),
         undecided,
         zenith,

@@ -1,7 +1,9 @@
-//! The register `sphere`: constants of spheres, of their lighting, and of the faces 6 and 7.
+//! The register `sphere`: constants of spheres, of their lighting, of the faces 6 and 7, and of
+//! shadows.
 
 use glint_core::field::{FixedSphere, MAX_SPHERES};
 use glint_core::light::MAX_LIGHTS;
+use glint_model::raymarch::exits::{Inverse, Sun};
 use glint_model::raymarch::{Blend, Light, Lights, Shine};
 use litex_pac::raymarch::Sphere;
 use litex_pac::register::Value;
@@ -16,6 +18,11 @@ pub struct Spheres {
     highlight: Shine,
     /// Colours of the faces 6 and 7 of a field with eight faces.
     pub faces: [[u8; 3]; 2],
+    /// Colours of faces in the shadow of the first light.
+    pub shadows: [[u8; 3]; 3],
+    /// The direction to the first light, s1.14, and the reciprocals of half its components, for shadows.
+    direction: [i16; 3],
+    inverse: [u32; 3],
     /// The constants that the next write to an entry of `list` stores.
     next: FixedSphere,
 }
@@ -36,6 +43,9 @@ impl Spheres {
             highlight: Shine::default(),
             blend: Blend::default(),
             faces: [[0; 3]; 2],
+            shadows: [[0; 3]; 3],
+            direction: [0; 3],
+            inverse: [0; 3],
             next: FixedSphere::default(),
         }
     }
@@ -54,6 +64,11 @@ impl Spheres {
             highlight: has_highlight.then_some(self.highlight),
             ..self.lights
         }
+    }
+
+    /// The rays to the first light.
+    pub fn sun(&self) -> Sun {
+        Sun::with_inverse(self.direction, self.inverse.map(Inverse::of_word))
     }
 
     /// Processes a write to the register. Undefined entries have no effect.
@@ -87,6 +102,16 @@ impl Spheres {
             37 => {
                 self.kinds = value & 7;
                 self.highlight.steepness = (value >> 8 & 0x1FFF) as u16;
+            }
+            40..=42 => self.shadows[entry - 40] = colour(value),
+            43..=45 => self.direction[entry - 43] = value as i16,
+            46..=48 => {
+                let inverse = &mut self.inverse[entry - 46];
+                *inverse = *inverse & 0xFF00_0000 | value;
+            }
+            49..=51 => {
+                let inverse = &mut self.inverse[entry - 49];
+                *inverse = *inverse & 0x00FF_FFFF | value << 24;
             }
             38 => self.highlight.light.colour = colour(value),
             _ => {}

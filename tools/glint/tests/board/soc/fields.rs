@@ -148,6 +148,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
             .collect(),
         ambient: Some([0x30, 0x20, 0x28]),
         highlight: Highlight::parse("0.7,20"),
+        shadow: true,
         background: Some(Background::Sky),
         fog: U4_28::lit("0.2"),
         occlusion: true,

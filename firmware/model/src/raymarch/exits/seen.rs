@@ -1,0 +1,38 @@
+//! The end of a ray as a picture shows it.
+
+use super::follow::End;
+use super::narrow::floor;
+use super::ray::Beam;
+use super::setup::Exits;
+use crate::raymarch::{RayEnd, State};
+
+impl Exits {
+    /// The end of a ray as a picture shows it.
+    pub fn seen(&self, beam: &Beam, end: &End) -> RayEnd {
+        let (shadow, further) = self.shadow(beam, end);
+        RayEnd {
+            state: end.state,
+            depth: self.depth_of(end.t),
+            steps: end.steps,
+            evaluations: end.steps + further,
+            shadow,
+            height: beam.height(),
+            normal: self.normal(beam, end),
+        }
+    }
+
+    /// The vector from the centre of the sphere that was hit to the hit, in field units with 12 fraction bits; `None` if the ray hit no
+    /// sphere. It is about as long as the radius. T has 10 fraction bits.
+    pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i32; 3]> {
+        let State::Hit(surface) = end.state else {
+            return None;
+        };
+        let number = surface.number()?;
+        let t = floor(end.t, self.words.parameter as i32 - 10);
+        let direction = beam.direction();
+        let origin = &self.eyes[beam.eye].origin;
+        let place =
+            [0, 1, 2].map(|i: usize| origin[i] + floor(t * i64::from(direction[i]), 15) as i32);
+        Some(self.spheres.from(number, place))
+    }
+}

@@ -1,0 +1,83 @@
+//! Hard shadows: from a hit on a face that the first light shines on, a second ray leads to the light.
+
+use glint_core::field::Surface;
+
+use super::follow::End;
+use super::intervals::{AXES, PERIOD, Rule};
+use super::ray::{Beam, Way};
+use super::setup::Exits;
+use crate::raymarch::State;
+
+/// Exponent of the distance, with 12 fraction bits, to whose multiples a hit is rounded along the normal of its face: that of the smallest
+/// cells of a sponge. All faces that have shadows are at multiples of it, from the solid's lower corner.
+const GRID: u32 = 9;
+
+/// Bits of a coordinate of a hit from the solid's lower corner.
+const SPOT: u32 = 19;
+
+impl Exits {
+    /// Whether the solid is between the end of a ray, on a face that is turned to the first light, and the light; and the number of
+    /// evaluations of the ray to the light.
+    pub(super) fn shadow(&self, beam: &Beam, end: &End) -> (bool, u32) {
+        let Some(ray) = self.light_ray(beam, end) else {
+            return (false, 0);
+        };
+        // A parameter that is not saturated.
+        let limit = (1 << (14 + self.words.parameter)) - 2;
+        let found = self.follow(&ray, None, limit);
+        (matches!(found.state, State::Hit(_)), found.steps)
+    }
+
+    /// The ray from a hit to the first light. It starts on the plane of the face, in the interval before it.
+    fn light_ray(&self, beam: &Beam, end: &End) -> Option<Beam> {
+        let sun = self.sun.as_ref()?;
+        let solid = self
+            .solid
+            .as_ref()
+            .filter(|solid| solid.rule.has_shadows())?;
+        let State::Hit(Surface::Face { axis, positive }) = end.state else {
+            return None;
+        };
+        let face = usize::from(axis);
+        if positive == sun.down[face] {
+            return None;
+        }
+        let point = self.point(beam, end.t);
+        let corner = [0, 1, 2].map(|axis: usize| {
+            let at = point[axis].max(0);
+            let at = match axis == face {
+                true => (at + (1 << (GRID - 1))) >> GRID << GRID,
+                false => at,
+            };
+            // A repeated solid looks the same from every cell.
+            let bits = match solid.rule {
+                Rule::Repeated { .. } => PERIOD,
+                _ => SPOT,
+            };
+            let at = at & ((1 << bits) - 1);
+            let side = solid.side[axis];
+            if beam.down[axis] == sun.down[axis] {
+                at
+            } else {
+                side - at
+            }
+        });
+        let all = |[x, y, z]: [u32; 3]| [x, y, z, x];
+        let [x, y, z] = corner;
+        let [down_x, down_y, down_z] = sun.down;
+        let [a, b, c] = sun.inverse;
+        Some(Beam {
+            corner: [x, y, z, 0],
+            down: [down_x, down_y, down_z, false],
+            speed: all(sun.speed),
+            inverse: [a, b, c, a],
+            start: Way {
+                t: 0,
+                face: AXES - 2,
+                reached: [i32::MIN; AXES],
+            },
+            is_away: false,
+            ..*beam
+        })
+    }
+}
