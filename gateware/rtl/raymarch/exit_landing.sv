@@ -2,10 +2,10 @@
 //
 //   end ─▶ exit_root ─▶ -q·D - root ─▶ times 1/|D|² ─▶ shift ─▶ T of the box + ─▶ FIFO ─▶ end
 //
-// All ends pass in order. A hit that is beyond `far_t` becomes a miss. With ROUND each end has a limit of its own, beyond which the ray meets
-// the sphere of a list at this limit, if any. One such unit is enough for all lanes, because a ray ends once. The
-// streams are valid/ready; the pipeline cannot be stopped, and has a credit for each end. `far_t` must hold. Latency 21 clocks, throughput
-// one end per clock.
+// All ends pass in order. A hit on a sphere that is beyond `far_t` becomes a miss. With ROUND each end has a limit of its own, beyond which
+// the ray meets the sphere of a list at this limit, if any. One such unit is enough for all lanes, because a ray ends once. The streams
+// are valid/ready; the pipeline cannot be stopped, and has a credit for each end. `far_t` must hold. Latency 21 clocks, throughput one end
+// per clock.
 
 `default_nettype none
 
@@ -90,7 +90,7 @@ module exit_landing #(
 
     logic is_beyond_17;
 
-    assign is_beyond_17 = t_17 > {1'b0, limit_17};
+    assign is_beyond_17 = end_17.round && t_17 > {1'b0, limit_17};
 
     // The product has 33 fraction bits, and is multiplied by 2^(3 - shift).
     always_ff @(posedge clk) begin
