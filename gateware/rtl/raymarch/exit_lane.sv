@@ -447,11 +447,12 @@ module exit_lane #(
     assign end_in.number    = sphere_22.number;
     assign end_in.direction = direction_22;
 
+    logic [2:0][exit_pkg::SPOT_BITS-1:0] at_6;
+
     if (SPOT) begin : spotted
         (* ram_style = "distributed" *) logic [3*exit_pkg::SPOT_BITS-1:0] spots [0:2**SLOT_BITS-1];
 
-        logic [SLOT_BITS-1:0]                   slot_6;
-        logic [2:0][exit_pkg::SPOT_BITS-1:0]    at_6;
+        logic [SLOT_BITS-1:0] slot_6;
 
         assign end_in.spot.at   = spots[slot_22];
         assign end_in.spot.down = down_22;
@@ -464,7 +465,9 @@ module exit_lane #(
             spots[slot_6] <= at_6;
         end
     end else begin : no_spot
-        assign end_in.spot = '0;
+        assign {end_in.spot, at_6} = '0;
+
+        wire _unused = &{1'b0, at_6};
     end
 
     // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
