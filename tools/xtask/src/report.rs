@@ -47,7 +47,7 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
-            let lattice = ["--fields", "lattice,stereo", "--lanes", "4"];
+            let lattice = ["--fields", "lattice,normals,stereo", "--lanes", "4"];
             gateware::build_beside("lattice-4", &lattice, Library::Quick)?;
             model("raymarcher")
         }
