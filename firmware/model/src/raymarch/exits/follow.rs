@@ -3,7 +3,7 @@
 use glint_core::field::Surface;
 
 use super::cones::Cones;
-use super::intervals::Place;
+use super::intervals::{AXES, Place};
 use super::lattice;
 use super::ray::Beam;
 use super::setup::Exits;
@@ -25,13 +25,22 @@ impl Exits {
     /// The end of a ray, with the [cones](Self::cones) of the frame.
     pub fn end(&self, cones: &[Cones; 2], beam: &Beam) -> End {
         let met = self.meet(cones, beam).0;
-        self.follow(beam, met, met.map_or(self.far, |met| met.t))
+        let corner = self.eyes[beam.eye].corner(&beam.down);
+        self.follow(beam, &corner, met, met.map_or(self.far, |met| met.t))
     }
 
-    /// Follows a ray to its end, up to the parameter `limit`. `met` is the sphere of a list that it meets there.
+    /// Follows a ray from an origin at `corner`, the position from the solid's lower corner along the mirrored axes, to its end, up to the parameter `limit`. `met` is the sphere of a list that it meets there.
     ///
     /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
-    pub(super) fn follow(&self, beam: &Beam, met: Option<Met>, limit: i64) -> End {
+    // Inlined, so that the code for a ray to the light, which most frames do not have, is apart from that for all others.
+    #[inline(always)]
+    pub(super) fn follow(
+        &self,
+        beam: &Beam,
+        corner: &[i64; AXES],
+        met: Option<Met>,
+        limit: i64,
+    ) -> End {
         let end = |state, t, steps| End { state, t, steps };
         // The end of a ray that meets nothing but possibly a sphere of the list.
         let beyond = |t, steps| match met {
@@ -49,7 +58,7 @@ impl Exits {
         };
         while !way.has_left(solid, limit) {
             steps += 1;
-            let point = self.point(beam, way.t);
+            let point = self.point(beam, corner, way.t);
             let intervals = solid.intervals(&point, &way.reached);
             let prism = match solid.place(&intervals) {
                 Place::Solid => {
@@ -70,7 +79,7 @@ impl Exits {
                 },
             };
             way.reached = intervals;
-            way = self.left(beam, &way, &prism);
+            way = self.left(beam, corner, &way, &prism);
         }
         beyond(way.t, steps)
     }

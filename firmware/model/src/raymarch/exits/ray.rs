@@ -16,8 +16,6 @@ pub struct Beam {
     pub column: u32,
     /// Row of the pixel.
     pub row: u32,
-    /// Position of the eye from the solid's lower corner, s13.12, along the axes as they are mirrored.
-    pub corner: [i64; AXES],
     /// Whether the ray leads down along an axis; the axis is then mirrored.
     pub down: [bool; AXES],
     /// Magnitude of the direction's component along each axis, u0.25: an odd number, the middle of the interval of the truncated
@@ -106,7 +104,6 @@ impl Exits {
             eye,
             column,
             row,
-            corner: self.eyes[eye].corner(&down),
             down,
             speed,
             inverse: speed.map(|speed| Inverse::of(speed, &self.words)),
@@ -142,11 +139,11 @@ impl Exits {
         beam.is_away || self.solid.as_ref().is_none_or(has_left)
     }
 
-    /// The place where a ray leaves a prism that contains `way`.
-    pub(super) fn left(&self, beam: &Beam, way: &Way, prism: &Prism) -> Way {
+    /// The place where a ray from an origin at `corner` leaves a prism that contains `way`.
+    pub(super) fn left(&self, beam: &Beam, corner: &[i64; AXES], way: &Way, prism: &Prism) -> Way {
         let borders = [0, 1, 2, 3].map(|axis: usize| {
             let border = prism.borders[axis]?;
-            Some((border.at - beam.corner[axis], border.next))
+            Some((border.at - corner[axis], border.next))
         });
         self.leave(beam, way, prism.exit, &borders)
     }
@@ -184,13 +181,13 @@ impl Exits {
     }
 
     /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12: rounded down, and in a
-    /// lattice to nearest.
-    pub(super) fn point(&self, beam: &Beam, t: i64) -> [i64; AXES] {
+    /// lattice to nearest. `corner` is the ray's origin, s13.12, likewise.
+    pub(super) fn point(&self, beam: &Beam, corner: &[i64; AXES], t: i64) -> [i64; AXES] {
         let bits = (self.words.parameter + self.words.direction + 1) as i32 - 12;
         let is_lattice = (self.solid).is_some_and(|solid| solid.rule.is_lattice());
         let [x, y, z] = [0, 1, 2].map(|axis: usize| {
             let way = t * self.speed(beam, axis);
-            beam.corner[axis]
+            corner[axis]
                 + match is_lattice {
                     true => nearest(way, bits),
                     false => floor(way, bits),

@@ -9,7 +9,10 @@ use crate::raymarch::{RayEnd, State};
 impl Exits {
     /// The end of a ray as a picture shows it.
     pub fn seen(&self, beam: &Beam, end: &End) -> RayEnd {
-        let (shadow, further) = self.shadow(beam, end);
+        let (shadow, further) = match self.sun {
+            Some(_) => self.shadow(beam, end),
+            None => (false, 0),
+        };
         RayEnd {
             state: end.state,
             depth: self.depth_of(end.t),

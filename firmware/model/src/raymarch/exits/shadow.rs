@@ -18,18 +18,21 @@ const SPOT: u32 = 19;
 impl Exits {
     /// Whether the solid is between the end of a ray, on a face that is turned to the first light, and the light; and the number of
     /// evaluations of the ray to the light.
+    // Not inlined, so that the code for a frame without shadows takes fewer lines of the instruction cache.
+    #[inline(never)]
     pub(super) fn shadow(&self, beam: &Beam, end: &End) -> (bool, u32) {
-        let Some(ray) = self.light_ray(beam, end) else {
+        let Some((ray, corner)) = self.light_ray(beam, end) else {
             return (false, 0);
         };
         // A parameter that is not saturated.
         let limit = (1 << (14 + self.words.parameter)) - 2;
-        let found = self.follow(&ray, None, limit);
+        let found = self.follow(&ray, &corner, None, limit);
         (matches!(found.state, State::Hit(_)), found.steps)
     }
 
-    /// The ray from a hit to the first light. It starts on the plane of the face, in the interval before it.
-    fn light_ray(&self, beam: &Beam, end: &End) -> Option<Beam> {
+    /// The ray from a hit to the first light. It starts on the plane of the face, in the interval before it, at the
+    /// returned position from the solid's lower corner.
+    fn light_ray(&self, beam: &Beam, end: &End) -> Option<(Beam, [i64; AXES])> {
         let sun = self.sun.as_ref()?;
         let solid = self
             .solid
@@ -42,7 +45,7 @@ impl Exits {
         if positive == sun.down[face] {
             return None;
         }
-        let point = self.point(beam, end.t);
+        let point = self.point(beam, &self.eyes[beam.eye].corner(&beam.down), end.t);
         let corner = [0, 1, 2].map(|axis: usize| {
             let at = point[axis].max(0);
             let at = match axis == face {
@@ -66,8 +69,7 @@ impl Exits {
         let [x, y, z] = corner;
         let [down_x, down_y, down_z] = sun.down;
         let [a, b, c] = sun.inverse;
-        Some(Beam {
-            corner: [x, y, z, 0],
+        let ray = Beam {
             down: [down_x, down_y, down_z, false],
             speed: all(sun.speed),
             inverse: [a, b, c, a],
@@ -78,6 +80,7 @@ impl Exits {
             },
             is_away: false,
             ..*beam
-        })
+        };
+        Some((ray, [x, y, z, 0]))
     }
 }
