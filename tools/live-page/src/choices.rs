@@ -73,7 +73,9 @@ impl Choices {
             .flat_map(|(_, forms)| forms.split(" or "))
             .collect();
         let kinds = KINDS.iter().zip(&EXAMPLES);
-        let kinds = kinds.filter(|((form, _), _)| forms.contains(form));
+        let kinds = kinds.filter(|((form, _), example)| {
+            forms.contains(form) && is_drawn_by_engine(example.field)
+        });
         Self {
             scenes: scenes
                 .into_iter()
@@ -105,6 +107,15 @@ impl Choices {
     /// The choice with this name in a list.
     pub fn find(&self, list: List, name: &str) -> Option<&Choice> {
         self.of(list).iter().find(|choice| choice.name == name)
+    }
+}
+
+/// Whether the raymarcher draws a field. The soft core, which draws the others, takes minutes in a browser.
+fn is_drawn_by_engine(field: &str) -> bool {
+    match Field::parse(field) {
+        Ok(Field::Union(union)) => union.bend() == 0,
+        Ok(Field::Primitive(_)) => true,
+        Err(_) => false,
     }
 }
 

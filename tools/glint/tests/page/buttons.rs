@@ -79,7 +79,8 @@ fn press_all(url: &str) {
         &page,
         "/yaw -?[0-9]/.test(document.querySelector('#curve-attitude figcaption').textContent)",
     );
-    assert_eq!(count(&mut browser, "fields"), KINDS.len());
+    // A bent union, which the soft core draws, has no button.
+    assert_eq!(count(&mut browser, "fields"), KINDS.len() - 1);
     let mut hashes = HashMap::new();
     for list in ["scenes", "meshes", "fields"] {
         for number in 0..count(&mut browser, list) {
