@@ -33,11 +33,6 @@ _ABC = Path(find_spec(YOSYS).origin).parent / "yosys-abc"
 _AT_A_TIME = 2
 
 
-# Stand-ins for modules of gateware/rtl, for the proofs that list them.
-_STAND_INS = ("any_colour", "any_field", "any_level", "any_product", "any_tables", "any_solid", "any_stepper", "no_product",
-              "plain_setup")
-_PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
-
 
 # Engines of bounded model checking. The solver on bits needs a third of the time for most proofs. The solver on words names the failed
 # properties, and reaches cover statements. Its option `--stbv` represents the state as bit vectors, the only form that Bitwuzla accepts.
@@ -107,6 +102,10 @@ PROOFS = [
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
 ]
+
+# The files without the stand-ins for modules of gateware/rtl, which only the proofs that list them read.
+_STAND_INS = {name for proof in PROOFS for name in proof.stand_ins}
+_PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
 # Yosys removes, across modules, logic on which no property depends, and memory bits to which only one value is written, as if they had
 # this value initially. Other undefined values stay arbitrary. This makes `cdc_fifo` slower, so proofs with several clocks are not
