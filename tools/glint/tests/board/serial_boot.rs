@@ -198,11 +198,13 @@ fn a_program_that_prints_nothing_is_an_error() {
     };
     let (code, error) = flash(&MUTE, &[]);
     let expected = "error: the program was loaded and started, and printed nothing for 10000 ms: ";
-    assert!(code == Some(1) && error.starts_with(expected), "{error}");
+    // On a busy machine, lines about the progress precede the error.
+    assert!(code == Some(1) && error.contains(expected), "{error}");
     assert_eq!(flash(&MUTE, &["--no-output"]).0, Some(0));
     assert_eq!(flash(&printer("Program runs\n"), &[]).0, Some(0));
     // jalr x0, 0(x0): back to the start of the BIOS.
     let (code, error) = flash(&[0x67, 0, 0, 0], &[]);
     let expected = "error: the program was loaded and started, and the board is in its BIOS again";
-    assert!(code == Some(1) && error.starts_with(expected), "{error}");
+    // On a busy machine, lines about the progress precede the error.
+    assert!(code == Some(1) && error.contains(expected), "{error}");
 }
