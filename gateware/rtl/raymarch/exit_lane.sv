@@ -487,8 +487,7 @@ module exit_lane #(
             out_end.hit = hit;
         end
     end else begin : ending
-        localparam int unsigned KEPT_BITS = LATTICE && ROUND ? exit_pkg::LIMIT_END_BITS : LATTICE ? exit_pkg::LAND_END_BITS
-                                            : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS;
+        localparam int unsigned KEPT_BITS = exit_pkg::end_bits(ROUND, LATTICE);
         localparam int unsigned HERE_BITS = SPOT ? exit_pkg::HIT_SPOT_BITS : 1;
 
         logic [KEPT_BITS-1:0] kept;

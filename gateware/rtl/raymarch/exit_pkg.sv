@@ -166,6 +166,12 @@ package exit_pkg;
     localparam int unsigned LIMIT_END_BITS = LAND_END_BITS + T_BITS;
     localparam int unsigned END_BITS       = LIMIT_END_BITS + HIT_SPOT_BITS;
 
+    // Returns the number of low bits of an end_t that a lane uses, which depends on whether there are spheres of a list (`round`) and of a
+    // lattice. `spot` is apart.
+    function automatic int unsigned end_bits(input bit round, input bit lattice);
+        end_bits = lattice && round ? LIMIT_END_BITS : lattice ? LAND_END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
+    endfunction
+
     // The code of an octahedron's face, as in raymarch_pkg::end_t: bit i is set if component i of the outward normal is positive. `axis` is
     // that of an end, and `positive` is set if the normal leads up along it.
     function automatic logic [2:0] octant(input logic [1:0] axis, input logic positive);

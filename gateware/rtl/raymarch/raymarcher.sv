@@ -350,8 +350,7 @@ module raymarcher #(
     if (SHADOW && LEAVES) begin : shadows
         exit_shadow #(
             .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0),
-            .KEPT_BITS(LATTICE && ROUND ? exit_pkg::LIMIT_END_BITS : LATTICE ? exit_pkg::LAND_END_BITS
-                       : ROUND ? exit_pkg::ROUND_END_BITS : exit_pkg::FLAT_END_BITS)
+            .KEPT_BITS(exit_pkg::end_bits(ROUND, LATTICE))
         ) shade (
             .clk, .rst(reset), .solid({rule, levels, halves, borders}), .shadow, .in_valid(exit_valid[turn]), .in_ready(found_taken),
             .in_end(found[turn]), .out_valid(shaded_valid), .out_ready(shaded_taken), .out_end(shaded),
