@@ -346,7 +346,9 @@ impl Highlight {
     pub fn parse(text: &str) -> Option<Self> {
         let (strength, exponent) = text.split_once(',')?;
         let strength = Q32_32::from_str(strength).ok()?;
-        let exponent = exponent.parse().ok()?;
+        // A number may begin with a sign.
+        let is_digits = exponent.bytes().all(|byte| byte.is_ascii_digit());
+        let exponent = exponent.parse().ok().filter(|_| is_digits)?;
         let is_valid =
             (Q32_32::ZERO..=Q32_32::ONE).contains(&strength) && (4..=128).contains(&exponent);
         is_valid.then(|| Self {

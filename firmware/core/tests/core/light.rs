@@ -274,7 +274,7 @@ fn highlights_are_read_and_come_back() {
         assert_eq!(Highlight::parse(shown), Some(highlight));
     }
     for text in [
-        "", "0.5", "0.5,3", "0.5,129", "1.001,9", "-0.1,9", "0.5,9,", "x,9", "0.5,+-9",
+        "", "0.5", "0.5,3", "0.5,129", "1.001,9", "-0.1,9", "0.5,9,", "x,9", "0.5,+9",
     ] {
         assert_eq!(Highlight::parse(text), None, "{text}");
     }
