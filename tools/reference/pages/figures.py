@@ -178,11 +178,11 @@ def targets(rates, cycles, marching):
         yield row(name, (marching.scene == scene) & (marching.width == width), measured.cycles.iloc[0], at_least, aim)
 
 
-def beside(pictures):
+def beside(pictures, marching):
     """The pictures by exits, each with the figures of its marching rays, named `marching_COLUMN`."""
-    of_form = dict(iter(pictures.groupby("form", sort=False)))
-    return of_form["exits"].merge(of_form["marching"].rename(columns=lambda name: f"marching_{name}"), how="left",
-                                  left_on=["scene", "view", "width"], right_on=["marching_scene", "marching_view", "marching_width"])
+    exits = pictures[pictures.form == "exits"]
+    return exits.merge(marching.rename(columns=lambda name: f"marching_{name}"), how="left",
+                       left_on=["scene", "view", "width"], right_on=["marching_scene", "marching_view", "marching_width"])
 
 
 def worst(beside, prefix=""):

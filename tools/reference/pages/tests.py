@@ -67,9 +67,9 @@ class Raymarcher(unittest.TestCase):
         self.assertEqual((found[1]["marching"], found[1]["exits"]), (None, figures.CLOCK / 1e6))
 
     def test_each_picture_by_exits_has_its_marching_picture(self):
-        pictures = pd.DataFrame([("exits", "a", "aside", 320, 1), ("marching", "a", "aside", 320, 9), ("marching", "b", "aside", 320, 7)],
-                                columns=["form", "scene", "view", "width", "evaluations"])
-        found = figures.beside(pictures)
+        columns = ["form", "scene", "view", "width", "evaluations"]
+        pictures = pd.DataFrame([("exits", "a", "aside", 320, 1), ("marching", "b", "aside", 320, 7)], columns=columns)
+        found = figures.beside(pictures, pd.DataFrame([("a", "aside", 320, 9)], columns=columns[1:]))
         self.assertEqual(found[["scene", "evaluations", "marching_evaluations"]].to_numpy().tolist(), [["a", 1, 9]])
 
 

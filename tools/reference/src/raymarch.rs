@@ -7,7 +7,6 @@
 //! - [`metrics`]: errors of a picture against the reference.
 //! - [`raymarched`]: pictures of Glint's raymarcher, in the form that `metrics` compares.
 //! - [`exited`]: pictures of the rays by exits, in the same form.
-//! - [`variant`]: other marching methods, for comparisons of their cost.
 //!
 //! If a ray only touches a solid, or lies in the plane of a face of the solid, a hit and a miss are both correct.
 
@@ -21,7 +20,6 @@ mod rendered;
 mod solids;
 mod surface;
 mod trace;
-pub mod variant;
 pub mod views;
 
 pub use surface::{Face, Hit, Plane, Sphere};

@@ -59,8 +59,8 @@ enum Page {
         /// Measure only the errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
-        /// Measure only one table: pictures, rates, words, or a study: form, fraction, cap, threshold, norm, end or normal
-        #[arg(long, value_name = "NAME", conflicts_with = "quick")]
+        /// Measure only one table
+        #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["pictures", "rates", "words", "fillet"])]
         study: Option<String>,
         /// Measure only the rates of fields whose text contains TEXT
         #[arg(long, value_name = "TEXT", requires = "study")]
@@ -316,7 +316,7 @@ fn measure_triangle(
     Ok(())
 }
 
-/// Measures the pictures, the rates and all studies of the raymarcher, or only the table `study`.
+/// Measures all tables of the raymarcher, or only the table `study`.
 fn measure_raymarch(
     quick: bool,
     study: Option<&str>,
@@ -335,12 +335,8 @@ fn measure_raymarch(
     if study.map_or(!quick, |study| study == "words") {
         to.write_with_commit("raymarch-words", &raymarch::words::measure()?)?;
     }
-    if study.map_or(!quick, |study| {
-        !["pictures", "rates", "words"].contains(&study)
-    }) {
-        raymarch::studies::measure(study, |name, trials| {
-            to.write_with_commit(&format!("raymarch-{name}"), trials)
-        })?;
+    if study.map_or(!quick, |study| study == "fillet") {
+        to.write_with_commit("raymarch-fillet", &raymarch::fillet::measure())?;
     }
     Ok(())
 }

@@ -88,30 +88,10 @@ fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     (p, 2.0 / side)
 }
 
-/// Returns the Euclidean distance from a point outside the sponge to the sponge's surface, and 0 for a point inside.
-pub(super) fn euclidean(depth: u32, p: Vector) -> f64 {
-    let (folded, unit) = fold(depth, p);
-    length(folded.map(|c| (c.abs() - 0.5).max(0.0))) * unit
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::raymarch::Sphere;
-
-    #[test]
-    fn the_fold_gives_the_known_euclidean_distances() {
-        // Points and their distances from the sponge, in units of 1/162 of the sponge's half side.
-        let cases = [
-            ([0.0; 3], 76.37),
-            ([0.0, 0.0, 80.0], 54.0),
-            ([200.0; 3], 65.82),
-        ];
-        for (p, expected) in cases {
-            let found = 162.0 * euclidean(4, p.map(|c| c / 162.0));
-            assert!((found - expected).abs() < 0.005, "{p:?}: {found}");
-        }
-    }
 
     #[test]
     fn the_sponge_has_its_holes() {

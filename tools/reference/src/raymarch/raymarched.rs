@@ -16,14 +16,6 @@ use crate::camera::{Camera, Size, Vector};
 
 pub use super::rendered::RenderedRay;
 
-/// Returns the default options for marching rays, also in a field that the model draws by exits.
-pub fn marching() -> FieldOptions {
-    FieldOptions {
-        marches: true,
-        ..FieldOptions::default()
-    }
-}
-
 /// Draws the picture of one eye with the model, row by row. Eye 0 is the left or only eye.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let tracer = setup.tracer();
@@ -204,7 +196,8 @@ impl Subject {
             parsed,
             view,
         };
-        subject.expected = subject.expected_of(&subject.setup(&FieldOptions::default()));
+        let setup = subject.setup(&FieldOptions::default());
+        subject.expected = expected(&setup, &subject.field, &subject.camera);
         subject
     }
 
@@ -216,11 +209,6 @@ impl Subject {
     /// Whether the model draws this subject by exits.
     pub fn is_drawn_by_exits(&self) -> bool {
         Exits::draws(&self.parsed)
-    }
-
-    /// Computes the reference picture up to the far limit of the rays of `setup`.
-    pub fn expected_of(&self, setup: &FieldSetup) -> Vec<Expected> {
-        expected(setup, &self.field, &self.camera)
     }
 
     /// Draws this subject with the model and these options.

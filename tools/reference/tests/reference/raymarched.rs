@@ -2,11 +2,11 @@
 
 use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
-use glint_model::raymarch::{FieldOptions, FieldSetup, Marching, Ray, State, Stereo, Tint};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Stereo, Tint};
 use glint_reference::camera::{Camera, Vector};
-use glint_reference::raymarch::metrics::{Accuracy, RayOutcome};
-use glint_reference::raymarch::raymarched::{self, Measured, Subject, marching};
-use glint_reference::raymarch::{Field, views};
+use glint_reference::raymarch::metrics::Accuracy;
+use glint_reference::raymarch::raymarched::{self, Measured, Subject};
+use glint_reference::raymarch::views;
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -22,11 +22,6 @@ fn setup(scene: &str, camera: &Camera, options: &FieldOptions) -> FieldSetup {
     let scene = Scene::parse(scene).expect("a field");
     let view = camera.view().expect("a camera");
     FieldSetup::new(&scene, &view, SIZE, options).expect("a size")
-}
-
-/// The constants of rays that march.
-fn marching_rays(setup: &FieldSetup) -> &Marching {
-    setup.marching().expect("marching rays")
 }
 
 fn see(name: &str, scene: &str, camera: &Camera) -> Seen {
@@ -202,135 +197,6 @@ fn a_camera_may_be_far_away() {
         .cheap(1.3);
 }
 
-/// Marching rays, the other form of a ray to a sponge, have errors at edges, and take more evaluations.
-#[test]
-fn marching_rays_see_the_sponge_but_for_edges() {
-    for (name, eye, target) in views::views() {
-        let subject = Subject::new(name, "menger:4", &at(eye, target), SIZE);
-        let measured = Measured::new(&subject.expected, &subject.picture(&marching()));
-        let seen = Seen {
-            name: name.into(),
-            found: measured.accuracy,
-            cost: measured.cost(),
-        };
-        seen.masked(40)
-            .decided(0)
-            .near(2e-4, 5e-4)
-            .faced(0.01)
-            .cheap(14.4);
-    }
-}
-
-/// Marches rays exactly along an axis, a direction that no pixel's ray has. Next to a wall, each step is only as long as the
-/// distance to the wall, and the threshold of a hit doubles every 64 steps. So a ray may end at a wall at a distance of less than
-/// an eighth of a cell. No other error may occur.
-#[test]
-fn rays_along_the_axes_end_at_the_walls() {
-    let sponge = Field::Menger { depth: 4 };
-    let places = || (-9..9).map(|i| f64::from(2 * i + 1) / 16.0);
-    let (mut hits, mut passed, mut given_up, mut beside) = (0, 0, 0, 0);
-    let mut most: f64 = 0.0;
-    for (axis, side) in (0..3).flat_map(|axis| [(axis, -1), (axis, 1)]) {
-        for (a, b) in places().flat_map(|a| places().map(move |b| (a, b))) {
-            let mut eye = [0.0; 3];
-            eye[axis] = f64::from(-2 * side);
-            (eye[(axis + 1) % 3], eye[(axis + 2) % 3]) = (a, b);
-            let setup = setup("menger:4", &at(eye, [3.0, 4.0, 0.0]), &marching());
-            let rays = marching_rays(&setup);
-            let mut direction = [0; 3];
-            direction[axis] = ((1 << 17) - 1) * side;
-            let ray = Ray {
-                eye: 0,
-                direction,
-                length: 1023,
-                start: 0,
-            };
-            let end = rays.march(&ray);
-            let direction = direction.map(|x| f64::from(x) / f64::from(1 << 17));
-            let exact = sponge.hit(eye, direction, 0.0, 100.0);
-            let context = || format!("{eye:?}, {axis}, {side}: {end:?}, {exact:?}");
-            match (
-                raymarched::rendered_ray(&setup, &rays.seen(&ray, &end)).outcome,
-                exact,
-            ) {
-                (RayOutcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
-                    beside += 1;
-                }
-                (RayOutcome::Hit { face, .. }, Some(exact)) => {
-                    let t =
-                        f64::from(end.reached()) / f64::from(1 << 12) / setup.scale.to_num::<f64>();
-                    hits += 1;
-                    most = most.max((t - exact.t).abs());
-                    assert_eq!(face, exact.face, "{}", context());
-                }
-                (RayOutcome::Miss, None) => passed += 1,
-                (RayOutcome::Undecided, _) => given_up += 1,
-                _ => panic!("{}", context()),
-            }
-        }
-    }
-    println!(
-        "{hits} hits, apart by at most {most:e}, {passed} misses, {given_up} undecided, {beside} beside a wall"
-    );
-    assert!(hits > 700 && given_up + beside <= 264 && most < 1e-5);
-}
-
-#[test]
-fn the_first_step_is_the_last_where_there_is_but_one() {
-    for (name, eye, target) in views::views() {
-        let mut options = marching();
-        let free = setup("menger:4", &at(eye, target), &options);
-        options.tuning.cap = 1;
-        let capped = setup("menger:4", &at(eye, target), &options);
-        let [free, capped] = [&free, &capped].map(marching_rays);
-        for (x, y) in pixels() {
-            let ray = free.ray(0, x, y);
-            let (end, first) = (free.march(&ray), capped.march(&ray));
-            if end.steps == 1 {
-                assert_eq!(first, end, "{name} {x} {y}");
-            } else {
-                let given_up = (first.state, first.steps) == (State::Undecided, 1);
-                assert!(given_up, "{name} {x} {y}: {first:?}");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
-    let camera = at([0.0, -3.0, 0.0], [0.25, 0.0, 0.125]);
-    let mut options = marching();
-    let free = setup("menger:4", &camera, &options);
-    let free = marching_rays(&free);
-    let mut ends: Vec<u32> = pixels()
-        .map(|(x, y)| free.march(&free.ray(0, x, y)))
-        .filter(|end| matches!(end.state, State::Hit(_)))
-        .map(|end| end.t + end.gap)
-        .collect();
-    ends.sort_unstable();
-    options.tuning.far = ends[ends.len() / 2];
-    let short = setup("menger:4", &camera, &options);
-    let short = marching_rays(&short);
-    let (mut seen, mut beyond) = (0, 0);
-    for (x, y) in pixels() {
-        let ray = free.ray(0, x, y);
-        let (end, found) = (free.march(&ray), short.march(&ray));
-        // A ray hits only if the end of its last step, t + gap, is not beyond the far limit.
-        let reach = end.t + end.gap;
-        if reach <= options.tuning.far {
-            assert_eq!(found, end, "{x} {y}");
-            seen += u32::from(reach == options.tuning.far);
-        } else {
-            assert_eq!(found.state, State::Miss, "{x} {y}");
-            beyond += 1;
-        }
-    }
-    assert!(
-        seen > 0 && beyond > 1000,
-        "{seen} at the end, {beyond} beyond"
-    );
-}
-
 #[test]
 fn two_eyes_in_one_place_see_what_one_eye_sees() {
     let stereo = Stereo {
@@ -350,9 +216,4 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
             assert!(raymarched::picture(&two, eye) == picture, "{name} {eye}");
         }
     }
-}
-
-fn pixels() -> impl Iterator<Item = (u32, u32)> {
-    let (width, height) = SIZE;
-    (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }

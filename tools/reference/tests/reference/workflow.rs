@@ -7,7 +7,6 @@ use std::process::Command;
 use std::thread;
 use std::time::SystemTime;
 
-use glint_reference::report::experiments::raymarch::studies;
 use glint_reference::report::workspace;
 
 /// Console output with the cycles of the kernels measured in these tests.
@@ -84,20 +83,6 @@ impl Run {
         let time = table.and_then(|table| table.modified());
         time.expect("the job has ended")
     }
-}
-
-/// The names in a one-line list of the workflow's description.
-fn list(name: &str) -> Vec<String> {
-    let path = workspace::path("tools/reference/workflow/Snakefile");
-    let text = fs::read_to_string(path).expect("readable");
-    let start = format!("{name} = ");
-    let line = text.lines().find_map(|line| line.strip_prefix(&start));
-    serde_json::from_str(line.expect("a list")).expect("a list of names")
-}
-
-#[test]
-fn the_workflow_has_every_study() {
-    assert_eq!(list("STUDIES"), studies::names().collect::<Vec<_>>());
 }
 
 #[test]

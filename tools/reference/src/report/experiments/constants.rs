@@ -1,10 +1,11 @@
 //! Constants of the firmware, the gateware and the experiments that the text of the report's pages quotes.
 
-use glint_model::raymarch::{DEFAULT_TUNING, ROUND_TUNING};
+use glint_core::quality::{Quality, Threshold};
+use glint_model::raymarch::ROUND_TUNING;
 use glint_testbench::Raymarcher;
 use serde::{Deserialize, Serialize};
 
-use super::raymarch::requirements::{EXITS, LARGE_COST, MARCHING, SMALL_COST};
+use super::raymarch::requirements::{EXITS, EXITS_GOAL, LARGE_COST, MARCHING, SMALL_COST};
 use super::{gesture, timeline};
 use crate::imu::measure::LEFT_BIAS;
 
@@ -24,24 +25,22 @@ pub fn all() -> Vec<Row> {
         let name = name.to_owned();
         rows.push(Row { name, value });
     };
-    for (kind, tuning, laps) in [("", DEFAULT_TUNING, 1), ("round_", ROUND_TUNING, 4)] {
-        add(&format!("{kind}threshold"), tuning.threshold.to_string());
-        add(&format!("{kind}footprint"), tuning.footprint.to_string());
+    let Threshold { base, footprint } = Quality::default().preset().round;
+    add("threshold", base.to_string());
+    add("footprint", footprint.to_string());
+    add("step_limit", (4 * ROUND_TUNING.cap).to_string());
+    for (kind, level, bounds) in [
+        ("exits", "", EXITS),
+        ("exits", "_goal", EXITS_GOAL),
+        ("marching", "", MARCHING),
+    ] {
+        add(&format!("{kind}_iou{level}"), bounds.iou.to_string());
         add(
-            &format!("{kind}step_limit"),
-            (laps * tuning.cap).to_string(),
+            &format!("{kind}_median{level}"),
+            format!("{:e}", bounds.median),
         );
-    }
-    for (kind, bounds) in [("exits", EXITS), ("marching", MARCHING)] {
-        for (name, [required, goal]) in [
-            ("iou", bounds.iou.map(|part| part.to_string())),
-            ("median", bounds.median.map(|error| format!("{error:e}"))),
-            ("p99", bounds.p99.map(|error| format!("{error:e}"))),
-            ("faces", bounds.faces.map(percent)),
-        ] {
-            add(&format!("{kind}_{name}"), required);
-            add(&format!("{kind}_{name}_goal"), goal);
-        }
+        add(&format!("{kind}_p99{level}"), format!("{:e}", bounds.p99));
+        add(&format!("{kind}_faces{level}"), percent(bounds.faces));
     }
     for (name, [required, goal]) in [("small_cost", SMALL_COST), ("large_cost", LARGE_COST)] {
         add(name, required.to_string());

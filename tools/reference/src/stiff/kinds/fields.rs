@@ -1,6 +1,6 @@
 //! Pictures of distance fields, and distances at the ends of the range of coordinates.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, U8_28};
@@ -80,16 +80,12 @@ struct Point {
     point: [i32; 3],
 }
 
-/// The field's distance at a point.
+/// The distance of a field whose rays march, at a point.
 fn distance(Point { field, point }: Point) -> Result<Outcome> {
     let field = Field::parse(&field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let view = View::spherical(Q32_32::from_num(4), Default::default(), Default::default())?;
-    let options = FieldOptions {
-        marches: true,
-        ..FieldOptions::of(&field)
-    };
-    let setup = FieldSetup::new(&field, &view, SIZE, &options)?;
-    let marching = setup.marching().expect("marching rays");
+    let setup = FieldSetup::new(&field, &view, SIZE, &FieldOptions::of(&field))?;
+    let marching = setup.marching().context("rays do not march")?;
     Ok(Outcome::exact(format!(
         "{}/2^12",
         marching.sample(point).distance

@@ -1,9 +1,7 @@
-//! Experiments on the raymarcher: errors of its pictures, its speed on the whole SoC, and studies of its parameters.
+//! Experiments on the raymarcher: errors of its pictures, its speed on the whole SoC, word lengths, and thresholds of fillets.
 
-pub mod fixed_point;
+pub mod fillet;
 pub mod pictures;
 pub mod rates;
 pub mod requirements;
-pub mod studies;
-pub mod trials;
 pub mod words;

@@ -1,11 +1,12 @@
-//! Experiment: errors of the model's pictures, compared with exact hits of the rays, and numbers of evaluations, by exits and by marching
-//! rays.
+//! Experiment: errors of the model's pictures, compared with exact hits of the rays, and numbers of evaluations.
 
 use glint_model::raymarch::{FieldOptions, Palette};
 use glint_testbench::Raymarcher;
 use serde::{Deserialize, Serialize};
 
-use super::requirements::{EXITS, LARGE, LARGE_COST, MARCHING, SMALL, SMALL_COST};
+use super::requirements::{
+    EXITS, EXITS_GOAL, LARGE, LARGE_COST, MARCHING, Requirements, SMALL, SMALL_COST,
+};
 use crate::raymarch::Field;
 use crate::raymarch::raymarched::{self, Measured, Subject};
 
@@ -23,7 +24,7 @@ pub enum Form {
 /// camera's n.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
-    /// Form of the rays. A field that is drawn by exits has a row for both forms.
+    /// Form of the rays.
     pub form: Form,
     /// Text form of the field.
     pub scene: String,
@@ -64,8 +65,7 @@ pub struct Row {
     pub evaluations: f64,
     /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,
-    /// Clocks of the verilated raymarcher alone for the picture; `None` for fields that are not drawn by exits, and in a quick
-    /// measurement.
+    /// Clocks of the verilated raymarcher alone for the picture; `None` for marching rays, and in a quick measurement.
     pub cycles: Option<u64>,
     /// Names of the requirements that the picture does not meet.
     pub missed: String,
@@ -75,22 +75,22 @@ pub struct Row {
 
 impl Row {
     /// Draws the picture of a subject with the model. With `raymarcher`, measures the clocks too.
-    pub fn measure(subject: &Subject, form: Form, raymarcher: Option<&mut Raymarcher>) -> Self {
-        let setup = subject.setup(&FieldOptions {
-            marches: form == Form::Marching,
-            ..FieldOptions::of(&subject.parsed)
-        });
-        let measured = Measured::new(
-            &subject.expected_of(&setup),
-            &raymarched::picture(&setup, 0),
-        );
-        let mut row = Self::new(subject, form, &measured);
+    pub fn measure(subject: &Subject, raymarcher: Option<&mut Raymarcher>) -> Self {
+        let setup = subject.setup(&FieldOptions::of(&subject.parsed));
+        let measured = Measured::new(&subject.expected, &raymarched::picture(&setup, 0));
+        let mut row = Self::new(subject, &measured);
         row.cycles =
             raymarcher.map(|raymarcher| raymarcher.draw(None, &setup, &Palette::default()).clocks);
         row
     }
 
-    fn new(subject: &Subject, form: Form, measured: &Measured) -> Self {
+    /// Whether both rows are of the same picture.
+    pub fn shows_the_same_as(&self, other: &Self) -> bool {
+        (&self.scene, &self.view, self.width) == (&other.scene, &other.view, other.width)
+            && self.form == other.form
+    }
+
+    fn new(subject: &Subject, measured: &Measured) -> Self {
         let &Measured {
             accuracy, coded, ..
         } = measured;
@@ -100,14 +100,14 @@ impl Row {
         } else {
             LARGE_COST
         };
-        // Returns the names of the missed requirements (`level` 0) or goals (`level` 1). Fields whose rays march have no goals.
-        let list = |level: usize| {
-            let mut missed = match (subject.is_drawn_by_exits(), level) {
-                (true, _) => EXITS.missed(&accuracy, level),
-                (false, 0) => MARCHING.missed(&accuracy, level),
-                (false, _) => vec![],
-            };
-            if matches!(subject.field, Field::Menger { .. }) && measured.cost() > cost[level] {
+        let (form, bounds, goal) = match subject.is_drawn_by_exits() {
+            true => (Form::Exits, EXITS, Some(EXITS_GOAL)),
+            false => (Form::Marching, MARCHING, None),
+        };
+        let is_sponge = matches!(subject.field, Field::Menger { .. });
+        let list = |bounds: &Requirements, cost: f64| {
+            let mut missed = bounds.missed(&accuracy);
+            if is_sponge && measured.cost() > cost {
                 missed.push("evaluations");
             }
             missed.join(" ")
@@ -134,8 +134,8 @@ impl Row {
             evaluations: measured.cost(),
             evaluations_max: measured.most,
             cycles: None,
-            missed: list(0),
-            not_reached: list(1),
+            missed: list(&bounds, cost[0]),
+            not_reached: goal.map_or_else(String::new, |goal| list(&goal, cost[1])),
         }
     }
 }
@@ -148,14 +148,6 @@ pub fn small() -> Vec<Subject> {
     subjects
 }
 
-/// The forms of rays in which a subject's picture is measured.
-pub fn forms(subject: &Subject) -> &'static [Form] {
-    match subject.is_drawn_by_exits() {
-        true => &[Form::Exits, Form::Marching],
-        false => &[Form::Marching],
-    }
-}
-
 /// Measures all pictures. `quick` skips pictures of 1280 × 720, and clocks.
 pub fn measure(quick: bool) -> Vec<Row> {
     let mut subjects = small();
@@ -164,13 +156,9 @@ pub fn measure(quick: bool) -> Vec<Row> {
         subjects.extend(raymarched::sponges(LARGE));
         raymarcher = Some(Raymarcher::new("raymarcher", 1));
     }
-    let mut rows = Vec::new();
-    for subject in &subjects {
-        for &form in forms(subject) {
-            let raymarcher = raymarcher.as_mut();
-            let raymarcher = raymarcher.filter(|_| subject.is_drawn_by_exits());
-            rows.push(Row::measure(subject, form, raymarcher));
-        }
-    }
-    rows
+    let measure = |subject: &Subject| {
+        let raymarcher = raymarcher.as_mut();
+        Row::measure(subject, raymarcher.filter(|_| subject.is_drawn_by_exits()))
+    };
+    subjects.iter().map(measure).collect()
 }
