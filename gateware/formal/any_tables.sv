@@ -46,7 +46,7 @@ endmodule
 
 module exit_reciprocal (
     input  wire                                clk,
-    input  wire  [23:0]                        magnitude,
+    input  wire  [26:0]                        magnitude,
     output logic [exit_pkg::INVERSE_BITS-1:0]  inverse
 );
     (* anyseq *) logic [exit_pkg::INVERSE_BITS-1:0] any;

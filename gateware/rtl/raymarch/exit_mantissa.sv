@@ -2,33 +2,35 @@
 //
 //   whole ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to below 3/2, exponent
 //
-// `whole` is u0.25, at least 2^-25; that of a magnitude of 24 bits ends with a 1, the middle of its interval. The mantissa has 22 fraction
-// bits, rounded to nearest. An entry of the table has the value at the end of its interval and the decrease over the interval. Latency 10
-// clocks, throughput one per clock, no handshake.
+// `whole` is u0.28, at least 2^-28; that of a magnitude of 27 bits ends with a 1, the middle of its interval. The table takes the first 25
+// bits from the first 1. The mantissa has 22 fraction bits, rounded to nearest. An entry of the table has the value at the end of its
+// interval and the decrease over the interval; values are reduced by half of the largest error of the interpolation, so that errors have both
+// signs. Latency 10 clocks, throughput one per clock, no handshake.
 
 `default_nettype none
 
 module exit_mantissa (
     input  wire         clk,
-    input  wire  [24:0] whole,
+    input  wire  [27:0] whole,
     output logic [22:0] mantissa,
     output logic [4:0]  exponent
 );
     // The suffix of a name is the number of clocks after the number. The shift is 8 times a number, plus twice a number, plus a bit, so
     // that these are the bits of its sum.
-    logic [24:0] whole_1, whole_2, whole_3;
+    logic [27:0] whole_1, whole_2;
+    logic [24:0] whole_3;
     logic [1:0]  eights_0, twos_1;
     logic [4:0]  lead_3, lead_9;
     logic [1:0]  eights_1;
     logic [3:0]  lead_2;
 
     always_comb begin
-        if (whole[24:17] != '0)     eights_0 = 2'd0;
-        else if (whole[16:9] != '0) eights_0 = 2'd1;
-        else                          eights_0 = {1'b1, whole[8:1] == '0};
-        if (whole_1[24:23] != '0)      twos_1 = 2'd0;
-        else if (whole_1[22:21] != '0) twos_1 = 2'd1;
-        else                           twos_1 = {1'b1, whole_1[20:19] == '0};
+        if (whole[27:20] != '0)      eights_0 = 2'd0;
+        else if (whole[19:12] != '0) eights_0 = 2'd1;
+        else                         eights_0 = {1'b1, whole[11:4] == '0};
+        if (whole_1[27:26] != '0)      twos_1 = 2'd0;
+        else if (whole_1[25:24] != '0) twos_1 = 2'd1;
+        else                           twos_1 = {1'b1, whole_1[23:22] == '0};
     end
 
     always_ff @(posedge clk) begin
@@ -36,8 +38,8 @@ module exit_mantissa (
         eights_1 <= eights_0;
         whole_2  <= whole_1 << {twos_1, 1'b0};
         lead_2   <= {eights_1, twos_1};
-        whole_3  <= whole_2[24] ? whole_2 : whole_2 << 1;
-        lead_3   <= {lead_2, !whole_2[24]};
+        whole_3  <= whole_2[27] ? whole_2[27:3] : whole_2[26:2];
+        lead_3   <= {lead_2, !whole_2[27]};
     end
 
     // The value at the end of interval i is 2^34/(1025 + i), with 24 bits. Its first bit is 1; its second bit, 1 up to i = 340, follows from
@@ -51,9 +53,14 @@ module exit_mantissa (
         quotient = 25'((64'd17179869184 + 64'(divisor / 2)) / 64'(divisor));
     endfunction
 
+    // Returns half of the largest error of the interpolation in interval i, 2/(1 + i/2^10)^3 units, rounded to nearest.
+    function automatic logic [24:0] excess(input int unsigned i);
+        excess = i <= 103 ? 25'd2 : 25'(i <= 601);
+    endfunction
+
     initial
         for (int i = 0; i < 1024; i++)
-            entries[i] = {22'(quotient(1025 + i)), 14'(quotient(1024 + i) - quotient(1025 + i))};
+            entries[i] = {22'(quotient(1025 + i) - excess(i)), 14'(quotient(1024 + i) - quotient(1025 + i))};
 
     // A second port reads the value two clocks later, when the sum needs it.
     logic [35:0] fall_4, fall_5, start_6, start_7;
@@ -98,7 +105,7 @@ module exit_mantissa (
         exponent <= lead_9 + 5'(!low_9);
     end
 
-    wire _unused = &{1'b0, sum_8[39], sum_8[13:0], half_9[24], half_9[0], whole_3[24], fall_5[35:14], start_7[13:0]};
+    wire _unused = &{1'b0, sum_8[39], sum_8[13:0], half_9[24], half_9[0], whole_3[24], fall_5[35:14], start_7[13:0], whole_2[1:0]};
 endmodule
 
 `default_nettype wire

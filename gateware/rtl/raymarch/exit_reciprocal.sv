@@ -2,13 +2,13 @@
 //
 //   magnitude ─▶ exit_mantissa ─▶ shift by the exponent modulo 8 ─▶ {scale, factor}
 //
-// `magnitude` is u0.24 and stands for the middle of its interval. Latency 12 clocks, throughput one per clock, no handshake.
+// `magnitude` is u0.27 and stands for the middle of its interval. Latency 12 clocks, throughput one per clock, no handshake.
 
 `default_nettype none
 
 module exit_reciprocal (
     input  wire                                clk,
-    input  wire  [23:0]                        magnitude,
+    input  wire  [26:0]                        magnitude,
     output logic [exit_pkg::INVERSE_BITS-1:0]  inverse
 );
     // The suffix of a name is the number of clocks after the magnitude.

@@ -40,7 +40,7 @@ module exit_start #(
     // Pixels.
     input  wire                                                   in_valid,
     input  wire raymarch_pkg::place_t                             in_place,
-    input  wire  [2:0][24:0]                                      in_direction,
+    input  wire  [2:0][27:0]                                      in_direction,
     // Rays.
     output logic                                                  out_valid,
     output exit_pkg::ray_t                                        out_ray
@@ -56,7 +56,7 @@ module exit_start #(
 
     // The suffix of a name is the signal's clock: 1 for the magnitudes of D, 13 for their reciprocals and for the distances of the planes,
     // 18 for the exits, 20 for the exit at which the ray leaves the prism.
-    logic [2:0][23:0] magnitude_1;
+    logic [2:0][26:0] magnitude_1;
     logic             eye_1, eye_12, eye_18;
     logic [2:0]       down_1, down_12, down_18, down_22;
     logic [2:0][exit_pkg::INVERSE_BITS-1:0] inverse_13, inverse_22;
@@ -67,8 +67,8 @@ module exit_start #(
     always_ff @(posedge clk) begin
         eye_1 <= STEREO && in_place.eye;
         for (int i = 0; i < 3; i++) begin
-            down_1[i]      <= in_direction[i][24];
-            magnitude_1[i] <= in_direction[i][23:0] ^ {24{in_direction[i][24]}};
+            down_1[i]      <= in_direction[i][27];
+            magnitude_1[i] <= in_direction[i][26:0] ^ {27{in_direction[i][27]}};
         end
     end
 
@@ -79,7 +79,7 @@ module exit_start #(
     for (genvar i = 0; i < 3; i++) begin : axes
         exit_reciprocal reciprocal (.clk, .magnitude(magnitude_1[i]), .inverse(inverse_13[i]));
 
-        assign speed_1[i] = magnitude_1[i][23:1];
+        assign speed_1[i] = magnitude_1[i][26:4];
 
         always_ff @(posedge clk)
             distance_13[i] <= eye_12 ? down_12[i] ? distances[1][1][i] : distances[1][0][i]
@@ -141,9 +141,9 @@ module exit_start #(
     logic [7:0]      height_10, height_22;
 
     if (OCTAHEDRON) begin : octahedron
-        logic signed [24:0] x_0, y_0, z_0, z_1, sum_2;
-        logic signed [25:0] sum_1;
-        logic [23:0]        magnitude_3;
+        logic signed [27:0] x_0, y_0, z_0, z_1, sum_2;
+        logic signed [28:0] sum_1;
+        logic [26:0]        magnitude_3;
         logic               eye_14, eye_20, down_3, down_14, down_20, there_20, later_20, some_21;
         logic signed [11:0] half_x_1, half_y_1, half_z_1;
         logic [exit_pkg::PLANE_BITS-1:0]   distance_15;
@@ -155,15 +155,15 @@ module exit_start #(
         // The three halves of the components make the sum of three integers smaller by one than that of the middles. The sum of two
         // diagonals is half a component along an axis.
         always_ff @(posedge clk) begin
-            sum_1       <= 26'(x_0) + 26'(y_0) + 26'sd1;
+            sum_1       <= 29'(x_0) + 29'(y_0) + 29'sd1;
             z_1         <= z_0;
-            sum_2       <= sum_1[24:0] + z_1;
-            down_3      <= sum_2[24];
-            magnitude_3 <= sum_2[23:0] ^ {24{sum_2[24]}};
+            sum_2       <= sum_1[27:0] + z_1;
+            down_3      <= sum_2[27];
+            magnitude_3 <= sum_2[26:0] ^ {27{sum_2[27]}};
             distance_15 <= eye_14 ? down_14 ? sum_distances[1][1] : sum_distances[1][0] : down_14 ? sum_distances[0][1] : sum_distances[0][0];
-            half_x_1    <= 12'($signed(y_0[24:14])) + 12'($signed(z_0[24:14]));
-            half_y_1    <= 12'($signed(x_0[24:14])) + 12'($signed(z_0[24:14]));
-            half_z_1    <= 12'($signed(x_0[24:14])) + 12'($signed(y_0[24:14]));
+            half_x_1    <= 12'($signed(y_0[27:17])) + 12'($signed(z_0[27:17]));
+            half_y_1    <= 12'($signed(x_0[27:17])) + 12'($signed(z_0[27:17]));
+            half_z_1    <= 12'($signed(x_0[27:17])) + 12'($signed(y_0[27:17]));
         end
 
         exit_reciprocal reciprocal (.clk, .magnitude(magnitude_3), .inverse(inverse_15));
@@ -190,14 +190,14 @@ module exit_start #(
         assign sky_down_1 = diagonals ? half_z_1[11] : down_1[2];
 
         always_comb begin
-            for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][23:14];
+            for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][26:17];
             if (diagonals) begin
                 part_1[0] = half_x_1[9:0] ^ {10{half_x_1[11]}};
                 part_1[1] = half_y_1[9:0] ^ {10{half_y_1[11]}};
                 part_1[2] = half_z_1[9:0] ^ {10{half_z_1[11]}};
             end
         end
-        wire _unused = &{1'b0, sum_1[25], half_x_1[10], half_y_1[10], half_z_1[10]};
+        wire _unused = &{1'b0, sum_1[28], half_x_1[10], half_y_1[10], half_z_1[10]};
     end else begin : no_octahedron
         always_ff @(posedge clk) begin
             exit_21   <= exit_20[exit_pkg::T_BITS-1:0];
@@ -207,7 +207,7 @@ module exit_start #(
         end
         assign {sum_away_21, down_sum_22} = '0;
         assign sky_down_1 = down_1[2];
-        always_comb for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][23:14];
+        always_comb for (int i = 0; i < 3; i++) part_1[i] = magnitude_1[i][26:17];
 
         wire _unused = &{1'b0, diagonals, sum_distances, sum_there, sum_away};
     end
@@ -254,7 +254,7 @@ module exit_start #(
             inverse_19  <= {3'(exponent_18[1:0]) + 3'(doublings_18), mantissa_18[21:4]};
         end
 
-        exit_mantissa reciprocal (.clk, .whole(square_8), .mantissa(mantissa_18), .exponent(exponent_18));
+        exit_mantissa reciprocal (.clk, .whole({square_8, 3'd0}), .mantissa(mantissa_18), .exponent(exponent_18));
         delay #(.WIDTH(2), .CLOCKS(9)) doublings_wait (.clk, .enable(1'b1), .in(doublings_9), .out(doublings_18));
         wide_delay #(.WIDTH(exit_pkg::LENGTH_BITS), .CLOCKS(13)) length_waits (.clk, .in({doublings_9, short_9}), .out(length_22));
         delay #(.WIDTH(exit_pkg::INVERSE_SQUARE_BITS), .CLOCKS(3)) reciprocal_waits (

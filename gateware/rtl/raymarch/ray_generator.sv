@@ -78,7 +78,7 @@ module ray_generator #(
 );
     logic                 walking, running, credit, empty, valid;
     raymarch_pkg::place_t place;
-    logic [2:0][24:0]     direction;
+    logic [2:0][27:0]     direction;
 
     assign busy = walking || !empty;
 
@@ -94,7 +94,7 @@ module ray_generator #(
     if (MARCH) begin : marching
         march_start #(.ROUND(BLEND), .STEREO(STEREO)) starts (
             .clk, .rst, .round, .near_limit(near_limit[raymarch_pkg::T_BITS-1:0]), .origins, .outside,
-            .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(march_valid), .out_ray(march_ray)
+            .in_valid(valid), .in_place(place), .in_direction({direction[2][27:3], direction[1][27:3], direction[0][27:3]}), .out_valid(march_valid), .out_ray(march_ray)
         );
     end else begin : no_marching
         assign march_valid = 1'b0;

@@ -30,7 +30,7 @@ module ray_pixels #(
     output logic                      running,
     output logic                      valid,
     output raymarch_pkg::place_t      place,
-    output logic [2:0][24:0]          direction
+    output logic [2:0][27:0]          direction
 );
     logic             starts, begins, loads, fresh, ends_line, ends_eye, ends_band, ends;
     logic [5:0]       band;
@@ -88,9 +88,9 @@ module ray_pixels #(
     end
 
     always_comb
-        for (int i = 0; i < 3; i++) direction[i] = d[i][30:6];
+        for (int i = 0; i < 3; i++) direction[i] = d[i][30:3];
 
-    wire _unused = &{1'b0, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0]};
+    wire _unused = &{1'b0, d[0][31], d[0][2:0], d[1][31], d[1][2:0], d[2][31], d[2][2:0]};
 endmodule
 
 `default_nettype wire

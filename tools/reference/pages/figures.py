@@ -107,7 +107,7 @@ def kernels(all_kernels, family):
 
 def words(pictures):
     """The worst errors of each set of word lengths, by kind of field."""
-    lengths = ["direction", "inverse", "parameter", "outline", "along"]
+    lengths = ["component", "direction", "inverse", "parameter", "outline", "along"]
     kinds = np.select([pictures.scene.str.startswith("menger"), pictures.scene.str.contains("sphere|moving|lattice")],
                       ["sponge", "round"], "flat")
     pictures = pictures.assign(kind=kinds, pixels=pictures.false_hits + pictures.false_misses)

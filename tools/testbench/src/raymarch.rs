@@ -83,7 +83,7 @@ pub fn exit_ray(
     let down = (0..3).filter(|&axis| beam.down[axis]);
     record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
     for axis in 0..3 {
-        record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 2);
+        record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 5);
         record.set(&format!("inverse[{axis}]"), reciprocal(beam.inverse[axis]));
     }
     if solid.rule.is_lattice() {

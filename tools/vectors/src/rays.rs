@@ -6,9 +6,9 @@ use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::exits::{Exits, Words};
 
 /// The largest component of a direction.
-pub const ONE: i32 = (1 << 24) - 1;
+pub const ONE: i32 = (1 << 27) - 1;
 
-/// A frame in which all rays start at `eye`, in units of 2^−12 field units, and have one direction, in units of 2^−24. The near plane is at
+/// A frame in which all rays start at `eye`, in units of 2^−12 field units, and have one direction, in units of 2^−27. The near plane is at
 /// the eye.
 ///
 /// # Panics
@@ -25,6 +25,6 @@ pub fn frame(field: &str, eye: [i32; 3], direction: [i32; 3]) -> Exits {
     let view = View::new_checked(place, old.u(), old.v(), old.n(), old.half_width(), near);
     let mut exits = exits(&view.expect("an eye within its range"));
     exits.near = 0;
-    exits.aim(direction.map(|part| part << 6));
+    exits.aim(direction.map(|part| part << 3));
     exits
 }

@@ -122,7 +122,7 @@ struct Sent {
 /// Makes a frame in which all rays start at one place and have one direction, both among the stiffest: on borders and beside them, with
 /// components of 0 and 1 ulp. The near plane is at the eye.
 fn stiff_frame(random: &mut Random, text: &str) -> Exits {
-    const ONE: i64 = (1 << 24) - 1;
+    const ONE: i64 = (1 << 27) - 1;
     let field = Field::parse(text).expect("a field");
     let exits = |view: &View| {
         let words = Words::CHOSEN;
@@ -147,12 +147,12 @@ fn stiff_frame(random: &mut Random, text: &str) -> Exits {
     });
     // No direction of a camera is shorter than 1/8.
     let axis = random.bits() as usize % 3;
-    let least = random.integer(1 << 21, ONE);
-    if direction[axis].abs() < 1 << 21 {
+    let least = random.integer(1 << 24, ONE);
+    if direction[axis].abs() < 1 << 24 {
         direction[axis] = if random.coin() { least } else { !least };
     }
     exits.near = 0;
-    exits.aim(direction.map(|part| (part << 6) as i32));
+    exits.aim(direction.map(|part| (part << 3) as i32));
     exits
 }
 
@@ -300,10 +300,10 @@ fn reciprocals() {
     const LATENCY: usize = 12;
     let mut random = Random(5);
     // The ends of the ranges, powers of two and their neighbours, and numbers of all lengths.
-    let powers = (0..24).map(|i| 1_u32 << i);
+    let powers = (0..27).map(|i| 1_u32 << i);
     let near = powers.flat_map(|power| [power - 1, power, power + 1]);
-    let thirds = (11_184_700..11_184_900).chain([(1 << 24) - 1]);
-    let drawn = (0..200_000).map(|_| (random.bits() as u32 & 0xFF_FFFF) >> (random.bits() % 24));
+    let thirds = (89_478_400..89_478_600).chain([(1 << 27) - 1]);
+    let drawn = (0..200_000).map(|_| (random.bits() as u32 & 0x7FF_FFFF) >> (random.bits() % 27));
     let numbers: Vec<u32> = near.chain(thirds).chain(drawn).collect();
     let mut module = Module::load("exit_reciprocal", 1);
     let [clk, magnitude, inverse] = ["clk", "magnitude", "inverse"].map(|name| module.port(name));

@@ -274,6 +274,6 @@ fn directed_rays() {
     // A list without a radius.
     let mut exits = rays::frame("sphere:1", [-4 * RADIUS, 0, 0], along);
     exits.spheres.list[0].radius = 0;
-    exits.aim(along.map(|part| part << 6));
+    exits.aim(along.map(|part| part << 3));
     bench.check(&exits, window, 1);
 }

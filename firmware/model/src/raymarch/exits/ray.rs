@@ -18,7 +18,7 @@ pub struct Beam {
     pub row: u32,
     /// Whether the ray leads down along an axis; the axis is then mirrored.
     pub down: [bool; AXES],
-    /// Magnitude of the direction's component along each axis, u0.25: an odd number, the middle of the interval of the truncated
+    /// Magnitude of the direction's component along each axis, u0.28: an odd number, the middle of the interval of the truncated
     /// component.
     pub speed: [u32; AXES],
     /// Reciprocals of `speed`.
@@ -52,7 +52,7 @@ impl Beam {
     /// The direction D, s1.17, rounded down, for a solid whose axes are x, y and z.
     pub fn direction(&self) -> [i32; 3] {
         [0, 1, 2].map(|axis: usize| {
-            let size = (self.speed[axis] >> 8) as i32;
+            let size = (self.speed[axis] >> 11) as i32;
             if self.down[axis] { !size } else { size }
         })
     }
@@ -78,35 +78,35 @@ impl Way {
 impl Exits {
     /// The ray of pixel (x, y) for an eye.
     pub fn ray(&self, eye: usize, column: u32, row: u32) -> Beam {
-        // The direction D, s1.24, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
+        // The direction D, s1.27, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
         // component is therefore its complement. The component wraps only for invalid frame constants.
-        let [x, y, z] = self.direction(eye, column, row).map(|part| part << 1 >> 7);
+        let [x, y, z] = self.direction(eye, column, row).map(|part| part << 1 >> 4);
         // The fourth diagonal of an octahedron is the sum of the others: of three middles k + 1/2, the middle of the next integer. The sum of
         // two diagonals is half an axis.
-        let first @ [a, b, c] = [x, y, z].map(|part| part >> 14);
+        let first @ [a, b, c] = [x, y, z].map(|part| part >> 17);
         let (fourth, heading) = match self.octahedron() {
-            Some(_) => ((x + y + z + 1) << 7 >> 7, [b + c, a + c, a + b]),
+            Some(_) => ((x + y + z + 1) << 4 >> 4, [b + c, a + c, a + b]),
             None => (0, first),
         };
         let direction = [x, y, z, fourth];
         let down = direction.map(|part| part < 0);
         let speed = direction.map(|part| 2 * magnitude(part) + 1);
         // The square is that of 23 bits, without the square of the lowest 6.
-        let [x, y, z, _] = speed.map(|speed| squared(i64::from(speed >> 2), 6));
+        let [x, y, z, _] = speed.map(|speed| squared(i64::from(speed >> 5), 6));
         let square = x + y + z;
         // No direction that a camera can have is shorter than 1/8.
         let doublings = (0..3).find(|&doublings| square >> (46 - 2 * doublings) != 0);
         let doublings = doublings.unwrap_or(3);
         let square = square >> (23 - 2 * doublings);
         // A quarter of the square is below 1.
-        let quarter = Inverse::of(square as u32, &self.words);
+        let quarter = Inverse::of((square as u32) << 3, &self.words);
         let beam = Beam {
             eye,
             column,
             row,
             down,
             speed,
-            inverse: speed.map(|speed| Inverse::of(speed, &self.words)),
+            inverse: speed.map(|speed| Inverse::of(self.words.component_of(speed), &self.words)),
             heading,
             doublings,
             square,
@@ -176,7 +176,7 @@ impl Exits {
     /// The magnitude of a direction's component in products with it, with one fraction bit more than `Words::direction`: an odd number, the
     /// middle of the interval of the truncated magnitude.
     pub(super) fn speed(&self, beam: &Beam, axis: usize) -> i64 {
-        let cut = 24 - self.words.direction;
+        let cut = 27 - self.words.direction;
         i64::from((beam.speed[axis] >> 1 >> cut) << 1 | 1)
     }
 

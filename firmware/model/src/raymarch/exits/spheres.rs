@@ -72,7 +72,7 @@ impl Exits {
         // up.
         let divisor = -((-(forward << SHARE) - cone.share * root) >> SHARE);
         // It exceeds 24 bits only for invalid constants.
-        let inverse = Inverse::of((divisor as u32 & 0xFF_FFFF) << 1 | 1, &self.words);
+        let inverse = Inverse::of(((divisor as u32 & 0xFF_FFFF) << 1 | 1) << 3, &self.words);
         let mantissa = floor(
             i64::from(inverse.mantissa),
             self.words.inverse as i32 - MANTISSA,

@@ -9,7 +9,7 @@ pub struct Sun {
     pub direction: [i16; 3],
     /// Whether the direction leads down along each axis.
     pub down: [bool; 3],
-    /// Magnitude of the direction's components, u0.25: half of those of a direction of length 1, odd numbers, the middles of
+    /// Magnitude of the direction's components, u0.28: half of those of a direction of length 1, odd numbers, the middles of
     /// intervals.
     pub speed: [u32; 3],
     /// Reciprocals of `speed`.
@@ -34,6 +34,6 @@ impl Sun {
     }
 
     fn speed(direction: [i16; 3]) -> [u32; 3] {
-        direction.map(|part| u32::from(part.unsigned_abs()) << 10 | 1)
+        direction.map(|part| u32::from(part.unsigned_abs()) << 13 | 1)
     }
 }

@@ -8,6 +8,8 @@ const PARAMETER_INTEGER: u32 = 14;
 /// Word lengths of rays by exits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Words {
+    /// Fraction bits of the magnitude of a direction's component whose reciprocal is taken, 24 to 27.
+    pub component: u32,
     /// Fraction bits of the magnitude of a direction's component in the product T·D, 8 to 24.
     pub direction: u32,
     /// Fraction bits of the mantissa of a reciprocal, 8 to 24; up to 22 with the errors of the gateware's table.
@@ -23,12 +25,20 @@ pub struct Words {
 impl Words {
     /// The word lengths of the gateware (docs/raymarch-exits.md).
     pub const CHOSEN: Self = Self {
+        component: 27,
         direction: 23,
         inverse: 22,
         parameter: 14,
         outline: 22,
         along: 14,
     };
+
+    /// The magnitude of a component, u0.28, an odd number, as the middle of the interval of a number with [`component`](Self::component)
+    /// fraction bits.
+    pub(super) const fn component_of(&self, magnitude: u32) -> u32 {
+        let cut = 27 - self.component;
+        (magnitude >> 1 >> cut << 1 | 1) << cut
+    }
 
     /// The parameter of a ray at a distance, with 25 bits and these `fraction` bits, times a reciprocal. Rounded down, saturated.
     pub(super) const fn divided(&self, distance: i64, fraction: u32, inverse: Inverse) -> i64 {
@@ -70,16 +80,16 @@ impl Inverse {
         }
     }
 
-    /// The reciprocal of x, u0.25. An x of 0 counts as 2^−25.
+    /// The reciprocal of x, u0.28. An x of 0 counts as 2^−28.
     pub const fn of(x: u32, words: &Words) -> Self {
         let x = x | (x == 0) as u32;
-        let lead = 24 - x.ilog2();
-        // 2^24/x for an x from 2^24 to 2^25: from 1/2 to 1, 32 fraction bits.
+        let lead = 27 - x.ilog2();
+        // 2^27/x for an x from 2^27 to 2^28: from 1/2 to 1, 32 fraction bits. The table takes the first 25 bits of x.
         let exact = words.inverse > TABLE_BITS;
         let value = if exact {
-            (1 << 56) / ((x as u64) << lead)
+            (1 << 59) / ((x as u64) << lead)
         } else {
-            (interpolated(x << lead) as u64) << (32 - ENTRY)
+            (interpolated(x << lead >> 3) as u64) << (32 - ENTRY)
         };
         let is_low = value < 3 << 30;
         let value = value << is_low as u32;
@@ -101,13 +111,14 @@ const REST: u32 = 24 - INDEX;
 /// Fraction bits of the entries of [`TABLE`].
 const ENTRY: u32 = 24;
 
-/// 1/(1 + i/2^10) to nearest, u1.24, and its decrease to the next entry.
+/// 1/(1 + i/2^10), u1.24, and its decrease to the next entry. The value is lower than the nearest by half of the largest error of the
+/// interpolation after it, so that errors have both signs.
 const TABLE: [(u32, u32); 1 << INDEX] = {
     let mut table = [(0, 0); 1 << INDEX];
     let mut i = 0;
     while i < table.len() {
         let entry = point(i as u64);
-        table[i] = (entry, entry - point(i as u64 + 1));
+        table[i] = (entry - excess(i), entry - point(i as u64 + 1));
         i += 1;
     }
     table
@@ -119,7 +130,16 @@ const fn point(i: u64) -> u32 {
     ((dividend + divisor / 2) / divisor) as u32
 }
 
-/// 2^24/x for x in [2^24, 2^25), interpolated linearly: u1.24, above the exact quotient by at most 2^−22.
+/// Half of the largest error of the interpolation after entry i, to nearest: 2/(1 + i/2^10)^3 units.
+const fn excess(i: usize) -> u32 {
+    match i {
+        0..=103 => 2,
+        104..=601 => 1,
+        _ => 0,
+    }
+}
+
+/// 2^24/x for x in [2^24, 2^25), interpolated linearly: u1.24, with an error of less than 2^−22.
 const fn interpolated(x: u32) -> u32 {
     let (entry, decrease) = TABLE[(x >> REST & ((1 << INDEX) - 1)) as usize];
     let rest = x & ((1 << REST) - 1);
@@ -131,11 +151,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn interpolated_reciprocals_are_slightly_too_large() {
+    fn interpolated_reciprocals_have_errors_of_both_signs() {
         for x in (1 << 24..1 << 25).step_by(37) {
             let error = f64::from(interpolated(x))
                 - f64::from(1_u32 << 24) / f64::from(x) * f64::from(1 << ENTRY);
-            assert!((-1.0..6.0).contains(&error), "{x}: {error}");
+            assert!((-2.5..3.5).contains(&error), "{x}: {error}");
         }
     }
 
@@ -146,10 +166,10 @@ mod tests {
                 inverse,
                 ..Words::CHOSEN
             };
-            let numbers = [1, 3, 1 << 24, (1 << 25) - 1, 12_345_677, 25_165_824];
-            for x in numbers.into_iter().chain((1..1 << 25).step_by(10_007)) {
+            let numbers = [1, 3, 1 << 27, (1 << 28) - 1, 98_765_423, 201_326_592];
+            for x in numbers.into_iter().chain((1..1 << 28).step_by(80_021)) {
                 let Inverse { mantissa, exponent } = Inverse::of(x, &words);
-                let found = f64::from(mantissa) * f64::from(exponent - inverse as i32 - 25).exp2();
+                let found = f64::from(mantissa) * f64::from(exponent - inverse as i32 - 28).exp2();
                 let error = (f64::from(x) * found - 1.0).abs();
                 // Half a unit of a mantissa of at least 3/4, and the table's error.
                 let limit = f64::from(-(inverse as i32)).exp2() / 1.5 + 3e-7;

@@ -26,6 +26,8 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// Fraction bits of a direction's component whose reciprocal is taken.
+    pub component: u32,
     /// Fraction bits of a direction's component in T·D.
     pub direction: u32,
     /// Fraction bits of the mantissa of a reciprocal.
@@ -65,6 +67,7 @@ pub type Family = (&'static str, Words);
 
 /// Word lengths far longer than the gateware's.
 const WIDE: Words = Words {
+    component: 27,
     direction: 24,
     inverse: 24,
     parameter: 16,
@@ -78,6 +81,10 @@ fn families() -> Vec<Family> {
     let mut vary = |name, bits: &[u32], with: fn(u32) -> Words| {
         families.extend(bits.iter().map(|&bits| (name, with(bits))));
     };
+    vary("component", &[24, 25, 26], |component| Words {
+        component,
+        ..WIDE
+    });
     vary("direction", &[13, 15, 17, 19, 21, 23], |direction| Words {
         direction,
         ..WIDE
@@ -218,6 +225,7 @@ pub fn row(subject: &Subject, &(family, words): &Family) -> Row {
         view: subject.name.clone(),
         width: subject.size.0,
         height: subject.size.1,
+        component: words.component,
         direction: words.direction,
         inverse: words.inverse,
         parameter: words.parameter,
