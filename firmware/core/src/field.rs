@@ -64,6 +64,20 @@ impl Field {
         }
     }
 
+    /// Whether the field has a cone.
+    pub const fn has_cone(&self) -> bool {
+        let member = match self {
+            Self::Primitive(primitive) => primitive,
+            Self::Union(union) => union.spheres(),
+        };
+        matches!(member, Primitive::Cone(_))
+    }
+
+    /// Whether no gateware draws the field, but the soft core: a bent union, or a field with a cone.
+    pub const fn is_left_to_soft_core(&self) -> bool {
+        self.is_bent() || self.has_cone()
+    }
+
     /// Whether the field is a union with spheres of a field that repeats.
     pub fn is_repeated_union(&self) -> bool {
         match self {

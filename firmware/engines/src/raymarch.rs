@@ -28,6 +28,8 @@ pub enum Missing {
     Blend,
     /// Distances that are too long, which no build has.
     Bend,
+    /// Cones, which no build has.
+    Cone,
     /// Spheres coloured by their normals.
     Normals,
     /// A highlight on spheres.
@@ -50,6 +52,7 @@ impl fmt::Display for Missing {
             Self::Lattice => f.write_str("no lattices"),
             Self::Blend => f.write_str("no smooth unions"),
             Self::Bend => f.write_str("no bent unions"),
+            Self::Cone => f.write_str("no cones"),
             Self::Normals => f.write_str("no spheres coloured by normals"),
             Self::Highlight => f.write_str("no highlight on spheres"),
             Self::Shadow => f.write_str("no shadows"),
@@ -80,6 +83,9 @@ impl Missing {
             return Err(Self::Flat(kind));
         }
         if let Some(spheres) = setup.spheres() {
+            if spheres.cone.is_some() {
+                return Err(Self::Cone);
+            }
             if spheres.repeated && !capabilities.lattice {
                 return Err(Self::Lattice);
             }

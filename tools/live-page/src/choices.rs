@@ -112,11 +112,7 @@ impl Choices {
 
 /// Whether the raymarcher draws a field. The soft core, which draws the others, takes minutes in a browser.
 fn is_drawn_by_engine(field: &str) -> bool {
-    match Field::parse(field) {
-        Ok(Field::Union(union)) => union.bend() == 0,
-        Ok(Field::Primitive(_)) => true,
-        Err(_) => false,
-    }
+    Field::parse(field).is_ok_and(|field| !field.is_left_to_soft_core())
 }
 
 /// The names for completion.

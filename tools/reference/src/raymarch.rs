@@ -44,6 +44,13 @@ pub enum Field {
     Convex(Vec<Plane>),
     /// The union of balls.
     Spheres(Vec<Sphere>),
+    /// A cone about the z axis, with the origin half-way between the apex, which is above, and the base.
+    Cone {
+        /// Radius of the base.
+        radius: f64,
+        /// Height from the base to the apex.
+        height: f64,
+    },
     /// Balls about all points whose coordinates are integer multiples of the period.
     Lattice {
         /// Distance between the centres of neighbouring balls.
@@ -93,6 +100,7 @@ impl Field {
             Self::Box { half } => solids::box_hit(*half, &ray, t_min),
             Self::Convex(planes) => solids::convex_hit(planes, &ray, t_min),
             Self::Spheres(spheres) => solids::spheres_hit(spheres, &ray, t_min),
+            Self::Cone { radius, height } => solids::cone_hit(*radius, *height, &ray, t_min),
             Self::Lattice { period, radius } => grid::nearest(*period, &ray, t_min, t_max, |ray| {
                 solids::sphere_hit(*radius, ray, t_min)
             }),

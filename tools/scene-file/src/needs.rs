@@ -137,7 +137,7 @@ impl SceneFile {
             || clip != Clip::Guard
             || winding == Winding::Screen
             || scene.view.projection() == Projection::Orthographic
-            || scene.field.is_some_and(|field| field.is_bent())
+            || (scene.field).is_some_and(|field| field.is_left_to_soft_core())
         {
             features.insert(CPU);
         }

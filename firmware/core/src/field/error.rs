@@ -84,7 +84,7 @@ impl fmt::Display for FieldError<'_> {
             }
             Self::Number { name, word } => write!(f, "{name} {word}: expected a number"),
             Self::Union => f.write_str(
-                "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres or moving",
+                "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres, moving or cone",
             ),
             Self::Smooth => {
                 f.write_str("smooth: expected menger or box, +, and sphere, spheres or moving")

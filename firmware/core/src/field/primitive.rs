@@ -4,7 +4,9 @@
 use core::fmt;
 
 mod boxes;
+mod cone;
 mod cuboid;
+mod fixed_cone;
 mod fixed_sphere;
 mod menger;
 mod octahedron;
@@ -18,7 +20,9 @@ use crate::feature::SPHERES;
 use crate::fixed::Q32_32;
 
 pub use boxes::{Boxes, Cubes};
+pub use cone::Cone;
 pub use cuboid::{Cuboid, FixedBox, Planes};
+pub use fixed_cone::FixedCone;
 pub use fixed_sphere::{FixedSphere, FixedSpheres, length, normalised_root};
 pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
@@ -132,6 +136,7 @@ primitives! {
     Spheres(Spheres),
     Lattice(Lattice),
     Moving(MovingSphere),
+    Cone(Cone),
 }
 
 /// Defines [`Flat`] from the solids with flat faces that the gateware evaluates.
@@ -199,10 +204,17 @@ flat_solids! {
 
 /// A solid with lengths in field units, in which the raymarcher computes (`Placed` states the scale).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    target_pointer_width = "64",
+    expect(
+        clippy::large_enum_variant,
+        reason = "there is nowhere to box the spheres"
+    )
+)]
 pub enum Solid {
     /// A solid with flat faces.
     Flat(Flat),
-    /// One or several spheres.
+    /// One or several spheres, or a cone.
     Spheres(FixedSpheres),
 }
 

@@ -39,6 +39,12 @@ pub enum Surface {
 }
 
 impl Surface {
+    /// The base of a cone.
+    pub const BASE: Self = Self::Face {
+        axis: 2,
+        positive: false,
+    };
+
     /// Returns the face in the gateware's encoding. A face perpendicular to an axis is encoded as twice the axis, plus 1 if the
     /// normal is positive; a face perpendicular to a diagonal is encoded as its `signs`. `None` for a sphere.
     pub const fn face(self) -> Option<u8> {

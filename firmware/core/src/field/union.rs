@@ -1,5 +1,5 @@
-//! `union:A+B`, `smooth:K,A+B` and `bent:N,A+B`: the union of a field and of spheres, sharp, with a fillet (a rounded transition), or with
-//! a distance to the field that is too long.
+//! `union:A+B`, `smooth:K,A+B` and `bent:N,A+B`: the union of a field and of spheres or a cone, sharp, with a fillet (a rounded
+//! transition), or with a distance to the field that is too long.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 /// Largest exponent of a distance that is too long.
 const MOST_BEND: u8 = 6;
 
-/// The union of a field with flat faces, or a lattice, and of spheres.
+/// The union of a field with flat faces, or a lattice, and of spheres or a cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Union {
     first: Primitive,
@@ -31,7 +31,7 @@ impl Union {
     pub(super) const KINDS: [(&str, &str); 3] = [
         (
             "union:A+B",
-            "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres or moving, both together",
+            "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres, moving or cone, both together",
         ),
         (
             "smooth:K,A+B",
@@ -70,6 +70,9 @@ impl Union {
         if blend != Q32_32::ZERO {
             check("k", blend, BLEND)?;
             place.extent.ok_or(FieldError::Smooth)?;
+            if matches!(spheres, Primitive::Cone(_)) {
+                return Err(FieldError::Smooth);
+            }
         }
         if let Some(list) = spheres.spheres(place.scale) {
             // The sphere of a lattice takes a place in the list.
@@ -77,8 +80,10 @@ impl Union {
             if list.count > most {
                 return Err(FieldError::Spheres { most });
             }
+            let height = list.cone.map(|cone| 2 * cone.half);
             let largest = (list.list.iter().take(list.count))
                 .map(|sphere| sphere.radius)
+                .chain(height)
                 .max();
             if largest > Some(MAX_RADIUS << FRACTION) {
                 return Err(FieldError::Range {
@@ -102,7 +107,7 @@ impl Union {
     /// `first` or `spheres` is of a kind that bent unions do not accept.
     fn bent(first: Primitive, spheres: Primitive, bend: u8) -> Result<Self, FieldError<'static>> {
         let union = Self::new(first, spheres, Q32_32::ZERO).map_err(|_| FieldError::Bent)?;
-        if first.placed().extent.is_none() {
+        if first.placed().extent.is_none() || matches!(spheres, Primitive::Cone(_)) {
             return Err(FieldError::Bent);
         }
         Ok(Self { bend, ..union })

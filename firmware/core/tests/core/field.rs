@@ -84,19 +84,29 @@ fn mistakes_say_what_was_expected() {
         ("spheres:0,0,0,1;0,x,0,1", "y x: expected a number"),
         ("lattice:2,1", "radius: expected 0.01 to 0.9999923704"),
         ("moving:11,1.5", "orbit: expected 0 to 1"),
+        ("cone:1", "cone needs one more number: height"),
+        ("cone:1,13", "height: expected 0.01 to 12"),
         (
             "smooth:0.1",
             "smooth: expected menger or box, +, and sphere, spheres or moving",
         ),
         (
             "union:octahedron:1+sphere:1",
-            "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres or moving",
+            "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres, moving or cone",
         ),
         (
             "bent:5,planes:2+sphere:1",
             "bent: expected menger or box, +, and sphere, spheres or moving",
         ),
+        (
+            "bent:5,box:1,1,1+cone:1,1",
+            "bent: expected menger or box, +, and sphere, spheres or moving",
+        ),
         ("bent:7,box:1,1,1+sphere:1", "n: expected 1 to 6"),
+        (
+            "smooth:0.1,box:1,1,1+cone:1,1",
+            "smooth: expected menger or box, +, and sphere, spheres or moving",
+        ),
         (
             "smooth:0.1,cubes:2,0.4+sphere:1",
             "smooth: expected menger or box, +, and sphere, spheres or moving",

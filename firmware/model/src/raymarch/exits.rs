@@ -25,13 +25,14 @@ mod rectangle;
 mod seen;
 mod setup;
 mod shadow;
+mod solid_cone;
 mod spheres;
 mod sun;
 mod vectors;
 mod words;
 
 pub use code::CODE_BITS;
-pub use cones::{Cone, Cones, Linear};
+pub use cones::{Cone, ConeKind, Cones, Linear};
 pub use follow::End;
 pub use intervals::{AXES, Border, Exit, Place, Prism, Rule, Solid};
 pub use ray::{Beam, Way};

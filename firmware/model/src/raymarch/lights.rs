@@ -1,8 +1,10 @@
-//! Ambient and directional light on spheres, whose normal varies from point to point.
+//! Ambient and directional light on spheres and cones, whose normal varies from point to point.
 
 use glint_core::colour::luminance;
-use glint_core::field::{FixedSphere, MAX_SPHERES};
+use glint_core::field::{FixedCone, FixedSpheres, MAX_SPHERES};
 use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, highlight_share, whole};
+
+use super::exits::{Inverse, Words};
 
 /// The colour of [`Material::Normal`] on spheres: in each channel this value, plus [`SLOPE`] times a component of the normal.
 const MIDDLE: u8 = 130;
@@ -106,11 +108,22 @@ impl Lights {
         }
     }
 
-    /// Returns the colour of the lit sphere `number` at the point `from_centre`, relative to its centre: (ambient +
-    /// Σ max(0, n·l)·colour) times the material, plus the highlight. The normal n is `from_centre` divided by the radius, and l is the
-    /// direction to a light.
-    pub(super) fn shine_on(&self, number: u8, sphere: &FixedSphere, from_centre: [i32; 3]) -> Rgb {
-        let cosine = |direction| cosine(sphere, from_centre, direction);
+    /// Returns the colour of the lit sphere or cone `number` at the point `place`, relative to its centre or apex: (ambient +
+    /// Σ max(0, n·l)·colour) times the material, plus the highlight. The normal n of a sphere is `place` divided by the radius, and l is
+    /// the direction to a light.
+    pub(super) fn shine_on(&self, number: u8, spheres: &FixedSpheres, place: [i32; 3]) -> Rgb {
+        let (length, cone) = match spheres.cone(number) {
+            Some(cone) => (Length::below_apex(cone, place), Some(cone)),
+            None => {
+                let sphere = &spheres.list[usize::from(number) % MAX_SPHERES];
+                let (inverse, shift) = (sphere.inverse, sphere.shift);
+                (Length { inverse, shift }, None)
+            }
+        };
+        let cosine = |direction| {
+            let direction = cone.map_or(direction, |cone| cone.lit_from(direction));
+            length.cosine(place, direction)
+        };
         let mut sum = Sum::of(self.ambient);
         for light in self.list.iter().take(self.count) {
             sum.add(light.colour, (cosine(light.direction).max(0) >> 8) as i32);
@@ -172,15 +185,37 @@ impl Sum {
     }
 }
 
-/// The cosine of the angle between the normal at the point `from_centre` of a sphere and a direction: 16 fraction bits, rounded down in
-/// magnitude, at most 1 in magnitude. The complement stands for a negative number, as in the gateware.
-fn cosine(sphere: &FixedSphere, from_centre: [i32; 3], direction: [i32; 3]) -> i64 {
-    let product: i64 = core::iter::zip(from_centre, direction)
-        .map(|(a, b)| i64::from(a) * i64::from(b))
-        .sum();
-    let sign = product >> 63;
-    // A direction has length 1 and 16 fraction bits, so a shift by floor(log2 radius) leaves 17 bits of the product for
-    // a point on the sphere.
-    let size = ((product ^ sign) >> sphere.shift).min((1 << 17) - 1);
-    ((size * i64::from(sphere.inverse)) >> 17).min(1 << 16) ^ sign
+/// The length of a normal, as the scale of its products.
+struct Length {
+    /// 2^(17 + shift) divided by the length, 17 bits.
+    inverse: u32,
+    /// The logarithm of the length to the base 2, rounded down; 6 to 21.
+    shift: u32,
+}
+
+impl Length {
+    /// The distance from a cone's apex along its axis, times 2^−`lead`. `place` leads from the apex to the lateral face.
+    fn below_apex(cone: &FixedCone, [_, _, z]: [i32; 3]) -> Self {
+        let below = z.saturating_neg().clamp(1, (1 << 23) - 1).cast_unsigned();
+        let Inverse { mantissa, exponent } = Inverse::of(below << 3, &Words::CHOSEN);
+        // The reciprocal has 47 − `exponent` fraction bits.
+        let inverse = mantissa >> (30 - exponent - below.ilog2() as i32);
+        Self {
+            inverse: inverse.min((1 << 17) - 1),
+            shift: below.ilog2().saturating_sub(cone.lead).clamp(6, 21),
+        }
+    }
+
+    /// The cosine of the angle between a normal and a direction, both as vectors: 16 fraction bits, rounded down in magnitude, at most 1 in
+    /// magnitude. The complement stands for a negative number, as in the gateware.
+    fn cosine(&self, normal: [i32; 3], direction: [i32; 3]) -> i64 {
+        let product: i64 = core::iter::zip(normal, direction)
+            .map(|(a, b)| i64::from(a) * i64::from(b))
+            .sum();
+        let sign = product >> 63;
+        // A direction has length 1 and 16 fraction bits, so a shift by floor(log2 radius) leaves 17 bits of the product for
+        // a point on the sphere.
+        let size = ((product ^ sign) >> self.shift).min((1 << 17) - 1);
+        ((size * i64::from(self.inverse)) >> 17).min(1 << 16) ^ sign
+    }
 }

@@ -45,8 +45,7 @@ fn surface_colour(
 /// Colour of the lit sphere that was hit; `None` if the ray hit no sphere or fillet.
 fn lit(setup: &FieldSetup, palette: &Palette, end: &RayEnd, surface: Surface) -> Option<[u8; 3]> {
     let (normal, number) = (end.normal?, surface.number()?);
-    let sphere = setup.spheres()?.list.get(usize::from(number))?;
-    Some(palette.lights.shine_on(number, sphere, normal))
+    Some(palette.lights.shine_on(number, setup.spheres()?, normal))
 }
 
 /// Mixes two colours, rounded to nearest. `part` is the weight of `to`: 255 gives only `to`.

@@ -28,6 +28,12 @@ impl Field {
                 .iter()
                 .map(|sphere| length(subtract(p, sphere.centre)) - sphere.radius)
                 .fold(f64::INFINITY, f64::min),
+            Self::Cone { radius, height } => {
+                let from_axis = p[0].hypot(p[1]);
+                let below_apex = height / 2.0 - p[2];
+                let beside = (from_axis * height - below_apex * radius) / radius.hypot(*height);
+                beside.max(-height / 2.0 - p[2])
+            }
             Self::Lattice { period, radius } => length(about_nearest(*period, p)) - radius,
             Self::Boxes { period, half } => box_distance(*half, about_nearest(*period, p)),
             Self::Planes { half } => half - p[2].abs(),

@@ -25,7 +25,11 @@ pub fn picture(exits: &Exits, eye: usize) -> Vec<(RenderedRay, u32)> {
 
 /// Converts the end of a ray to the form of the comparison.
 pub fn outcome(exits: &Exits, beam: &Beam, end: &End) -> RayOutcome {
-    rendered::outcome(&exits.seen(beam, end), depth(exits, end.t))
+    rendered::outcome(
+        &exits.seen(beam, end),
+        depth(exits, end.t),
+        Some(&exits.spheres),
+    )
 }
 
 /// The depth along the camera's n of a ray's point at the parameter `t`, in world units.

@@ -2,8 +2,8 @@
 
 use glint_core::camera::View;
 use glint_core::field::{
-    Boxes, CentredSphere, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere, Octahedron,
-    Planes, Primitive,
+    Boxes, CentredSphere, Cone, Cubes, Cuboid, Field as Scene, Lattice, Menger, MovingSphere,
+    Octahedron, Planes, Primitive,
 };
 use glint_core::fixed::Q32_32;
 use glint_model::raymarch::exits::Exits;
@@ -28,7 +28,7 @@ pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
 pub fn rendered_ray(setup: &FieldSetup, end: &RayEnd) -> RenderedRay {
     let coded = setup.world_depth.distance(setup.depth_code(end));
     RenderedRay {
-        outcome: outcome(end, depth(setup, end.depth)),
+        outcome: outcome(end, depth(setup, end.depth), setup.spheres()),
         coded: coded.map(|depth| depth.to_num()),
         steps: end.evaluations,
     }
@@ -141,6 +141,10 @@ impl Field {
             Primitive::Lattice(Lattice { period, radius }) => Self::Lattice {
                 period: number(period),
                 radius: number(radius),
+            },
+            Primitive::Cone(Cone { radius, height }) => Self::Cone {
+                radius: number(radius),
+                height: number(height),
             },
             Primitive::Moving(MovingSphere {
                 radius,

@@ -1,6 +1,6 @@
 //! Results of the model's rays as input of [`metrics`](super::metrics).
 
-use glint_core::field::Surface;
+use glint_core::field::{FixedSpheres, Surface};
 use glint_model::raymarch::{RayEnd, State};
 
 use super::Face;
@@ -29,14 +29,18 @@ impl RenderedRay {
     }
 }
 
-/// Converts `end`, the model's result of a ray, to an outcome. `t` is the depth of a hit in world units.
-pub fn outcome(end: &RayEnd, t: f64) -> RayOutcome {
+/// Converts `end`, the model's result of a ray, to an outcome. `t` is the depth of a hit in world units, and `spheres` are those of the scene.
+pub fn outcome(end: &RayEnd, t: f64, spheres: Option<&FixedSpheres>) -> RayOutcome {
     let surface = match end.state {
         State::Miss => return RayOutcome::Miss,
         State::Undecided => return RayOutcome::Undecided,
         State::Hit(surface) => surface,
     };
-    let round = || end.normal.expect("a round surface").map(f64::from);
+    let round = || {
+        let place = end.normal.expect("a round surface");
+        let cone = surface.number().and_then(|number| spheres?.cone(number));
+        cone.map_or(place, |cone| cone.normal(place)).map(f64::from)
+    };
     let (face, normal) = match surface {
         Surface::Face { axis, positive } => {
             let axis = usize::from(axis);

@@ -127,6 +127,66 @@ pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<H
     hits.fold(None, Hit::nearer)
 }
 
+/// Finds the hit of a ray on a cone about the z axis with the apex at z = height/2 and the base at z = −height/2.
+///
+/// Between the planes of apex and base, a point is in the cone where a quadratic function of the parameter is at most 0.
+pub(super) fn cone_hit(radius: f64, height: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
+    let (d, k) = (ray.direction, radius / height);
+    let q = subtract(ray.origin, [0.0, 0.0, height / 2.0]);
+    // The part of the line between both planes.
+    let (below, above) = match d[2] {
+        0.0 if q[2] > 0.0 || q[2] < -height => return None,
+        0.0 => (f64::NEG_INFINITY, f64::INFINITY),
+        d => {
+            let [base, apex] = [(-height - q[2]) / d, -q[2] / d];
+            (base.min(apex), base.max(apex))
+        }
+    };
+    let a = d[0] * d[0] + d[1] * d[1] - k * k * d[2] * d[2];
+    // With this zero, a ray along a line of the lateral face has its other solution at the right end of the line.
+    let a = if a == 0.0 { -0.0 } else { a };
+    let b = q[0] * d[0] + q[1] * d[1] - k * k * q[2] * d[2];
+    let c = q[0] * q[0] + q[1] * q[1] - k * k * q[2] * q[2];
+    // The product of the tangent planes, or the sum of squares, has no difference of nearly equal numbers far from the outline.
+    let turned = q[2] * d[0] - q[0] * d[2];
+    let other = q[2] * d[1] - q[1] * d[2];
+    let cross = q[0] * d[1] - q[1] * d[0];
+    let square = k * k * (turned * turned + other * other) - cross * cross;
+    if square < 0.0 {
+        return None;
+    }
+    let root = -b - square.sqrt().copysign(b);
+    let (t0, t1) = (root / a, c / root);
+    let (first, second) = (t0.min(t1), t0.max(t1));
+    // Inside between the solutions, or outside of them for a ray as steep as the cone.
+    let parts = match a > 0.0 {
+        true => [(first, second), (f64::INFINITY, f64::INFINITY)],
+        false => [(f64::NEG_INFINITY, first), (second, f64::INFINITY)],
+    };
+    let (lateral, exit) = parts
+        .into_iter()
+        .map(|(first, second)| (first, second.min(above)))
+        .find(|&(first, exit)| first.max(below) < exit)?;
+    let enter = lateral.max(below);
+    if exit <= t_min {
+        return None;
+    }
+    if enter < t_min {
+        return Some(Hit::inside(t_min));
+    }
+    if below > lateral {
+        return Some(Hit::entered(enter, 2, d));
+    }
+    let point = ray.at(enter);
+    let normal = [point[0], point[1], k * k * (height / 2.0 - point[2])];
+    Some(Hit {
+        t: enter,
+        normal: normalised(normal),
+        face: Face::Round,
+        member: 0,
+    })
+}
+
 /// Finds the hit of a ray from inside a room on the floor at z = −half or the ceiling at z = half.
 pub(super) fn planes_hit(half: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin[2], ray.direction[2]);

@@ -92,6 +92,13 @@ impl Field {
                 let normal = normalised(self.slope(p));
                 (Face::of_normal(normal), normal, 0)
             }
+            Self::Cone { .. } => {
+                let normal = normalised(self.slope(p));
+                match normal[2] < 0.0 {
+                    true => (Face::of_normal(normal), normal, 0),
+                    false => (Face::Round, normal, 0),
+                }
+            }
             Self::Lattice { .. } => (Face::Round, normalised(self.slope(p)), 0),
             Self::Spheres(spheres) => {
                 let distance =

@@ -2,6 +2,7 @@
 //!
 //! All tests are in one program, because linking further programs takes time.
 
+mod cone;
 mod exits;
 mod field;
 mod gesture;

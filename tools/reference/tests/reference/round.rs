@@ -1,10 +1,10 @@
 //! Compares the model's pictures of round fields with the exact hits of the same rays. `--nocapture` shows the measured figures.
 
-use glint_core::field::{CentredSphere, Field as Scene, Primitive};
-use glint_core::fixed::Q32_32;
+use glint_core::field::Primitive;
 use glint_core::light::{Highlight, Light, Lighting, Material};
 use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
 use glint_reference::camera::Camera;
+use glint_reference::raymarch::Face;
 use glint_reference::raymarch::raymarched::{Measured, Subject};
 use glint_vectors::math::{dot, normalised};
 
@@ -38,11 +38,11 @@ fn every_kind_of_field_is_where_it_is() {
     }
 }
 
-/// Compares the colours of a lit sphere with the material times the light, plus the highlight. The light is the sum of the ambient light
+/// Compares the colours of a lit sphere or cone with the material times the light, plus the highlight. The light is the sum of the ambient light
 /// and, for each light, its colour times max(0, n·l); the highlight is the first light's colour times STRENGTH·max(0, n·h)^EXPONENT. n is
 /// the exact normal, l the direction to a light, and h the direction halfway to the first light and to the camera.
 #[test]
-fn spheres_are_lit_as_they_should_be() {
+fn round_surfaces_are_lit_as_they_should_be() {
     let light = |text| Light::parse(text).expect("a light");
     let camera = Camera::looking([2.1875, 1.6875, 1.3125], [0.0; 3], 0.9, 0.01);
     let lighting = Lighting {
@@ -56,20 +56,49 @@ fn spheres_are_lit_as_they_should_be() {
         highlight: Highlight::parse(text),
         ..lighting.clone()
     };
-    for (radius, material, lighting, highlight, limit) in [
-        ("0.25", Material::Ivory, lighting.clone(), None, 4.0),
-        ("1", Material::Ivory, lighting.clone(), None, 4.0),
-        ("1", Material::Normal, Lighting::PLAIN, None, 2.5),
-        ("0.25", Material::Normal, lighting.clone(), None, 4.5),
+    for (scene, material, lighting, highlight, limit) in [
+        ("sphere:0.25", Material::Ivory, lighting.clone(), None, 4.0),
+        ("sphere:1", Material::Ivory, lighting.clone(), None, 4.0),
+        ("sphere:1", Material::Normal, Lighting::PLAIN, None, 2.5),
+        ("sphere:0.25", Material::Normal, lighting.clone(), None, 4.5),
         // The power of the cosine differs by up to 0.033 of the strength.
-        ("1", Material::Slate, shone("0.8,4"), Some((0.8, 4)), 5.0),
-        ("1", Material::Normal, shone("0.5,20"), Some((0.5, 20)), 8.0),
         (
-            "0.25",
+            "sphere:1",
+            Material::Slate,
+            shone("0.8,4"),
+            Some((0.8, 4)),
+            5.0,
+        ),
+        (
+            "sphere:1",
+            Material::Normal,
+            shone("0.5,20"),
+            Some((0.5, 20)),
+            8.0,
+        ),
+        (
+            "sphere:0.25",
             Material::Slate,
             shone("1,128"),
             Some((1.0, 128)),
             11.0,
+        ),
+        ("cone:0.8,1.6", Material::Ivory, lighting.clone(), None, 4.0),
+        (
+            "cone:0.8,1.6",
+            Material::Normal,
+            lighting.clone(),
+            None,
+            4.5,
+        ),
+        ("cone:0.1,2", Material::Ivory, lighting.clone(), None, 4.0),
+        ("cone:1,0.1", Material::Normal, lighting.clone(), None, 4.5),
+        (
+            "cone:1,1",
+            Material::Slate,
+            shone("0.8,4"),
+            Some((0.8, 4)),
+            5.0,
         ),
     ] {
         let lighting = lighting.seen_from(&camera.view().expect("a camera"));
@@ -83,16 +112,16 @@ fn spheres_are_lit_as_they_should_be() {
             lights,
             ..Palette::default()
         };
-        let scene = Scene::from(CentredSphere {
-            radius: radius.parse::<Q32_32>().expect("a number"),
-        });
-        let subject = Subject::new("above", &scene.to_string(), &camera, (320, 180));
-        let setup = subject.setup(&FieldOptions::of(&scene));
+        let subject = Subject::new("above", scene, &camera, (320, 180));
+        let setup = subject.setup(&FieldOptions::of(&subject.parsed));
         let tracer = setup.tracer();
         let pixels = (0..180).flat_map(|y| (0..320).map(move |x| (x, y)));
         let mut most: f64 = 0.0;
         for ((x, y), expected) in pixels.zip(&subject.expected) {
-            let Some(hit) = expected.hit else { continue };
+            // The base of a cone is a face.
+            let Some(hit) = expected.hit.filter(|hit| hit.face == Face::Round) else {
+                continue;
+            };
             let found = paint(&setup, &palette, &tracer.trace(0, x, y));
             for (i, found) in found.into_iter().enumerate() {
                 let mut light = f64::from(lights.ambient[i]);
@@ -112,7 +141,7 @@ fn spheres_are_lit_as_they_should_be() {
                 most = most.max((seen.min(255.0) - f64::from(found)).abs());
             }
         }
-        println!("{material:?}, radius {radius}: channels differ by at most {most:.2}");
-        assert!(most <= limit, "{material:?}, radius {radius}: {most}");
+        println!("{material:?}, {scene}: channels differ by at most {most:.2}");
+        assert!(most <= limit, "{material:?}, {scene}: {most}");
     }
 }

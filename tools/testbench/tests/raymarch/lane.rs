@@ -2,11 +2,10 @@
 
 use std::collections::HashMap;
 
-use glint_core::field::Primitive;
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Pipe};
 
-use crate::scenes::{SPONGES, every_field, marching_setup};
+use crate::scenes::{SPONGES, every_field, examples, marching_setup};
 use glint_testbench::raymarch::{End, RayPlace, marching, ray, set_lane};
 use glint_vectors::Random;
 
@@ -120,7 +119,7 @@ fn random_rays_in_sponges() {
 
 #[test]
 fn random_rays_in_an_example_of_each_kind() {
-    random_rays("ring_lane_all", &Primitive::EXAMPLES);
+    random_rays("ring_lane_all", &examples());
 }
 
 #[test]

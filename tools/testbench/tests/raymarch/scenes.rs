@@ -72,7 +72,20 @@ pub fn further_kinds() -> Vec<&'static str> {
     let listed = [&FIELDS[..], &ROUND].concat();
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !listed.iter().any(|other| kind(other) == kind(text));
-    Primitive::EXAMPLES.into_iter().filter(is_new).collect()
+    examples().into_iter().filter(is_new).collect()
+}
+
+/// Returns an example of each kind of field that the gateware draws.
+pub fn examples() -> Vec<&'static str> {
+    Primitive::EXAMPLES
+        .into_iter()
+        .filter(|text| is_drawn(text))
+        .collect()
+}
+
+/// Whether the gateware draws a field.
+fn is_drawn(text: &str) -> bool {
+    !Field::parse(text).unwrap().is_left_to_soft_core()
 }
 
 /// Returns fields of all kinds in which rays can march: `FIELDS`, `ROUND`, unions, an example of each kind, and random fields, some with values at the ends of their ranges.
@@ -88,12 +101,12 @@ pub fn every_field() -> Vec<String> {
         &UNIONS,
         &ENDLESS_UNIONS,
         &boxes,
-        &Primitive::EXAMPLES,
+        &examples(),
     ]
     .concat();
     let drawn = (0..60).map(|_| Field::draw(|| random.bits() as u32).to_string());
     let all = fixed.into_iter().map(String::from).chain(drawn);
-    all.filter(|text| Marching::draws(&Field::parse(text).unwrap()))
+    all.filter(|text| is_drawn(text) && Marching::draws(&Field::parse(text).unwrap()))
         .collect()
 }
 

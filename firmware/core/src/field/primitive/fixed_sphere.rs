@@ -1,6 +1,7 @@
 //! Distances to spheres from a table of square roots. Distances are rounded down, so that a ray that advances by the distance
 //! never passes a surface.
 
+use super::fixed_cone::FixedCone;
 use crate::division::quotient;
 use crate::feature::SPHERES;
 use crate::field::limits::MAX_SPHERES;
@@ -35,7 +36,7 @@ impl FixedSphere {
     }
 }
 
-/// Several spheres, which the gateware evaluates sequentially.
+/// Several spheres, which the gateware evaluates sequentially, and a cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedSpheres {
     /// The spheres are in the first `count` entries; the other entries are not used.
@@ -44,6 +45,8 @@ pub struct FixedSpheres {
     pub count: usize,
     /// Whether the first sphere, about the origin, is periodic with 64 field units along each axis.
     pub repeated: bool,
+    /// The cone whose lateral face has the number of the last entry of `list`. This entry is a sphere around the cone.
+    pub cone: Option<FixedCone>,
 }
 
 /// Largest distance, s10.12.
@@ -57,6 +60,7 @@ impl FixedSpheres {
             *place = *sphere;
             self.count += 1;
         }
+        self.cone = list.cone;
     }
 
     /// Returns the distance of a point from the nearest sphere, and the number of this sphere; of equally near spheres the first.
@@ -68,18 +72,29 @@ impl FixedSpheres {
         let count = if SPHERES.is_built { self.count } else { 0 };
         for (number, sphere) in (0..).zip(self.list.iter().take(count)) {
             // Before saturation to `MOST`, the distance is below 2^23.
-            let distance = length(self.from(number, point)) - sphere.radius;
-            if distance < nearest.distance {
-                nearest = FieldSample {
-                    distance,
+            let sample = match self.cone(number) {
+                Some(cone) => {
+                    let [x, y, z] = point;
+                    cone.sample(length([x, y, 0]), z, number)
+                }
+                None => FieldSample {
+                    distance: length(self.from(number, point)) - sphere.radius,
                     surface: Surface::Round { number },
-                };
+                },
+            };
+            if sample.distance < nearest.distance {
+                nearest = sample;
             }
         }
         nearest
     }
 
-    /// Returns the vector from the centre of sphere `number` to a point, s11.12, modulo 2^23.
+    /// The cone whose lateral face has this number.
+    pub fn cone(&self, number: u8) -> Option<&FixedCone> {
+        (self.cone.as_ref()).filter(|_| usize::from(number) + 1 == self.count)
+    }
+
+    /// Returns the vector from the centre of sphere `number`, or from the apex of the cone, to a point, s11.12, modulo 2^23.
     pub fn from(&self, number: u8, point: [i32; 3]) -> [i32; 3] {
         // A period of 64 field units is 2^18 in this format. Therefore the lowest 18 bits of a coordinate, as a signed number,
         // are the coordinate relative to the centre of its cell.
@@ -87,7 +102,10 @@ impl FixedSpheres {
             true => 6 + FRACTION,
             false => 23,
         };
-        let centre = self.list[usize::from(number) % MAX_SPHERES].centre;
+        let centre = match self.cone(number) {
+            Some(cone) => cone.apex(),
+            None => self.list[usize::from(number) % MAX_SPHERES].centre,
+        };
         [0, 1, 2].map(|i: usize| cropped(point[i] - centre[i], bits))
     }
 }

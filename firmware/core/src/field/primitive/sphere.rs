@@ -226,6 +226,7 @@ impl FieldKind for Lattice {
                 list,
                 count: 1,
                 repeated: true,
+                cone: None,
             }),
             scale,
             extent: None,
@@ -285,5 +286,6 @@ fn fixed<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, scale: Q32_32) -> Fi
         list,
         count,
         repeated: false,
+        cone: None,
     }
 }

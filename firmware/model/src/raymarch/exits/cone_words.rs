@@ -1,6 +1,6 @@
 //! Words of the constants of cones, as the gateware and its registers have them (gateware/rtl/raymarch/sphere_unit.sv).
 
-use super::cones::{Cone, Cones, Linear};
+use super::cones::{Cone, ConeKind, Cones, Linear};
 use super::rectangle::Rectangle;
 
 impl Cone {
@@ -45,6 +45,7 @@ impl Cone {
             down,
         };
         Self {
+            kind: ConeKind::Sphere,
             number: (words[14] & 7) as u8,
             rectangle: Rectangle {
                 columns: [(columns & 0xFF) << 3, (columns >> 8 & 0xFF) << 3 | 7],

@@ -38,7 +38,7 @@ pub(super) const DISTANCE_OFFSET: i32 = 24;
 /// Exponents of a cone's distance: 0 to this number.
 const MOST_DISTANCE: i32 = 15;
 
-/// Largest number of cones: two for each sphere.
+/// Largest number of cones: two for each sphere, three for a solid cone with at most one sphere beside it.
 const MAX_CONES: usize = if SPHERES.is_built { 2 * MAX_SPHERES } else { 0 };
 
 /// The cones in which an eye sees the spheres of a list, in the order of the list.
@@ -46,6 +46,11 @@ const MAX_CONES: usize = if SPHERES.is_built { 2 * MAX_SPHERES } else { 0 };
 pub struct Cones {
     list: [Cone; MAX_CONES],
     count: usize,
+}
+
+impl Cone {
+    /// The number of the base of a solid cone, in place of a sphere's.
+    pub const BASE: u8 = 7;
 }
 
 impl Cones {
@@ -66,13 +71,16 @@ impl Cones {
 /// A cone in which an eye sees a sphere, or a disc of the sphere in the near plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cone {
-    /// Number of the sphere.
+    /// What a ray in the cone meets.
+    pub kind: ConeKind,
+    /// Number of the sphere, or of the lateral face of a solid cone.
     pub number: u8,
     /// The pixels that may see the sphere.
     pub rectangle: Rectangle,
     /// c·D, 1 for a disc.
     pub forward: Linear,
-    /// κ·(a·D) and κ·(b·D); of a disc, its centre's distances from the ray along a and b, in radii.
+    /// κ·(a·D) and κ·(b·D); of a disc, its centre's distances from the ray along a and b, in radii. Only solid cones have a second side that
+    /// changes in the row.
     pub sides: [Linear; 2],
     /// Exponent of 2 by which the changes of `sides` are multiplied: 0, 2, 4 or 6.
     pub shift: u32,
@@ -81,6 +89,25 @@ pub struct Cone {
     /// (|q|² − r²)/|q| in field units, T of the near plane for a disc: a mantissa of 24 bits and an exponent from 0 to 15, which counts
     /// from −24.
     pub distance: (i64, u32),
+}
+
+/// What a ray in a cone meets, and how its ends follow from the linear functions (`solid_cone` has the formulas).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ConeKind {
+    /// A sphere, or its disc in the near plane.
+    #[default]
+    Sphere,
+    /// The plane of a solid cone's base, for an eye below the plane: rays in the cone meet the base, and the other faces are behind the
+    /// plane.
+    Base,
+    /// The same plane for an eye above it: no ray meets the base, and the other faces are before the plane.
+    Limit,
+    /// The lateral face of a solid cone.
+    Lateral,
+    /// The lateral face, for an eye above the apex that sees it all around.
+    Around,
+    /// The section of the near plane and of a solid cone.
+    Section,
 }
 
 /// A number that is linear in the column and the row of a pixel, with 30 fraction bits.
@@ -104,24 +131,24 @@ impl Linear {
 /// What an eye sees.
 pub(super) struct Sight {
     /// Position in field units, s13.12.
-    origin: [i32; 3],
+    pub(super) origin: [i32; 3],
     /// Direction D of the first ray, and its changes per column and row, s2.30.
-    directions: [Vector; 3],
+    pub(super) directions: [Vector; 3],
     /// The parameter T of the near plane, u14.14, slightly behind it: a sphere's hit that is rounded to before the plane is in the disc.
-    near: Scaled,
+    pub(super) near: Scaled,
     /// T for the hits in a disc: that of the near plane, or larger by at most 2^−16.
     disc: Scaled,
     /// The near plane's normal, and two axes in it; the second is perpendicular to the change per column.
-    plane: [Vector; 3],
+    pub(super) plane: [Vector; 3],
     /// The first ray's point in the near plane, from the eye, with 16 fraction bits.
-    point: Vector,
+    pub(super) point: Vector,
 }
 
 /// A pixel and the direction D of its ray.
-struct Pixel {
+pub(super) struct Pixel {
     column: u32,
     row: u32,
-    direction: Vector,
+    pub direction: Vector,
 }
 
 impl Sight {
@@ -161,10 +188,8 @@ impl Sight {
         if self.outline(cone, &place, sphere.radius, &middle) {
             take(cone);
         }
-        // From the centre to the eye, with 16 fraction bits, and from the centre to the near plane.
         let q = place.map(|part| part << 4);
-        let point = [0, 1, 2].map(|i: usize| q[i] + self.point[i]);
-        let depth = rounded(product(&point, &self.plane[0]), 30);
+        let depth = self.depth(&q);
         let radius = i64::from(sphere.radius) << 4;
         if depth.abs() < radius {
             self.disc(cone, &q, radius * radius - depth * depth, &middle);
@@ -172,8 +197,20 @@ impl Sight {
         }
     }
 
+    /// The distance from a point to the near plane, with 16 fraction bits. `q` leads from the point to the eye, with 16 fraction bits.
+    fn depth(&self, q: &Vector) -> i64 {
+        let point = [0, 1, 2].map(|i: usize| q[i] + self.point[i]);
+        rounded(product(&point, &self.plane[0]), 30)
+    }
+
+    /// Whether the near plane cuts a sphere.
+    pub(super) fn cuts(&self, sphere: &FixedSphere) -> bool {
+        let q = [0, 1, 2].map(|i: usize| (self.origin[i] - sphere.centre[i]) << 4);
+        self.depth(&q).abs() < i64::from(sphere.radius) << 4
+    }
+
     /// A pixel and its ray.
-    fn pixel(&self, [column, row]: [u32; 2]) -> Pixel {
+    pub(super) fn pixel(&self, [column, row]: [u32; 2]) -> Pixel {
         let [first, step, down] = &self.directions;
         Pixel {
             column,
@@ -207,7 +244,12 @@ impl Sight {
             0 => dividend,
             _ => dividend.by(reciprocal(beyond)).by(inverse_radius),
         };
-        let halvings = self.set_sides(cone, middle, [&a, &b], factor, [0, 0]);
+        let sides = [&a, &b].map(|axis| Function {
+            axis,
+            factor,
+            offset: 0,
+        });
+        let halvings = self.set_sides(cone, middle, &sides, false);
         let [_, step, down] = &self.directions;
         let one = Function {
             axis: &forward,
@@ -236,7 +278,12 @@ impl Sight {
             size.fixed(FRACTION) * offset.signum()
         });
         let factor = self.near.by(inverse_radius);
-        let halvings = self.set_sides(cone, middle, [a, b], factor, offsets);
+        let sides = [(a, offsets[0]), (b, offsets[1])].map(|(axis, offset)| Function {
+            axis,
+            factor,
+            offset,
+        });
+        let halvings = self.set_sides(cone, middle, &sides, false);
         cone.forward = Linear {
             first: 1 << (FRACTION - halvings),
             ..Linear::default()
@@ -247,35 +294,31 @@ impl Sight {
         cone.distance = distance(self.disc.by(divisor));
     }
 
-    /// Sets the sides `factor`·(axis·D) + offset of a cone. Returns the number of times that the cone's numbers are halved, so that they fit
-    /// their words.
+    /// Sets the sides of a cone. `varies` states whether the second one changes in the row; otherwise its axis is perpendicular to the change
+    /// per column. Returns the number of times that the cone's numbers are halved, so that they fit their words.
     #[inline(never)]
-    fn set_sides(
+    pub(super) fn set_sides(
         &self,
         cone: &mut Cone,
         middle: &Pixel,
-        axes: [&Vector; 2],
-        factor: Scaled,
-        offsets: [i64; 2],
+        sides: &[Function; 2],
+        varies: bool,
     ) -> u32 {
         let [_, step, down] = &self.directions;
-        let sides = [0, 1].map(|i: usize| Function {
-            axis: axes[i],
-            factor,
-            offset: offsets[i],
-        });
-        let [a, b] = &sides;
-        // The second axis is perpendicular to the change per column.
-        let changes = [[a.change(step), a.change(down)], [0, b.change(down)]];
+        let [a, b] = sides;
+        let across = if varies { b.change(step) } else { 0 };
+        let changes = [[a.change(step), a.change(down)], [across, b.change(down)]];
         let sizes = changes.as_flattened().iter().map(|x| x.unsigned_abs());
         let excess = (bits(sizes.fold(0, |all, size| all | size)) - STEP as i32).max(0);
         cone.shift = excess.cast_unsigned().next_multiple_of(2).min(MOST_SHIFT);
-        let largest = offsets.iter().fold(1, |all, x| all | x.unsigned_abs());
-        let side = factor.log2().max(bits(largest) - 1 - FRACTION as i32);
+        let largest = (sides.iter()).fold(1, |all, side| all | side.offset.unsigned_abs());
+        let side = (a.factor.log2())
+            .max(b.factor.log2())
+            .max(bits(largest) - 1 - FRACTION as i32);
         let halvings = (excess - MOST_SHIFT as i32)
             .max(side + 1 - MOST_SIDE)
             .clamp(0, MOST_HALVINGS) as u32;
-        for ((words, side), changes) in cone.sides.iter_mut().zip(&sides).zip(changes) {
+        for ((words, side), changes) in cone.sides.iter_mut().zip(sides).zip(changes) {
             *words = side.words(middle, changes, cone.shift, halvings);
         }
         halvings
@@ -283,23 +326,29 @@ impl Sight {
 }
 
 /// The function `factor`·(axis·D) + offset of a direction D.
-struct Function<'a> {
-    axis: &'a Vector,
-    factor: Scaled,
+pub(super) struct Function<'a> {
+    pub axis: &'a Vector,
+    pub factor: Scaled,
     /// 30 fraction bits.
-    offset: i64,
+    pub offset: i64,
 }
 
 impl Function<'_> {
     /// Its change with D, 30 fraction bits.
-    fn change(&self, step: &Vector) -> i64 {
+    pub(super) fn change(&self, step: &Vector) -> i64 {
         self.factor.times(product(self.axis, step))
     }
 
     /// Its numbers, given its changes per column and row, after `halvings`, with its changes in units of 2^`shift`. Rounding of the changes
     /// has the smallest effect in the middle of a sphere's rectangle.
     #[inline(never)]
-    fn words(&self, middle: &Pixel, changes: [i64; 2], shift: u32, halvings: u32) -> Linear {
+    pub(super) fn words(
+        &self,
+        middle: &Pixel,
+        changes: [i64; 2],
+        shift: u32,
+        halvings: u32,
+    ) -> Linear {
         let lost = (halvings + shift) as i32;
         let [across, down] = changes.map(|change| saturated(rounded(change, lost), STEP));
         let changes = Linear {
@@ -317,7 +366,7 @@ impl Function<'_> {
 
 /// The mantissa and the exponent of a cone's distance. It is larger than the exact one by 2^−19, because the mantissa of a reciprocal is
 /// rounded down to 18 fraction bits.
-fn distance(exact: Scaled) -> (i64, u32) {
+pub(super) fn distance(exact: Scaled) -> (i64, u32) {
     let exponent = (exact.log2() + 1 - DISTANCE as i32 + DISTANCE_OFFSET).clamp(0, MOST_DISTANCE);
     let mantissa = exact.fixed_at(exponent - DISTANCE_OFFSET);
     let mantissa = mantissa + (mantissa >> 19);

@@ -2,7 +2,7 @@
 
 use glint_core::field::Surface;
 
-use super::cones::Cones;
+use super::cones::{Cone, Cones};
 use super::intervals::{AXES, Place};
 use super::lattice;
 use super::ray::Beam;
@@ -29,6 +29,14 @@ impl Exits {
         self.follow(beam, &corner, met, met.map_or(self.far, |met| met.t))
     }
 
+    /// The surface with the number of a cone.
+    const fn surface(&self, number: u8) -> Surface {
+        match number == Cone::BASE && self.spheres.cone.is_some() {
+            true => Surface::BASE,
+            false => Surface::Round { number },
+        }
+    }
+
     /// Follows a ray from an origin at `corner`, the position from the solid's lower corner along the mirrored axes, to its end, up to the parameter `limit`. `met` is the sphere of a list that it meets there.
     ///
     /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
@@ -44,11 +52,7 @@ impl Exits {
         let end = |state, t, steps| End { state, t, steps };
         // The end of a ray that meets nothing but possibly a sphere of the list.
         let beyond = |t, steps| match met {
-            Some(met) => end(
-                State::Hit(Surface::Round { number: met.number }),
-                met.t,
-                steps,
-            ),
+            Some(met) => end(State::Hit(self.surface(met.number)), met.t, steps),
             None => end(State::Miss, t, steps),
         };
         let mut way = beam.start;

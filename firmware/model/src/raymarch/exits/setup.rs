@@ -201,6 +201,7 @@ impl Exits {
                 list: [FixedSphere::default(); MAX_SPHERES],
                 count: 0,
                 repeated: false,
+                cone: None,
             },
             rectangles: [[Rectangle::NONE; SEEN_SPHERES]; 2],
         };
@@ -292,7 +293,13 @@ impl Exits {
         let mut cone = Cone::default();
         for ((number, sphere), rectangle) in seen.skip(lattice) {
             (cone.number, cone.rectangle) = (number, *rectangle);
-            sight.cones(sphere, &mut cone, take);
+            match self.spheres.cone(number) {
+                Some(shape) if !rectangle.is_empty() => {
+                    sight.solid_cone(shape, sight.cuts(sphere), &mut cone, take);
+                }
+                Some(_) => {}
+                None => sight.cones(sphere, &mut cone, take),
+            }
         }
     }
 
@@ -307,6 +314,9 @@ impl Exits {
             })
         };
         let in_sphere = |(number, sphere): (usize, &FixedSphere)| {
+            if let Some(cone) = self.spheres.cone(number as u8) {
+                return cone.holds(eye.origin);
+            }
             let place = match self.spheres.repeated && number == 0 {
                 true => eye.place(),
                 false => eye.origin,

@@ -1,6 +1,6 @@
-//! Spheres of a list: a ray meets a sphere if its direction is in the cone around the sphere.
+//! Spheres of a list, and a solid cone: a ray meets a sphere if its direction is in the cone around the sphere.
 
-use super::cones::{Cone, Cones, DISTANCE_OFFSET, FRACTION, SHARE};
+use super::cones::{Cone, ConeKind, Cones, DISTANCE_OFFSET, FRACTION, SHARE};
 use super::narrow::{floor, normalised, squared};
 use super::ray::Beam;
 use super::setup::Exits;
@@ -16,12 +16,12 @@ const LEAST: i32 = 20;
 /// Fraction bits of the mantissa of a reciprocal.
 const MANTISSA: i32 = 18;
 
-/// A sphere that a ray meets.
+/// A sphere, or a face of a solid cone, that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Met {
     /// The parameter T, u14 with the fraction bits of `Words::parameter`.
     pub t: i64,
-    /// Number of the sphere.
+    /// Number of the sphere, or [`Cone::BASE`].
     pub number: u8,
 }
 
@@ -31,12 +31,25 @@ impl Exits {
     pub fn meet(&self, cones: &[Cones; 2], beam: &Beam) -> (Option<Met>, u32) {
         let mut best: Option<Met> = None;
         let mut tests = 0;
+        // The parameters between which the faces of a solid cone are, other than its base.
+        let mut limits = (0, i64::MAX);
         for cone in cones[beam.eye].list() {
             if !cone.rectangle.holds(beam.column, beam.row) {
                 continue;
             }
             tests += 1;
-            if let Some(t) = self.meet_cone(beam, cone)
+            match cone.kind {
+                ConeKind::Base => limits = (self.crossing(beam, cone), i64::MAX),
+                ConeKind::Limit => limits = (0, self.crossing(beam, cone)),
+                _ => {}
+            }
+            let t = match cone.kind {
+                ConeKind::Sphere | ConeKind::Base => self.meet_cone(beam, cone),
+                _ => self
+                    .meet_cone(beam, cone)
+                    .filter(|&t| limits.0 < t && t < limits.1),
+            };
+            if let Some(t) = t
                 && best.as_ref().is_none_or(|best| t < best.t)
             {
                 let number = cone.number;
@@ -46,7 +59,17 @@ impl Exits {
         (best.filter(|met| met.t <= self.far), tests)
     }
 
-    /// The parameter at which a ray in a cone meets the sphere, if this is not before the near plane.
+    /// The parameter at which a ray crosses the plane of a solid cone's base, or the largest number.
+    #[inline(never)]
+    fn crossing(&self, beam: &Beam, cone: &Cone) -> i64 {
+        let forward = cone.forward.at(beam.column, beam.row, 0);
+        match forward < 0 {
+            true => i64::MAX,
+            false => self.parameter(cone, floor(forward, FRACTION as i32 - LENGTH)),
+        }
+    }
+
+    /// The parameter at which a ray in a cone meets the sphere or the face, if this is not before the near plane.
     fn meet_cone(&self, beam: &Beam, cone: &Cone) -> Option<i64> {
         let (column, row) = (beam.column, beam.row);
         let sides = cone.sides.map(|side| side.at(column, row, cone.shift));
@@ -59,18 +82,48 @@ impl Exits {
         let fraction = self.words.outline as i32;
         let cut = (fraction - 16).max(0) as u32;
         let square = |x| squared(floor(x, FRACTION as i32 - fraction), cut);
-        let rest = square(forward) - square(sides[0]) - square(sides[1]);
+        let [a, b] = sides.map(square);
+        let (rest, must_be_positive) = match cone.kind {
+            ConeKind::Limit => return None,
+            ConeKind::Sphere | ConeKind::Base | ConeKind::Section => {
+                (square(forward) - a - b, forward)
+            }
+            ConeKind::Lateral => (b - a, sides[1]),
+            ConeKind::Around => (b + a, 0),
+        };
         // Rounded down, and an integer to the one below.
         let rest = floor(rest - 1, 2 * fraction - SQUARE);
-        if forward < 0 || rest >> (SQUARE - LEAST) <= 0 {
+        let (rest, least) = match cone.kind {
+            ConeKind::Sphere => (rest, SQUARE - LEAST),
+            // There is no outline.
+            ConeKind::Around => (rest.max(1), 0),
+            _ => (rest, 0),
+        };
+        if must_be_positive < 0 || rest >> least <= 0 {
             return None;
+        }
+        if cone.kind == ConeKind::Section {
+            return Some(self.near);
         }
         let (root, shift) = normalised(rest);
         let root = floor(i64::from(root), 2 + (shift + SQUARE) / 2 - LENGTH);
         let forward = floor(forward, FRACTION as i32 - LENGTH);
         // The divisor is below 4; it has 22 fraction bits, and stands for the middle of its interval. The root is rounded down, the divisor
         // up.
-        let divisor = -((-(forward << SHARE) - cone.share * root) >> SHARE);
+        let part = match cone.kind {
+            ConeKind::Around => -(cone.share * root),
+            _ => cone.share * root,
+        };
+        let divisor = -((-(forward << SHARE) - part) >> SHARE);
+        if divisor < 0 {
+            return None;
+        }
+        let t = self.parameter(cone, divisor);
+        (t >= self.near).then_some(t)
+    }
+
+    /// The parameter with a divisor of 22 fraction bits.
+    fn parameter(&self, cone: &Cone, divisor: i64) -> i64 {
         // It exceeds 24 bits only for invalid constants.
         let inverse = Inverse::of(((divisor as u32 & 0xFF_FFFF) << 1 | 1) << 3, &self.words);
         let mantissa = floor(
@@ -80,7 +133,6 @@ impl Exits {
         let (distance, exponent) = cone.distance;
         // The reciprocal of a quarter of the divisor.
         let bits = exponent as i32 - DISTANCE_OFFSET + inverse.exponent - 2 - MANTISSA;
-        let t = self.words.parameter_of(distance * mantissa, -bits);
-        (t >= self.near).then_some(t)
+        self.words.parameter_of(distance * mantissa, -bits)
     }
 }

@@ -217,6 +217,7 @@ fn round(register: SolidRegister, spheres: &Spheres) -> FixedSpheres {
         list: spheres.list,
         count: usize::from(register.last_sphere()) + 1,
         repeated: register.spheres_repeated(),
+        cone: None,
     }
 }
 

@@ -40,7 +40,11 @@ const FIELDS: [&str; 17] = [
 fn fields() -> Vec<&'static str> {
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !FIELDS.iter().any(|other| kind(other) == kind(text));
-    let further = Primitive::EXAMPLES.into_iter().filter(is_new);
+    let is_drawn = |text: &&str| !Field::parse(text).unwrap().is_left_to_soft_core();
+    let further = Primitive::EXAMPLES
+        .into_iter()
+        .filter(is_drawn)
+        .filter(is_new);
     FIELDS.into_iter().chain(further).collect()
 }
 
