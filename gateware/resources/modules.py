@@ -87,7 +87,7 @@ MODULES = [
     Module(top="exit_shadow", variants={"exit_shadow_sponge": {"BOXES": 0}}, measured=("exit_shadow", "exit_shadow_sponge")),
     Module(top="exit_landing", variants={"exit_landing_round": {"ROUND": 1}}),
     Module(top="exit_reciprocal"),
-    Module(top="sphere_unit", variants={"sphere_unit_one_eye": {"STEREO": 0}}),
+    Module(top="sphere_unit", variants={"sphere_unit_one_eye": {"STEREO": 0}, "sphere_unit_cone": {"CONE": 1}}),
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},
            measured=("raymarcher_round", "raymarcher_faces")),

@@ -310,11 +310,11 @@ fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool
     for (eye, last) in (0..eyes).zip(&mut last) {
         let mut number = 0;
         exits.each_cone(eye.into(), &mut |cone| {
-            raymarcher.set_cone(eye, number, &cone.words());
+            raymarcher.set_cone(eye, number, &cone.words()[..Cone::SPHERE_WORDS]);
             number += 1;
         });
         if number == 0 {
-            raymarcher.set_cone(eye, 0, &Cone::unseen());
+            raymarcher.set_cone(eye, 0, &Cone::unseen()[..Cone::SPHERE_WORDS]);
         }
         *last = number.saturating_sub(1) as u8;
     }

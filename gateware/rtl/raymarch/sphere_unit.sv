@@ -34,6 +34,16 @@
 //   6   down of the forward function                                      14   number of the sphere, 3 bits, and half the shift of
 //   7   first of side a, the 32 lowest bits                                    the sides' changes, 2 bits
 //
+// With CONE there may also be a solid cone. The kind of an entry of the list is in bits 5 to 7 of constant 14, and constant 15 is `across` of
+// side b. An entry of the kind
+// - SPHERE is a sphere or its disc;
+// - BASE is the plane of the solid cone's base, for an eye below it: the ray meets the base as a disc, and other faces behind the plane;
+// - LIMIT is the same plane for an eye above it: the ray meets other faces before the plane;
+// - LATERAL is the lateral face: side b is the divisor's addend in place of the forward function, and its square is left out;
+// - AROUND is the lateral face, for an eye that sees it all around: the root is that of the sum of the sides' squares, and is subtracted;
+// - SECTION is the section by the near plane, which the ray meets at the near plane.
+// The entry with the plane precedes those of the other faces.
+//
 // `across` and `down` have 25 bits with a sign. `last_cone` has the number of the last cone of each eye; an eye without cones has one with a
 // first column above the last. Rounding is that of the model. The other parameters must hold until the frame has ended.
 //
@@ -42,7 +52,9 @@
 `default_nettype none
 
 module sphere_unit #(
-    parameter bit STEREO = 1'b1
+    parameter bit STEREO = 1'b1,
+    // Whether there may be a solid cone.
+    parameter bit CONE   = 1'b0
 ) (
     input  wire                                clk,
     input  wire                                rst,
@@ -86,6 +98,8 @@ module sphere_unit #(
     (* ram_style = "distributed" *) logic [27:0] distances    [0:ENTRIES-1];
     (* ram_style = "distributed" *) logic [2:0]  spheres      [0:ENTRIES-1];
     (* ram_style = "distributed" *) logic [1:0]  shifts       [0:ENTRIES-1];
+
+    typedef enum logic [2:0] {SPHERE, BASE, LIMIT, LATERAL, AROUND, SECTION} kind_t;
 
     logic                  write_1;
     logic [8:0]            address_1;
@@ -245,21 +259,48 @@ module sphere_unit #(
     delay #(.WIDTH(ENTRY_BITS), .CLOCKS(5)) entry_to_37 (.clk, .enable(1'b1), .in(entry_32), .out(entry_37));
 
     // The sides and the forward function, with 30 fraction bits.
-    logic signed [47:0] a_4, a_5, b_6, f_6, f_7;
+    logic signed [47:0] a_4, a_5, b_5, b_6, f_6, f_7;
 
     multiply_add #(.BITS(48)) a_of_column (
         .clk, .enable(1'b1), .a(across_a[entry_1]), .b({1'b0, column_1}),
         .c({{2{first_a_high[entry_3][13]}}, first_a_high[entry_3], first_a_low[entry_3]}), .p(a_4)
     );
     multiply_add #(.BITS(48)) a_of_row (.clk, .enable(1'b1), .a(down_a[entry_2]), .b({1'b0, row_2}), .c(a_4), .p(a_5));
-    multiply_add #(.BITS(48)) b_of_row (
-        .clk, .enable(1'b1), .a(down_b[entry_3]), .b({1'b0, row_3}),
-        .c({{2{first_b_high[entry_5][13]}}, first_b_high[entry_5], first_b_low[entry_5]}), .p(b_6)
-    );
+    multiply_add #(.BITS(48)) b_of_row (.clk, .enable(1'b1), .a(down_b[entry_3]), .b({1'b0, row_3}), .c(b_5), .p(b_6));
     multiply_add #(.BITS(48)) f_of_column (
         .clk, .enable(1'b1), .a(across_f[entry_3]), .b({7'd0, column_3}), .c(48'($signed(first_f[entry_5]))), .p(f_6)
     );
     multiply_add #(.BITS(48)) f_of_row (.clk, .enable(1'b1), .a(down_f[entry_4]), .b({8'd0, row_4}), .c(f_6), .p(f_7));
+
+    // The kind of the entry, and the column's part of side b, which has none without a solid cone.
+    kind_t kind_6, kind_7, kind_10, kind_19, kind_38;
+
+    if (CONE) begin : solid_cone
+        (* ram_style = "distributed" *) logic [24:0] across_b [0:ENTRIES-1];
+        (* ram_style = "distributed" *) logic [2:0]  kinds    [0:ENTRIES-1];
+        logic [16:0] column_2;
+
+        always_ff @(posedge clk) begin
+            column_2 <= column_1;
+            kind_6   <= kind_t'(kinds[entry_5]);
+            kind_7   <= kind_6;
+            if (write_1) begin
+                if (address_1[3:0] == 4'd14) kinds[written]    <= value_1[7:5];
+                if (address_1[3:0] == 4'd15) across_b[written] <= value_1[24:0];
+            end
+        end
+        multiply_add #(.BITS(48)) b_of_column (
+            .clk, .enable(1'b1), .a(across_b[entry_2]), .b({1'b0, column_2}),
+            .c({{2{first_b_high[entry_4][13]}}, first_b_high[entry_4], first_b_low[entry_4]}), .p(b_5)
+        );
+        delay #(.WIDTH(3), .CLOCKS(3)) kind_to_10 (.clk, .enable(1'b1), .in(kind_7), .out({kind_10}));
+        delay #(.WIDTH(3), .CLOCKS(9)) kind_to_19 (.clk, .enable(1'b1), .in(kind_10), .out({kind_19}));
+        delay #(.WIDTH(3), .CLOCKS(19)) kind_to_38 (.clk, .enable(1'b1), .in(kind_19), .out({kind_38}));
+    end else begin : no_cone
+        assign b_5 = {{2{first_b_high[entry_5][13]}}, first_b_high[entry_5], first_b_low[entry_5]};
+        assign {kind_6, kind_7, kind_10, kind_19, kind_38} = {5{SPHERE}};
+        wire _unused = &{1'b0, kind_6, kind_7, kind_10, kind_19, kind_38};
+    end
 
     // A side of 2 or more is outside of the cone, and so is a pixel with a negative forward function.
     logic over_6, over_7, out_8, out_10;
@@ -275,17 +316,22 @@ module sphere_unit #(
     logic signed [42:0] square_8, square_9, square_10;
 
     square_add square_a (.clk, .x(a_5[31:8]), .c('0), .p(square_8));
-    square_add square_b (.clk, .x(b_6[31:8]), .c(square_8), .p(square_9));
-    square_add #(.NEGATIVE(1'b1)) square_f (.clk, .x(f_7[31:8]), .c(square_9), .p(square_10));
+    square_add square_b (.clk, .x(b_6[31:8] & {24{!CONE || kind_6 != LATERAL}}), .c(square_8), .p(square_9));
+    square_add #(.NEGATIVE(1'b1)) square_f (.clk, .x(f_7[31:8] & {24{!CONE || kind_7 != AROUND}}), .c(square_9), .p(square_10));
 
     // The root, u1.22, of a square with 30 fraction bits. A square below 2^-20 counts as 0.
     logic [31:0] rest_10;
     logic [22:0] root_19;
     logic        hit_11, hit_38;
 
-    assign rest_10 = ~square_10[39:8];
+    // All but spheres are met at any smaller square; AROUND, also at 0.
+    logic around_10, meets_10;
 
-    always_ff @(posedge clk) hit_11 <= some_10 && !out_10 && square_10[42] && rest_10[31:10] != '0;
+    assign around_10 = CONE && kind_10 == AROUND;
+    assign rest_10   = square_10[39:8] ^ {32{!around_10}};
+    assign meets_10  = around_10 || square_10[42] && (rest_10[31:10] != '0 || CONE && kind_10 != SPHERE && rest_10[9:0] != '0);
+
+    always_ff @(posedge clk) hit_11 <= some_10 && !out_10 && meets_10;
 
     exit_root rooting (.clk, .square(rest_10), .root(root_19));
     delay #(.WIDTH(1), .CLOCKS(27)) hit_waits (.clk, .enable(1'b1), .in(hit_11), .out(hit_38));
@@ -296,9 +342,31 @@ module sphere_unit #(
     logic [22:0]                      mantissa_32;
     logic [4:0]                       scale_32;
 
-    delay #(.WIDTH(24), .CLOCKS(14)) f_waits (.clk, .enable(1'b1), .in(f_7[31:8]), .out(f_21));
+    // Only the divisor of a solid cone may be negative.
+    logic [23:0] addend_7;
+    logic [17:0] share_19;
+    logic        negative_38, ahead_38;
+
+    if (CONE) begin : signed_divisor
+        logic [23:0] b_7;
+        logic        ahead_7;
+
+        always_ff @(posedge clk) b_7 <= b_6[31:8];
+        assign addend_7 = kind_7 == LATERAL ? b_7 : f_7[31:8];
+        assign share_19 = kind_19 == AROUND ? -{1'b0, shares[entry_19]} : {1'b0, shares[entry_19]};
+        assign ahead_7  = !f_7[31];
+        delay #(.WIDTH(1), .CLOCKS(16)) sign_waits (.clk, .enable(1'b1), .in(divisor_22[43]), .out(negative_38));
+        delay #(.WIDTH(1), .CLOCKS(31)) ahead_waits (.clk, .enable(1'b1), .in(ahead_7), .out(ahead_38));
+    end else begin : positive_divisor
+        assign addend_7    = f_7[31:8];
+        assign share_19    = {1'b0, shares[entry_19]};
+        assign negative_38 = 1'b0;
+        assign ahead_38    = 1'b1;
+    end
+
+    delay #(.WIDTH(24), .CLOCKS(14)) f_waits (.clk, .enable(1'b1), .in(addend_7), .out(f_21));
     multiply_add #(.BITS(44)) divisor (
-        .clk, .enable(1'b1), .a({2'b0, root_19}), .b({1'b0, shares[entry_19]}), .c({3'd0, f_21, 17'h1FFFF}), .p(divisor_22)
+        .clk, .enable(1'b1), .a({2'b0, root_19}), .b(share_19), .c({{3{CONE && f_21[23]}}, f_21, 17'h1FFFF}), .p(divisor_22)
     );
     exit_mantissa reciprocal (.clk, .whole({divisor_22[40:17], 4'b1000}), .mantissa(mantissa_32), .exponent(scale_32));
 
@@ -350,16 +418,43 @@ module sphere_unit #(
     logic                        hit_39, best_met, from_met, better;
     logic [exit_pkg::T_BITS-1:0] t_39, best_t, from_t;
 
+    logic met_38, between_39;
+
+    if (CONE) begin : faces
+        // The plane of the base, at most at the largest T, is the lower limit of the parameters of other faces, or their upper limit.
+        logic                        is_plane_39, is_face_39, is_base_39, is_least;
+        logic [exit_pkg::T_BITS-1:0] plane_39, limit, from_limit;
+
+        assign met_38 = hit_38 && kind_38 != LIMIT && (kind_38 == SECTION || !over_38 && !negative_38 && t_38 >= near_limit);
+
+        always_ff @(posedge clk) begin
+            is_base_39  <= kind_38 == BASE;
+            is_plane_39 <= kind_38 == BASE || kind_38 == LIMIT;
+            is_face_39  <= kind_38 == LATERAL || kind_38 == AROUND || kind_38 == SECTION;
+            plane_39    <= t_38 | {exit_pkg::T_BITS{over_38 || !ahead_38}};
+            if (valid[39]) begin
+                is_least <= is_plane_39 ? is_base_39 : is_least && !first_39;
+                limit    <= is_plane_39 ? plane_39 : from_limit;
+            end
+        end
+        assign from_limit = limit | {exit_pkg::T_BITS{first_39}};
+        assign between_39 = !is_face_39 || (is_least && !first_39 ? t_39 > from_limit : t_39 < from_limit);
+    end else begin : spheres_alone
+        assign met_38     = hit_38 && !over_38 && t_38 >= near_limit;
+        assign between_39 = 1'b1;
+        wire _unused = &{1'b0, negative_38, ahead_38};
+    end
+
     assign from_met = best_met && !first_39;
     assign from_t   = first_39 ? far_limit : best_t;
-    assign better   = hit_39 && {t_39, 1'b0} < {from_t, !from_met};
+    assign better   = hit_39 && between_39 && {t_39, 1'b0} < {from_t, !from_met};
 
     always_ff @(posedge clk) begin
         number_38 <= spheres[entry_37];
 
         number_39 <= number_38;
-        hit_39    <= hit_38 && !over_38 && t_38 >= near_limit;
-        t_39      <= t_38;
+        hit_39    <= met_38;
+        t_39      <= CONE && kind_38 == SECTION ? near_limit : t_38;
 
         if (valid[39]) begin
             best_met    <= better || from_met;

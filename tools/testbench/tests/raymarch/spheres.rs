@@ -82,6 +82,8 @@ impl Window {
         };
         let mut cone = *cone;
         cone.forward = moved(cone.forward, 0);
+        // Only its lowest 32 bits count.
+        cone.forward.first = i64::from(cone.forward.first as i32);
         cone.sides = cone.sides.map(|side| moved(side, cone.shift));
         let rectangle = &mut cone.rectangle;
         if rectangle.columns[1] < column || rectangle.rows[1] < row {
@@ -175,13 +177,34 @@ fn frames() -> usize {
 
 #[test]
 fn random_rays() {
+    let one_eye = Bench::new("sphere_unit_one_eye", 9, 0.2);
+    random_frames("sphere_unit", one_eye, &fields());
+}
+
+#[test]
+fn random_rays_with_a_solid_cone() {
+    let fields = [
+        "cone:0.8,1.6",
+        "cone:1,1",
+        "cone:0.02,2",
+        "cone:2,0.02",
+        "union:box:1,0.5,0.25+cone:0.5,1.5",
+        "sphere:1",
+        "union:lattice:1,0.3+cone:0.25,1",
+        "cone:12,12",
+        "cone:0.01,0.01",
+        "union:cubes:2,0.4+cone:1,3",
+    ];
+    let one_eye = Bench::new("sphere_unit_cone", 9, 0.2);
+    random_frames("sphere_unit_cone", one_eye, &fields);
+}
+
+fn random_frames(name: &str, mut one_eye: Bench, fields: &[&str]) {
     let mut random = Random(11);
     let mut benches: Vec<Bench> = (1..)
         .zip([0.0, 0.5, 0.95])
-        .map(|(seed, stalls)| Bench::new("sphere_unit", seed, stalls))
+        .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
-    let mut one_eye = Bench::new("sphere_unit_one_eye", 9, 0.2);
-    let fields = fields();
     let (mut all_hits, mut all_discs) = (0, 0);
     for frame in 0..frames() {
         let field = Field::parse(fields[frame % fields.len()]).expect("a field");

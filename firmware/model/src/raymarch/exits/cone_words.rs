@@ -5,7 +5,10 @@ use super::rectangle::Rectangle;
 
 impl Cone {
     /// Number of words of a cone.
-    pub const WORDS: usize = 15;
+    pub const WORDS: usize = 16;
+
+    /// Number of words of a cone in which an eye sees a sphere: the last word is that of solid cones alone.
+    pub const SPHERE_WORDS: usize = 15;
 
     /// The words of the cone: all numbers start at bit 0, in two's complement; those of more than 32 bits have two words, the low one first.
     pub fn words(&self) -> [u32; Self::WORDS] {
@@ -29,7 +32,8 @@ impl Cone {
             low(forward.first),
             self.share as u32,
             mantissa as u32 | exponent << 24,
-            u32::from(self.number) | self.shift << 2,
+            u32::from(self.number) | self.shift << 2 | (self.kind as u32) << 5,
+            low(b.across),
         ]
     }
 
@@ -45,7 +49,7 @@ impl Cone {
             down,
         };
         Self {
-            kind: ConeKind::Sphere,
+            kind: ConeKind::ALL[(words[14] >> 5 & 7) as usize],
             number: (words[14] & 7) as u8,
             rectangle: Rectangle {
                 columns: [(columns & 0xFF) << 3, (columns >> 8 & 0xFF) << 3 | 7],
@@ -54,7 +58,7 @@ impl Cone {
             forward: linear(signed(words[11].into(), 32), step(words[5]), step(words[6])),
             sides: [
                 linear(first(words[7], words[8]), step(words[2]), step(words[3])),
-                linear(first(words[9], words[10]), 0, step(words[4])),
+                linear(first(words[9], words[10]), step(words[15]), step(words[4])),
             ],
             shift: words[14] >> 2 & 6,
             share: (words[12] & 0x1_FFFF).into(),

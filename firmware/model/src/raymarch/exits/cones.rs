@@ -20,13 +20,13 @@ use super::rectangle::Rectangle;
 use super::vectors::{Scaled, Vector, bits, perpendicular, product, rounded, unit};
 
 /// Bits of the magnitude of a change per column or row.
-const STEP: u32 = 24;
+pub(super) const STEP: u32 = 24;
 /// Fraction bits of the linear functions.
 pub(super) const FRACTION: u32 = 30;
 /// Largest shift of the changes of a cone's sides.
-const MOST_SHIFT: u32 = 6;
+pub(super) const MOST_SHIFT: u32 = 6;
 /// Exponent of the largest factor of a side, and of the largest distance of a disc from the ray's axis in radii.
-const MOST_SIDE: i32 = 12;
+pub(super) const MOST_SIDE: i32 = 12;
 /// Largest number of halvings. Only a sphere that is far smaller than a pixel would need more.
 const MOST_HALVINGS: i32 = 20;
 /// Fraction bits of the ratio of the radius to the distance of the centre.
@@ -51,6 +51,11 @@ pub struct Cones {
 impl Cone {
     /// The number of the base of a solid cone, in place of a sphere's.
     pub const BASE: u8 = 7;
+
+    /// The forward function of a pixel, s1.30. Far from the rectangle of a solid cone it may be too large for its word, modulo 4.
+    pub(super) const fn forward_at(&self, column: u32, row: u32) -> i64 {
+        self.forward.at(column, row, 0) as i32 as i64
+    }
 }
 
 impl Cones {
@@ -108,6 +113,20 @@ pub enum ConeKind {
     Around,
     /// The section of the near plane and of a solid cone.
     Section,
+}
+
+impl ConeKind {
+    /// All kinds by their number in the gateware; unused numbers are those of spheres.
+    pub(super) const ALL: [Self; 8] = [
+        Self::Sphere,
+        Self::Base,
+        Self::Limit,
+        Self::Lateral,
+        Self::Around,
+        Self::Section,
+        Self::Sphere,
+        Self::Sphere,
+    ];
 }
 
 /// A number that is linear in the column and the row of a pixel, with 30 fraction bits.

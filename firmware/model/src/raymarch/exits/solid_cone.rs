@@ -5,7 +5,7 @@
 //! C = qx² + qy² − k²·qz². Outside of the double cone C is positive, and B² − A·C is the product of two linear functions of D, those of the
 //! tangent planes through the eye: f² − a² with f = k·(qz·Dr − E·Dz) and a = √C·Dφ, where E is the eye's distance from the axis, r the
 //! direction from the axis to the eye, and φ that around the axis. With f > 0 the ray meets the lower half first at T = C/(ρ − B), where
-//! ρ² = f² − a²: as for spheres, the root is in the divisor, and −B is the forward function.
+//! ρ² = f² − a²: as for spheres, the root is in the divisor. −B is the divisor's addend in place of f.
 //!
 //! An eye above the apex in the upper half sees the lower half all around, with no outline. There C is negative, and the ray meets the lower
 //! half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half sees the lateral face nowhere. Only for an eye close to the
@@ -18,7 +18,10 @@
 
 use glint_core::field::FixedCone;
 
-use super::cones::{Cone, ConeKind, FRACTION, Function, Linear, Pixel, SHARE, Sight, distance};
+use super::cones::{
+    Cone, ConeKind, FRACTION, Function, Linear, MOST_SHIFT, MOST_SIDE, Pixel, SHARE, STEP, Sight,
+    distance,
+};
 use super::vectors::{Scaled, Vector, bits, product, unit};
 
 /// Bits of the squares of radius and height. Only their ratio counts.
@@ -133,41 +136,38 @@ impl Sight {
             _ => (unit([z * x, z * y, -from_axis]), unit([-y, x, 0])),
         };
         // The root is as large as its words allow within the rectangle, and then divided by a power of two.
-        let is_around = cone.kind == ConeKind::Around;
-        let doublings = |sides: &[(&Vector, Scaled)]| {
-            let functions = sides.iter().map(|&(axis, factor)| Function {
-                axis,
-                factor,
-                offset: 0,
-            });
-            let largest = functions
-                .flat_map(|side| {
-                    self.corners(cone)
-                        .map(|pixel| side.change(&pixel.direction))
-                })
-                .fold(0, |all, x| all | x.unsigned_abs());
-            FRACTION as i32 - bits(largest)
-        };
-        let doublings = match is_around {
-            true => doublings(&[(&f, along), (&a, around)]),
-            false => doublings(&[(&f, along)]) + 1,
-        };
-        let doublings = doublings.min(SHARE as i32);
-        let power = Scaled::new(1, doublings);
-        let sides = [(&a, around), (&f, along)].map(|(axis, factor)| Function {
+        let [f, a] = [(&f, along), (&a, around)].map(|(axis, factor)| Function {
             axis,
-            factor: factor.by(power),
+            factor,
             offset: 0,
         });
-        let doublings = doublings - self.set_sides(cone, middle, &sides, true) as i32;
-        // The share is at most 1/2.
+        let forward = unit(towards);
+        let doublings = if cone.kind == ConeKind::Lateral {
+            let doublings = (FRACTION as i32 + 1 - bits(self.largest(cone, &f)))
+                .min(STEP as i32 - bits(self.largest_change(&f)))
+                .min((STEP + MOST_SHIFT) as i32 - bits(self.largest_change(&a)))
+                .min(MOST_SIDE - 1 - a.factor.log2())
+                .min(SHARE as i32);
+            // The share is at most 1/2.
+            let addend = Function {
+                axis: &forward,
+                factor: power(doublings.min(1) - 1),
+                offset: 0,
+            };
+            self.set_sides(cone, middle, &[a.doubled(doublings), addend], true);
+            cone.forward = self.words_of(&f.doubled(doublings), middle, 0);
+            doublings
+        } else {
+            let doublings = FRACTION as i32 - bits(self.largest(cone, &f) | self.largest(cone, &a));
+            let doublings = doublings.min(SHARE as i32);
+            let sides = [a, f].map(|side| side.doubled(doublings));
+            let doublings = doublings - self.set_sides(cone, middle, &sides, true) as i32;
+            let away = forward.map(|part| -part);
+            self.set_forward(cone, middle, &away, (1 - doublings).max(0).cast_unsigned());
+            doublings
+        };
         let halvings = (1 - doublings).max(0).cast_unsigned();
         cone.share = 1 << (SHARE as i32 - doublings - halvings as i32);
-        let forward = unit(match is_around {
-            true => towards.map(|x| -x),
-            false => towards,
-        });
-        self.set_forward(cone, middle, &forward, halvings);
         let c = Scaled::new(c, exponent - 12).by(inverse_length);
         cone.distance = distance(c.halved(halvings));
         true
@@ -234,14 +234,42 @@ impl Sight {
     fn words_of(&self, function: &Function, middle: &Pixel, halvings: u32) -> Linear {
         let [_, step, down] = &self.directions;
         let changes = [function.change(step), function.change(down)];
-        function.words(middle, changes, 0, halvings)
+        let words = function.words(middle, changes, 0, halvings);
+        Linear {
+            first: i64::from(words.first as i32),
+            ..words
+        }
     }
 
-    /// The pixels in the corners of a cone's rectangle.
-    fn corners(&self, cone: &Cone) -> [Pixel; 4] {
+    /// A number with the bits of all magnitudes of a function in the corners of a cone's rectangle, 30 fraction bits.
+    fn largest(&self, cone: &Cone, function: &Function) -> u64 {
         let [columns, rows] = [cone.rectangle.columns, cone.rectangle.rows];
-        [0, 1, 2, 3].map(|i: usize| self.pixel([columns[i % 2], rows[i / 2]]))
+        let corners = [0, 1, 2, 3].map(|i: usize| self.pixel([columns[i % 2], rows[i / 2]]));
+        corners.iter().fold(0, |all, pixel| {
+            all | function.change(&pixel.direction).unsigned_abs()
+        })
     }
+
+    /// A number with the bits of the changes of a function per column and row, 30 fraction bits.
+    fn largest_change(&self, function: &Function) -> u64 {
+        let [_, step, down] = &self.directions;
+        function.change(step).unsigned_abs() | function.change(down).unsigned_abs()
+    }
+}
+
+impl Function<'_> {
+    /// The function times a power of two.
+    fn doubled(&self, times: i32) -> Self {
+        Self {
+            factor: self.factor.by(power(times)),
+            ..*self
+        }
+    }
+}
+
+/// A power of two.
+const fn power(exponent: i32) -> Scaled {
+    Scaled::new(1, exponent)
 }
 
 /// The length of a vector.

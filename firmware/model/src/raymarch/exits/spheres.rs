@@ -62,7 +62,7 @@ impl Exits {
     /// The parameter at which a ray crosses the plane of a solid cone's base, or the largest number.
     #[inline(never)]
     fn crossing(&self, beam: &Beam, cone: &Cone) -> i64 {
-        let forward = cone.forward.at(beam.column, beam.row, 0);
+        let forward = cone.forward_at(beam.column, beam.row);
         match forward < 0 {
             true => i64::MAX,
             false => self.parameter(cone, floor(forward, FRACTION as i32 - LENGTH)),
@@ -77,29 +77,23 @@ impl Exits {
         if sides.iter().any(|side| !(-limit..limit).contains(side)) {
             return None;
         }
-        let forward = cone.forward.at(column, row, 0);
+        let forward = cone.forward_at(column, row);
         // The squares are without those of the bits after the first 18.
         let fraction = self.words.outline as i32;
         let cut = (fraction - 16).max(0) as u32;
         let square = |x| squared(floor(x, FRACTION as i32 - fraction), cut);
         let [a, b] = sides.map(square);
-        let (rest, must_be_positive) = match cone.kind {
-            ConeKind::Limit => return None,
-            ConeKind::Sphere | ConeKind::Base | ConeKind::Section => {
-                (square(forward) - a - b, forward)
-            }
-            ConeKind::Lateral => (b - a, sides[1]),
-            ConeKind::Around => (b + a, 0),
-        };
-        // Rounded down, and an integer to the one below.
-        let rest = floor(rest - 1, 2 * fraction - SQUARE);
+        let rounded = |rest| floor(rest, 2 * fraction - SQUARE);
         let (rest, least) = match cone.kind {
-            ConeKind::Sphere => (rest, SQUARE - LEAST),
+            ConeKind::Limit => return None,
+            // Rounded down, and an integer to the one below.
+            ConeKind::Sphere => (rounded(square(forward) - a - b - 1), SQUARE - LEAST),
+            ConeKind::Base | ConeKind::Section => (rounded(square(forward) - a - b - 1), 0),
+            ConeKind::Lateral => (rounded(square(forward) - a - 1), 0),
             // There is no outline.
-            ConeKind::Around => (rest.max(1), 0),
-            _ => (rest, 0),
+            ConeKind::Around => (rounded(a + b).max(1), 0),
         };
-        if must_be_positive < 0 || rest >> least <= 0 {
+        if forward < 0 || rest >> least <= 0 {
             return None;
         }
         if cone.kind == ConeKind::Section {
@@ -107,14 +101,18 @@ impl Exits {
         }
         let (root, shift) = normalised(rest);
         let root = floor(i64::from(root), 2 + (shift + SQUARE) / 2 - LENGTH);
-        let forward = floor(forward, FRACTION as i32 - LENGTH);
+        let addend = match cone.kind {
+            ConeKind::Lateral => sides[1],
+            _ => forward,
+        };
+        let addend = floor(addend, FRACTION as i32 - LENGTH);
         // The divisor is below 4; it has 22 fraction bits, and stands for the middle of its interval. The root is rounded down, the divisor
         // up.
         let part = match cone.kind {
             ConeKind::Around => -(cone.share * root),
             _ => cone.share * root,
         };
-        let divisor = -((-(forward << SHARE) - part) >> SHARE);
+        let divisor = -((-(addend << SHARE) - part) >> SHARE);
         if divisor < 0 {
             return None;
         }

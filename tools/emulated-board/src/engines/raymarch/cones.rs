@@ -4,8 +4,8 @@ use glint_core::field::MAX_SPHERES;
 use glint_model::raymarch::exits::{Cone, Cones};
 use litex_pac::raymarch::Solid;
 
-/// Number of places for constants of a cone; the last one is unused.
-const PLACES: usize = 16;
+/// Number of places for constants of a cone.
+const PLACES: usize = Cone::WORDS;
 
 /// The constants that writes to the registers have set, by eye and cone.
 #[derive(Default)]
@@ -33,7 +33,7 @@ impl ConeWords {
         let last = [solid.last_cone_left(), solid.last_cone_right()];
         [0, 1].map(|eye: usize| {
             let cones = self.words[eye].iter().take(usize::from(last[eye]) + 1);
-            Cones::of(cones.filter_map(|words| words.first_chunk().map(Cone::of_words)))
+            Cones::of(cones.map(Cone::of_words))
         })
     }
 }
