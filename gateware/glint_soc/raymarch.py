@@ -37,7 +37,7 @@ INTERVAL_BITS = 13
 class Fields:
     """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
     include the sponge if it has levels), spheres of a list, spheres of a lattice, fillets between spheres and flat fields, two eyes,
-    colours of spheres by their normals, a highlight on spheres, shadows on faces."""
+    colours of spheres by their normals, a highlight on spheres, shadows on faces, a solid cone in builds with spheres of a list."""
 
     lanes: int = 2
     levels: int = 6
@@ -49,6 +49,7 @@ class Fields:
     normals: bool = True
     highlight: bool = True
     shadow: bool = True
+    cone: bool = True
 
     @property
     def has_exits(self):
@@ -71,25 +72,25 @@ class Fields:
         return {"FIELDS": mask(values.pop("flat")), **{name.upper(): int(value) for name, value in values.items()}}
 
 
-_FACES_ALONE = dict.fromkeys(("round", "lattice", "blend", "normals", "highlight", "shadow"), False)
+_FACES_ALONE = dict.fromkeys(("round", "lattice", "blend", "normals", "highlight", "shadow", "cone"), False)
 
 BUILDS = {
     "all": Fields(),
-    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False, highlight=False, shadow=False),
+    "round": Fields(levels=4, flat=("menger", "box"), lattice=False, blend=False, highlight=False, shadow=False, cone=False),
     "faces": Fields(levels=4, flat=("menger", "box"), **_FACES_ALONE),
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), **_FACES_ALONE),
 }
 """Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
 
 _FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo", "normals": "normals", "highlight": "highlight",
-             "shadow": "shadow"}
+             "shadow": "shadow", "cone": "cone"}
 
 
 def build(text, lanes=None):
     """Returns the build options that `text` names, with the number of `lanes` if it is given.
 
     `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
-    fields, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`.
+    fields, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`, `cone`.
     """
     if text in BUILDS:
         fields = BUILDS[text]
@@ -118,6 +119,7 @@ class Raymarcher(LiteXModule):
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("lanes", size=3, offset=0, reset=fields.lanes, description="Lanes: evaluations of the field per clock."),
             CSRField("levels", size=3, offset=4, reset=fields.levels, description="Largest depth of a sponge; 0 without sponges."),
+            CSRField("cone", offset=7, reset=int(fields.cone), description="A solid cone."),
             CSRField("stereo", offset=9, reset=int(fields.stereo), description="Two eyes."),
             CSRField("round", offset=10, reset=int(fields.round), description="Spheres of a list, alone and in unions."),
             CSRField("blend", offset=11, reset=int(fields.blend), description="Fillets between spheres and flat fields."),
@@ -233,6 +235,8 @@ class Raymarcher(LiteXModule):
                      "colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to "
                      "light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are "
                      "lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour. "
+                     "39: bit 4 is set if the list has a solid cone, and bits 0 to 3 have the exponent of its light; 52, 53: x of the direction of the "
+                     "x axis and z of that of the z axis for the light on a cone, s1.16 (docs/formats/raymarch.md). "
                      "40, 41, 42: colours of faces perpendicular to x, y, z that are turned to light 0 and in its shadow. 43, 44, 45: direction "
                      "to light 0, s1.14, for shadows. 46, 47, 48: the lowest 24 bits of the reciprocals of half its components "
                      "(rtl/raymarch/exit_pkg.sv). 49, 50, 51: their highest 8 bits."),
@@ -386,12 +390,15 @@ class Raymarcher(LiteXModule):
         directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
         ambient, blend = Signal(24), [Signal(17), Signal(17)]
         half, (normals, lit, highlight), steepness, shine = [Signal(18) for _ in range(3)], [Signal() for _ in range(3)], Signal(13), Signal(24)
+        cone, lead, across, along = Signal(), Signal(4), Signal(18), Signal(18)
         write = Signal()
         if fields.has_spheres:
             places = {**dict(enumerate([*centre, radius, inverse, ambient, *blend])),
                       **{16 + 4*light + axis: part for light, direction in enumerate(directions) for axis, part in enumerate(direction)},
                       **{19 + 4*light: colour for light, colour in enumerate(colours)},
                       **{34 + axis: part for axis, part in enumerate(half)}, 37: Cat(normals, lit, highlight, Signal(5), steepness), 38: shine}
+            if fields.cone:
+                places |= {39: Cat(lead, cone), 52: across, 53: along}
             self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
             self.comb += write.eq(self._sphere.re & (entry[3:] == 0b001))
         sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the reciprocal of its radius and a shift "
@@ -399,7 +406,8 @@ class Raymarcher(LiteXModule):
             "material": value, "shift": inverse[17:], "inverse": inverse[:17], "radius": radius, "centre": centre})
         lights = Struct("lights_t", "Light on spheres: whether colours depend on normals, whether there are lights and a highlight, "
             "the steepness, the colour and the direction of the highlight, number of the last light, ambient light, colours of the lights, and directions "
-            "to the lights, s1.16.", {
+            "to the lights, s1.16. Whether the list has a solid cone, the exponent of the light on it, and components of the directions of axes for it.", {
+            "cone": cone, "lead": lead, "across": across, "along": along,
             "normals": normals, "lit": lit, "highlight": highlight, "steepness": steepness, "shine": shine, "half": half,
             "last_light": last_light, "ambient": ambient, "colours": colours, "directions": directions})
         return write, entry[:3], sphere, lights, blend

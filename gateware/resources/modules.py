@@ -78,7 +78,7 @@ MODULES = [
     Module(top="ray_generator",
            variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1, "BLEND": 1}}),
     Module(top="ray_paint", variants={"ray_paint_march": {"MARCH": 1}, "ray_paint_shadow": {"SHADOW": 1}, "ray_paint_all": _ALL_PAINT}),
-    Module(top="round_light", variants={"round_light_plain": {"NORMALS": 0}, "round_light_all": {"HIGHLIGHT": 1, "BLEND": 1}},
+    Module(top="round_light", variants={"round_light_plain": {"NORMALS": 0}, "round_light_all": {"HIGHLIGHT": 1, "BLEND": 1, "CONE": 1}},
            measured=("round_light", "round_light_plain", "round_light_all")),
     Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
     Module(top="exit_lane",

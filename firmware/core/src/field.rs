@@ -73,9 +73,13 @@ impl Field {
         matches!(member, Primitive::Cone(_))
     }
 
-    /// Whether no gateware draws the field, but the soft core: a bent union, or a field with a cone.
-    pub const fn is_left_to_soft_core(&self) -> bool {
-        self.is_bent() || self.has_cone()
+    /// Whether no gateware draws the field, but the soft core: a bent union, or a cone in a lattice.
+    pub fn is_left_to_soft_core(&self) -> bool {
+        let has_lattice = match self {
+            Self::Primitive(_) => false,
+            Self::Union(union) => union.first().is_round(),
+        };
+        self.is_bent() || self.has_cone() && has_lattice
     }
 
     /// Whether the field is a union with spheres of a field that repeats.

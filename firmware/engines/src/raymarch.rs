@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_core::field::{FixedSpheres, FlatConstants, Solid as Marched};
+use glint_core::field::{FixedCone, FixedSpheres, FlatConstants, Solid as Marched};
 use glint_core::stereo::Tint;
 use glint_hal::raymarch::{
     self as driver, Capabilities, Control, Counters, DepthScale, Exit, Field, Kind, Raymarcher,
@@ -28,8 +28,10 @@ pub enum Missing {
     Blend,
     /// Distances that are too long, which no build has.
     Bend,
-    /// Cones, which no build has.
+    /// Cones.
     Cone,
+    /// Cones in lattices, which no build has.
+    ConeInLattice,
     /// Spheres coloured by their normals.
     Normals,
     /// A highlight on spheres.
@@ -53,6 +55,7 @@ impl fmt::Display for Missing {
             Self::Blend => f.write_str("no smooth unions"),
             Self::Bend => f.write_str("no bent unions"),
             Self::Cone => f.write_str("no cones"),
+            Self::ConeInLattice => f.write_str("no cones in lattices"),
             Self::Normals => f.write_str("no spheres coloured by normals"),
             Self::Highlight => f.write_str("no highlight on spheres"),
             Self::Shadow => f.write_str("no shadows"),
@@ -83,7 +86,10 @@ impl Missing {
             return Err(Self::Flat(kind));
         }
         if let Some(spheres) = setup.spheres() {
-            if spheres.cone.is_some() {
+            if spheres.cone.is_some() && spheres.repeated {
+                return Err(Self::ConeInLattice);
+            }
+            if spheres.cone.is_some() && (!capabilities.cone || setup.marching().is_some()) {
                 return Err(Self::Cone);
             }
             if spheres.repeated && !capabilities.lattice {
@@ -292,6 +298,9 @@ fn with_spheres(
         .marching()
         .map_or_else(Blend::default, Marching::blend);
     set_spheres(raymarcher, spheres, &blend, lights);
+    if raymarcher.capabilities().cone {
+        set_cone_light(raymarcher, spheres.cone.as_ref());
+    }
     solid
         .with_is_round(true)
         .with_spheres_repeated(spheres.repeated)
@@ -306,11 +315,15 @@ fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool
         return solid;
     }
     let eyes = if stereo { 2 } else { 1 };
+    let words = match exits.spheres.cone {
+        Some(_) => Cone::WORDS,
+        None => Cone::SPHERE_WORDS,
+    };
     let mut last = [0; 2];
     for (eye, last) in (0..eyes).zip(&mut last) {
         let mut number = 0;
         exits.each_cone(eye.into(), &mut |cone| {
-            raymarcher.set_cone(eye, number, &cone.words()[..Cone::SPHERE_WORDS]);
+            raymarcher.set_cone(eye, number, &cone.words()[..words]);
             number += 1;
         });
         if number == 0 {
@@ -343,9 +356,17 @@ fn set_shadow(raymarcher: &Raymarcher, exits: &Exits, palette: &Palette) {
 fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
     let write = |entry, value| raymarcher.set_constant(entry, value);
     let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
+    let towards = |direction| match &spheres.cone {
+        Some(cone) => cone.lit_from(direction),
+        None => direction,
+    };
     let list = spheres.list.iter().zip(lights.materials);
     for (number, (sphere, material)) in (0..).zip(list.take(spheres.count)) {
-        for (axis, place) in (0..).zip(numbers(sphere.centre)) {
+        let place = match spheres.cone(number) {
+            Some(cone) => cone.apex(),
+            None => sphere.centre,
+        };
+        for (axis, place) in (0..).zip(numbers(place)) {
             write(axis, place);
         }
         write(3, sphere.radius as u32);
@@ -356,7 +377,7 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
     write(6, blend.width);
     write(7, blend.inverse);
     for (number, light) in (0..).zip(&lights.list) {
-        for (axis, part) in (0..).zip(numbers(light.direction)) {
+        for (axis, part) in (0..).zip(numbers(towards(light.direction))) {
             write(16 + 4 * number + axis, part);
         }
         write(19 + 4 * number, colour(light.colour));
@@ -364,7 +385,7 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
     let normals = u32::from(lights.normals.is_some());
     let lit = u32::from(lights.count != 0);
     if let Some(Shine { light, steepness }) = lights.highlight {
-        for (axis, part) in (0..).zip(numbers(light.direction)) {
+        for (axis, part) in (0..).zip(numbers(towards(light.direction))) {
             write(34 + axis, part);
         }
         write(38, colour(light.colour));
@@ -372,6 +393,18 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
     } else {
         write(37, normals | lit << 1);
     }
+}
+
+/// Writes whether there is a solid cone, and the constants of the light on it.
+fn set_cone_light(raymarcher: &Raymarcher, cone: Option<&FixedCone>) {
+    let Some(cone) = cone else {
+        raymarcher.set_constant(39, 0);
+        return;
+    };
+    let [across, _, along] = cone.lit_from([1 << 16, 0, 1 << 16]);
+    raymarcher.set_constant(39, cone.lead | 1 << 4);
+    raymarcher.set_constant(52, across as u32 & 0xFF_FFFF);
+    raymarcher.set_constant(53, along as u32 & 0xFF_FFFF);
 }
 
 /// The kind of the flat field as a register value, and the levels of a sponge, the first level in bit 0.

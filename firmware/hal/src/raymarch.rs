@@ -35,6 +35,8 @@ pub struct Capabilities {
     pub highlight: bool,
     /// Whether this build draws shadows on faces.
     pub shadow: bool,
+    /// Whether this build draws a solid cone.
+    pub cone: bool,
 }
 
 /// The planes of the prism around an eye, along each axis and along each mirrored axis; the fourth axis is that of an octahedron.
@@ -145,6 +147,7 @@ impl Raymarcher {
             normals: caps.normals(),
             highlight: caps.highlight(),
             shadow: caps.shadow(),
+            cone: caps.cone(),
         };
         Ok(Self {
             registers,

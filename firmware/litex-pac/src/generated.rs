@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x6882_a5c8;
+pub const BUILD_ID: u32 = 0x4fed_18be;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -5875,6 +5875,20 @@ pub mod raymarch {
             Self(self.0 & !(0x7 << 4) | (value as u32 & 0x7) << 4)
         }
 
+        /// `cone`, bit 7: A solid cone.
+        #[inline]
+        #[must_use]
+        pub const fn cone(self) -> bool {
+            (self.0 >> 7) & 1 != 0
+        }
+
+        /// This value with another `cone`.
+        #[inline]
+        #[must_use]
+        pub const fn with_cone(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
+        }
+
         /// `stereo`, bit 9: Two eyes.
         #[inline]
         #[must_use]
@@ -6625,7 +6639,7 @@ pub mod raymarch {
             Self(self.0 & !0x00ff_ffff | value & 0x00ff_ffff)
         }
 
-        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour. 40, 41, 42: colours of faces perpendicular to x, y, z that are turned to light 0 and in its shadow. 43, 44, 45: direction to light 0, s1.14, for shadows. 46, 47, 48: the lowest 24 bits of the reciprocals of half its components (rtl/raymarch/exit_pkg.sv). 49, 50, 51: their highest 8 bits.
+        /// `entry`, bits 29 to 24: 0 to 2: centre of a sphere, x, y, z, s10.12. 3: radius of the sphere, u9.12, for marching rays. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of the fillet, u5.12, 0 without a fillet. 7: 1 / (2 * width), u1.16. 8 + n: colour of sphere n, which also takes the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour. 39: bit 4 is set if the list has a solid cone, and bits 0 to 3 have the exponent of its light; 52, 53: x of the direction of the x axis and z of that of the z axis for the light on a cone, s1.16 (docs/formats/raymarch.md). 40, 41, 42: colours of faces perpendicular to x, y, z that are turned to light 0 and in its shadow. 43, 44, 45: direction to light 0, s1.14, for shadows. 46, 47, 48: the lowest 24 bits of the reciprocals of half its components (rtl/raymarch/exit_pkg.sv). 49, 50, 51: their highest 8 bits.
         #[inline]
         #[must_use]
         pub const fn entry(self) -> u8 {

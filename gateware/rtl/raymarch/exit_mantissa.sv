@@ -5,12 +5,13 @@
 // `whole` is u0.28, at least 2^-28; that of a magnitude of 27 bits ends with a 1, the middle of its interval. The table takes the first 25
 // bits from the first 1. The mantissa has 22 fraction bits, rounded to nearest. An entry of the table has the value at the end of its
 // interval and the decrease over the interval; values are reduced by half of the largest error of the interpolation, so that errors have both
-// signs. Latency 10 clocks, throughput one per clock, no handshake.
+// signs. Latency 10 clocks with `enable`, throughput one per clock, no handshake.
 
 `default_nettype none
 
 module exit_mantissa (
     input  wire         clk,
+    input  wire         enable,
     input  wire  [27:0] whole,
     output logic [22:0] mantissa,
     output logic [4:0]  exponent
@@ -33,7 +34,7 @@ module exit_mantissa (
         else                           twos_1 = {1'b1, whole_1[23:22] == '0};
     end
 
-    always_ff @(posedge clk) begin
+    always_ff @(posedge clk) if (enable) begin
         whole_1  <= whole << {eights_0, 3'd0};
         eights_1 <= eights_0;
         whole_2  <= whole_1 << {twos_1, 1'b0};
@@ -68,7 +69,7 @@ module exit_mantissa (
     logic        high_6, high_7;
     logic [14:0] left_4, left_5;
 
-    always_ff @(posedge clk) begin
+    always_ff @(posedge clk) if (enable) begin
         fall_4  <= entries[whole_3[23:14]];
         fall_5  <= fall_4;
         // The part of the interval after the number.
@@ -90,15 +91,15 @@ module exit_mantissa (
     logic               low_8, low_9;
 
     multiply_add #(.BITS(40)) interpolation (
-        .clk, .enable(1'b1), .a({11'd0, fall_5[13:0]}), .b({3'd0, left_5}), .c({3'd1, high_7, start_7[35:14], 14'h3FFF}), .p(sum_8)
+        .clk, .enable, .a({11'd0, fall_5[13:0]}), .b({3'd0, left_5}), .c({3'd1, high_7, start_7[35:14], 14'h3FFF}), .p(sum_8)
     );
     assign value_8 = sum_8[38:14];
     assign low_8   = !value_8[24] && value_8[23:22] != 2'b11;
 
-    delay #(.WIDTH(5), .CLOCKS(6)) lead_waits (.clk, .enable(1'b1), .in(lead_3), .out(lead_9));
+    delay #(.WIDTH(5), .CLOCKS(6)) lead_waits (.clk, .enable, .in(lead_3), .out(lead_9));
 
     // A value below 3/4 is doubled.
-    always_ff @(posedge clk) begin
+    always_ff @(posedge clk) if (enable) begin
         low_9    <= low_8;
         half_9   <= (low_8 ? value_8 : {1'b0, value_8[24:1]}) + 25'd1;
         mantissa <= half_9[23] && half_9[22] ? 23'h5FFFFF : half_9[23:1];

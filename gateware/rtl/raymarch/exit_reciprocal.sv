@@ -18,7 +18,7 @@ module exit_reciprocal (
     logic [1:0]  scale_11;
     logic        odd_11;
 
-    exit_mantissa reciprocal (.clk, .whole({magnitude, 1'b1}), .mantissa(mantissa_10), .exponent(exponent_10));
+    exit_mantissa reciprocal (.clk, .enable(1'b1), .whole({magnitude, 1'b1}), .mantissa(mantissa_10), .exponent(exponent_10));
 
     always_ff @(posedge clk) begin
         coarse_11          <= {6'd0, mantissa_10} << {exponent_10[2:1], 1'b0};

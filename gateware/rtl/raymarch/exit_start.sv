@@ -254,7 +254,7 @@ module exit_start #(
             inverse_19  <= {3'(exponent_18[1:0]) + 3'(doublings_18), mantissa_18[21:4]};
         end
 
-        exit_mantissa reciprocal (.clk, .whole({square_8, 3'd0}), .mantissa(mantissa_18), .exponent(exponent_18));
+        exit_mantissa reciprocal (.clk, .enable(1'b1), .whole({square_8, 3'd0}), .mantissa(mantissa_18), .exponent(exponent_18));
         delay #(.WIDTH(2), .CLOCKS(9)) doublings_wait (.clk, .enable(1'b1), .in(doublings_9), .out(doublings_18));
         wide_delay #(.WIDTH(exit_pkg::LENGTH_BITS), .CLOCKS(13)) length_waits (.clk, .in({doublings_9, short_9}), .out(length_22));
         delay #(.WIDTH(exit_pkg::INVERSE_SQUARE_BITS), .CLOCKS(3)) reciprocal_waits (

@@ -30,6 +30,8 @@ module ray_generator #(
     parameter bit LATTICE = 1'b0,
     // Whether rays by exits may have the fourth axis of an octahedron.
     parameter bit OCTAHEDRON = 1'b0,
+    // Whether there may be a solid cone, in a build with spheres of a list.
+    parameter bit CONE = 1'b0,
     // Depth of the FIFO of rays after the pipeline.
     parameter int unsigned PLACES = 32
 ) (
@@ -138,7 +140,7 @@ module ray_generator #(
 
         assign ray = $bits(ray)'(kept);
 
-        sphere_unit #(.STEREO(STEREO)) meet (
+        sphere_unit #(.STEREO(STEREO), .CONE(CONE)) meet (
             .clk, .rst, .start(start && by_exits), .last_group(last_column[10:3]), .last_row, .stereo, .near_limit, .far_limit, .last_cone,
             .write(cone_write), .address(cone_address), .value(cone_value),
             .out_valid(met_valid), .out_ready(by_exits && out_ready && kept_valid), .out_meeting(met)

@@ -37,8 +37,13 @@ package raymarch_registers_pkg;
 
     // Light on spheres: whether colours depend on normals, whether there are lights and a highlight, the steepness, the colour
     // and the direction of the highlight, number of the last light, ambient light, colours of the lights, and directions to
-    // the lights, s1.16.
+    // the lights, s1.16. Whether the list has a solid cone, the exponent of the light on it, and components of the directions
+    // of axes for it.
     typedef struct packed {
+        logic cone;
+        logic [3:0] lead;
+        logic [17:0] across;
+        logic [17:0] along;
         logic normals;
         logic lit;
         logic highlight;

@@ -43,6 +43,7 @@ module raymarcher #(
     parameter bit          STEREO  = 1'b1,
     parameter bit          NORMALS   = 1'b1,
     parameter bit          HIGHLIGHT = 1'b1,
+    parameter bit          CONE      = 1'b1,
     parameter bit          SHADOW    = 1'b1,
     parameter int unsigned EARLY   = BLEND ? 1024 : 512
 ) (
@@ -175,7 +176,7 @@ module raymarcher #(
     always_ff @(posedge clk) diagonals <= OCTAHEDRON && rule == exit_pkg::BOX && levels[0];
 
     ray_generator #(
-        .EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .BLEND(BLEND), .STEREO(STEREO)
+        .EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .BLEND(BLEND), .STEREO(STEREO), .CONE(CONE)
     ) generator (
         .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends),
         .stereo, .exits,
@@ -385,6 +386,11 @@ module raymarcher #(
         exit_end.surface   = !landed.hit ? landed.number : landed.round ? '0
                              : diagonals ? exit_pkg::octant(landed.axis, landed.positive) : {landed.axis, landed.positive};
         exit_end.round     = !landed.hit || landed.round;
+        // The base of a cone is a face with the normal -z.
+        if (CONE && lights.cone && !landed.hit && landed.number == '1) begin
+            exit_end.surface = 3'd4;
+            exit_end.round   = 1'b0;
+        end
         exit_end.direction = landed.direction;
         // A pure sphere.
         exit_end.share     = '1;
@@ -421,7 +427,7 @@ module raymarcher #(
     logic [23:0]     lit_colour;
 
     if (LIT) begin : light
-        round_light #(.BLEND(BLEND), .STEREO(STEREO), .NORMALS(NORMALS), .HIGHLIGHT(HIGHLIGHT)) shine (
+        round_light #(.BLEND(BLEND), .STEREO(STEREO), .NORMALS(NORMALS), .HIGHLIGHT(HIGHLIGHT), .CONE(CONE)) shine (
             .clk, .rst(reset), .origins, .exits(by_exits), .stereo, .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]),
             .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),

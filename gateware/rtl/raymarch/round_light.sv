@@ -9,9 +9,12 @@
 // - one for each light, if there are any;
 // - with HIGHLIGHT, and if `lights.highlight` is high, one for the highlight, with a power of the cosine in place of the cosine.
 //
+// With CONE, and if `lights.cone` is high, the only surface with light is the lateral face of a solid cone. The centre is its apex, the
+// directions are changed for its normals, those of the axes to `across` and `along`, and the reciprocal is that of the distance below the apex.
+//
 // With BLEND the colour is interpolated, by `share`, between the colours of the face, from `palette`,
-// and of the sphere. Latency 24 clocks, 12 more with HIGHLIGHT and 4 more with BLEND, plus one clock for each pass after the first. The ends
-// at the output have no direction. Streams are valid/ready. Writes and changes of parameters are only allowed while the pipeline is empty.
+// and of the sphere. Latency 24 clocks, 12 more with HIGHLIGHT, 4 more with CONE and 4 more with BLEND, plus one clock for each pass after the
+// first. The ends at the output have no direction. Streams are valid/ready. Writes and changes of parameters are only allowed while the pipeline is empty.
 
 `default_nettype none
 
@@ -20,7 +23,9 @@ module round_light #(
     parameter bit STEREO    = 1'b1,
     // Whether colours may depend on the normal, and whether there may be a highlight.
     parameter bit NORMALS   = 1'b1,
-    parameter bit HIGHLIGHT = 1'b0
+    parameter bit HIGHLIGHT = 1'b0,
+    // Whether there may be a solid cone.
+    parameter bit CONE      = 1'b0
 ) (
     input  wire                      clk,
     input  wire                      rst,
@@ -45,8 +50,10 @@ module round_light #(
     output raymarch_pkg::end_t          out_end,
     output logic [23:0]              out_colour
 );
-    // Clocks that the highlight takes. The suffixes of names from 15 on leave them out.
-    localparam int unsigned WAIT = HIGHLIGHT ? 12 : 0;
+    // Clocks that the reciprocal for a cone and the highlight take. The suffixes of names from 15 on leave them out.
+    localparam int unsigned CONE_WAIT  = CONE ? 4 : 0;
+    localparam int unsigned SHINE_WAIT = HIGHLIGHT ? 12 : 0;
+    localparam int unsigned WAIT       = CONE_WAIT + SHINE_WAIT;
     localparam int unsigned LAST = WAIT + (BLEND ? 26 : 22);
     // Ends without the direction.
     localparam int unsigned ROUND_BITS = raymarch_pkg::EXIT_END_BITS + 1;
@@ -104,7 +111,7 @@ module round_light #(
     // Constants of the sphere. Each constant is read from its memory just before the clock in which it is used.
     logic [2:0]       number_2, number_8, number_11, number_18;
     logic [2:0][22:0] centre_3;
-    logic [4:0]       shift_9;
+    logic [4:0]       shift_8, shift_9;
     logic [16:0]      inverse_12;
     logic [23:0]      material_19;
 
@@ -123,7 +130,7 @@ module round_light #(
         if (enable) begin
             centre_3    <= centres[number_2];
             repeated_3  <= repeated && number_2 == '0;
-            shift_9     <= shifts[number_8];
+            shift_9     <= CONE && lights.cone ? shift_8 : shifts[number_8];
             inverse_12  <= inverses[number_11];
             material_19 <= materials[number_18];
         end
@@ -155,6 +162,8 @@ module round_light #(
         // The axis with this number, of length 1.
         if (NORMALS && kind_3 == NORMAL)
             towards_3 = {1'b0, light_3 == 2'd2, 16'b0, 1'b0, light_3 == 2'd1, 16'b0, 1'b0, light_3 == 2'd0, 16'b0};
+        if (CONE && NORMALS && kind_3 == NORMAL && lights.cone)
+            towards_3 = {lights.along & {18{light_3 == 2'd2}}, lights.across & {18{light_3 == 2'd1}}, lights.across & {18{light_3 == 2'd0}}};
     end
 
     delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable, .in(STEREO && held.place.eye), .out(eye_2));
@@ -226,7 +235,7 @@ module round_light #(
 
     assign negative_9   = NORMALS && kind_9 == NORMAL && product_9[42];
     assign product_size = product_9[40:4] ^ {37{negative_9}};
-    delay #(.WIDTH(1), .CLOCKS(6)) sign_waits (.clk, .enable, .in(negative_9), .out(negative_15));
+    delay #(.WIDTH(1), .CLOCKS(6 + CONE_WAIT)) sign_waits (.clk, .enable, .in(negative_9), .out(negative_15));
 
     always_ff @(posedge clk) begin
         if (enable) begin
@@ -252,8 +261,51 @@ module round_light #(
     logic [23:0]        colour_15;
     logic [2:0][7:0]    colour_22, colour_last, face_colour_22;
 
+    // The factors of the cosine. The suffix of a name in `solid_cone` is the signal's clock: 5 for the distance below the apex, 6 for its
+    // logarithm, 15 for its reciprocal.
+    logic [16:0] size, inverse;
+
+    if (CONE) begin : solid_cone
+        logic [22:0] below_5, mantissa_15;
+        logic [4:0]  log_5, log_6, shift_7, exponent_15;
+        logic signed [5:0] less_6;
+        logic [16:0] inverse_15;
+        logic        odd_15, low_15;
+
+        always_comb begin
+            log_5 = '0;
+            for (int i = 0; i < 23; i++) if (below_5[i]) log_5 = 5'(i);
+        end
+        assign less_6 = $signed({1'b0, log_6}) - $signed({2'b0, lights.lead});
+
+        always_ff @(posedge clk) begin
+            if (enable) begin
+                below_5 <= apart_4[2][22] ? -apart_4[2] : 23'd1;
+                log_6   <= log_5;
+                shift_7 <= less_6 < 6'sd6 ? 5'd6 : less_6 > 6'sd21 ? 5'd21 : less_6[4:0];
+                shift_8 <= shift_7;
+                inverse <= !lights.cone ? inverse_15 : low_15 ? mantissa_15[22:6] : mantissa_15[21:5] | {17{mantissa_15[22]}};
+            end
+        end
+        exit_mantissa reciprocal (
+            .clk, .enable, .whole({2'b0, below_5, 3'b0}), .mantissa(mantissa_15), .exponent(exponent_15)
+        );
+        // A mantissa below 3/4 is doubled: its exponent has the other parity.
+        assign low_15 = exponent_15[0] == odd_15;
+        delay #(.WIDTH(1), .CLOCKS(9)) parity_waits (.clk, .enable, .in(log_6[0]), .out(odd_15));
+        delay #(.WIDTH(17), .CLOCKS(3)) inverse_waits (.clk, .enable, .in(inverse_12), .out(inverse_15));
+        delay #(.WIDTH(17), .CLOCKS(4)) size_waits (.clk, .enable, .in(size_12), .out(size));
+
+        wire _unused = &{1'b0, exponent_15[4:1], mantissa_15[4:0]};
+    end else begin : spheres_alone
+        assign size    = size_12;
+        assign inverse = inverse_12;
+        assign shift_8 = '0;
+        wire _unused = &{1'b0, lights.cone, lights.lead, lights.across, lights.along, shift_8};
+    end
+
     multiply_add #(.BITS(37)) over_radius (
-        .clk, .enable, .a({8'b0, size_12}), .b({1'b0, inverse_12}), .c('0), .p(cosine_15)
+        .clk, .enable, .a({8'b0, size}), .b({1'b0, inverse}), .c('0), .p(cosine_15)
     );
     assign share_of_cosine = {1'b0, cosine_15[33], cosine_15[33] ? 8'd0 : cosine_15[32:25]} ^ {10{negative_15}};
 
@@ -284,7 +336,7 @@ module round_light #(
             end
         end
 
-        delay #(.WIDTH(10), .CLOCKS(WAIT)) share_waits (.clk, .enable, .in(share_of_cosine), .out(waited_27));
+        delay #(.WIDTH(10), .CLOCKS(SHINE_WAIT)) share_waits (.clk, .enable, .in(share_of_cosine), .out(waited_27));
         // `kind_14` has waited too.
         delay #(.WIDTH(2), .CLOCKS(1)) kind_to_27 (.clk, .enable, .in(kind_14), .out({kind_27}));
         assign share_15 = kind_27 == SHINE ? {1'b0, part_27} : waited_27;

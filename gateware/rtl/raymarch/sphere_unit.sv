@@ -368,7 +368,7 @@ module sphere_unit #(
     multiply_add #(.BITS(44)) divisor (
         .clk, .enable(1'b1), .a({2'b0, root_19}), .b(share_19), .c({{3{CONE && f_21[23]}}, f_21, 17'h1FFFF}), .p(divisor_22)
     );
-    exit_mantissa reciprocal (.clk, .whole({divisor_22[40:17], 4'b1000}), .mantissa(mantissa_32), .exponent(scale_32));
+    exit_mantissa reciprocal (.clk, .enable(1'b1), .whole({divisor_22[40:17], 4'b1000}), .mantissa(mantissa_32), .exponent(scale_32));
 
     // T: the distance times the reciprocal of a quarter of the divisor. The mantissa less 1 has a sign.
     logic [23:0]        distance_32, distance_34;

@@ -39,6 +39,8 @@ pub struct Fields {
     pub normals: bool,
     /// A highlight on spheres.
     pub highlight: bool,
+    /// A solid cone.
+    pub cone: bool,
     /// Shadows on faces.
     pub shadow: bool,
 }
@@ -208,6 +210,7 @@ impl Fields {
             stereo: false,
             normals: false,
             highlight: false,
+            cone: false,
             shadow: false,
         };
         match field {
@@ -222,7 +225,10 @@ impl Fields {
     fn and(mut self, primitive: &Primitive) -> Self {
         match primitive.placed().solid {
             Solid::Spheres(spheres) if spheres.repeated => self.lattice = true,
-            Solid::Spheres(_) => self.spheres = true,
+            Solid::Spheres(spheres) => {
+                self.spheres = true;
+                self.cone |= spheres.cone.is_some();
+            }
             Solid::Flat(flat) => self.add(&flat),
         }
         self
@@ -258,6 +264,7 @@ impl Fields {
             stereo: self.stereo || other.stereo,
             normals: self.normals || other.normals,
             highlight: self.highlight || other.highlight,
+            cone: self.cone || other.cone,
             shadow: self.shadow || other.shadow,
         }
     }
@@ -277,6 +284,7 @@ impl Fields {
             ("normals", self.normals),
             ("highlight", self.highlight),
             ("shadow", self.shadow),
+            ("cone", self.cone),
         ];
         let built = features.into_iter().filter(|(_, is_built)| *is_built);
         names.extend(built.map(|(name, _)| name.to_owned()));

@@ -363,6 +363,7 @@ fn needs_follow_from_the_keys() {
         model = "cube"; stereo = "0.1,4" → --blocks scanout triangle
         model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --fields octahedron --lanes 2
         field = "lattice:2,0.5"; material = "sky" → --blocks scanout raymarch --no-depths --fields lattice --lanes 2
+        field = "cone:1,2"; material = "sky" → --blocks scanout raymarch --no-depths --fields spheres,cone --lanes 2
         field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres,normals --lanes 2
         field = "smooth:0.3,box:1,1,0.2+sphere:1"; material = "sky" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
         field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --fields menger:2 --lanes 2

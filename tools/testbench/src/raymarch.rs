@@ -1,7 +1,7 @@
 //! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, results of rays, and pixels.
 
 use crate::{Bits, Layout, Module, Record};
-use glint_core::field::{Solid, Surface};
+use glint_core::field::{FixedCone, Solid, Surface};
 use glint_model::raymarch::exits::{Beam, Cone, Cones, Exit, Exits, Eye, Inverse, Rule, Side};
 use glint_model::raymarch::{
     FieldSetup, Form, Lights, Marching, Palette, Ray, RayEnd, RayResult, State, paint, rgb565,
@@ -316,7 +316,8 @@ fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     module.drive("sphere_write", 1);
     for (i, one) in spheres.list.iter().take(spheres.count).enumerate() {
         let mut sphere = module.record("sphere");
-        sphere.set_all("centre", one.centre);
+        let cone = spheres.cone(i as u8);
+        sphere.set_all("centre", cone.map_or(one.centre, FixedCone::apex));
         // Rays by exits need no radius, which may be longer.
         if setup.marching().is_some() {
             sphere.set("radius", one.radius);
@@ -334,6 +335,15 @@ fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
 /// Drives the lights on spheres, and fills the tables of spheres.
 pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     let mut record = module.record("lights");
+    let cone = setup.spheres().and_then(|spheres| spheres.cone);
+    let towards = |direction| cone.map_or(direction, |cone| cone.lit_from(direction));
+    if let Some(cone) = &cone {
+        let [across, _, along] = towards([1 << 16, 0, 1 << 16]);
+        record.set("cone", 1);
+        record.set("lead", cone.lead);
+        record.set("across", across);
+        record.set("along", along);
+    }
     record.set("ambient", colour(lights.ambient));
     record.set("last_light", lights.count.saturating_sub(1) as u64);
     record.set("normals", u64::from(lights.normals.is_some()));
@@ -342,10 +352,10 @@ pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     record.set("highlight", u64::from(lights.highlight.is_some()));
     record.set("steepness", highlight.steepness);
     record.set("shine", colour(highlight.light.colour));
-    record.set_all("half", highlight.light.direction);
+    record.set_all("half", towards(highlight.light.direction));
     for (i, light) in lights.list.iter().enumerate() {
         record.set(&format!("colours[{i}]"), colour(light.colour));
-        record.set_all(&format!("directions[{i}]"), light.direction);
+        record.set_all(&format!("directions[{i}]"), towards(light.direction));
     }
     module.drive_bits("lights", record);
     set_spheres(module, setup, lights);

@@ -77,7 +77,7 @@ pub struct Options {
     #[arg(long)]
     no_depths: bool,
     /// Fields of the raymarcher: `all`, `round`, `faces` or `sponge` (docs/raymarch.md), or features with commas between them:
-    /// `menger:LEVELS`, `box`, `octahedron`, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow` [default: all; faces for a board with an FPGA]
+    /// `menger:LEVELS`, `box`, `octahedron`, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`, `cone` [default: all; faces for a board with an FPGA]
     #[arg(long)]
     fields: Option<String>,
     /// Evaluations of the field per clock: 1, 2 or 4 [default: those of the fields]

@@ -18,7 +18,7 @@ fn registers() -> raymarch::Raymarch {
 /// boxes, spheres, fillets and stereo pictures. Returns the result, and the block's registers.
 fn probe(ident: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
     let r = registers();
-    let caps = 2 | 6 << 4 | 0b111_1111 << 9 | 0b11 << 16;
+    let caps = 2 | 6 << 4 | 1 << 7 | 0b111_1111 << 9 | 0b11 << 16;
     let block = recording::connect([(r.ident().address(), ident), (r.caps().address(), caps)]);
     (Raymarcher::probe(registers()), block)
 }
@@ -44,6 +44,7 @@ fn something_else_is_not_taken_for_the_raymarcher() {
         normals: true,
         highlight: true,
         shadow: true,
+        cone: true,
     };
     assert_eq!(raymarcher.unwrap().capabilities(), capabilities);
     let silent = (registers().ev_enable().address(), 0);

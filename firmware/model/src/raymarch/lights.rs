@@ -44,6 +44,8 @@ pub struct Lights {
     pub materials: [Rgb; MAX_SPHERES],
     /// Colours of the three components of a normal, if the material's colour depends on it. The gateware takes one clock for each.
     pub normals: Option<[Rgb; 3]>,
+    /// The lengths of the axes x, y and z in products with a normal, s1.16: 1.
+    pub axes: [i32; 3],
     /// The highlight, which takes one clock more.
     pub highlight: Option<Shine>,
 }
@@ -76,6 +78,7 @@ impl Lights {
             },
             materials: material.spheres(),
             normals,
+            axes: [1 << 16; 3],
             highlight: lighting
                 .highlight
                 .zip(lighting.lights.first())
@@ -134,7 +137,7 @@ impl Lights {
                 let mut sum = Sum::of([MIDDLE; 3]);
                 for (axis, colour) in normals.iter().enumerate() {
                     let mut direction = [0; 3];
-                    direction[axis] = 1 << 16;
+                    direction[axis] = self.axes[axis];
                     sum.add(*colour, (cosine(direction) >> 8) as i32);
                 }
                 sum.colour()

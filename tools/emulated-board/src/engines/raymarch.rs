@@ -171,6 +171,7 @@ impl Device for Raymarcher {
                 .with_blend(true)
                 .with_normals(true)
                 .with_highlight(true)
+                .with_cone(true)
                 .with_shadow(true)
                 .with_flat((1 << Kind::ALL.len()) - 1)
                 .bits(),

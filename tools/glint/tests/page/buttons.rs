@@ -79,8 +79,8 @@ fn press_all(url: &str) {
         &page,
         "/yaw -?[0-9]/.test(document.querySelector('#curve-attitude figcaption').textContent)",
     );
-    // A bent union and a cone, which the soft core draws, have no button.
-    assert_eq!(count(&mut browser, "fields"), KINDS.len() - 2);
+    // A bent union, which the soft core draws, has no button.
+    assert_eq!(count(&mut browser, "fields"), KINDS.len() - 1);
     let mut hashes = HashMap::new();
     for list in ["scenes", "meshes", "fields"] {
         for number in 0..count(&mut browser, list) {

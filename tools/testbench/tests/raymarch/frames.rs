@@ -75,6 +75,36 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
+/// Cones alone and in unions, in all lights, also after spheres and without a cone after one.
+#[test]
+fn frames_of_cones_in_all_lights() {
+    let mut random = Random(15);
+    let mut bench = Raymarcher::new("raymarcher", 1);
+    let fields = [
+        "cone:0.8,1.6",
+        "sphere:1",
+        "cone:1.5,0.3",
+        "union:box:1,0.5,0.25+cone:0.5,1.5",
+        "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;1,1,1,0.5",
+        "union:cubes:2,0.4+cone:1,3",
+        "cone:0.05,2",
+    ];
+    for (frame, text) in fields.into_iter().enumerate() {
+        let setup = loop {
+            let setup = setup(&mut random, &[text]);
+            if setup.width == 320 {
+                break setup;
+            }
+        };
+        let palette = Palette {
+            lights: lights(&mut random, setup.stereo.is_some()),
+            ..Palette::default()
+        };
+        let stalls = (frame % 2 == 1).then_some(&mut random);
+        bench.draw(stalls, &setup, &palette);
+    }
+}
+
 /// Spheres in a repeated field need the eye's position in the world, the field that in its cell.
 #[test]
 fn frames_of_spheres_in_endless_fields() {

@@ -72,20 +72,21 @@ pub fn further_kinds() -> Vec<&'static str> {
     let listed = [&FIELDS[..], &ROUND].concat();
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !listed.iter().any(|other| kind(other) == kind(text));
-    examples().into_iter().filter(is_new).collect()
+    Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Returns an example of each kind of field that the gateware draws.
+/// Returns an example of each kind of field in which rays of the gateware march.
 pub fn examples() -> Vec<&'static str> {
     Primitive::EXAMPLES
         .into_iter()
-        .filter(|text| is_drawn(text))
+        .filter(|text| marches(text))
         .collect()
 }
 
-/// Whether the gateware draws a field.
-fn is_drawn(text: &str) -> bool {
-    !Field::parse(text).unwrap().is_left_to_soft_core()
+/// Whether rays of the gateware march in a field.
+fn marches(text: &str) -> bool {
+    let field = Field::parse(text).unwrap();
+    Marching::draws(&field) && !field.has_cone()
 }
 
 /// Returns fields of all kinds in which rays can march: `FIELDS`, `ROUND`, unions, an example of each kind, and random fields, some with values at the ends of their ranges.
@@ -106,8 +107,7 @@ pub fn every_field() -> Vec<String> {
     .concat();
     let drawn = (0..60).map(|_| Field::draw(|| random.bits() as u32).to_string());
     let all = fixed.into_iter().map(String::from).chain(drawn);
-    all.filter(|text| is_drawn(text) && Marching::draws(&Field::parse(text).unwrap()))
-        .collect()
+    all.filter(|text| marches(text)).collect()
 }
 
 /// Makes a random camera inside or outside of a field, with any direction.
@@ -224,6 +224,7 @@ pub fn lights(random: &mut Random, is_stereo: bool) -> Lights {
     let fewest = if normals.is_some() { 0 } else { 1 };
     let count = random.integer(fewest, 4) as usize;
     Lights {
+        axes: [1 << 16; 3],
         ambient,
         list,
         count,

@@ -42,6 +42,18 @@ impl FixedCone {
         }
     }
 
+    /// A cone with the apex at z = `half` whose directions to lights are already those of [`lit_from`](Self::lit_from), as the gateware has
+    /// them.
+    pub const fn lit(half: i32, lead: u32) -> Self {
+        Self {
+            radius: half,
+            half,
+            angle: [0, 0],
+            slopes: [1 << 30, -1 << 30],
+            lead,
+        }
+    }
+
     /// The apex.
     pub const fn apex(&self) -> [i32; 3] {
         [0, 0, self.half]

@@ -213,11 +213,12 @@ fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) 
 
 /// The spheres.
 fn round(register: SolidRegister, spheres: &Spheres) -> FixedSpheres {
+    let count = usize::from(register.last_sphere()) + 1;
     FixedSpheres {
         list: spheres.list,
-        count: usize::from(register.last_sphere()) + 1,
+        count,
         repeated: register.spheres_repeated(),
-        cone: None,
+        cone: spheres.cone(count - 1),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The register `sphere`: constants of spheres, of their lighting, of the faces 6 and 7, and of
 //! shadows.
 
-use glint_core::field::{FixedSphere, MAX_SPHERES};
+use glint_core::field::{FixedCone, FixedSphere, MAX_SPHERES};
 use glint_core::light::MAX_LIGHTS;
 use glint_model::raymarch::exits::{Inverse, Sun};
 use glint_model::raymarch::{Blend, Light, Lights, Shine};
@@ -23,6 +23,9 @@ pub struct Spheres {
     /// The direction to the first light, s1.14, and the reciprocals of half its components, for shadows.
     direction: [i16; 3],
     inverse: [u32; 3],
+    /// The constants of the light on a solid cone: the exponent and whether there is a cone, and the directions of the axes.
+    cone: u32,
+    axes: [i32; 2],
     /// The constants that the next write to an entry of `list` stores.
     next: FixedSphere,
 }
@@ -37,6 +40,7 @@ impl Spheres {
                 count: 1,
                 materials: [[0; 3]; MAX_SPHERES],
                 normals: None,
+                axes: [1 << 16; 3],
                 highlight: None,
             },
             kinds: 0,
@@ -46,6 +50,8 @@ impl Spheres {
             shadows: [[0; 3]; 3],
             direction: [0; 3],
             inverse: [0; 3],
+            cone: 0,
+            axes: [0; 2],
             next: FixedSphere::default(),
         }
     }
@@ -61,9 +67,24 @@ impl Spheres {
                 0
             },
             normals: has_normals.then(|| Lights::components(is_stereo)),
+            axes: match self.has_cone() {
+                true => [self.axes[0], self.axes[0], self.axes[1]],
+                false => [1 << 16; 3],
+            },
             highlight: has_highlight.then_some(self.highlight),
             ..self.lights
         }
+    }
+
+    /// The solid cone whose lateral face has this number, if there is one.
+    pub fn cone(&self, number: usize) -> Option<FixedCone> {
+        let [.., half] = self.list[number % MAX_SPHERES].centre;
+        self.has_cone()
+            .then(|| FixedCone::lit(half, self.cone & 0xF))
+    }
+
+    const fn has_cone(&self) -> bool {
+        self.cone >> 4 & 1 == 1
     }
 
     /// The rays to the first light.
@@ -114,6 +135,8 @@ impl Spheres {
                 *inverse = *inverse & 0x00FF_FFFF | value << 24;
             }
             38 => self.highlight.light.colour = colour(value),
+            39 => self.cone = value & 0x1F,
+            52 | 53 => self.axes[entry - 52] = signed(18),
             _ => {}
         }
     }
