@@ -95,32 +95,42 @@ class CRG(LiteXModule):
         self.specials += AsyncResetSynchronizer(self.cd_pix, power_on)
 
 
-class VirtualSoC(GlintSoC):
-    """SoC of the virtual board."""
+class PinSoC(GlintSoC):
+    """SoC on the pins of `Platform`, without a memory."""
 
     def __init__(self, build_id, blocks, smooth=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
         GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth,
                           geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
-        module = MT41K64M16(sys_clk_freq, "1:4")
-        self.ddrphy = MemoryModel(module, data_width=16, clk_freq=sys_clk_freq)
-        # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
-        self.rom.mem.init = None
-        self.sram.mem.init = None
-        self.add_dram(self.ddrphy, module)
-        self._gate_clocks(platform)
+
+    def add_memory(self, phy):
+        """Adds the memory behind `phy`, which is that of the Urbana, the blocks that access it, and the video pins."""
+        self.ddrphy = phy
+        self.add_dram(phy, phy.module)
         # These pins and the video pins exist in every build, so that one harness fits all builds. Wires are released, and digits dark.
         for block, pins in (("gesture", "camera"), ("flash", "flash"), ("i2c", "i2c"), ("digits", "digits")):
             if block not in self.blocks:
-                pads = platform.request(pins)
+                pads = self.platform.request(pins)
                 if block == "i2c":
                     self.comb += [pads.scl_out.eq(1), pads.sda_out.eq(1)]
                 elif block == "digits":
                     self.comb += [pads.left_digits_n.eq(0b1111), pads.right_digits_n.eq(0b1111)]
-        pads = platform.request("vga")
+        pads = self.platform.request("vga")
         if "scanout" in self.blocks:
             self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name))
                           for name in ("hsync", "vsync", "de", "r", "g", "b")]
+
+
+class VirtualSoC(PinSoC):
+    """SoC of the virtual board."""
+
+    def __init__(self, build_id, blocks, **options):
+        PinSoC.__init__(self, build_id, blocks, **options)
+        # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
+        self.rom.mem.init = None
+        self.sram.mem.init = None
+        self.add_memory(MemoryModel(MT41K64M16(self.sys_clk_freq, "1:4"), data_width=16, clk_freq=self.sys_clk_freq))
+        self._gate_clocks(self.platform)
 
     def _gate_clocks(self, platform):
         """Stops the clocks of idle blocks, and of idle banks of LiteDRAM, which the simulation then does not evaluate.

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from verilate.programs import GATEWARE
 
-from . import route, scenes, size, tables
+from . import machine, route, scenes, size, tables
 from .blocks import ALL, ENGINES, FLAT_PARTS, OWN, SOC, row, selection
 from .budget import Budget, with_flat_build
 from .tools import ToolError
@@ -45,7 +45,9 @@ def measured_rates(names):
     """Places and routes the soft core and blocks. The rate of the soft core comes first."""
     rates = measured("clock rate", route.measure, [route.REFERENCE, *(name for name in names if name != route.REFERENCE)])
     rates.sort(key=lambda rate: rate["name"] != route.REFERENCE)
-    return [rate | {"ratio": rate["mhz"] / rates[0]["mhz"]} for rate in rates]
+    reference = rates[0]["mhz"]
+    slow = {name: route.slow_paths(name, reference) for name in machine.MACHINES if name in names}
+    return [rate | {"ratio": rate["mhz"] / reference, "slow": slow.get(rate["name"])} for rate in rates]
 
 
 def check(budget):
@@ -94,7 +96,7 @@ def main():
     if not arguments.route or arguments.write:
         sizes = measured_sizes(selection(arguments.blocks, ALL))
     if arguments.route:
-        rates = measured_rates(selection(arguments.blocks, OWN + (ENGINES if arguments.write else ())))
+        rates = measured_rates(selection(arguments.blocks, OWN + ((*ENGINES, *machine.MACHINES) if arguments.write else ())))
     if arguments.json:
         print(json.dumps(tables.as_json(sizes, rates, budget), indent=2, sort_keys=True))
     else:
@@ -108,7 +110,7 @@ def page(sizes, rates, budget):
     """The page docs/resources.md."""
     return tables.render(
         "resources.md", tools=tables.tools(sizes, rates), own=OWN, routed=budget.routed(), flat_parts=FLAT_PARTS,
-        others=tables.others(sizes), sizes=tables.sizes_table(sizes, budget), rates=tables.rates_table(rates) if rates else None,
+        others=tables.others(sizes), sizes=tables.sizes_table(sizes, budget), rates=tables.rates_table(rates) if rates else None, slow=tables.slow_tables(rates),
         placement=tables.placement_table(sizes, rates, budget), limits=tables.budget_table(sizes, budget))
 
 

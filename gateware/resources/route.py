@@ -23,7 +23,7 @@ import pythondata_cpu_vexriscv
 
 from verilate.programs import digest, is_current
 
-from . import size
+from . import machine, paths, size
 from .netlist import Netlist
 from .tools import BUILD, NEXTPNR, YOSYS, ToolError, run_nextpnr, run_yosys
 
@@ -34,7 +34,7 @@ SEEDS = (1, 2, 3)
 """Seeds of the placer. The rate of a block is the median of their rates."""
 
 _FOLDER = BUILD.parent / "route"
-_CODE = [Path(__file__).with_name(name) for name in ("route.py", "netlist.py", "tools.py")]
+_CODE = [Path(__file__).with_name(name) for name in ("route.py", "machine.py", "netlist.py", "tools.py")]
 _VEXRISCV = Path(pythondata_cpu_vexriscv.data_location) / "VexRiscv_Full.v"
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6", "--freq", "100", "--timing-allow-fail", "--lpf-allow-unconstrained"]
 _CLOCK = re.compile(r"(\w+_)?clk(_\w+)?")
@@ -66,9 +66,9 @@ def measure(name, seeds=SEEDS):
     The files of all programs stay in `target/gateware/route/NAME`. The same inputs to the same programs give the same rates, so
     they are measured again only after a change.
     """
-    top, sources, parameters = _block(name)
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
+    top, sources, parameters = _block(name, folder)
     stamp, result = folder / "inputs", folder / "result.json"
     inputs = digest([*sources, *_CODE], top, parameters, seeds, version(YOSYS), version(NEXTPNR))
     if not is_current(stamp, inputs, result):
@@ -91,14 +91,16 @@ def _measure(top, sources, parameters, seeds, folder):
     run_yosys("read_json split.json; synth_ecp5 -top route_wrapper -json netlist.json", (), folder, folder / "yosys.log")
     runs = [_route(folder, seed) for seed in seeds]
     median = sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
-    return {"nextpnr": version(NEXTPNR), "seeds": [run["mhz"] for run in runs], "mhz": median["mhz"],
+    return {"nextpnr": version(NEXTPNR), "seeds": [run["mhz"] for run in runs], "mhz": median["mhz"], "seed": median["seed"],
             "path": worst_path(median["path"], Netlist.read(folder / "netlist.json"))}
 
 
-def _block(name):
-    """Top module, sources and parameters of a block."""
+def _block(name, folder):
+    """Top module, sources and parameters of a block. The Verilog of a machine is written to `folder`."""
     if name == REFERENCE:
         return "VexRiscv", [_VEXRISCV], {}
+    if name in machine.MACHINES:
+        return machine.TOP, machine.write(name, folder), {}
     module, parameters = size.build(name)
     return module.top, module.sources, parameters
 
@@ -109,9 +111,9 @@ def _ports(netlist, top):
 
 
 def wrapper(top, ports):
-    """Verilog of the wrapper of a module. The first of the module's clocks drives the flip-flops of all ports. Paths between two
-    clocks are not measured, so ports that belong to another clock do not affect the rate."""
-    clocks = [port for port in ports if port.is_clock]
+    """Verilog of the wrapper of a module. The first of the module's clocks, or `sys_clk`, drives the flip-flops of all ports. Paths
+    between two clocks are not measured, so ports that belong to another clock do not affect the rate."""
+    clocks = sorted((port for port in ports if port.is_clock), key=lambda port: port.name != "sys_clk")
     inputs = [port for port in ports if port.is_input and not port.is_clock]
     outputs = [port for port in ports if not port.is_input]
     if not clocks or not outputs:
@@ -199,11 +201,36 @@ def _route(folder, seed):
     report = folder / f"report-{seed}.json"
     report.unlink(missing_ok=True)
     run_nextpnr(*_DEVICE, "-q", "--json", "netlist.json", "--seed", seed, "--report", report.name,
-                "--log", f"nextpnr-{seed}.log", cwd=folder)
+                "--sdf", _delays(folder, seed).name, "--log", f"nextpnr-{seed}.log", cwd=folder)
     result = json.loads(report.read_text())
     clock, rate = min(result["fmax"].items(), key=lambda entry: entry[1]["achieved"])
     (path,) = (path["path"] for path in result["critical_paths"] if path["from"] == path["to"] == f"posedge {clock}")
-    return {"mhz": round(rate["achieved"], 1), "path": path}
+    return {"mhz": round(rate["achieved"], 1), "seed": seed, "path": path}
+
+
+def _delays(folder, seed):
+    """The file with the delays of a placement."""
+    return folder / f"delays-{seed}.sdf"
+
+
+def slow_paths(name, mhz):
+    """The groups of the paths of a measured block that are too slow for a clock of `mhz`, in its median placement (`paths.groups`)."""
+    folder = _FOLDER / name
+    netlist = Netlist.read(folder / "netlist.json")
+    seed = json.loads((folder / "result.json").read_text())["seed"]
+
+    def place(cell, pin):
+        return _place(register(netlist, {"cell": cell, "port": pin}))
+
+    with _delays(folder, seed).open() as sdf:
+        return [vars(group) for group in paths.groups(sdf, 1000 / mhz, place)]
+
+
+def _place(name):
+    """The instance around a register. LiteX writes one flat module: there the register's name without its numbers stands for it."""
+    name = re.sub(r"(\[\d+\])+| \(.*\)$", "", name)
+    instance, dot, _ = name.rpartition(".")
+    return instance if dot else re.sub(r"\d+", "*", name)
 
 
 def worst_path(segments, netlist):

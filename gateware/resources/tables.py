@@ -11,6 +11,9 @@ from .route import REFERENCE
 _DEVICE = "of the device"
 """Head of the row with the share of the device that the SoC takes."""
 
+_GROUPS = 15
+"""Number of groups of slow paths in a table."""
+
 _OF_CELLS = tuple(RESOURCES)[1:6]
 """Resources after `lut` in the table of sizes."""
 
@@ -47,6 +50,14 @@ def rates_table(rates):
         [rate["name"], f"{rate['mhz']:.1f}", " ".join(f"{seed:.1f}" for seed in rate["seeds"]), f"{rate['ratio']:.2f}",
          str(path["levels"]), f"{path['logic']:.1f}", f"{path['wire']:.1f}", f"`{path['from']}`", f"`{path['to']}`"]
         for rate in rates for path in [rate["path"]])]
+
+
+def slow_tables(rates):
+    """For each machine its number of endpoints that are slower than the soft core alone, and the groups of their paths, the slowest
+    first. The first two columns are text."""
+    return [(rate["name"], sum(group["endpoints"] for group in rate["slow"]), [["ns", "endpoints", "from", "to"], *(
+        [f"{group['longest']:.1f}", number(group["endpoints"]), f"`{group['start']}`", f"`{group['end']}`"]
+        for group in rate["slow"][:_GROUPS])]) for rate in rates if rate["slow"] is not None]
 
 
 def budget_table(sizes, budget):
@@ -87,6 +98,8 @@ def text(sizes, rates, budget):
             "budget\n" + aligned(budget_table(sizes, budget)) + (f"other cells of the SoC: {cells}\n" if cells is not None else "")]
     if rates:
         parts.append("clock rates\n" + aligned(rates_table(rates), 2))
+        parts += [f"{name}: {number(count)} endpoints slower than {REFERENCE} alone\n{aligned(table, 2)}"
+                  for name, count, table in slow_tables(rates)]
     return "\n".join(parts) + f"{tools(sizes, rates)} See docs/resources.md for what the figures mean.\n"
 
 

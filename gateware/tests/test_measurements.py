@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from resources import route, size
+from resources import paths, route, size
 from resources.netlist import Netlist, placement
 from resources.tools import ToolError, run_yosys
 
@@ -146,3 +146,41 @@ def test_path():
         "from": "port a", "to": "part.sum[1]", "levels": 2, "logic": 2.0, "wire": 2.5,
         "nets": ["a", "wide", "part.sum_TRELLIS_FF_Q_1_DI"]}
     assert route.register(netlist, {"cell": "block.table.0.1$split", "port": "DOA2"}) == "table (block RAM)"
+
+
+_DELAYS = """
+        (INTERCONNECT clock/O first/CLK (900:900:900) (900:900:900))
+        (INTERCONNECT first/Q sum/A (0:900:1000) (0:0:0))
+        (INTERCONNECT second/Q sum/B (0:0:3000) (0:0:0))
+        (INTERCONNECT one/O sum/C (0:0:9000) (0:0:0))
+        (INTERCONNECT sum/F third\\$1/DI (0:0:2000) (0:0:0))
+        (INTERCONNECT sum/F second/DI (0:0:100) (0:0:0))
+    (INSTANCE sum)
+        (IOPATH A F (1:1:250) (1:1:250))
+        (IOPATH B F (1:1:200) (1:1:200))
+        (IOPATH C F (1:1:200) (1:1:200))
+    (INSTANCE first)
+        (IOPATH CLK Q (400:450:500) (400:450:500))
+    (INSTANCE second)
+        (IOPATH CLK Q (400:450:500) (400:450:500))
+      (SETUPHOLD (posedge DI) (posedge CLK) (0:0:0) (1:2:3))
+    (INSTANCE third\\$1)
+        (IOPATH CLK Q (400:450:500) (400:450:500))
+      (SETUPHOLD (posedge DI) (posedge CLK) (10:20:300) (0:0:0))
+"""
+
+
+def test_slow_paths():
+    """The latest path to an endpoint counts, from the output of its register on and with the setup time; constants never arrive."""
+    lines = _DELAYS.splitlines()
+    assert paths.groups(lines, 3.7, "{}.{}".format) == [paths.Group("second.Q", "third$1.DI", 1, 6.0), paths.Group("second.Q", "second.DI", 1, 3.8)]
+    assert paths.groups(lines, 3.8, lambda *_: "here") == [paths.Group("here", "here", 1, 6.0)]
+
+
+@pytest.mark.parametrize("name, place", [
+    ("cpu.cache.line[3]", "cpu.cache"), ("sum.banks_0 (block RAM)", "sum"), ("bankmachine3_level[2]", "bankmachine*_level"),
+    ("rom (block RAM)", "rom"),
+])
+def test_places(name, place):
+    """The instance around a register, or the flat name of a register of LiteX."""
+    assert route._place(name) == place

@@ -39,7 +39,7 @@ def _size(name):
 
 def _rate(name, mhz):
     return {"name": name, "nextpnr": "0.11", "seeds": [90.0, 70.5, 81.0], "mhz": mhz, "ratio": mhz / 80,
-            "path": {"from": "port a", "to": "part.sum[1]", "levels": 2, "logic": 2.0, "wire": 7.25, "nets": ["a", "wide"]}}
+            "path": {"from": "port a", "to": "part.sum[1]", "levels": 2, "logic": 2.0, "wire": 7.25, "nets": ["a", "wide"]}, "slow": None}
 
 
 _RATES = [_rate(REFERENCE, 80.0), _rate("setup", 100.0)]
@@ -191,6 +191,16 @@ def test_page():
         "and checks the clock rate of `setup`.", "Other cells of the SoC: 3 MUXF7.",
     }
     assert lines - set(text.splitlines()) == set()
+
+
+def test_slow_paths():
+    """A machine has a table with the groups of its slow paths, and the number of all their endpoints."""
+    slow = [{"start": "cpu.cache", "end": f"bank*_{number}", "endpoints": 1000 + number, "longest": 21.37 - number} for number in range(20)]
+    rates = [*_RATES, _rate("soc", 50.0) | {"slow": slow}]
+    (name, count, table), = tables.slow_tables(rates)
+    assert (name, count, len(table), table[2]) == ("soc", 20_190, 16, ["20.4", "1,001", "`cpu.cache`", "`bank*_1`"])
+    assert "soc: 20,190 endpoints slower than vexriscv alone\n" in tables.text([], rates, _budget())
+    assert "| 20.4 | 1,001 | `cpu.cache` | `bank*_1` |" in page([_size(SOC)], rates, _budget())
 
 
 def test_tree():
