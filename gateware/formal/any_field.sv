@@ -5,9 +5,7 @@
 
 module field_unit #(
     parameter int unsigned LEVELS = 4,
-    parameter int unsigned FIELDS = 1,
-    parameter bit          ROUND  = 1'b0,
-    parameter bit          BLEND  = 1'b0
+    parameter bit          BOXES  = 1'b1
 ) (
     input  wire                     clk,
     input  wire raymarch_registers_pkg::solid_t solid,
@@ -18,7 +16,6 @@ module field_unit #(
     input  wire  [2:0][21:0]        point,
     input  wire raymarch_pkg::nearest_t so_far,
     output logic signed [21:0]      distance,
-    output logic                    round,
     output logic [2:0]              surface,
     output logic [2:0]              face,
     output logic [7:0]              share,
@@ -29,7 +26,7 @@ module field_unit #(
 
     assign distance = any_distance;
     assign surface  = any_surface;
-    assign {round, face, share, nearest} = '0;
+    assign {face, share, nearest} = '0;
 endmodule
 
 `default_nettype wire

@@ -3,19 +3,6 @@
 
 `default_nettype none
 
-module inverse_table (
-    input  wire         clk,
-    input  wire  [9:0]  index_a,
-    output logic [16:0] inverse_a,
-    input  wire  [9:0]  index_b,
-    output logic [16:0] inverse_b
-);
-    (* anyseq *) logic [16:0] any_a, any_b;
-
-    assign inverse_a = any_a;
-    assign inverse_b = any_b;
-endmodule
-
 module paint_table (
     input  wire        clk,
     input  wire        write,

@@ -73,7 +73,7 @@ class Proof:
 # run time, so the depth of ring_lane, line_raster, band_flush, band_extents, smooth_shader and walker is the smallest that detects all of
 # their mutations.
 PROOFS = [
-    Proof("ring_lane", "ring_lane_proof", 35, ("any_product", "any_field"), engine=_WORDS),
+    Proof("ring_lane", "ring_lane_proof", 43, ("any_product", "any_field"), engine=_WORDS),
     Proof("exit_lane", "exit_lane_proof", 54, ("any_product", "any_solid")),
     Proof("exit_shadow", "exit_shadow_proof", 14, ("any_lane",)),
     Proof("line_raster", "line_raster_proof", 23),

@@ -11,7 +11,7 @@ from migen import Case, Cat, ClockSignal, Constant, If, Instance, Mux, ResetSign
 
 from .clock_control import ClockControl
 from .counters import Counters
-from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
+from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_marching, has_octants, mask
 from .packed import Package, Struct
 from .parameters import Parameter, PassParameters
 from .rtl import add_sources
@@ -52,11 +52,6 @@ class Fields:
     cone: bool = True
 
     @property
-    def has_exits(self):
-        """Whether rays of some fields leave empty prisms, or meet the spheres of a list."""
-        return self.has_spheres or bool(self.flat)
-
-    @property
     def has_spheres(self):
         """Whether some fields have spheres."""
         return self.round or self.lattice
@@ -64,7 +59,7 @@ class Fields:
     @property
     def has_marching(self):
         """Whether rays of some fields march by distances."""
-        return self.blend
+        return self.blend and has_marching(self.flat)
 
     def parameters(self):
         """Returns the parameters of the module by name."""
@@ -147,12 +142,8 @@ class Raymarcher(LiteXModule):
         self.ev.finalize()
 
         self._solid = Parameter(name="solid", fields=[
-            CSRField("levels", size=6, offset=1, description="Levels of the sponge in use, the first level in bit 0."),
-            CSRField("has", size=3, offset=8, description="Axes along which the box is bounded, x in bit 0."),
-            CSRField("room", offset=11, description="The solid is the space outside of the box."),
-            CSRField("repeated", offset=12, description="The box repeats every 64 field units along each axis."),
+            CSRField("levels", size=6, offset=1, description="Levels of the sponge in use, the first level in bit 0; 0 for a box."),
             CSRField("is_round", offset=13, description="The field has spheres."),
-            CSRField("flat_too", offset=14, description="The field is a union of the flat field and spheres."),
             CSRField("spheres_repeated", offset=15, description="The first sphere repeats every 64 field units along each axis."),
             CSRField("last_sphere", size=3, offset=16, description="Number of the last sphere; 0 without spheres."),
             CSRField("last_light", size=2, offset=20, description="Number of the last light on spheres."),
@@ -161,39 +152,33 @@ class Raymarcher(LiteXModule):
                      description="Kind of the flat field."),
             CSRField("last_cone_left", size=4, offset=24, description="By exits, number of the left eye's last cone."),
             CSRField("last_cone_right", size=4, offset=28, description="By exits, number of the right eye's last cone."),
-        ], description="The solid of marching rays, and the number of spheres and lights.")
+        ], description="The solid, and the number of spheres and lights.")
         self._exits = Parameter(name="exits", fields=[
-            CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances."),
-            CSRField("rule", size=2, offset=1, values=_RULES, description="The solid."),
+            CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances from the bounding box on."),
+            CSRField("rule", size=2, offset=1, values=_RULES, description="The solid; `box` for marching rays."),
             CSRField("depth", size=3, offset=4, description="Levels of the sponge; 1 for spheres in place of cubes, and for an octahedron."),
             *(CSRField(f"{eye}_exit", size=2, offset=8 + 2 * number, values=_EXITS,
                        description=f"By which of its planes a ray leaves the prism around the {eye} eye.")
               for number, eye in enumerate(("left", "right"))),
             CSRField("shadow", offset=12, description="Faces of a sponge and of repeated boxes may be in the shadow of the first light."),
-        ], description="Rays by exits: the solid whose empty prisms they leave.")
+        ], description="The solid whose empty prisms rays leave: for marching rays the bounding box.")
         border = [self._register(f"border_{axis}", 22, f"By exits, the coordinate of a plane perpendicular to {axis}, s9.12: the lower plane "
                                  "of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes.")
                   for axis in "xyz"]
-        self._cube_half = Parameter(22, name="cube_half", description="Half the side of the sponge's smallest solid cubes, u10.12.")
-        box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12; by exits of any solid, and of a "
-                                   "repeated cube.") for axis in "xyz"]
+        box_half = [self._register(f"half_{axis}", 22, f"Half the side along {axis}, u10.12: of the solid, of a repeated cube, or, for marching "
+                                   "rays, of the sponge's smallest solid cubes.") for axis in "xyz"]
         self._tuning = Parameter(name="tuning", fields=[
             CSRField("threshold", size=16, offset=0, description="Threshold, u4.12: a ray hits where the distance is below "
-                     "threshold + t * 2^-footprint."),
-            CSRField("footprint", size=4, offset=16, description="Footprint, 7 to 15: the exponent of the part of the threshold "
-                     "that grows with t."),
-            CSRField("cap", size=8, offset=20, description="Step limit, at least 1: evaluations after which a ray is undecided. "
-                     "Fields with spheres take four times this limit."),
-        ], description="Threshold and step limit of the rays.")
-        self._far = Parameter(28, name="far", description="Far limit: of T, u14.14, by exits; of t, u11.12, of marching rays.")
-        self._near = Parameter(28, name="near", description="Near limit: by exits the near plane's T, u14.14; of marching rays the depth of "
-                               "the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12.")
-        origins, outside, first, starts, sums, nexts = [], [], [], [], [], []
+                     "threshold + T * 2^-(footprint + 7)."),
+            CSRField("footprint", size=4, offset=16, description="Exponent of the part of the threshold that grows with T, minus 7."),
+            CSRField("cap", size=10, offset=20, description="Step limit, at least 1: evaluations after which a ray is undecided."),
+        ], description="Threshold and step limit of marching rays.")
+        self._far = Parameter(28, name="far", description="Far limit of T, u14.14.")
+        self._near = Parameter(28, name="near", description="T of the near plane, u14.14.")
+        origins, first, starts, sums, nexts = [], [], [], [], []
         for eye in ("left", "right"):
             for axis in "xyz":
                 origins.append(self._register(f"origin_{eye}_{axis}", 25, f"Position of the {eye} eye, {axis}, s13.12."))
-                outside.append(self._register(f"outside_{eye}_{axis}", 24, f"Distance of the {eye} eye outside of the bounding box "
-                                              f"along {axis}, u12.12."))
                 first.append(self._register(f"first_{eye}_{axis}", 32, f"D of the {eye} eye's first ray, {axis}, s2.30."))
                 nexts.append(self._register(f"next_{eye}_{axis}", 29, f"Intervals above the planes of the prism around the {eye} eye "
                                             f"along {axis} (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the "
@@ -206,7 +191,7 @@ class Raymarcher(LiteXModule):
                                                  "27 if it has left the solid beyond the plane."))
                 sums.append(self._register(f"start_{eye}_{way}sum", 27, f"The same along the {text}fourth axis of an octahedron, without "
                                            "bit 27."))
-        bounds = [self._register(f"bounds_{axis}", 24, f"Half the side of the bounding box along {axis}, u12.12.")
+        bounds = [self._register(f"bounds_{axis}", 21, f"For marching rays, half the side of the bounding box along {axis}, u9.12.")
                   for axis in "xyz"]
         across = [self._register(f"across_{axis}", 32, f"Change of D per column, {axis}, s2.30.") for axis in "xyz"]
         down = [self._register(f"down_{axis}", 32, f"Change of D per line, {axis}, s2.30.") for axis in "xyz"]
@@ -272,24 +257,20 @@ class Raymarcher(LiteXModule):
         # selects.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
-        no_rays = (exits.enable & int(not fields.has_exits)) | (~exits.enable & int(not fields.has_marching))
+        no_rays = ~exits.enable & int(not fields.has_marching)
         has_list = solid.is_round & (~solid.spheres_repeated | (solid.last_sphere != 0))
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | no_rays | (has_list & int(not fields.round)) |
                                   (exits.enable & exits.shadow & int(not fields.shadow)) |
                                   (exits.enable & (exits.rule == 3) & exits.depth[0] & int(not fields.lattice)) |
                                   (solid.is_round & lights["normals"] & int(not fields.normals)) |
-                                  (solid.is_round & lights["highlight"] & int(not fields.highlight)) |
-                                  (solid.flat_too & ((blend_width | blend_inverse) != 0) & int(not fields.blend)))
+                                  (solid.is_round & lights["highlight"] & int(not fields.highlight)))
         too_deep = (solid.kind == 0) & (solid.levels >> fields.levels != 0)
-        constants = Struct("solid_t", "The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and "
-            "`blend_inverse` is 1 / (2 * width), u1.16. `flat_too` is high if a flat field and spheres are united, `is_round` if the field "
-            "has spheres, and `spheres_repeated` if the first one is repeated. `kind` is the kind of the flat field, whose constants follow.", {
+        constants = Struct("solid_t", "The solid of marching rays. `blend_width` is the width of the fillet, u5.12, and "
+            "`blend_inverse` is 1 / (2 * width), u1.16. `spheres_repeated` is high if the first sphere is repeated, by exits.", {
             "blend_width": blend_width, "blend_inverse": blend_inverse,
-            **{name: getattr(solid, name) for name in ("flat_too", "is_round", "spheres_repeated", "last_sphere", "kind", "levels")},
-            "cube_half": self._cube_half.storage, "half": _contents(box_half),
-            **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
-        limits = Struct("tuning_t", "Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.", {
-            **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage[:23]})
+            **{name: getattr(solid, name) for name in ("spheres_repeated", "last_sphere", "levels")}, "half": _contents(box_half)})
+        limits = Struct("tuning_t", "Constants of marching rays: threshold, footprint, step limit.", {
+            name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")})
         colours = Struct("palette_t", "Colours, {blue, green, red}, of the zenith, of undecided rays, of the faces by surface, and "
             "of faces in the shadow by axis.", {
             "zenith": palette[7].storage, "undecided": palette[6].storage,
@@ -297,14 +278,12 @@ class Raymarcher(LiteXModule):
         self.package = Package("raymarch", structs=[constants, sphere, lights, shadow, limits, colours, self.counters.events])
         # The registers that this build reads, without registers whose writes take effect at once.
         eyes = 2 if fields.stereo else 1
-        registers = [*box_half, self._far, self._near, *origins[:3*eyes], *first[:3*eyes], *across, *down, self._depth_scale, *palette,
-                     self._horizon, self._fog_shift]
-        if fields.has_exits:
-            registers += [*border, *starts[:6*eyes], *nexts[:3*eyes]]
+        registers = [*box_half, self._far, self._near, *origins[:3*eyes], *first[:3*eyes], *across, *down, *border, *starts[:6*eyes], *nexts[:3*eyes],
+                     self._depth_scale, *palette, self._horizon, self._fog_shift]
         if has_octants(fields.flat):
             registers += sums[:2*eyes]
         if fields.has_marching:
-            registers += [self._cube_half, self._tuning, *outside[:3*eyes], *bounds]
+            registers += [self._tuning, *bounds]
         self.parameters = PassParameters(registers)
         # Parameters are also copied while the block is disabled.
         self.clock_control = ClockControl(
@@ -350,7 +329,6 @@ class Raymarcher(LiteXModule):
             i_nexts          = Cat(*(after.storage[way:way + INTERVAL_BITS] for pair in (nexts[:3], nexts[3:]) for way in (0, 16)
                                      for after in pair)),
             i_origins        = Cat(*_contents(origins)),
-            i_outside        = Cat(*_contents(outside)),
             i_bounds         = Cat(*_contents(bounds)),
             i_solid          = constants.value,
             i_sphere_write   = write_sphere,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from glint_soc import rtl
-from glint_soc.fields import NAMES, has_octants
+from glint_soc.fields import FLAT_FIELDS, NAMES, has_octants
 from glint_soc.raymarch import BUILDS
 
 
@@ -36,9 +36,8 @@ _FIELDS_ALONE = {"TRIANGLES": 0, "FIELDS": 1}
 _NO_DEPTHS = _FIELDS_ALONE | {"DEPTHS": 0}
 _LINES_ALONE = {"TRIANGLES": 0, "LINES": 1}
 _NO_GEOMETRY = {"GEOMETRY": 0}
-# Parameters of builds with every field: of a lane (ring_lane), and of the module that computes the colours of rays (ray_paint).
-_ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND")}
-_ALL_PAINT = {"MARCH": 1, "ROUND": 1, "BLEND": 1, "OCTANTS": int(has_octants(NAMES)), "SHADOW": 1}
+# Parameters of the module that computes the colours of rays (ray_paint) in a build with every field.
+_ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES)), "SHADOW": 1}
 
 MODULES = [
     Module(
@@ -73,14 +72,14 @@ MODULES = [
            variants={"gesture_engine_hasty": {"MOMENTS": 1, "TIMEOUT_BITS": 6}}, measured=("gesture_engine",)),
     Module(top="line_setup"),
     Module(top="line_raster"),
-    *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),
+    *(Module(top=f"field_{flat.name}", measured=(f"field_{flat.name}",)) for flat in FLAT_FIELDS if flat.marches),
     Module(top="field_sphere", measured=("field_sphere",)),
     Module(top="ray_generator",
-           variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1, "BLEND": 1}}),
-    Module(top="ray_paint", variants={"ray_paint_march": {"MARCH": 1}, "ray_paint_shadow": {"SHADOW": 1}, "ray_paint_all": _ALL_PAINT}),
+           variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1}}),
+    Module(top="ray_paint", variants={"ray_paint_shadow": {"SHADOW": 1}, "ray_paint_all": _ALL_PAINT}),
     Module(top="round_light", variants={"round_light_plain": {"NORMALS": 0}, "round_light_all": {"HIGHLIGHT": 1, "BLEND": 1, "CONE": 1}},
            measured=("round_light", "round_light_plain", "round_light_all")),
-    Module(top="ring_lane", variants={"ring_lane_all": _ALL_FIELDS}),
+    Module(top="ring_lane", variants={"ring_lane_all": {"LEVELS": 6}}),
     Module(top="exit_lane",
            variants={"exit_lane_all": {"LEVELS": 6, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1}, "exit_lane_lattice": {"LATTICE": 1},
                      "exit_lane_octahedron": {"OCTAHEDRON": 1}}),

@@ -25,7 +25,7 @@ def test_roots():
     assert _yosys("root_table", "entries") == expected
 
 
-def test_round_inverses():
-    """Checks `ROUND_INVERSE` of docs/formats/raymarch.md: the root of 2^10/(i + 1), reduced by the fraction 2^-16 of itself, u8.9."""
-    expected = [isqrt(((1 << 28) - (1 << 13)) // (i + 1)) for i in range(1024)]
-    assert _yosys("round_inverse", "inverses") == expected
+def test_paces():
+    """Checks the table of paces of docs/formats/raymarch.md: the root of 32/(i + 1), u3.14, and the squares of i + 1."""
+    assert _yosys("ring_lane", "paces") == [isqrt((1 << 33) // (i + 1)) for i in range(128)]
+    assert _yosys("ring_lane", "squares") == [(i + 1) ** 2 for i in range(64)]

@@ -5,13 +5,11 @@ use core::fmt;
 use glint_core::field::{FixedCone, FixedSpheres, FlatConstants, Solid as Marched};
 use glint_core::stereo::Tint;
 use glint_hal::raymarch::{
-    self as driver, Capabilities, Control, Counters, DepthScale, Exit, Field, Kind, Raymarcher,
-    Solid, Start, Stereo, Tables, Tuning, colour,
+    self as driver, Capabilities, Control, Counters, DepthScale, Exit, Field, Kind, Prism,
+    Raymarcher, Solid, Start, Stereo, Tables, Tuning, colour,
 };
 use glint_model::raymarch::exits::{self, AXES, Cone, Exits, Rule};
-use glint_model::raymarch::{
-    Blend, FieldSetup, FieldStats, Form, Lights, Marching, Palette, Shine,
-};
+use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Form, Lights, Palette, Shine};
 
 /// A feature that a frame needs and this build of the raymarcher lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +38,6 @@ pub enum Missing {
     Shadow,
     /// Two eyes.
     Stereo,
-    /// Marching rays of fields that are drawn by exits.
-    Marching,
 }
 
 impl fmt::Display for Missing {
@@ -60,7 +56,6 @@ impl fmt::Display for Missing {
             Self::Highlight => f.write_str("no highlight on spheres"),
             Self::Shadow => f.write_str("no shadows"),
             Self::Stereo => f.write_str("no stereo"),
-            Self::Marching => f.write_str("no marching rays for this field"),
         }
     }
 }
@@ -109,14 +104,11 @@ impl Missing {
             return Err(Self::Shadow);
         }
         if let Form::Marching(marching) = &setup.form {
-            if marching.blend().width != 0 && !capabilities.blend {
-                return Err(Self::Blend);
-            }
-            if marching.beside.is_some_and(|beside| beside.bend != 0) {
+            if marching.beside.bend != 0 {
                 return Err(Self::Bend);
             }
             if !capabilities.blend {
-                return Err(Self::Marching);
+                return Err(Self::Blend);
             }
         }
         if setup.stereo.is_some() && !capabilities.stereo {
@@ -174,40 +166,43 @@ pub fn set_field(
         Solid::default().with_kind(kind).with_levels(levels),
     );
     let axes = |[x, y, z, _]: [i32; AXES]| [x, y, z];
-    let (solid, half, form, limits, eyes, steps) = match &setup.form {
+    let bounds;
+    let (rays, solid, half, form) = match &setup.form {
         Form::Exits(exits) => {
             set_shadow(raymarcher, exits, palette);
+            let borders = exits.solid.unwrap_or_default().borders();
             (
+                exits,
                 with_cones(raymarcher, exits, solid, setup.stereo.is_some()),
-                exits
-                    .solid
-                    .unwrap_or_default()
-                    .half()
-                    .map(|half| half as u32),
-                exit_form(exits),
-                [exits.far as u32, exits.near as u32],
-                exits.eyes.map(|eye| [eye.origin, axes(eye.first)]),
-                exits.steps.map(axes),
+                half(exits),
+                driver::Form::Exits { borders },
             )
         }
-        Form::Marching(marching) => (
-            with_flat(marching, solid),
-            constants(&marching.solid).half,
-            march_form(marching),
-            [marching.tuning.far, marching.near],
-            marching.eyes.map(|eye| [eye.origin, eye.first]),
-            marching.steps,
-        ),
+        Form::Marching(marching) => {
+            bounds = marching.bounds();
+            let form = driver::Form::March {
+                tuning: Tuning::default()
+                    .with_threshold(marching.threshold as u16)
+                    .with_footprint(marching.footprint.saturating_sub(7) as u8)
+                    .with_cap(marching.cap as u16),
+                bounds: &bounds,
+            };
+            let half = constants(&marching.solid).half;
+            (&marching.entry, solid, half, form)
+        }
     };
+    let (exits, prisms) = prisms(rays);
     raymarcher.set_field(&Field {
         control: Control::default().with_stereo(stereo),
         solid,
         half,
+        exits,
+        prisms,
         form,
-        limits,
-        origins: eyes.map(|[origin, _]| origin),
-        first: eyes.map(|[_, first]| first),
-        steps,
+        limits: [rays.far as u32, rays.near as u32],
+        origins: rays.eyes.map(|eye| eye.origin),
+        first: rays.eyes.map(|eye| axes(eye.first)),
+        steps: rays.steps.map(axes),
         depth_scale: DepthScale::default()
             .with_mantissa(setup.depth.mantissa)
             .with_exponent(setup.depth.exponent as u8 & 0x3F),
@@ -218,8 +213,14 @@ pub fn set_field(
     Ok(())
 }
 
-/// The constants of rays by exits.
-fn exit_form(exits: &Exits) -> driver::Form<'_> {
+/// Half the sides of the solid of rays by exits.
+fn half(exits: &Exits) -> [u32; 3] {
+    let solid = exits.solid.unwrap_or_default();
+    solid.half().map(|half| half as u32)
+}
+
+/// The rule of the solid, and the prisms around the eyes.
+fn prisms(exits: &Exits) -> (driver::Exits, [Prism; 2]) {
     let solid = exits.solid.unwrap_or_default();
     let rule = match solid.rule {
         Rule::Planes => driver::Rule::Planes,
@@ -248,40 +249,13 @@ fn exit_form(exits: &Exits) -> driver::Form<'_> {
         eye.start.sides.each_ref().map(axes)
     };
     let [left, right] = &exits.eyes;
-    driver::Form::Exits {
-        exits: driver::Exits::default()
-            .with_rule(rule)
-            .with_depth(solid.rule.levels() as u8)
-            .with_left_exit(exit(&left.start))
-            .with_right_exit(exit(&right.start))
-            .with_shadow(exits.sun.is_some()),
-        borders: solid.borders(),
-        prisms: [prism(left), prism(right)],
-    }
-}
-
-/// The constants of marching rays.
-fn march_form(marching: &Marching) -> driver::Form<'_> {
-    let flat = constants(&marching.solid);
-    driver::Form::March {
-        cube_half: flat.cube_half,
-        tuning: Tuning::default()
-            .with_threshold(marching.tuning.threshold as u16)
-            .with_footprint(marching.tuning.footprint as u8)
-            .with_cap(marching.tuning.cap as u8),
-        outside: marching.eyes.each_ref().map(|eye| &eye.outside),
-        bounds: &marching.bounds,
-    }
-}
-
-/// The solid of marching rays with its flat part.
-fn with_flat(marching: &Marching, solid: Solid) -> Solid {
-    let flat = constants(&marching.solid);
-    solid
-        .with_has(flat.has)
-        .with_room(flat.room)
-        .with_repeated(flat.repeated)
-        .with_flat_too(marching.beside.is_some())
+    let register = driver::Exits::default()
+        .with_rule(rule)
+        .with_depth(solid.rule.levels() as u8)
+        .with_left_exit(exit(&left.start))
+        .with_right_exit(exit(&right.start))
+        .with_shadow(exits.sun.is_some());
+    (register, [prism(left), prism(right)])
 }
 
 /// The solid with its spheres. Also writes their constants.
@@ -296,7 +270,7 @@ fn with_spheres(
     };
     let blend = setup
         .marching()
-        .map_or_else(Blend::default, Marching::blend);
+        .map_or_else(Blend::default, |marching| marching.beside.blend);
     set_spheres(raymarcher, spheres, &blend, lights);
     if raymarcher.capabilities().cone {
         set_cone_light(raymarcher, spheres.cone.as_ref());

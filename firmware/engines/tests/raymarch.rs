@@ -25,10 +25,6 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     ]);
     let mut raymarcher = Raymarcher::probe(registers).unwrap();
     let plain = FieldOptions::default();
-    let marching = FieldOptions {
-        marches: true,
-        ..plain
-    };
     let stereo = FieldOptions {
         stereo: Some(Stereo::parse("0.05,3").unwrap()),
         ..plain
@@ -42,7 +38,6 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
         ("sphere:1", plain, Err(Missing::Round)),
         ("lattice:1,0.3", plain, Err(Missing::Lattice)),
         ("menger:4", stereo, Err(Missing::Stereo)),
-        ("menger:4", marching, Err(Missing::Marching)),
         ("menger:4", plain, Ok(())),
     ] {
         block.borrow_mut().writes.clear();

@@ -62,23 +62,15 @@ pub struct Start {
 pub enum Form<'a> {
     /// Rays leave empty prisms.
     Exits {
-        /// The solid's rule, and the planes by which rays leave the prisms around the eyes.
-        exits: Exits,
         /// Coordinates of planes of the solid.
         borders: [i32; 3],
-        /// The prisms around the left and the right eye.
-        prisms: [Prism; 2],
     },
     /// Rays march by distances.
     March {
-        /// Half the side of a sponge's smallest cubes.
-        cube_half: u32,
-        /// Precision of the ray march.
+        /// Threshold and step limit.
         tuning: Tuning,
-        /// Distance of the left and of the right eye outside of the bounding box along each axis.
-        outside: [&'a [u32; 3]; 2],
         /// Half the sides of the solid's bounding box.
-        bounds: &'a [u32; 3],
+        bounds: &'a [i32; 3],
     },
 }
 
@@ -96,8 +88,13 @@ pub struct Field<'a> {
     pub control: Control,
     /// The solid.
     pub solid: Solid,
-    /// Half the sides of a box or, by exits, of any solid; for an octahedron its size and two zeros.
+    /// Half the sides of the solid, or of the smallest cubes of a sponge in which rays march.
     pub half: [u32; 3],
+    /// The rule of the solid or, for marching rays, of the bounding box, and the planes by which rays leave the prisms around the eyes.
+    /// [`Raymarcher::set_field`] sets `enable`.
+    pub exits: Exits,
+    /// The prisms around the left and the right eye.
+    pub prisms: [Prism; 2],
     /// How rays find the solid.
     pub form: Form<'a>,
     /// Position of the left and of the right eye.
@@ -171,31 +168,22 @@ impl Raymarcher {
         registers.half_y().write(field.half[1]);
         registers.half_z().write(field.half[2]);
         match &field.form {
-            Form::Exits {
-                exits,
-                borders,
-                prisms,
-            } => self.set_exits(*exits, borders, prisms),
-            Form::March {
-                cube_half,
-                tuning,
-                outside: [left, right],
-                bounds,
-            } => {
-                registers.exits().write(Exits::default());
-                registers.cube_half().write(*cube_half);
+            Form::Exits { borders } => {
+                let border = |coordinate: i32| coordinate as u32 & 0x3F_FFFF;
+                registers.exits().write(field.exits.with_enable(true));
+                registers.border_x().write(border(borders[0]));
+                registers.border_y().write(border(borders[1]));
+                registers.border_z().write(border(borders[2]));
+            }
+            Form::March { tuning, bounds } => {
+                registers.exits().write(field.exits.with_enable(false));
                 registers.tuning().write(*tuning);
-                registers.outside_left_x().write(left[0]);
-                registers.outside_left_y().write(left[1]);
-                registers.outside_left_z().write(left[2]);
-                registers.outside_right_x().write(right[0]);
-                registers.outside_right_y().write(right[1]);
-                registers.outside_right_z().write(right[2]);
-                registers.bounds_x().write(bounds[0]);
-                registers.bounds_y().write(bounds[1]);
-                registers.bounds_z().write(bounds[2]);
+                registers.bounds_x().write(bounds[0] as u32);
+                registers.bounds_y().write(bounds[1] as u32);
+                registers.bounds_z().write(bounds[2] as u32);
             }
         }
+        self.set_prisms(&field.prisms);
         let [left, right] = field.origins;
         registers.origin_left_x().write(place(left[0]));
         registers.origin_left_y().write(place(left[1]));
@@ -239,13 +227,8 @@ impl Raymarcher {
         registers.control().write(field.control.with_enable(true));
     }
 
-    fn set_exits(&self, exits: Exits, borders: &[i32; 3], prisms: &[Prism; 2]) {
+    fn set_prisms(&self, prisms: &[Prism; 2]) {
         let registers = &self.registers;
-        let border = |coordinate: i32| coordinate as u32 & 0x3F_FFFF;
-        registers.exits().write(exits.with_enable(true));
-        registers.border_x().write(border(borders[0]));
-        registers.border_y().write(border(borders[1]));
-        registers.border_z().write(border(borders[2]));
         let [left, right] = prisms;
         registers.start_left_x().write(left[0][0].plane());
         registers.start_left_y().write(left[0][1].plane());

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x4fed_18be;
+pub const BUILD_ID: u32 = 0x935c_fb8b;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4963,7 +4963,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 32 bits: The solid of marching rays, and the number of spheres and lights. Reads as 0.
+        /// `solid`, 32 bits: The solid, and the number of spheres and lights. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -4971,7 +4971,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_581c) }
         }
 
-        /// `exits`, 13 bits: Rays by exits: the solid whose empty prisms they leave. Reads as 0.
+        /// `exits`, 13 bits: The solid whose empty prisms rays leave: for marching rays the bounding box. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn exits(&self) -> Register<Exits, ReadWrite> {
@@ -5003,60 +5003,52 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_582c) }
         }
 
-        /// `cube_half`, 22 bits: Half the side of the sponge's smallest solid cubes, u10.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn cube_half(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5830) }
-        }
-
-        /// `half_x`, 22 bits: Half the side of the box along x, u10.12; by exits of any solid, and of a repeated cube. Reads as 0.
+        /// `half_x`, 22 bits: Half the side along x, u10.12: of the solid, of a repeated cube, or, for marching rays, of the sponge's smallest solid cubes. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5834) }
+            unsafe { Register::at(0xf000_5830) }
         }
 
-        /// `half_y`, 22 bits: Half the side of the box along y, u10.12; by exits of any solid, and of a repeated cube. Reads as 0.
+        /// `half_y`, 22 bits: Half the side along y, u10.12: of the solid, of a repeated cube, or, for marching rays, of the sponge's smallest solid cubes. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5838) }
+            unsafe { Register::at(0xf000_5834) }
         }
 
-        /// `half_z`, 22 bits: Half the side of the box along z, u10.12; by exits of any solid, and of a repeated cube. Reads as 0.
+        /// `half_z`, 22 bits: Half the side along z, u10.12: of the solid, of a repeated cube, or, for marching rays, of the sponge's smallest solid cubes. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_583c) }
+            unsafe { Register::at(0xf000_5838) }
         }
 
-        /// `tuning`, 28 bits: Threshold and step limit of the rays. Reads as 0.
+        /// `tuning`, 30 bits: Threshold and step limit of marching rays. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn tuning(&self) -> Register<Tuning, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5840) }
+            unsafe { Register::at(0xf000_583c) }
         }
 
-        /// `far`, 28 bits: Far limit: of T, u14.14, by exits; of t, u11.12, of marching rays. Reads as 0.
+        /// `far`, 28 bits: Far limit of T, u14.14. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn far(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5844) }
+            unsafe { Register::at(0xf000_5840) }
         }
 
-        /// `near`, 28 bits: Near limit: by exits the near plane's T, u14.14; of marching rays the depth of the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12. Reads as 0.
+        /// `near`, 28 bits: T of the near plane, u14.14. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn near(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5848) }
+            unsafe { Register::at(0xf000_5844) }
         }
 
         /// `origin_left_x`, 25 bits: Position of the left eye, x, s13.12. Reads as 0.
@@ -5064,15 +5056,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_584c) }
-        }
-
-        /// `outside_left_x`, 24 bits: Distance of the left eye outside of the bounding box along x, u12.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn outside_left_x(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5850) }
+            unsafe { Register::at(0xf000_5848) }
         }
 
         /// `first_left_x`, 32 bits: D of the left eye's first ray, x, s2.30. Reads as 0.
@@ -5080,7 +5064,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5854) }
+            unsafe { Register::at(0xf000_584c) }
         }
 
         /// `next_left_x`, 29 bits: Intervals above the planes of the prism around the left eye along x (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5088,7 +5072,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5858) }
+            unsafe { Register::at(0xf000_5850) }
         }
 
         /// `origin_left_y`, 25 bits: Position of the left eye, y, s13.12. Reads as 0.
@@ -5096,15 +5080,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_585c) }
-        }
-
-        /// `outside_left_y`, 24 bits: Distance of the left eye outside of the bounding box along y, u12.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn outside_left_y(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5860) }
+            unsafe { Register::at(0xf000_5854) }
         }
 
         /// `first_left_y`, 32 bits: D of the left eye's first ray, y, s2.30. Reads as 0.
@@ -5112,7 +5088,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5864) }
+            unsafe { Register::at(0xf000_5858) }
         }
 
         /// `next_left_y`, 29 bits: Intervals above the planes of the prism around the left eye along y (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5120,7 +5096,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5868) }
+            unsafe { Register::at(0xf000_585c) }
         }
 
         /// `origin_left_z`, 25 bits: Position of the left eye, z, s13.12. Reads as 0.
@@ -5128,15 +5104,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_586c) }
-        }
-
-        /// `outside_left_z`, 24 bits: Distance of the left eye outside of the bounding box along z, u12.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn outside_left_z(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5870) }
+            unsafe { Register::at(0xf000_5860) }
         }
 
         /// `first_left_z`, 32 bits: D of the left eye's first ray, z, s2.30. Reads as 0.
@@ -5144,7 +5112,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5874) }
+            unsafe { Register::at(0xf000_5864) }
         }
 
         /// `next_left_z`, 29 bits: Intervals above the planes of the prism around the left eye along z (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5152,7 +5120,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5878) }
+            unsafe { Register::at(0xf000_5868) }
         }
 
         /// `start_left_x`, 28 bits: Plane of the empty prism around the left eye along the x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5160,7 +5128,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_587c) }
+            unsafe { Register::at(0xf000_586c) }
         }
 
         /// `start_left_y`, 28 bits: Plane of the empty prism around the left eye along the y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5168,7 +5136,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5880) }
+            unsafe { Register::at(0xf000_5870) }
         }
 
         /// `start_left_z`, 28 bits: Plane of the empty prism around the left eye along the z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5176,7 +5144,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5884) }
+            unsafe { Register::at(0xf000_5874) }
         }
 
         /// `start_left_sum`, 27 bits: The same along the fourth axis of an octahedron, without bit 27. Reads as 0.
@@ -5184,7 +5152,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_sum(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5888) }
+            unsafe { Register::at(0xf000_5878) }
         }
 
         /// `start_left_mirrored_x`, 28 bits: Plane of the empty prism around the left eye along the mirrored x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5192,7 +5160,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_mirrored_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_588c) }
+            unsafe { Register::at(0xf000_587c) }
         }
 
         /// `start_left_mirrored_y`, 28 bits: Plane of the empty prism around the left eye along the mirrored y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5200,7 +5168,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_mirrored_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5890) }
+            unsafe { Register::at(0xf000_5880) }
         }
 
         /// `start_left_mirrored_z`, 28 bits: Plane of the empty prism around the left eye along the mirrored z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5208,7 +5176,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_mirrored_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5894) }
+            unsafe { Register::at(0xf000_5884) }
         }
 
         /// `start_left_mirrored_sum`, 27 bits: The same along the mirrored fourth axis of an octahedron, without bit 27. Reads as 0.
@@ -5216,7 +5184,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_left_mirrored_sum(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5898) }
+            unsafe { Register::at(0xf000_5888) }
         }
 
         /// `origin_right_x`, 25 bits: Position of the right eye, x, s13.12. Reads as 0.
@@ -5224,15 +5192,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_589c) }
-        }
-
-        /// `outside_right_x`, 24 bits: Distance of the right eye outside of the bounding box along x, u12.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn outside_right_x(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a0) }
+            unsafe { Register::at(0xf000_588c) }
         }
 
         /// `first_right_x`, 32 bits: D of the right eye's first ray, x, s2.30. Reads as 0.
@@ -5240,7 +5200,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a4) }
+            unsafe { Register::at(0xf000_5890) }
         }
 
         /// `next_right_x`, 29 bits: Intervals above the planes of the prism around the right eye along x (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5248,7 +5208,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58a8) }
+            unsafe { Register::at(0xf000_5894) }
         }
 
         /// `origin_right_y`, 25 bits: Position of the right eye, y, s13.12. Reads as 0.
@@ -5256,15 +5216,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ac) }
-        }
-
-        /// `outside_right_y`, 24 bits: Distance of the right eye outside of the bounding box along y, u12.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn outside_right_y(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b0) }
+            unsafe { Register::at(0xf000_5898) }
         }
 
         /// `first_right_y`, 32 bits: D of the right eye's first ray, y, s2.30. Reads as 0.
@@ -5272,7 +5224,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b4) }
+            unsafe { Register::at(0xf000_589c) }
         }
 
         /// `next_right_y`, 29 bits: Intervals above the planes of the prism around the right eye along y (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5280,7 +5232,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58b8) }
+            unsafe { Register::at(0xf000_58a0) }
         }
 
         /// `origin_right_z`, 25 bits: Position of the right eye, z, s13.12. Reads as 0.
@@ -5288,15 +5240,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn origin_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58bc) }
-        }
-
-        /// `outside_right_z`, 24 bits: Distance of the right eye outside of the bounding box along z, u12.12. Reads as 0.
-        #[inline]
-        #[must_use]
-        pub const fn outside_right_z(&self) -> Register<u32, ReadWrite> {
-            // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c0) }
+            unsafe { Register::at(0xf000_58a4) }
         }
 
         /// `first_right_z`, 32 bits: D of the right eye's first ray, z, s2.30. Reads as 0.
@@ -5304,7 +5248,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn first_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c4) }
+            unsafe { Register::at(0xf000_58a8) }
         }
 
         /// `next_right_z`, 29 bits: Intervals above the planes of the prism around the right eye along z (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the mirrored axis in bits 16 to 28. Reads as 0.
@@ -5312,7 +5256,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn next_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58c8) }
+            unsafe { Register::at(0xf000_58ac) }
         }
 
         /// `start_right_x`, 28 bits: Plane of the empty prism around the right eye along the x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5320,7 +5264,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58cc) }
+            unsafe { Register::at(0xf000_58b0) }
         }
 
         /// `start_right_y`, 28 bits: Plane of the empty prism around the right eye along the y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5328,7 +5272,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d0) }
+            unsafe { Register::at(0xf000_58b4) }
         }
 
         /// `start_right_z`, 28 bits: Plane of the empty prism around the right eye along the z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5336,7 +5280,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d4) }
+            unsafe { Register::at(0xf000_58b8) }
         }
 
         /// `start_right_sum`, 27 bits: The same along the fourth axis of an octahedron, without bit 27. Reads as 0.
@@ -5344,7 +5288,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_sum(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58d8) }
+            unsafe { Register::at(0xf000_58bc) }
         }
 
         /// `start_right_mirrored_x`, 28 bits: Plane of the empty prism around the right eye along the mirrored x axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5352,7 +5296,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58dc) }
+            unsafe { Register::at(0xf000_58c0) }
         }
 
         /// `start_right_mirrored_y`, 28 bits: Plane of the empty prism around the right eye along the mirrored y axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5360,7 +5304,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e0) }
+            unsafe { Register::at(0xf000_58c4) }
         }
 
         /// `start_right_mirrored_z`, 28 bits: Plane of the empty prism around the right eye along the mirrored z axis: its distance in bits 0 to 24, u12.12; bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit 27 if it has left the solid beyond the plane. Reads as 0.
@@ -5368,7 +5312,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e4) }
+            unsafe { Register::at(0xf000_58c8) }
         }
 
         /// `start_right_mirrored_sum`, 27 bits: The same along the mirrored fourth axis of an octahedron, without bit 27. Reads as 0.
@@ -5376,31 +5320,31 @@ pub mod raymarch {
         #[must_use]
         pub const fn start_right_mirrored_sum(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58e8) }
+            unsafe { Register::at(0xf000_58cc) }
         }
 
-        /// `bounds_x`, 24 bits: Half the side of the bounding box along x, u12.12. Reads as 0.
+        /// `bounds_x`, 21 bits: For marching rays, half the side of the bounding box along x, u9.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn bounds_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58ec) }
+            unsafe { Register::at(0xf000_58d0) }
         }
 
-        /// `bounds_y`, 24 bits: Half the side of the bounding box along y, u12.12. Reads as 0.
+        /// `bounds_y`, 21 bits: For marching rays, half the side of the bounding box along y, u9.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn bounds_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f0) }
+            unsafe { Register::at(0xf000_58d4) }
         }
 
-        /// `bounds_z`, 24 bits: Half the side of the bounding box along z, u12.12. Reads as 0.
+        /// `bounds_z`, 21 bits: For marching rays, half the side of the bounding box along z, u9.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn bounds_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f4) }
+            unsafe { Register::at(0xf000_58d8) }
         }
 
         /// `across_x`, 32 bits: Change of D per column, x, s2.30. Reads as 0.
@@ -5408,7 +5352,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58f8) }
+            unsafe { Register::at(0xf000_58dc) }
         }
 
         /// `across_y`, 32 bits: Change of D per column, y, s2.30. Reads as 0.
@@ -5416,7 +5360,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_58fc) }
+            unsafe { Register::at(0xf000_58e0) }
         }
 
         /// `across_z`, 32 bits: Change of D per column, z, s2.30. Reads as 0.
@@ -5424,7 +5368,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn across_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5900) }
+            unsafe { Register::at(0xf000_58e4) }
         }
 
         /// `down_x`, 32 bits: Change of D per line, x, s2.30. Reads as 0.
@@ -5432,7 +5376,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_x(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5904) }
+            unsafe { Register::at(0xf000_58e8) }
         }
 
         /// `down_y`, 32 bits: Change of D per line, y, s2.30. Reads as 0.
@@ -5440,7 +5384,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_y(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5908) }
+            unsafe { Register::at(0xf000_58ec) }
         }
 
         /// `down_z`, 32 bits: Change of D per line, z, s2.30. Reads as 0.
@@ -5448,7 +5392,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn down_z(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_590c) }
+            unsafe { Register::at(0xf000_58f0) }
         }
 
         /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent. Reads as 0.
@@ -5456,7 +5400,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5910) }
+            unsafe { Register::at(0xf000_58f4) }
         }
 
         /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5464,7 +5408,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5914) }
+            unsafe { Register::at(0xf000_58f8) }
         }
 
         /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5472,7 +5416,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5918) }
+            unsafe { Register::at(0xf000_58fc) }
         }
 
         /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5480,7 +5424,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_591c) }
+            unsafe { Register::at(0xf000_5900) }
         }
 
         /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5488,7 +5432,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5920) }
+            unsafe { Register::at(0xf000_5904) }
         }
 
         /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5496,7 +5440,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5924) }
+            unsafe { Register::at(0xf000_5908) }
         }
 
         /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5504,7 +5448,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5928) }
+            unsafe { Register::at(0xf000_590c) }
         }
 
         /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5512,7 +5456,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_592c) }
+            unsafe { Register::at(0xf000_5910) }
         }
 
         /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue. Reads as 0.
@@ -5520,7 +5464,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5930) }
+            unsafe { Register::at(0xf000_5914) }
         }
 
         /// `horizon`, 24 bits: Colour of the horizon, and of the fog. Reads as 0.
@@ -5528,7 +5472,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn horizon(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5934) }
+            unsafe { Register::at(0xf000_5918) }
         }
 
         /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e. Reads as 0.
@@ -5536,7 +5480,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5938) }
+            unsafe { Register::at(0xf000_591c) }
         }
 
         /// `table`, 17 bits: Writing sets an entry of the tables of fog and light. Reads as 0.
@@ -5544,7 +5488,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_593c) }
+            unsafe { Register::at(0xf000_5920) }
         }
 
         /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces. Reads as 0.
@@ -5552,7 +5496,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5940) }
+            unsafe { Register::at(0xf000_5924) }
         }
 
         /// `cone_address`, 9 bits: Address of the next write to `cone_value`: the eye in bit 8, the number of a cone in bits 4 to 7, and of its constant in bits 0 to 3 (rtl/raymarch/sphere_unit.sv). Reads as 0.
@@ -5560,7 +5504,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cone_address(&self) -> Register<u16, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5944) }
+            unsafe { Register::at(0xf000_5928) }
         }
 
         /// `cone_value`, 32 bits: Writing sets a constant of the cone in which an eye sees a sphere, and increases the address by 1. Reads as 0.
@@ -5568,7 +5512,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cone_value(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5948) }
+            unsafe { Register::at(0xf000_592c) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles in which a field was drawn, modulo 2^32.
@@ -5576,7 +5520,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_594c) }
+            unsafe { Register::at(0xf000_5930) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which a ray waited because no end of a ray was taken, modulo 2^32.
@@ -5584,7 +5528,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5950) }
+            unsafe { Register::at(0xf000_5934) }
         }
 
         /// `items_in`, 32 bits: Rays, modulo 2^32.
@@ -5592,7 +5536,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5954) }
+            unsafe { Register::at(0xf000_5938) }
         }
 
         /// `items_out`, 32 bits: Pixels given to the band buffer, counted for each eye, modulo 2^32.
@@ -5600,7 +5544,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5958) }
+            unsafe { Register::at(0xf000_593c) }
         }
 
         /// `cycles_idle`, 32 bits: Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came, modulo 2^32.
@@ -5608,7 +5552,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn cycles_idle(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_595c) }
+            unsafe { Register::at(0xf000_5940) }
         }
 
         /// `evaluations`, 32 bits: Evaluations of the field: occupied slots of the lanes, modulo 2^32.
@@ -5616,7 +5560,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn evaluations(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5960) }
+            unsafe { Register::at(0xf000_5944) }
         }
 
         /// `hits`, 32 bits: Rays that hit, modulo 2^32.
@@ -5624,7 +5568,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn hits(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5964) }
+            unsafe { Register::at(0xf000_5948) }
         }
 
         /// `misses`, 32 bits: Rays that missed, modulo 2^32.
@@ -5632,7 +5576,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn misses(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5968) }
+            unsafe { Register::at(0xf000_594c) }
         }
 
         /// `undecided`, 32 bits: Undecided rays, modulo 2^32.
@@ -5640,7 +5584,7 @@ pub mod raymarch {
         #[must_use]
         pub const fn undecided(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_596c) }
+            unsafe { Register::at(0xf000_5950) }
         }
     }
 
@@ -5670,166 +5614,152 @@ pub mod raymarch {
         pub const BORDER_Y: u32 = 0x28;
         /// `border_z`.
         pub const BORDER_Z: u32 = 0x2c;
-        /// `cube_half`.
-        pub const CUBE_HALF: u32 = 0x30;
         /// `half_x`.
-        pub const HALF_X: u32 = 0x34;
+        pub const HALF_X: u32 = 0x30;
         /// `half_y`.
-        pub const HALF_Y: u32 = 0x38;
+        pub const HALF_Y: u32 = 0x34;
         /// `half_z`.
-        pub const HALF_Z: u32 = 0x3c;
+        pub const HALF_Z: u32 = 0x38;
         /// `tuning`.
-        pub const TUNING: u32 = 0x40;
+        pub const TUNING: u32 = 0x3c;
         /// `far`.
-        pub const FAR: u32 = 0x44;
+        pub const FAR: u32 = 0x40;
         /// `near`.
-        pub const NEAR: u32 = 0x48;
+        pub const NEAR: u32 = 0x44;
         /// `origin_left_x`.
-        pub const ORIGIN_LEFT_X: u32 = 0x4c;
-        /// `outside_left_x`.
-        pub const OUTSIDE_LEFT_X: u32 = 0x50;
+        pub const ORIGIN_LEFT_X: u32 = 0x48;
         /// `first_left_x`.
-        pub const FIRST_LEFT_X: u32 = 0x54;
+        pub const FIRST_LEFT_X: u32 = 0x4c;
         /// `next_left_x`.
-        pub const NEXT_LEFT_X: u32 = 0x58;
+        pub const NEXT_LEFT_X: u32 = 0x50;
         /// `origin_left_y`.
-        pub const ORIGIN_LEFT_Y: u32 = 0x5c;
-        /// `outside_left_y`.
-        pub const OUTSIDE_LEFT_Y: u32 = 0x60;
+        pub const ORIGIN_LEFT_Y: u32 = 0x54;
         /// `first_left_y`.
-        pub const FIRST_LEFT_Y: u32 = 0x64;
+        pub const FIRST_LEFT_Y: u32 = 0x58;
         /// `next_left_y`.
-        pub const NEXT_LEFT_Y: u32 = 0x68;
+        pub const NEXT_LEFT_Y: u32 = 0x5c;
         /// `origin_left_z`.
-        pub const ORIGIN_LEFT_Z: u32 = 0x6c;
-        /// `outside_left_z`.
-        pub const OUTSIDE_LEFT_Z: u32 = 0x70;
+        pub const ORIGIN_LEFT_Z: u32 = 0x60;
         /// `first_left_z`.
-        pub const FIRST_LEFT_Z: u32 = 0x74;
+        pub const FIRST_LEFT_Z: u32 = 0x64;
         /// `next_left_z`.
-        pub const NEXT_LEFT_Z: u32 = 0x78;
+        pub const NEXT_LEFT_Z: u32 = 0x68;
         /// `start_left_x`.
-        pub const START_LEFT_X: u32 = 0x7c;
+        pub const START_LEFT_X: u32 = 0x6c;
         /// `start_left_y`.
-        pub const START_LEFT_Y: u32 = 0x80;
+        pub const START_LEFT_Y: u32 = 0x70;
         /// `start_left_z`.
-        pub const START_LEFT_Z: u32 = 0x84;
+        pub const START_LEFT_Z: u32 = 0x74;
         /// `start_left_sum`.
-        pub const START_LEFT_SUM: u32 = 0x88;
+        pub const START_LEFT_SUM: u32 = 0x78;
         /// `start_left_mirrored_x`.
-        pub const START_LEFT_MIRRORED_X: u32 = 0x8c;
+        pub const START_LEFT_MIRRORED_X: u32 = 0x7c;
         /// `start_left_mirrored_y`.
-        pub const START_LEFT_MIRRORED_Y: u32 = 0x90;
+        pub const START_LEFT_MIRRORED_Y: u32 = 0x80;
         /// `start_left_mirrored_z`.
-        pub const START_LEFT_MIRRORED_Z: u32 = 0x94;
+        pub const START_LEFT_MIRRORED_Z: u32 = 0x84;
         /// `start_left_mirrored_sum`.
-        pub const START_LEFT_MIRRORED_SUM: u32 = 0x98;
+        pub const START_LEFT_MIRRORED_SUM: u32 = 0x88;
         /// `origin_right_x`.
-        pub const ORIGIN_RIGHT_X: u32 = 0x9c;
-        /// `outside_right_x`.
-        pub const OUTSIDE_RIGHT_X: u32 = 0xa0;
+        pub const ORIGIN_RIGHT_X: u32 = 0x8c;
         /// `first_right_x`.
-        pub const FIRST_RIGHT_X: u32 = 0xa4;
+        pub const FIRST_RIGHT_X: u32 = 0x90;
         /// `next_right_x`.
-        pub const NEXT_RIGHT_X: u32 = 0xa8;
+        pub const NEXT_RIGHT_X: u32 = 0x94;
         /// `origin_right_y`.
-        pub const ORIGIN_RIGHT_Y: u32 = 0xac;
-        /// `outside_right_y`.
-        pub const OUTSIDE_RIGHT_Y: u32 = 0xb0;
+        pub const ORIGIN_RIGHT_Y: u32 = 0x98;
         /// `first_right_y`.
-        pub const FIRST_RIGHT_Y: u32 = 0xb4;
+        pub const FIRST_RIGHT_Y: u32 = 0x9c;
         /// `next_right_y`.
-        pub const NEXT_RIGHT_Y: u32 = 0xb8;
+        pub const NEXT_RIGHT_Y: u32 = 0xa0;
         /// `origin_right_z`.
-        pub const ORIGIN_RIGHT_Z: u32 = 0xbc;
-        /// `outside_right_z`.
-        pub const OUTSIDE_RIGHT_Z: u32 = 0xc0;
+        pub const ORIGIN_RIGHT_Z: u32 = 0xa4;
         /// `first_right_z`.
-        pub const FIRST_RIGHT_Z: u32 = 0xc4;
+        pub const FIRST_RIGHT_Z: u32 = 0xa8;
         /// `next_right_z`.
-        pub const NEXT_RIGHT_Z: u32 = 0xc8;
+        pub const NEXT_RIGHT_Z: u32 = 0xac;
         /// `start_right_x`.
-        pub const START_RIGHT_X: u32 = 0xcc;
+        pub const START_RIGHT_X: u32 = 0xb0;
         /// `start_right_y`.
-        pub const START_RIGHT_Y: u32 = 0xd0;
+        pub const START_RIGHT_Y: u32 = 0xb4;
         /// `start_right_z`.
-        pub const START_RIGHT_Z: u32 = 0xd4;
+        pub const START_RIGHT_Z: u32 = 0xb8;
         /// `start_right_sum`.
-        pub const START_RIGHT_SUM: u32 = 0xd8;
+        pub const START_RIGHT_SUM: u32 = 0xbc;
         /// `start_right_mirrored_x`.
-        pub const START_RIGHT_MIRRORED_X: u32 = 0xdc;
+        pub const START_RIGHT_MIRRORED_X: u32 = 0xc0;
         /// `start_right_mirrored_y`.
-        pub const START_RIGHT_MIRRORED_Y: u32 = 0xe0;
+        pub const START_RIGHT_MIRRORED_Y: u32 = 0xc4;
         /// `start_right_mirrored_z`.
-        pub const START_RIGHT_MIRRORED_Z: u32 = 0xe4;
+        pub const START_RIGHT_MIRRORED_Z: u32 = 0xc8;
         /// `start_right_mirrored_sum`.
-        pub const START_RIGHT_MIRRORED_SUM: u32 = 0xe8;
+        pub const START_RIGHT_MIRRORED_SUM: u32 = 0xcc;
         /// `bounds_x`.
-        pub const BOUNDS_X: u32 = 0xec;
+        pub const BOUNDS_X: u32 = 0xd0;
         /// `bounds_y`.
-        pub const BOUNDS_Y: u32 = 0xf0;
+        pub const BOUNDS_Y: u32 = 0xd4;
         /// `bounds_z`.
-        pub const BOUNDS_Z: u32 = 0xf4;
+        pub const BOUNDS_Z: u32 = 0xd8;
         /// `across_x`.
-        pub const ACROSS_X: u32 = 0xf8;
+        pub const ACROSS_X: u32 = 0xdc;
         /// `across_y`.
-        pub const ACROSS_Y: u32 = 0xfc;
+        pub const ACROSS_Y: u32 = 0xe0;
         /// `across_z`.
-        pub const ACROSS_Z: u32 = 0x100;
+        pub const ACROSS_Z: u32 = 0xe4;
         /// `down_x`.
-        pub const DOWN_X: u32 = 0x104;
+        pub const DOWN_X: u32 = 0xe8;
         /// `down_y`.
-        pub const DOWN_Y: u32 = 0x108;
+        pub const DOWN_Y: u32 = 0xec;
         /// `down_z`.
-        pub const DOWN_Z: u32 = 0x10c;
+        pub const DOWN_Z: u32 = 0xf0;
         /// `depth_scale`.
-        pub const DEPTH_SCALE: u32 = 0x110;
+        pub const DEPTH_SCALE: u32 = 0xf4;
         /// `colour_0`.
-        pub const COLOUR_0: u32 = 0x114;
+        pub const COLOUR_0: u32 = 0xf8;
         /// `colour_1`.
-        pub const COLOUR_1: u32 = 0x118;
+        pub const COLOUR_1: u32 = 0xfc;
         /// `colour_2`.
-        pub const COLOUR_2: u32 = 0x11c;
+        pub const COLOUR_2: u32 = 0x100;
         /// `colour_3`.
-        pub const COLOUR_3: u32 = 0x120;
+        pub const COLOUR_3: u32 = 0x104;
         /// `colour_4`.
-        pub const COLOUR_4: u32 = 0x124;
+        pub const COLOUR_4: u32 = 0x108;
         /// `colour_5`.
-        pub const COLOUR_5: u32 = 0x128;
+        pub const COLOUR_5: u32 = 0x10c;
         /// `colour_6`.
-        pub const COLOUR_6: u32 = 0x12c;
+        pub const COLOUR_6: u32 = 0x110;
         /// `colour_7`.
-        pub const COLOUR_7: u32 = 0x130;
+        pub const COLOUR_7: u32 = 0x114;
         /// `horizon`.
-        pub const HORIZON: u32 = 0x134;
+        pub const HORIZON: u32 = 0x118;
         /// `fog_shift`.
-        pub const FOG_SHIFT: u32 = 0x138;
+        pub const FOG_SHIFT: u32 = 0x11c;
         /// `table`.
-        pub const TABLE: u32 = 0x13c;
+        pub const TABLE: u32 = 0x120;
         /// `sphere`.
-        pub const SPHERE: u32 = 0x140;
+        pub const SPHERE: u32 = 0x124;
         /// `cone_address`.
-        pub const CONE_ADDRESS: u32 = 0x144;
+        pub const CONE_ADDRESS: u32 = 0x128;
         /// `cone_value`.
-        pub const CONE_VALUE: u32 = 0x148;
+        pub const CONE_VALUE: u32 = 0x12c;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0x14c;
+        pub const CYCLES_BUSY: u32 = 0x130;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0x150;
+        pub const CYCLES_STALLED: u32 = 0x134;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0x154;
+        pub const ITEMS_IN: u32 = 0x138;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0x158;
+        pub const ITEMS_OUT: u32 = 0x13c;
         /// `cycles_idle`.
-        pub const CYCLES_IDLE: u32 = 0x15c;
+        pub const CYCLES_IDLE: u32 = 0x140;
         /// `evaluations`.
-        pub const EVALUATIONS: u32 = 0x160;
+        pub const EVALUATIONS: u32 = 0x144;
         /// `hits`.
-        pub const HITS: u32 = 0x164;
+        pub const HITS: u32 = 0x148;
         /// `misses`.
-        pub const MISSES: u32 = 0x168;
+        pub const MISSES: u32 = 0x14c;
         /// `undecided`.
-        pub const UNDECIDED: u32 = 0x16c;
+        pub const UNDECIDED: u32 = 0x150;
     }
 
     /// A value of `caps`.
@@ -6195,7 +6125,7 @@ pub mod raymarch {
     }
 
     impl Solid {
-        /// `levels`, bits 6 to 1: Levels of the sponge in use, the first level in bit 0.
+        /// `levels`, bits 6 to 1: Levels of the sponge in use, the first level in bit 0; 0 for a box.
         #[inline]
         #[must_use]
         pub const fn levels(self) -> u8 {
@@ -6207,48 +6137,6 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_levels(self, value: u8) -> Self {
             Self(self.0 & !(0x3f << 1) | (value as u32 & 0x3f) << 1)
-        }
-
-        /// `has`, bits 10 to 8: Axes along which the box is bounded, x in bit 0.
-        #[inline]
-        #[must_use]
-        pub const fn has(self) -> u8 {
-            ((self.0 >> 8) & 0x7) as u8
-        }
-
-        /// This value with another `has`: the low 3 bits of `value`.
-        #[inline]
-        #[must_use]
-        pub const fn with_has(self, value: u8) -> Self {
-            Self(self.0 & !(0x7 << 8) | (value as u32 & 0x7) << 8)
-        }
-
-        /// `room`, bit 11: The solid is the space outside of the box.
-        #[inline]
-        #[must_use]
-        pub const fn room(self) -> bool {
-            (self.0 >> 11) & 1 != 0
-        }
-
-        /// This value with another `room`.
-        #[inline]
-        #[must_use]
-        pub const fn with_room(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
-        }
-
-        /// `repeated`, bit 12: The box repeats every 64 field units along each axis.
-        #[inline]
-        #[must_use]
-        pub const fn repeated(self) -> bool {
-            (self.0 >> 12) & 1 != 0
-        }
-
-        /// This value with another `repeated`.
-        #[inline]
-        #[must_use]
-        pub const fn with_repeated(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
         }
 
         /// `is_round`, bit 13: The field has spheres.
@@ -6263,20 +6151,6 @@ pub mod raymarch {
         #[must_use]
         pub const fn with_is_round(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
-        }
-
-        /// `flat_too`, bit 14: The field is a union of the flat field and spheres.
-        #[inline]
-        #[must_use]
-        pub const fn flat_too(self) -> bool {
-            (self.0 >> 14) & 1 != 0
-        }
-
-        /// This value with another `flat_too`.
-        #[inline]
-        #[must_use]
-        pub const fn with_flat_too(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
         /// `spheres_repeated`, bit 15: The first sphere repeats every 64 field units along each axis.
@@ -6379,7 +6253,7 @@ pub mod raymarch {
     }
 
     impl Exits {
-        /// `enable`, bit 0: Rays leave empty prisms; otherwise they march by distances.
+        /// `enable`, bit 0: Rays leave empty prisms; otherwise they march by distances from the bounding box on.
         #[inline]
         #[must_use]
         pub const fn enable(self) -> bool {
@@ -6393,7 +6267,7 @@ pub mod raymarch {
             Self(self.0 & !0x1 | value as u32 & 0x1)
         }
 
-        /// `rule`, bits 2 to 1: The solid.
+        /// `rule`, bits 2 to 1: The solid; `box` for marching rays.
         #[inline]
         #[must_use]
         pub const fn rule(self) -> Rule {
@@ -6479,7 +6353,7 @@ pub mod raymarch {
     }
 
     impl Tuning {
-        /// `threshold`, bits 15 to 0: Threshold, u4.12: a ray hits where the distance is below threshold + t * 2^-footprint.
+        /// `threshold`, bits 15 to 0: Threshold, u4.12: a ray hits where the distance is below threshold + T * 2^-(footprint + 7).
         #[inline]
         #[must_use]
         pub const fn threshold(self) -> u16 {
@@ -6493,7 +6367,7 @@ pub mod raymarch {
             Self(self.0 & !0xffff | value as u32 & 0xffff)
         }
 
-        /// `footprint`, bits 19 to 16: Footprint, 7 to 15: the exponent of the part of the threshold that grows with t.
+        /// `footprint`, bits 19 to 16: Exponent of the part of the threshold that grows with T, minus 7.
         #[inline]
         #[must_use]
         pub const fn footprint(self) -> u8 {
@@ -6507,18 +6381,18 @@ pub mod raymarch {
             Self(self.0 & !(0xf << 16) | (value as u32 & 0xf) << 16)
         }
 
-        /// `cap`, bits 27 to 20: Step limit, at least 1: evaluations after which a ray is undecided. Fields with spheres take four times this limit.
+        /// `cap`, bits 29 to 20: Step limit, at least 1: evaluations after which a ray is undecided.
         #[inline]
         #[must_use]
-        pub const fn cap(self) -> u8 {
-            ((self.0 >> 20) & 0xff) as u8
+        pub const fn cap(self) -> u16 {
+            ((self.0 >> 20) & 0x3ff) as u16
         }
 
-        /// This value with another `cap`.
+        /// This value with another `cap`: the low 10 bits of `value`.
         #[inline]
         #[must_use]
-        pub const fn with_cap(self, value: u8) -> Self {
-            Self(self.0 & !(0xff << 20) | (value as u32 & 0xff) << 20)
+        pub const fn with_cap(self, value: u16) -> Self {
+            Self(self.0 & !(0x3ff << 20) | (value as u32 & 0x3ff) << 20)
         }
     }
 

@@ -1,7 +1,6 @@
 //! Reciprocal square roots 1/√x of numbers x in [1, 4) with 22 fraction bits.
 
 use glint_core::root;
-use glint_model::raymarch::ROUND_INVERSE;
 use micromath::F32Ext;
 
 use crate::kernel::Format::{Fixed, Float};
@@ -15,19 +14,13 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
         Fixed(31),
         |x| inverse_root::<0>(x).into(),
     ),
-    shipped(
-        "inverse_root_ray",
-        "table of 1024 lower bounds of 15 bits, of each ray",
-        Fixed(10),
-        |x| ROUND_INVERSE[(x >> 14 & 0x3FF) as usize].into(),
-    ),
     other(
         "inverse_root_1",
         "192 entries, one Newton step",
         Fixed(31),
         |x| inverse_root::<1>(x).into(),
     ),
-    other(
+    shipped(
         "inverse_root_2",
         "192 entries, two Newton steps",
         Fixed(31),

@@ -1,11 +1,10 @@
-// Computes the distance to the union of a flat solid and a sphere, sharp or with a fillet (docs/formats/raymarch.md, "Unions"
-// and "Smooth unions").
+// Computes the distance to the union of a flat solid and a sphere with a fillet (docs/formats/raymarch.md, "Smooth unions").
 //
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
 //
 // a is the distance to the flat solid, b the distance to the sphere, k the parameter `solid.blend_width`, and w the weight of the
-// farther surface. Latency 8 clocks, throughput one point per clock, no handshake; `solid` must hold. `takes_round` must be high if the
-// sphere is the nearer or the only surface. The output `nearest` is the input `known`, delayed by the latency of the distance.
+// farther surface. Latency 8 clocks, throughput one point per clock, no handshake; `solid` must hold. The output `nearest` is the input
+// `known`, delayed by the latency of the distance.
 
 `default_nettype none
 
@@ -15,9 +14,7 @@ module blend_unit (
     input  wire signed [21:0]           flat_distance,
     input  wire [2:0]                   flat_surface,
     input  wire raymarch_pkg::nearest_t    known,
-    input  wire                         takes_round,
     output logic signed [21:0]          distance,
-    output logic                        round,
     output logic [2:0]                  surface,
     output logic [2:0]                  face,
     output logic [7:0]                  share,
@@ -29,20 +26,19 @@ module blend_unit (
     logic [21:0]        away_1;
     logic [17:0]        left_1;
     logic signed [21:0] least_1, least_5;
-    logic [16:0]        h_2, h_5, width;
+    logic [16:0]        h_2, h_5;
     logic signed [34:0] product_5;
     logic [16:0]        weight_5;
     logic signed [24:0] minus_h_5;
-    logic               round_5, blends;
+    logic               takes_round, round_5;
     logic [16:0]        share_5;
     logic [7:0]         share_6;
     logic signed [39:0] sum_8;
 
-    assign width  = solid.flat_too ? solid.blend_width : '0;
-    assign blends = width != '0;
+    assign takes_round = $signed(known.distance) < flat_distance;
     // `away_1` is |a - b|, or |a - b| - 1 if a - b is negative. `left_1` is k - |a - b| for either sign.
     assign away_1 = apart_1[21:0] ^ {22{apart_1[22]}};
-    assign left_1 = {1'b0, width} + {1'b1, ~away_1[16:0]} + 18'(!apart_1[22]);
+    assign left_1 = {1'b0, solid.blend_width} + {1'b1, ~away_1[16:0]} + 18'(!apart_1[22]);
 
     always_ff @(posedge clk) begin
         apart_1 <= flat_distance - $signed(known.distance);
@@ -69,24 +65,12 @@ module blend_unit (
     // Weight of the sphere's colour in the pixel's colour, in units of 2^-16. The colour of the nearer surface has a weight of at least one
     // half.
     assign share_5 = round_5 ? 17'h1_0000 - weight_5 : weight_5;
-    always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}} | {8{!blends}};
+    always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}};
     delay #(.WIDTH(8), .CLOCKS(2)) share_waits (.clk, .enable(1'b1), .in(share_6), .out(share));
 
-    // In a union with a fillet every surface counts as round; otherwise the selected surface decides.
-    logic [2:0]          flat_7;
-    logic                round_7;
-    raymarch_pkg::nearest_t known_7;
-
-    delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(7)) known_waits (.clk, .enable(1'b1), .in(known), .out(known_7));
-    delay #(.WIDTH(3), .CLOCKS(7)) flat_waits (.clk, .enable(1'b1), .in(flat_surface), .out(flat_7));
-    delay #(.WIDTH(1), .CLOCKS(2)) which_still (.clk, .enable(1'b1), .in(round_5), .out(round_7));
-
-    always_ff @(posedge clk) begin
-        round   <= round_7 || blends;
-        surface <= round_7 || blends ? known_7.number : flat_7;
-        face    <= flat_7;
-        nearest <= known_7;
-    end
+    delay #(.WIDTH(raymarch_pkg::NEAREST_BITS), .CLOCKS(8)) known_waits (.clk, .enable(1'b1), .in(known), .out(nearest));
+    delay #(.WIDTH(3), .CLOCKS(8)) flat_waits (.clk, .enable(1'b1), .in(flat_surface), .out(face));
+    assign surface = nearest.number;
 
     wire _unused = &{1'b0, solid, product_5[34:29], product_5[11:0], share_5[7:0], sum_8[39], sum_8[16:0]};
 endmodule

@@ -8,12 +8,11 @@
 // exchanging coordinates. The low bits therefore bypass these levels, which only need the order of the low bits in each pair of
 // coordinates. Further levels get all bits.
 //
-// With BOX the module can also compute the distance to a box (field_box): while `is_box` is high, no level is in use. field_box is then
-// also the last stage for a sponge, as a cube of half side `cube_half`.
+// With BOX the last stage is field_box, and the module also computes the distance to a box: a sponge without levels in use.
 //
 // Latency 3 * LEVELS + 3 clocks, throughput one point per clock, no handshake. `levels` has a bit for each level in use, the
-// first level in bit 0; `cube_half` is half the side of the smallest solid cubes; the other inputs are as in field_box. All parameters
-// must hold, from two clocks before the first point.
+// first level in bit 0; `half` is half the side of the smallest solid cubes along each axis, of a box half its side. The parameters must
+// hold.
 
 `default_nettype none
 
@@ -22,13 +21,8 @@ module field_menger #(
     parameter bit          BOX    = 1'b0
 ) (
     input  wire                clk,
-    input  wire                is_box,
     input  wire  [LEVELS-1:0]  levels,
-    input  wire  [21:0]        cube_half,
     input  wire  [2:0][21:0]   half,
-    input  wire  [2:0]         has,
-    input  wire                room,
-    input  wire                repeated,
     input  wire  [2:0][21:0]   point,
     output logic signed [21:0] distance,
     output logic [2:0]         surface
@@ -63,10 +57,6 @@ module field_menger #(
         .clk, .enable(1'b1), .in({point[2][LOW-1:0], point[1][LOW-1:0], point[0][LOW-1:0]}), .out(low)
     );
 
-    logic [LEVELS-1:0] levels_in_use;
-
-    always_ff @(posedge clk) levels_in_use <= levels & {LEVELS{!BOX || !is_box}};
-
     for (genvar i = 0; i < LEVELS; i++) begin : folds
         // Side of the cubes of each level: 27, 9, 3, 1, 1/3, 1/9, to the nearest even multiple of 2^-12.
         localparam int S = i == 0 ? 27 << 12 : i == 1 ? 9 << 12 : i == 2 ? 3 << 12 : i == 3 ? 1 << 12 : i == 4 ? 1366 : 456;
@@ -77,32 +67,22 @@ module field_menger #(
         end
 
         menger_level #(.BITS(22), .LOW(i < SPLIT ? LOW : 0), .S(S)) level (
-            .clk, .enable(levels_in_use[i]), .in(entering[i]), .in_grows(grows[i]), .in_order(i < SPLIT ? orders[i] : raymarch_pkg::ALL_EQUAL),
+            .clk, .enable(levels[i]), .in(entering[i]), .in_grows(grows[i]), .in_order(i < SPLIT ? orders[i] : raymarch_pkg::ALL_EQUAL),
             .out(points[i+1]), .out_grows(grows[i+1]), .out_order(orders[i+1])
         );
     end
 
     if (BOX) begin : with_boxes
         // The point after all levels, with its low bits.
-        logic [65:0] folded, half_sides;
+        logic [65:0] folded;
         logic [8:0]  grows_late;
-        logic [2:0]  bounded, local_surface, growing;
-        logic        is_room, repeats;
+        logic [2:0]  local_surface, growing;
 
         for (genvar i = 0; i < 3; i++) begin : axes
             assign folded[22*i +: 22] = points[LEVELS][i] | (LEVELS == SPLIT ? 22'(raymarch_pkg::low_part(low, grows[LEVELS][i])) : '0);
         end
 
-        always_ff @(posedge clk) begin
-            half_sides <= is_box ? half : {3{cube_half}};
-            bounded    <= has | {3{!is_box}};
-            is_room    <= room && is_box;
-            repeats    <= repeated && is_box;
-        end
-
-        field_box box (
-            .clk, .half(half_sides), .has(bounded), .room(is_room), .repeated(repeats), .point(folded), .distance, .surface(local_surface)
-        );
+        field_box box (.clk, .half, .point(folded), .distance, .surface(local_surface));
         delay #(.WIDTH(9), .CLOCKS(3)) grows_wait (.clk, .enable(1'b1), .in(grows[LEVELS]), .out(grows_late));
 
         // `local_surface` is the surface in the folded space, which is converted to a surface in the world.
@@ -111,10 +91,10 @@ module field_menger #(
         wire _unused = &{1'b0, orders[LEVELS]};
     end else begin : sponges_alone
         menger_cube #(.LOW(APART ? LOW : 0)) cube (
-            .clk, .half(cube_half), .point(points[LEVELS]), .grows(grows[LEVELS]), .order(orders[LEVELS]), .low(APART ? low : '0),
+            .clk, .half(half[0]), .point(points[LEVELS]), .grows(grows[LEVELS]), .order(orders[LEVELS]), .low(APART ? low : '0),
             .distance, .surface
         );
-        wire _unused = &{1'b0, is_box, half, has, room, repeated};
+        wire _unused = &{1'b0, half};
     end
 endmodule
 

@@ -6,16 +6,15 @@
 //
 // After the shift the largest coordinate has 17 bits. The root is a linear interpolation between two entries of a table. The computed
 // length never exceeds the exact length; it is too small by at most 3·2^-12 plus 2^-15 of the length. Distances of 2^9 and more saturate at
-// 2^9 - 2^-12. While `repeated` is high, the sphere is repeated every 64 units, and its centre must be 0.
+// 2^9 - 2^-12.
 //
 // Latency 18 clocks, throughput one point per clock, no handshake. `number` must arrive one clock before its point. One sphere per clock
-// can be written, while the pipeline is empty. `repeated` must hold.
+// can be written, while the pipeline is empty.
 
 `default_nettype none
 
 module field_sphere (
     input  wire                     clk,
-    input  wire                     repeated,
     input  wire                     sphere_write,
     input  wire  [2:0]              sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
@@ -82,11 +81,7 @@ module field_sphere (
 
     always_ff @(posedge clk) begin
         for (int i = 0; i < 3; i++) begin
-            logic [22:0] apart;
-            apart = minus(point[i], centre_0[i]);
-            // The period of 64 units is 2^18 in units of the coordinates. The difference is reduced modulo the period, to the
-            // range from -2^17 to 2^17 - 1.
-            apart_1[i] <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
+            apart_1[i] <= minus(point[i], centre_0[i]);
             size_2[i]  <= magnitude(apart_1[i]);
             by_8[i]    <= shifted_8[i];
             by_2[i]    <= by_twos(by_8[i], twos);

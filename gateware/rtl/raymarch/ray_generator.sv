@@ -1,30 +1,24 @@
 // Generates the rays of a frame, one per clock.
 //
-//                ┌─▶ march_start ─┐
-//   ray_pixels ──┤                ├─▶ FIFO ─┬─▶ rays
-//                └─▶ exit_start ──┘         │
-//                    sphere_unit ───────────┘
+//   ray_pixels ─▶ exit_start ─▶ FIFO ─┬─▶ rays
+//                       sphere_unit ──┘
 //
-// MARCH builds the starts of rays that march by distances, EXITS those of rays that leave empty prisms; in a build with both, `exits`
-// selects one for the frame. Bands, lines and eyes follow each other as in ray_pixels. With ROUND, sphere_unit finds the first sphere of
-// each ray by exits. A ray that starts beyond its sphere hits no flat solid (`over`).
+// Bands, lines and eyes follow each other as in ray_pixels. With ROUND, sphere_unit finds the first sphere of each ray by exits. A ray that
+// starts beyond its sphere hits no flat solid (`over`). With MARCH there are also frames of marching rays, while `exits` is low: of these only
+// `place`, `start`, `over`, `height`, `down` and `speed` have a meaning.
 //
 // The pipelines cannot be stopped: valid bits travel with the rays, and credit_fifo at their end limits the number of rays inside. Without
 // a credit, only D and the position counters stop.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 26
-// clocks by exits, 27 of marching rays, 30 with BLEND; throughput one ray per clock. `busy` falls two clocks after the last ray has left.
-// The output is a valid/ready stream; a ray stays until its transfer. `out_ray` is valid for a frame of marching rays, `out_exit` for one
-// of exits. `rst` ends the frame.
+// clocks; throughput one ray per clock. `busy` falls two clocks after the last ray has left. The output is a valid/ready stream; a ray stays
+// until its transfer. `rst` ends the frame.
 
 `default_nettype none
 
 module ray_generator #(
-    parameter bit EXITS  = 1'b1,
     parameter bit MARCH  = 1'b0,
     parameter bit ROUND  = 1'b0,
-    // Whether marching rays may meet spheres.
-    parameter bit BLEND  = 1'b0,
     parameter bit STEREO = 1'b1,
     // Whether rays by exits have the square of D's length.
     parameter bit LATTICE = 1'b0,
@@ -49,13 +43,8 @@ module ray_generator #(
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
-    // The near plane: u14.14 of exits, u11.12 of marching rays.
-    input  wire  [exit_pkg::T_BITS-1:0] near_limit,
-    // Constants of march_start.
-    input  wire                       round,
-    input  wire  [1:0][2:0][24:0]     origins,
-    input  wire  [1:0][2:0][23:0]     outside,
     // Constants of exit_start.
+    input  wire  [exit_pkg::T_BITS-1:0] near_limit,
     input  wire  [exit_pkg::T_BITS-1:0] far_limit,
     input  wire  [1:0][1:0]                choice,
     input  wire  [1:0][1:0][2:0][exit_pkg::PLANE_BITS-1:0]   distances,
@@ -75,8 +64,7 @@ module ray_generator #(
     // Rays.
     output logic                      out_valid,
     input  wire                       out_ready,
-    output raymarch_pkg::ray_t        out_ray,
-    output exit_pkg::ray_t            out_exit
+    output exit_pkg::ray_t            out_ray
 );
     logic                 walking, running, credit, empty, valid;
     raymarch_pkg::place_t place;
@@ -89,56 +77,32 @@ module ray_generator #(
         .credit, .running, .valid, .place, .direction
     );
 
-    logic                march_valid, exit_valid;
-    raymarch_pkg::ray_t  march_ray;
-    exit_pkg::ray_t      exit_ray;
+    logic           started;
+    exit_pkg::ray_t ray_in;
 
-    if (MARCH) begin : marching
-        march_start #(.ROUND(BLEND), .STEREO(STEREO)) starts (
-            .clk, .rst, .round, .near_limit(near_limit[raymarch_pkg::T_BITS-1:0]), .origins, .outside,
-            .in_valid(valid), .in_place(place), .in_direction({direction[2][27:3], direction[1][27:3], direction[0][27:3]}), .out_valid(march_valid), .out_ray(march_ray)
-        );
-    end else begin : no_marching
-        assign march_valid = 1'b0;
-        assign march_ray   = '0;
-        wire _unused = &{1'b0, round, origins, outside};
-    end
+    exit_start #(.STEREO(STEREO), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)) starts (
+        .clk, .rst, .near_limit, .far_limit, .choice, .distances, .there, .away, .last, .nexts,
+        .diagonals, .sum_distances, .sum_there, .sum_away,
+        .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(started), .out_ray(ray_in)
+    );
 
-    if (EXITS) begin : leaving
-        exit_start #(.STEREO(STEREO), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON)) starts (
-            .clk, .rst, .near_limit, .far_limit, .choice, .distances, .there, .away, .last, .nexts,
-            .diagonals, .sum_distances, .sum_there, .sum_away,
-            .in_valid(valid), .in_place(place), .in_direction(direction), .out_valid(exit_valid), .out_ray(exit_ray)
-        );
-    end else begin : no_leaving
-        assign exit_valid = 1'b0;
-        assign exit_ray   = '0;
-        wire _unused = &{1'b0, near_limit, far_limit, choice, distances, there, away, last, nexts,
-                         diagonals, sum_distances, sum_there, sum_away};
-    end
+    localparam int unsigned KEPT_BITS = LATTICE ? exit_pkg::LATTICE_RAY_BITS : OCTAHEDRON ? exit_pkg::DIAGONAL_RAY_BITS : exit_pkg::RAY_BITS;
 
-    localparam int unsigned KEPT_BITS = !EXITS ? raymarch_pkg::RAY_BITS : LATTICE ? exit_pkg::LATTICE_RAY_BITS
-                                       : OCTAHEDRON ? exit_pkg::DIAGONAL_RAY_BITS : exit_pkg::RAY_BITS;
-
-    logic                 by_exits, kept_valid, kept_ready;
+    logic                 kept_valid, kept_ready;
     logic [KEPT_BITS-1:0] kept;
 
-    assign by_exits = EXITS && (!MARCH || exits);
-
     credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) leaving_rays (
-        .clk, .rst, .idle(empty), .credit, .sent(running),
-        .in_valid(by_exits ? exit_valid : march_valid), .in_data(by_exits ? KEPT_BITS'(exit_ray) : KEPT_BITS'(march_ray)),
+        .clk, .rst, .idle(empty), .credit, .sent(running), .in_valid(started), .in_data(ray_in[KEPT_BITS-1:0]),
         .out_valid(kept_valid), .out_ready(kept_ready), .out_data(kept)
     );
 
-    assign out_ray = $bits(out_ray)'(kept);
-
-    if (EXITS && ROUND) begin : round_fields
-        logic               met_valid;
+    if (ROUND) begin : round_fields
+        logic               by_exits, met_valid;
         exit_pkg::meeting_t met;
         exit_pkg::ray_t     ray;
 
-        assign ray = $bits(ray)'(kept);
+        assign by_exits = !MARCH || exits;
+        assign ray      = $bits(ray)'(kept);
 
         sphere_unit #(.STEREO(STEREO), .CONE(CONE)) meet (
             .clk, .rst, .start(start && by_exits), .last_group(last_column[10:3]), .last_row, .stereo, .near_limit, .far_limit, .last_cone,
@@ -150,19 +114,19 @@ module ray_generator #(
         assign kept_ready = out_ready && (met_valid || !by_exits);
 
         always_comb begin
-            out_exit        = ray;
-            out_exit.sphere = met;
-            out_exit.over   = ray.over || ray.start > met.t;
+            out_ray        = ray;
+            out_ray.sphere = met;
+            out_ray.over   = ray.over || by_exits && ray.start > met.t;
         end
     end else begin : flat_fields
         assign out_valid  = kept_valid;
         assign kept_ready = out_ready;
-        assign out_exit   = $bits(out_exit)'(kept);
+        assign out_ray    = $bits(out_ray)'(kept);
 
         wire _unused = &{1'b0, last_row, last_cone, cone_write, cone_address, cone_value};
     end
 
-    wire _unused = &{1'b0, exits, march_ray, exit_ray};
+    wire _unused = &{1'b0, exits, ray_in};
 endmodule
 
 `default_nettype wire

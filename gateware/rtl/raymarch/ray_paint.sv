@@ -6,27 +6,17 @@
 //             ├─▶ steps ─▶ light ──┐  ▼                                               │
 //             └─▶ surface ─▶ colour × ─▶ mixed with the horizon ─▶ RGB565, L8 ────────┘
 //
-// The parameter T of a ray that leaves empty prisms is a depth. With MARCH there are also rays that march by distances: the hit point is
-// first moved onto the plane of its face, and then t is multiplied by the inverse of the ray's length. t is increased by `gap` / `slope`,
-// where `gap` is the distance to this plane and `slope` is the component of the direction along the plane's normal. In a build with both,
-// `exits` states which rays the frame has.
-//
 // A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask with one bit set, one depth code, and one colour
 // for all pixels of the group. With `stereo` the colour holds the pixel's luminance twice, and `out_eye` selects the valid half.
 //
-// With ROUND, the end of a ray on a sphere or fillet arrives with its colour, `in_colour`. While `round` is high, rays are scaled by their
-// Euclidean length. Streams are valid/ready. Latency 26 clocks, 37 with MARCH; throughput one pixel per clock. The parameters must hold while pixels are
-// in the pipeline, which cannot be stopped: valid bits travel with the pixels, and credit_fifo at its end limits the number of pixels
-// inside.
+// With ROUND, the end of a ray on a sphere or fillet arrives with its colour, `in_colour`. Streams are valid/ready. Latency 25 clocks;
+// throughput one pixel per clock. The parameters must hold while pixels are in the pipeline, which cannot be stopped: valid bits travel with
+// the pixels, and credit_fifo at its end limits the number of pixels inside.
 
 `default_nettype none
 
 module ray_paint #(
-    parameter bit EXITS   = 1'b1,
-    parameter bit MARCH   = 1'b0,
     parameter bit ROUND   = 1'b0,
-    // Whether marching rays may meet spheres.
-    parameter bit BLEND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0,
     // Whether faces may be in the shadow of the first light.
@@ -38,8 +28,6 @@ module ray_paint #(
     input  wire                     rst,
     // Frame.
     input  wire                     stereo,
-    input  wire                     exits,
-    input  wire                     round,
     // Number of groups of eight pixels in a line: 40, 80 or 160.
     input  wire  [7:0]              stride,
     input  wire  [16:0]             depth_mantissa,
@@ -67,9 +55,9 @@ module ray_paint #(
     output logic [15:0]             out_colour
 );
     // The suffix of a name is the signal's clock. An end enters in clock BEGIN, and its group leaves in clock LAST.
-    localparam int unsigned LAST = 29, BEGIN = MARCH ? 0 : 5, FIRST = MARCH ? 6 : 0;
+    localparam int unsigned LAST = 29, BEGIN = 5;
 
-    localparam int unsigned LATENCY = FIRST + LAST - BEGIN;
+    localparam int unsigned LATENCY = LAST - BEGIN;
 
     logic [LATENCY:1] valid;
 
@@ -78,66 +66,11 @@ module ray_paint #(
         if (rst) valid <= '0;
     end
 
-    raymarch_pkg::end_t ending;
-    logic [39:0]        depth_5;
-    logic [17:0]        code_28;
+    // The parameter T of a ray is a depth.
+    logic [39:0] depth_5;
+    logic [17:0] code_28;
 
-    if (MARCH) begin : marching
-        // In the FIRST clocks the hit point moves to the plane of its face: 2 for the reciprocal of `slope`, 3 for the product of this
-        // reciprocal and `gap`, 1 for the sum of this product and t. In a frame of exits `gap` is 0.
-        raymarch_pkg::end_t waited;
-        logic [16:0]        slope_inverse, largest_inverse_2, inverse_2;
-        logic [11:0]        gap_waits;
-        logic signed [29:0] way;
-        logic signed [42:0] product_5;
-        logic [raymarch_pkg::END_T_BITS-1:0] t_waits_0, reached, t_5;
-        logic [22:0]        t_2;
-        logic               by_exits;
-
-        assign by_exits = EXITS && exits;
-
-        delay #(.WIDTH(12), .CLOCKS(2)) gap_delay (.clk, .enable(1'b1), .in(in_end.gap), .out(gap_waits));
-        multiply_add #(.BITS(30)) to_surface (
-            .clk, .enable(1'b1), .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
-        );
-        delay #(.WIDTH(raymarch_pkg::END_T_BITS), .CLOCKS(5)) t_delay (.clk, .enable(1'b1), .in(in_end.t), .out(t_waits_0));
-        delay #(.WIDTH(raymarch_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable(1'b1), .in(in_end), .out(waited));
-        always_ff @(posedge clk) reached <= t_waits_0 + {8'b0, way[28:9]};
-
-        always_comb begin
-            ending   = waited;
-            // The sum of a marching ray is saturated to 23 bits.
-            ending.t = reached | {5'b0, {23{reached[23] && !by_exits}}};
-        end
-
-        inverse_table length_inverse (
-            .clk, .index_a(ending.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
-        );
-        if (BLEND) begin : by_squares
-            logic [16:0] round_inverse_2;
-            round_inverse inverse_of_square (.clk, .index(ending.length), .inverse(round_inverse_2));
-            assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
-        end else begin : by_largest
-            assign inverse_2 = largest_inverse_2;
-        end
-
-        delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable(1'b1), .in(ending.t[22:0]), .out(t_2));
-        multiply_add #(.BITS(43)) along (.clk, .enable(1'b1), .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
-
-        if (EXITS) begin : depths
-            delay #(.WIDTH(raymarch_pkg::END_T_BITS), .CLOCKS(5)) t_goes (.clk, .enable(1'b1), .in(ending.t), .out(t_5));
-            assign depth_5 = by_exits ? {5'b0, t_5, 7'b0} : product_5[39:0];
-        end else begin : products
-            assign t_5     = '0;
-            assign depth_5 = product_5[39:0];
-        end
-
-        wire _unused = &{1'b0, way[29], way[8:0], waited.t, product_5[42:40], exits, t_5};
-    end else begin : depths_alone
-        assign ending  = in_end;
-        assign depth_5 = {5'b0, in_end.t, 7'b0};
-        wire _unused = &{1'b0, exits, in_end.gap, in_end.slope, in_end.length};
-    end
+    assign depth_5 = {5'b0, in_end.t, 7'b0};
 
     depth_code coded (
         .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(depth_5), .code(code_28)
@@ -152,8 +85,8 @@ module ray_paint #(
         fog_entry_7 <= deep_6[18:8] != '0 ? '1 : deep_6[7:0];
     end
 
-    delay #(.WIDTH(8), .CLOCKS(7 - BEGIN)) steps_wait (.clk, .enable(1'b1), .in(ending.steps), .out(steps_7));
-    delay #(.WIDTH(8), .CLOCKS(9 - BEGIN)) height_waits (.clk, .enable(1'b1), .in(ending.t[7:0]), .out(height_9));
+    delay #(.WIDTH(8), .CLOCKS(7 - BEGIN)) steps_wait (.clk, .enable(1'b1), .in(in_end.steps), .out(steps_7));
+    delay #(.WIDTH(8), .CLOCKS(9 - BEGIN)) height_waits (.clk, .enable(1'b1), .in(in_end.t[7:0]), .out(height_9));
     paint_table fog_and_light (
         .clk, .write(table_write), .write_entry(table_entry), .write_part(table_part),
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
@@ -170,7 +103,7 @@ module ray_paint #(
     logic [8:0]        light_10, fog_10, fog_14;
 
     delay #(.WIDTH(5), .CLOCKS(7 - BEGIN)) surfaces (
-        .clk, .enable(1'b1), .in({ending.state, ending.surface}), .out({state_7, surface_7})
+        .clk, .enable(1'b1), .in({in_end.state, in_end.surface}), .out({state_7, surface_7})
     );
 
     // The end of a ray on a sphere or fillet arrives with a colour that includes the light.
@@ -178,13 +111,13 @@ module ray_paint #(
     logic [23:0] lit_colour_8;
 
     if (ROUND) begin : lit
-        delay #(.WIDTH(25), .CLOCKS(FIRST + 8 - BEGIN)) light_waits (
+        delay #(.WIDTH(25), .CLOCKS(8 - BEGIN)) light_waits (
             .clk, .enable(1'b1), .in({in_end.round && in_end.state == raymarch_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
         );
     end else begin : unlit
         assign lit_8        = 1'b0;
         assign lit_colour_8 = '0;
-        wire _unused = &{1'b0, in_end.round, in_colour, round};
+        wire _unused = &{1'b0, in_end.round, in_colour};
     end
 
     function automatic logic [23:0] one_of_four(input logic [3:0][23:0] colours, input logic [1:0] number);
@@ -276,10 +209,10 @@ module ray_paint #(
     logic [10:0]       first_row_28, row_29;
     logic [7:0]        column_28;
 
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26 - BEGIN)) place_waits (.clk, .enable(1'b1), .in(ending.place), .out(place_26));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26 - BEGIN)) place_waits (.clk, .enable(1'b1), .in(in_end.place), .out(place_26));
     delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable(1'b1), .in(place_26), .out(place_29));
     delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable(1'b1), .in(place_26.column[10:3]), .out(column_28));
-    delay #(.WIDTH(1), .CLOCKS(28 - BEGIN)) hit_waits (.clk, .enable(1'b1), .in(ending.state[0]), .out(hit_28));
+    delay #(.WIDTH(1), .CLOCKS(28 - BEGIN)) hit_waits (.clk, .enable(1'b1), .in(in_end.state[0]), .out(hit_28));
 
     always_ff @(posedge clk) begin
         line_times_5 <= {1'b0, place_26.line, 2'd0} + 9'(place_26.line);
@@ -302,7 +235,7 @@ module ray_paint #(
 
     assign out_mask = 8'b1 << number;
 
-    wire _unused = &{1'b0, round, ending, depth_5[39:21], place_29.odd, line_times_5[8], stride[5:0]};
+    wire _unused = &{1'b0, in_end, depth_5[39:21], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule
 
 `default_nettype wire

@@ -5,13 +5,13 @@
 package raymarch_pkg;
     // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // Widths of: the ray parameter t, u11.12; a point's coordinate at the input of a field, s10.12; a point's coordinate before its range
-    // is reduced for the field, s13.12; and a component of a ray's direction, s1.17.
-    localparam int unsigned T_BITS         = 23;
+    // Widths of: the parameter T of a marching ray, u14.10; a point's coordinate at the input of a field, s10.12; an eye's coordinate, s13.12;
+    // and a component of a ray's direction, s1.17.
+    localparam int unsigned T_BITS         = 24;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
     localparam int unsigned DIRECTION_BITS = 18;
-    // Width of the ray parameter at the end of a ray.
+    // Width of T at the end of a ray, u14.14.
     localparam int unsigned END_T_BITS     = 28;
 
     // Position of a pixel: parity of its band's number, eye (0 for the left or only eye), line in the band, and column.
@@ -24,32 +24,27 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A marching ray before its first step. `length` is the index of the length of D in the table of reciprocals
-    // (docs/formats/raymarch.md, "Rays"), `start` the first t.
+    // A marching ray before its first step; `height` is that of sky_height. A ray with `over` does not meet the box about the field, and its
+    // `start` has no meaning.
     typedef struct packed {
-        place_t                    place;
-        logic [9:0]                length;
-        logic [T_BITS-1:0]         start;
+        logic                           over;
+        logic [T_BITS-1:0]              start;
+        place_t                         place;
+        logic [7:0]                     height;
         logic [2:0][DIRECTION_BITS-1:0] direction;
     } ray_t;
 
-    localparam int unsigned RAY_BITS = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS;
+    localparam int unsigned RAY_BITS = 1 + T_BITS + PLACE_BITS + 8 + 3 * DIRECTION_BITS;
 
     // The state of an end; a hit on a face that is SHADED is in the shadow of the first light. The lowest bit is 1 for hits.
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2, SHADED = 2'd3} state_t;
 
-    // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `t` is T, u14.14, of a ray that leaves empty
-    // prisms, and u11.12 of a marching ray. `surface` is {axis, positive} of a face, or the number of a sphere. For a miss, `t` is the sine
-    // of the ray's elevation in 8 bits, 0 below the horizon. `round` marks an end on a sphere or a fillet; only the light on spheres uses
-    // `direction`. The other fields belong to marching rays: `gap` is the distance from the point at `t` to the face, `slope` is the
-    // component of the direction along the inward normal of the face, and `length` as in ray_t. On a fillet, `face` is the face's {axis,
-    // positive} and `share` is the sphere's weight, u0.8.
+    // The result of a ray that has ended at T = `t` after `steps` evaluations. `surface` is {axis, positive} of a face, or the number of a
+    // sphere. For a miss, `t` is the height of the sky in 8 bits (sky_height). `round` marks an end on a sphere or a fillet; only the light on
+    // spheres uses `direction`. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8.
     typedef struct packed {
         logic [2:0]        face;
         logic [7:0]        share;
-        logic [9:0]        length;
-        logic [11:0]       gap;
-        logic [9:0]        slope;
         logic [2:0][DIRECTION_BITS-1:0] direction;
         logic              round;
         place_t            place;
@@ -60,8 +55,7 @@ package raymarch_pkg;
     } end_t;
     localparam int unsigned EXIT_END_BITS  = PLACE_BITS + END_T_BITS + 8 + 2 + 3;
     localparam int unsigned ROUND_END_BITS = EXIT_END_BITS + 1 + 3 * DIRECTION_BITS;
-    localparam int unsigned MARCH_END_BITS = ROUND_END_BITS + 10 + 12 + 10;
-    localparam int unsigned END_BITS       = MARCH_END_BITS + 8 + 3;
+    localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
 
     // The nearest sphere among the spheres evaluated so far for a point: its distance and its number.
     typedef struct packed {
@@ -113,23 +107,21 @@ package raymarch_pkg;
         endcase
     endfunction
 
-    // Returns the number of low bits of an end_t that a build uses, which depends on whether it has marching rays (`march`), spheres
-    // (`round`) and fillets (`blend`).
-    function automatic int unsigned end_bits(input bit march, input bit round, input bit blend);
-        end_bits = blend ? END_BITS : march ? MARCH_END_BITS : round ? ROUND_END_BITS : EXIT_END_BITS;
+    // Returns the number of low bits of an end_t that a build uses, which depends on whether it has spheres (`round`) and fillets (`blend`).
+    function automatic int unsigned end_bits(input bit round, input bit blend);
+        end_bits = blend ? END_BITS : round ? ROUND_END_BITS : EXIT_END_BITS;
     endfunction
 
-    // Returns the number of clocks from a point to its distance. Arguments: levels of the sponge, bit mask of the flat fields,
-    // and whether there are spheres (`round`) and fillets (`blend`).
-    function automatic int unsigned field_clocks(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
-        field_clocks = fields_pkg::flat_clocks(levels, fields);
-        if (round && field_clocks < 19) field_clocks = 19;
-        if (round && fields != 0) field_clocks = field_clocks + (blend ? 8 : 1);
+    // Returns the number of clocks from a point to its distance from a sponge with this number of levels, or from a box without levels.
+    function automatic int unsigned flat_clocks(input int unsigned levels);
+        flat_clocks = 3 * levels + 3;
     endfunction
 
-    // Returns whether the rings of a build are short, of at most 30 slots. Arguments as for field_clocks.
-    function automatic bit has_short_rings(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
-        has_short_rings = field_clocks(levels, fields, round, blend) <= 24;
+    // The same with spheres, joined by a fillet.
+    function automatic int unsigned field_clocks(input int unsigned levels);
+        field_clocks = flat_clocks(levels);
+        if (field_clocks < 19) field_clocks = 19;
+        field_clocks = field_clocks + 8;
     endfunction
     /* verilator lint_on UNUSEDPARAM */
 endpackage

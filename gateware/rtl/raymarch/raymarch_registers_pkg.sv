@@ -6,23 +6,15 @@
 package raymarch_registers_pkg;
     // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // The solid. `blend_width` is the width of the fillet, u5.12, 0 without a fillet, and `blend_inverse` is 1 / (2 * width),
-    // u1.16. `flat_too` is high if a flat field and spheres are united, `is_round` if the field has spheres, and
-    // `spheres_repeated` if the first one is repeated. `kind` is the kind of the flat field, whose constants follow.
+    // The solid of marching rays. `blend_width` is the width of the fillet, u5.12, and `blend_inverse` is 1 / (2 * width),
+    // u1.16. `spheres_repeated` is high if the first sphere is repeated, by exits.
     typedef struct packed {
         logic [16:0] blend_width;
         logic [16:0] blend_inverse;
-        logic flat_too;
-        logic is_round;
         logic spheres_repeated;
         logic [2:0] last_sphere;
-        logic [1:0] kind;
         logic [5:0] levels;
-        logic [21:0] cube_half;
         logic [2:0][21:0] half;
-        logic [2:0] has;
-        logic room;
-        logic repeated;
     } solid_t;
 
     // A sphere: its material, {blue, green, red}; the reciprocal of its radius and a shift (docs/formats/raymarch.md, "Light
@@ -64,12 +56,11 @@ package raymarch_registers_pkg;
         logic enable;
     } shadow_t;
 
-    // Parameters for the end of a ray: threshold, footprint, step limit, far limit of t.
+    // Constants of marching rays: threshold, footprint, step limit.
     typedef struct packed {
         logic [15:0] threshold;
         logic [3:0] footprint;
-        logic [7:0] cap;
-        logic [22:0] far_limit;
+        logic [9:0] cap;
     } tuning_t;
 
     // Colours, {blue, green, red}, of the zenith, of undecided rays, of the faces by surface, and of faces in the shadow by

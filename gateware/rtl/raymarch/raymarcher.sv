@@ -18,10 +18,6 @@
 // rays wait in a FIFO in block RAM. Slots of the lanes are therefore only empty at the end of the frame, and when the rays at the end of a
 // band need very different numbers of evaluations.
 //
-// When rays with one evaluation follow rays with many evaluations, the lanes could accept more rays than the generator produces, one per
-// clock. A long ring holds enough rays to keep the lane busy during this time; a ring_lane with a short ring has a queue of rays for this
-// purpose.
-//
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Rays by exits meet the spheres of a
 // list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes
 // ray_paint, and takes one clock per pass for a pixel on a sphere or fillet: with NORMALS one for each axis, then one for each light, and
@@ -56,7 +52,7 @@ module raymarcher #(
     input  wire  [1:0]                size,
     input  wire                       stereo,
     input  wire                       exits,
-    // Rays of both eyes, the left eye first, and the limits of their parameters: u14.14 of exits, u11.12 of marching rays.
+    // Rays of both eyes, the left eye first, and the limits of their parameters T.
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
@@ -79,9 +75,8 @@ module raymarcher #(
     input  wire  [1:0][1:0][exit_pkg::PLANE_BITS-1:0]        sum_distances,
     input  wire  [1:0][1:0]           sum_there,
     input  wire  [1:0][1:0]           sum_away,
-    // Marching rays: the box about the field (docs/formats/raymarch.md, "Rays").
-    input  wire  [1:0][2:0][23:0]     outside,
-    input  wire  [2:0][23:0]          bounds,
+    // Marching rays: the box about the field (docs/formats/raymarch.md, "Marching rays").
+    input  wire  [2:0][20:0]          bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
     input  wire raymarch_registers_pkg::tuning_t tuning,
     // Spheres of the field, written one by one between frames, and lights on them. Used with ROUND.
@@ -123,13 +118,12 @@ module raymarcher #(
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    // Whether the build has solids with empty prisms, each kind of rays, and light on spheres.
+    // Whether the build has solids with empty prisms, octahedra, marching rays, and light on spheres.
     localparam bit          LEAVES     = FIELDS != 0 || LATTICE;
     localparam bit          OCTAHEDRON = (FIELDS & fields_pkg::OCTANTS) != 0;
-    localparam bit          EXITS      = LEAVES || ROUND;
-    localparam bit          MARCH      = BLEND;
+    localparam bit          MARCH      = BLEND && (FIELDS & fields_pkg::MARCHED) != 0;
     localparam bit          LIT        = ROUND || LATTICE;
-    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(MARCH, LIT, BLEND);
+    localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(LIT, BLEND);
 
     // Values derived from `size`: the number of the last band, and the numbers of lines of a band, of columns (eight pixels wide) of a
     // line, of rows (of eight pixels) of a band, and of rays of a band.
@@ -154,8 +148,7 @@ module raymarcher #(
 
     logic                  generating, ray_valid, ray_ready, by_exits;
     logic                  ray_odd;
-    raymarch_pkg::ray_t    ray;
-    exit_pkg::ray_t        exit_ray;
+    exit_pkg::ray_t        ray;
 
     // Numbers of the last column, of the last line of a band and of the last row of the frame, counted from 0.
     logic [10:0] column_ends;
@@ -171,21 +164,21 @@ module raymarcher #(
     // Whether the solid is an octahedron.
     logic diagonals;
 
-    assign by_exits = EXITS && (!MARCH || exits);
+    assign by_exits = !MARCH || exits;
 
     always_ff @(posedge clk) diagonals <= OCTAHEDRON && rule == exit_pkg::BOX && levels[0];
 
     ray_generator #(
-        .EXITS(EXITS), .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .BLEND(BLEND), .STEREO(STEREO), .CONE(CONE)
+        .MARCH(MARCH), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .STEREO(STEREO), .CONE(CONE)
     ) generator (
         .clk, .rst(reset), .start, .busy(generating), .last_column(column_ends), .last_line(line_ends), .last_band, .last_row(row_ends),
         .stereo, .exits,
-        .first, .across, .down, .near_limit, .round(solid.is_round), .origins, .outside, .far_limit, .choice, .distances,
+        .first, .across, .down, .near_limit, .far_limit, .choice, .distances,
         .there, .away, .last, .nexts, .diagonals, .sum_distances, .sum_there, .sum_away, .last_cone, .cone_write, .cone_address, .cone_value,
-        .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray), .out_exit(exit_ray)
+        .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
-    assign ray_odd     = by_exits ? exit_ray.place[raymarch_pkg::PLACE_BITS-1] : ray.place.odd;
+    assign ray_odd     = ray.place[raymarch_pkg::PLACE_BITS-1];
     assign is_early    = ray_odd != odd;
     assign may_enter   = !is_early || early != EARLY_BITS'(EARLY);
     assign ray_moves   = ray_valid && ray_ready;
@@ -223,6 +216,14 @@ module raymarcher #(
             lane_valid[i] = ray_valid && may_enter && (lane_ready & ((LANES'(1) << i) - 1'b1)) == '0;
     assign ray_ready = may_enter && lane_ready != '0;
 
+    // The first 18 bits of D.
+    logic [2:0][exit_pkg::DIRECTION_BITS-1:0] short_direction;
+
+    always_comb
+        for (int axis = 0; axis < 3; axis++)
+            short_direction[axis] = {1'b0, ray.speed[axis][exit_pkg::SPEED_BITS-1 -: exit_pkg::DIRECTION_BITS-1]}
+                                    ^ {exit_pkg::DIRECTION_BITS{ray.down[axis]}};
+
     // The ends of the rays by exits and of the marching rays.
     logic [LANES-1:0][exit_pkg::END_BITS-1:0]      found;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0]  ring_end;
@@ -258,7 +259,7 @@ module raymarcher #(
                 .STEREO(STEREO), .ROUND(ROUND), .LATTICE(LATTICE), .OCTAHEDRON(OCTAHEDRON), .SPOT(SHADOW)
             ) lane (
                 .clk, .rst(reset), .origins(places), .solid({rule, levels, halves, borders}), .far_t(far_limit),
-                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(exit_ray), .in_origin('0), .in_carried('0),
+                .in_valid(lane_valid[i] && by_exits), .in_ready(exit_ready), .in_ray(ray), .in_origin('0), .in_carried('0),
                 .out_valid(exit_valid[i]), .out_ready(exit_taken[i]), .out_end(ending), .out_carried(nothing),
                 .evaluates(exit_evaluates), .waits(exit_waits)
             );
@@ -269,14 +270,12 @@ module raymarcher #(
 
             always_comb begin
                 ending        = '0;
-                ending.place  = exit_ray.place;
-                ending.t      = exit_ray.sphere.t;
-                ending.height = exit_ray.height;
-                ending.met    = exit_ray.sphere.met;
-                ending.number = exit_ray.sphere.number;
-                for (int axis = 0; axis < 3; axis++)
-                    ending.direction[axis] = {1'b0, exit_ray.speed[axis][exit_pkg::SPEED_BITS-1 -: exit_pkg::DIRECTION_BITS-1]}
-                                             ^ {exit_pkg::DIRECTION_BITS{exit_ray.down[axis]}};
+                ending.place  = ray.place;
+                ending.t      = ray.sphere.t;
+                ending.height = ray.height;
+                ending.met    = ray.sphere.met;
+                ending.number = ray.sphere.number;
+                ending.direction = short_direction;
             end
 
             skid_buffer #(.WIDTH(exit_pkg::ROUND_END_BITS)) waiting (
@@ -292,31 +291,19 @@ module raymarcher #(
         end
 
         if (MARCH && i == 0) begin : marching
-            // Fields with fillets march, in a single lane: it is larger than a lane by exits.
-            localparam int unsigned MARCHED = FIELDS & ~fields_pkg::OCTANTS;
-            // Depth of the queue before a lane; 0 for no queue.
-            localparam int unsigned QUEUE   = raymarch_pkg::has_short_rings(LEVELS, MARCHED, BLEND, BLEND) ? 32 : 0;
-
-            logic               entry_valid, entry_ready;
-            raymarch_pkg::ray_t entry;
+            // Fields with fillets march, in a single lane: it is larger than a lane by exits. Its ring holds enough rays to keep it busy when
+            // rays with one evaluation follow rays with many.
             raymarch_pkg::end_t ending;
 
             assign ring_end[i] = ending;
+            assign ring_idles  = ring_ready && !lane_valid[i];
 
-            if (QUEUE != 0) begin : queued
-                fifo #(.WIDTH(raymarch_pkg::RAY_BITS), .DEPTH(QUEUE)) queue (
-                    .clk, .rst(reset), .in_valid(lane_valid[i] && !by_exits), .in_ready(ring_ready), .in_data(ray),
-                    .out_valid(entry_valid), .out_ready(entry_ready), .out_data(entry)
-                );
-            end else begin : at_once
-                assign {entry_valid, ring_ready, entry} = {lane_valid[i] && !by_exits, entry_ready, ray};
-            end
-
-            assign ring_idles = entry_ready && !entry_valid;
-
-            ring_lane #(.LEVELS(LEVELS), .FIELDS(MARCHED), .ROUND(BLEND), .BLEND(BLEND), .STEREO(STEREO)) lane (
-                .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write, .sphere_number, .sphere,
-                .in_valid(entry_valid), .in_ready(entry_ready), .in_ray(entry),
+            ring_lane #(
+                .LEVELS((FIELDS & fields_pkg::MENGER) != 0 ? LEVELS : 0), .BOXES((FIELDS & fields_pkg::BOX) != 0), .STEREO(STEREO)
+            ) lane (
+                .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .sphere_write,
+                .sphere_number, .sphere,
+                .in_valid(lane_valid[i] && !by_exits), .in_ready(ring_ready), .in_ray({ray.over, ray.start[exit_pkg::T_BITS-1:4], ray.place, ray.height, short_direction}),
                 .out_valid(ring_valid[i]), .out_ready(ring_taken[i]), .out_end(ending),
                 .evaluates(ring_evaluates), .waits(ring_waits)
             );
@@ -428,7 +415,7 @@ module raymarcher #(
 
     if (LIT) begin : light
         round_light #(.BLEND(BLEND), .STEREO(STEREO), .NORMALS(NORMALS), .HIGHLIGHT(HIGHLIGHT), .CONE(CONE)) shine (
-            .clk, .rst(reset), .origins, .exits(by_exits), .stereo, .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]),
+            .clk, .rst(reset), .origins, .stereo, .repeated(solid.spheres_repeated), .lights, .palette(palette.faces[5:0]),
             .sphere_write, .sphere_number, .sphere,
             .in_valid(paint_valid), .in_ready(paint_ready), .in_end(paint_end),
             .out_valid(lit_valid), .out_ready(lit_ready), .out_end(lit_end), .out_colour(lit_colour)
@@ -441,8 +428,8 @@ module raymarcher #(
         wire _unused = &{1'b0, lights};
     end
 
-    ray_paint #(.EXITS(EXITS), .MARCH(MARCH), .ROUND(LIT), .BLEND(BLEND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0), .SHADOW(SHADOW)) paint (
-        .clk, .rst(reset), .stereo, .exits, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
+    ray_paint #(.ROUND(LIT), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0), .SHADOW(SHADOW)) paint (
+        .clk, .rst(reset), .stereo, .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
         .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),
@@ -471,7 +458,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, exit_ray, landed, found, ring_end, places,
+    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, short_direction, landed, found, ring_end, places,
                      last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 

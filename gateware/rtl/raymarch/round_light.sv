@@ -1,6 +1,6 @@
 // Computes the light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats/raymarch.md, "Round fields").
 //
-//   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times light's colour, sum ─▶ times the material ─▶ end, colour
+//   end ─▶ o + T·D ─▶ - centre ─▶ · light ─▶ / radius ─▶ times light's colour, sum ─▶ times the material ─▶ end, colour
 //                                   └─────────────── once for each pass ────────────┘
 //
 // All ends of rays pass in order; the colour for ends on other surfaces is undefined. An end on a sphere or fillet takes one clock for each
@@ -29,10 +29,8 @@ module round_light #(
 ) (
     input  wire                      clk,
     input  wire                      rst,
-    // Frame. `exits` states the format of t: u14.14 of rays by exits, u11.12 of marching rays. The first sphere may be `repeated` every 64
-    // units along each axis.
+    // Frame. The first sphere may be `repeated` every 64 units along each axis.
     input  wire  [1:0][2:0][24:0]    origins,
-    input  wire                      exits,
     input  wire                      stereo,
     input  wire                      repeated,
     input  wire raymarch_registers_pkg::lights_t lights,
@@ -57,8 +55,6 @@ module round_light #(
     localparam int unsigned LAST = WAIT + (BLEND ? 26 : 22);
     // Ends without the direction.
     localparam int unsigned ROUND_BITS = raymarch_pkg::EXIT_END_BITS + 1;
-    localparam int unsigned MARCH_BITS = BLEND ? 10 + 12 + 10 : 0;
-    localparam int unsigned KEPT_BITS  = MARCH_BITS + ROUND_BITS;
 
     (* ram_style = "distributed" *) logic [68:0] centres [0:7];
     (* ram_style = "distributed" *) logic [4:0]  shifts [0:7];
@@ -182,11 +178,7 @@ module round_light #(
         wire _unused = &{1'b0, kind_3, kind_9, kind_14, kind_17, kind_18};
     end
 
-    // 10 of t's fraction bits are used.
-    logic [23:0] t;
-
-    assign t = exits ? held.t[27:4] : {3'b0, held.t[22:2]};
-
+    // 10 of T's fraction bits are used.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [raymarch_pkg::WIDE_BITS+14:0] sum;
         logic [raymarch_pkg::WIDE_BITS-1:0]         origin;
@@ -194,7 +186,7 @@ module round_light #(
 
         assign origin = eye_2 ? origins[1][i] : origins[0][i];
         multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 15)) place (
-            .clk, .enable, .a({1'b0, t}), .b(held.direction[i]), .c({origin, 15'b0}), .p(sum)
+            .clk, .enable, .a({1'b0, held.t[27:4]}), .b(held.direction[i]), .c({origin, 15'b0}), .p(sum)
         );
         assign apart = sum[37:15] - centre_3[i];
 
@@ -458,23 +450,18 @@ module round_light #(
         wire _unused = &{1'b0, palette, held, face_colour_22};
     end
 
-    logic [KEPT_BITS-1:0] kept_last, kept;
+    logic [ROUND_BITS-1:0] kept_last, kept;
 
-    delay #(.WIDTH(KEPT_BITS), .CLOCKS(LAST)) end_waits (
-        .clk, .enable, .in(KEPT_BITS'({held.length, held.gap, held.slope, held[ROUND_BITS-1:0]})), .out(kept_last)
-    );
+    delay #(.WIDTH(ROUND_BITS), .CLOCKS(LAST)) end_waits (.clk, .enable, .in(held[ROUND_BITS-1:0]), .out(kept_last));
 
-    skid_buffer #(.WIDTH(KEPT_BITS + 24)) leaving (
+    skid_buffer #(.WIDTH(ROUND_BITS + 24)) leaving (
         .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({kept_last, colour_last}),
         .out_valid, .out_ready, .out_data({kept, out_colour})
     );
 
-    always_comb begin
-        out_end = raymarch_pkg::END_BITS'(kept[ROUND_BITS-1:0]);
-        if (BLEND) {out_end.length, out_end.gap, out_end.slope} = 32'(kept >> ROUND_BITS);
-    end
+    assign out_end = raymarch_pkg::END_BITS'(kept);
 
-    wire _unused = &{1'b0, held.length, held.gap, held.slope, sphere.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
+    wire _unused = &{1'b0, sphere.radius, product_9[41], product_9[3:0], cosine_15[36:34], cosine_15[24:0]};
 endmodule
 
 `default_nettype wire

@@ -281,7 +281,7 @@ def index(read, blocks):
     small = read("kernels")
     for family, name, anchor, block, holds in [
         ("reciprocal", "1/x", "reciprocal", "vertex_stage", "of vertices"),
-        ("inverse root", "1/√x", "reciprocal-square-root", "ray_generator", "of each ray"),
+        ("inverse root", "1/√x", "reciprocal-square-root", None, ""),
         ("root", "√x", "square-root", None, ""),
         ("division", "a/b", "division", "vertex_stage", "of vertices"),
         ("length", "length", "length-of-a-vector", "field_sphere", "of spheres"),

@@ -75,10 +75,10 @@ fn every_key_is_documented() {
 fn the_page_has_what_each_quality_sets() {
     let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
     for quality in Quality::ALL {
-        let Preset { size, round, .. } = quality.preset();
-        let Threshold { base, footprint } = round;
+        let Preset { size, threshold } = quality.preset();
+        let Threshold { base, footprint } = threshold;
         let (width, height) = (size.width(), size.height());
-        let threshold = format!("{base}·2^-{FRACTION} + t/2^{footprint}");
+        let threshold = format!("{base}·2^-{FRACTION} + z/2^{footprint}");
         let row = format!("| `{quality}` | {width}×{height} | {threshold} |\n");
         assert!(page.contains(&row), "docs/scenes.md has no row {row}");
     }

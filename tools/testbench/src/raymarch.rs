@@ -1,10 +1,11 @@
 //! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, results of rays, and pixels.
 
 use crate::{Bits, Layout, Module, Record};
-use glint_core::field::{FixedCone, Solid, Surface};
+use glint_core::field::{FixedCone, Solid, Surface, magnitude};
 use glint_model::raymarch::exits::{Beam, Cone, Cones, Exit, Exits, Eye, Inverse, Rule, Side};
 use glint_model::raymarch::{
-    FieldSetup, Form, Lights, Marching, Palette, Ray, RayEnd, RayResult, State, paint, rgb565,
+    FieldSetup, Form, Lights, MARCH_FRACTION, Marching, Palette, Ray, RayEnd, RayResult, State,
+    paint, rgb565,
 };
 
 /// Position of a pixel, as in the member `place` of a ray.
@@ -44,13 +45,49 @@ impl RayPlace {
     }
 }
 
-/// Packs a ray, before its first step, as a `ray_t`.
+/// Packs a marching ray, before its first step, as a `ray_t`.
 pub fn ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     let mut record = layout.record();
     record.set_all("direction", ray.direction);
+    record.set("height", ray.height);
+    record.set("over", ray.is_over);
     record.set("start", ray.start);
-    record.set("length", ray.length);
     place.set(&mut record);
+    record.bits()
+}
+
+/// What a marching ray has of an `exit_pkg::ray_t`: its place, its height, the first 18 bits of its direction, and the start, if it is not over.
+pub fn marching_ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
+    let mut record = layout.record();
+    record.set("place", place.bits());
+    record.set("height", ray.height);
+    record.set("over", ray.is_over);
+    if !ray.is_over {
+        record.set("start", ray.start << (14 - MARCH_FRACTION));
+    }
+    let down = (0..3).filter(|&axis| ray.direction[axis] < 0);
+    record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
+    for (axis, part) in ray.direction.into_iter().enumerate() {
+        record.set(&format!("speed[{axis}]"), magnitude(part) << 6);
+    }
+    record.bits()
+}
+
+/// Clears what a marching ray does not have of an `exit_pkg::ray_t`.
+#[must_use]
+pub fn marching_part(layout: &Layout, found: &Record) -> Bits {
+    let mut record = layout.record();
+    for name in ["place", "height", "down", "over"] {
+        record.set(name, found.get(name));
+    }
+    if !found.is_set("over") {
+        let cut = 14 - MARCH_FRACTION;
+        record.set("start", found.get("start") >> cut << cut);
+    }
+    for axis in 0..3 {
+        let name = format!("speed[{axis}]");
+        record.set(&name, found.get(&name) >> 6 << 6);
+    }
     record.bits()
 }
 
@@ -178,31 +215,23 @@ impl Kind {
     }
 }
 
-/// End of a ray: the result from a lane. Unused members are 0: `surface` and `slope` without a hit, `t` of an undecided
-/// ray, `face` at a hit on a pure sphere, `direction` without a hit on a sphere.
+/// End of a marching ray: the result from a lane. Unused members are 0: all but `steps` and `t` without a hit, `t` of an undecided ray,
+/// `face` at a hit on a pure sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Whether the ray missed, hit or stayed undecided.
     pub state: Kind,
-    /// Whether the surface is a sphere.
-    pub round: bool,
-    /// Index of the sphere if `round`, else axis and sign of the flat face.
+    /// Number of the sphere.
     pub surface: u64,
     /// On a fillet, which joins a sphere and a flat face: axis and sign of this face.
     pub face: u64,
     /// Weight of the sphere in the surface, u0.8: 0 on a face, 255 on a sphere, between 0 and 255 on a fillet.
     pub share: u64,
-    /// Distance along the ray, u11.12; after a miss, the upward component of the direction, u0.8, 0 if it points downward.
+    /// T, u14.14; after a miss, the height of the sky.
     pub t: u64,
     /// Number of evaluations of the field; 255 stands for 255 or more.
     pub steps: u64,
-    /// Length of the ray's direction, as an index into the table of inverse lengths.
-    pub length: u64,
-    /// Distance of the face from the point at `t` (*gap* in docs/formats/raymarch.md).
-    pub gap: u64,
-    /// Slope of the ray towards the face (*slope* in docs/formats/raymarch.md).
-    pub slope: u64,
-    /// Direction of a ray that hits a sphere.
+    /// Direction of a ray that hits.
     pub direction: [i32; 3],
 }
 
@@ -211,28 +240,23 @@ impl End {
     #[must_use]
     pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
-            State::Miss => (Kind::Miss, None, (ray.direction[2].max(0) >> 9) as u64),
-            State::Hit(surface) => (Kind::Hit, Some(surface), outcome.t.into()),
+            State::Miss => (Kind::Miss, None, ray.height.into()),
+            State::Hit(surface) => (
+                Kind::Hit,
+                Some(surface),
+                u64::from(outcome.t) << (14 - MARCH_FRACTION),
+            ),
             State::Undecided => (Kind::Undecided, None, 0),
         };
-        let number = surface.and_then(Surface::number);
-        let face = surface.and_then(Surface::face);
-        let share = surface.map_or(0, Surface::share);
+        let member = |of: fn(Surface) -> Option<u8>| surface.and_then(of).unwrap_or_default();
         Self {
             state,
-            round: number.is_some(),
-            surface: number.or(face).unwrap_or(0).into(),
-            face: face
-                .filter(|_| number.is_some() && share != 255)
-                .unwrap_or(0)
-                .into(),
-            share: share.into(),
+            surface: member(Surface::number).into(),
+            face: member(Surface::face).into(),
+            share: surface.map_or(0, Surface::share).into(),
             t,
             steps: outcome.steps.min(255).into(),
-            length: ray.length.into(),
-            gap: outcome.gap.into(),
-            slope: outcome.slope.into(),
-            direction: number.map_or([0; 3], |_| ray.direction),
+            direction: surface.map_or([0; 3], |_| ray.direction),
         }
     }
 
@@ -244,32 +268,20 @@ impl End {
             Kind::Hit => record.get(name),
             _ => 0,
         };
-        let round = if_hit("round") == 1;
-        let share = if round { record.get("share") } else { 0 };
         let end = Self {
-            slope: if_hit("slope"),
-            gap: record.get("gap"),
             surface: if_hit("surface"),
-            round,
-            // A pure sphere has no face.
-            face: if round && share != 255 {
-                record.get("face")
-            } else {
-                0
-            },
-            share,
+            face: if_hit("face"),
+            share: if_hit("share"),
             state,
             steps: record.get("steps"),
             t: match state {
                 Kind::Undecided => 0,
                 _ => record.get("t"),
             },
-            length: record.get("length"),
-            direction: if round {
-                ["direction[0]", "direction[1]", "direction[2]"]
-                    .map(|part| record.signed(part) as i32)
-            } else {
-                [0; 3]
+            direction: match state {
+                Kind::Hit => ["direction[0]", "direction[1]", "direction[2]"]
+                    .map(|part| record.signed(part) as i32),
+                _ => [0; 3],
             },
         };
         (RayPlace::of(record), end)
@@ -286,24 +298,14 @@ pub fn marching(setup: &FieldSetup) -> &Marching {
 }
 
 fn solid(mut solid: Record, marching: &Marching) -> Record {
-    let blend = marching.blend();
-    solid.set("flat_too", marching.beside.is_some());
+    let blend = marching.beside.blend;
     solid.set("blend_inverse", blend.inverse);
     solid.set("blend_width", blend.width);
-    if let Some(spheres) = marching.spheres() {
-        solid.set("last_sphere", spheres.count as u64 - 1);
-        solid.set("spheres_repeated", spheres.repeated);
-        solid.set("is_round", 1);
-    }
+    solid.set("last_sphere", marching.spheres().count as u64 - 1);
     if let Solid::Flat(flat) = &marching.solid {
         let constants = flat.constants();
-        solid.set("kind", constants.kind);
         solid.set("levels", constants.levels);
-        solid.set("cube_half", constants.cube_half);
         solid.set_all("half", constants.half);
-        solid.set("has", constants.has);
-        solid.set("repeated", constants.repeated);
-        solid.set("room", constants.room);
     }
     solid
 }
@@ -370,16 +372,14 @@ fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>;
 /// Drives the frame constants of a lane for marching rays.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     let marching = marching(setup);
-    let tuning = &marching.tuning;
     let record = module
         .record("tuning")
-        .with("far_limit", tuning.far)
-        .with("cap", tuning.cap)
-        .with("footprint", tuning.footprint)
-        .with("threshold", tuning.threshold);
+        .with("cap", marching.cap)
+        .with("footprint", marching.footprint - 7)
+        .with("threshold", marching.threshold);
     module.drive_bits("tuning", record);
-    drive_eyes(module, "origins", marching.eyes.map(|eye| eye.origin));
-    module.drive_all("bounds", marching.bounds);
+    drive_eyes(module, "origins", marching.entry.eyes.map(|eye| eye.origin));
+    module.drive_all("bounds", marching.bounds());
     let solid = solid(module.record("solid"), marching);
     module.drive_bits("solid", solid);
     set_spheres(module, setup, &Palette::default().lights);
@@ -501,10 +501,14 @@ pub fn set_raymarcher(module: &mut Module, setup: &FieldSetup) {
                 .record("solid")
                 .with("spheres_repeated", exits.spheres.repeated);
             module.drive_bits("solid", solid);
+            drive_eyes(module, "origins", exits.eyes.map(|eye| eye.origin));
             set_solid(module, exits);
             set_shadow(module, exits);
         }
-        Form::Marching(_) => set_lane(module, setup),
+        Form::Marching(marching) => {
+            set_lane(module, setup);
+            set_solid(module, &marching.entry);
+        }
     }
     set_rays(module, setup);
 }
@@ -548,34 +552,23 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
 pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     module.drive("stereo", setup.stereo.is_some());
     module.drive("exits", setup.exits().is_some());
-    match &setup.form {
-        Form::Exits(exits) => {
-            let axes = |[x, y, z, _]: [i32; 4]| [x, y, z];
-            let eyes = exits.eyes;
-            module.drive("near_limit", exits.near as u64);
-            module.drive("far_limit", exits.far as u64);
-            drive_eyes(module, "first", eyes.map(|eye| axes(eye.first)));
-            module.drive_all("across", axes(exits.steps[0]));
-            module.drive_all("down", axes(exits.steps[1]));
-            drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
-            set_starts(module, exits);
-            set_diagonals(module, exits);
-            let count = 1 + usize::from(setup.stereo.is_some());
-            set_cones(module, "cone_", exits, count, |cone| *cone);
-        }
-        Form::Marching(marching) => {
-            let eyes = marching.eyes;
-            module.drive("near_limit", marching.near);
-            drive_eyes(module, "first", eyes.map(|eye| eye.first));
-            module.drive_all("across", marching.steps[0]);
-            module.drive_all("down", marching.steps[1]);
-            drive_eyes(module, "outside", eyes.map(|eye| eye.outside));
-            drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
-        }
-    }
+    let exits = match &setup.form {
+        Form::Exits(exits) => exits,
+        Form::Marching(marching) => &marching.entry,
+    };
+    let axes = |[x, y, z, _]: [i32; 4]| [x, y, z];
+    module.drive("near_limit", exits.near as u64);
+    module.drive("far_limit", exits.far as u64);
+    drive_eyes(module, "first", exits.eyes.map(|eye| axes(eye.first)));
+    module.drive_all("across", axes(exits.steps[0]));
+    module.drive_all("down", axes(exits.steps[1]));
+    set_starts(module, exits);
+    set_diagonals(module, exits);
+    let count = 1 + usize::from(setup.stereo.is_some());
+    set_cones(module, "cone_", exits, count, |cone| *cone);
 }
 
-/// Packs the `end_t` of a ray by exits from the model's end.
+/// Packs the `end_t` of a ray that ends on no sphere from the model's end.
 pub fn exit_end(layout: &Layout, place: RayPlace, end: &RayEnd) -> Bits {
     let mut record = layout.record();
     let (kind, surface, t) = match end.state {
@@ -594,25 +587,6 @@ pub fn exit_end(layout: &Layout, place: RayPlace, end: &RayEnd) -> Bits {
     record.bits()
 }
 
-/// Packs the `end_t` of a ray from the model's result.
-pub fn end(layout: &Layout, place: RayPlace, ray: &Ray, outcome: &RayResult) -> Bits {
-    let end = End::expected(ray, outcome);
-    let mut record = layout.record();
-    record.set("slope", end.slope);
-    record.set("gap", end.gap);
-    record.set("surface", end.surface);
-    record.set_name("state", end.state.name());
-    record.set("steps", end.steps);
-    record.set("t", end.t);
-    record.set("length", end.length);
-    place.set(&mut record);
-    record.set("round", end.round);
-    record.set_all("direction", ray.direction);
-    record.set("share", end.share);
-    record.set("face", end.face);
-    record.bits()
-}
-
 fn colour([r, g, b]: [u8; 3]) -> u64 {
     u64::from(b) << 16 | u64::from(g) << 8 | u64::from(r)
 }
@@ -627,7 +601,6 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.drive_bits("palette", colours);
     module.drive("horizon", colour(palette.horizon));
     module.drive("stereo", setup.stereo.is_some());
-    module.drive("exits", setup.exits().is_some());
     module.drive("depth_mantissa", setup.depth.mantissa);
     module.drive("depth_exponent", setup.depth.exponent);
     module.drive("fog_shift", palette.fog_shift);

@@ -21,12 +21,12 @@ choices!(Quality {
     Exact: "exact",
 });
 
-/// The threshold of a hit: a ray has hit if the distance is below `base` + t·2^−`footprint`.
+/// The threshold of a hit by a marching ray: it has hit if the distance is below `base` + z·2^−`footprint` at the depth z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threshold {
     /// The constant part of the threshold, in field units with 12 fraction bits.
     pub base: u32,
-    /// The exponent of the part that grows with the ray's parameter t, 7 to 15.
+    /// The exponent of the part that grows with the depth, 7 to 15.
     pub footprint: u32,
 }
 
@@ -35,10 +35,8 @@ pub struct Threshold {
 pub struct Preset {
     /// Size of the picture, which scan-out enlarges to 1280×720.
     pub size: Size,
-    /// Threshold in fields whose faces are perpendicular to an axis: errors occur only at edges.
-    pub faces: Threshold,
-    /// Threshold in fields with spheres or oblique faces, where silhouettes and normals depend on the position of the hit.
-    pub round: Threshold,
+    /// Threshold of marching rays.
+    pub threshold: Threshold,
 }
 
 const fn threshold(base: u32, footprint: u32) -> Threshold {
@@ -51,18 +49,15 @@ impl Quality {
         match self {
             Self::Fast => Preset {
                 size: Size::W320,
-                faces: threshold(160, 12),
-                round: threshold(28, 14),
+                threshold: threshold(28, 14),
             },
             Self::Balanced => Preset {
                 size: Size::W640,
-                faces: threshold(28, 14),
-                round: threshold(4, 15),
+                threshold: threshold(4, 15),
             },
             Self::Exact => Preset {
                 size: Size::W1280,
-                faces: threshold(6, 15),
-                round: threshold(2, 15),
+                threshold: threshold(2, 15),
             },
         }
     }

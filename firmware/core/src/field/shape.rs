@@ -146,8 +146,6 @@ pub struct FlatConstants {
     pub room: bool,
     /// Whether the solid is periodic with 64 field units along each axis.
     pub repeated: bool,
-    /// Half the side of a sponge's smallest cubes, u10.12.
-    pub cube_half: u32,
-    /// Half the sides of a box along x, y and z, u10.12. For an octahedron, the first number is its size.
+    /// Half the sides of a box along x, y and z, u10.12, or of a sponge's smallest cubes. For an octahedron, the first number is its size.
     pub half: [u32; 3],
 }

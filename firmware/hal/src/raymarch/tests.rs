@@ -57,6 +57,8 @@ fn field(form: Form<'_>) -> Field<'_> {
         control: Control::default().with_stereo(Stereo::RedCyan),
         solid: Solid::default().with_levels(0b111),
         half: [40, 41, 42],
+        exits: Exits::default(),
+        prisms: Default::default(),
         form,
         limits: [44, 45],
         origins: [[1, -2, 3], [-10, 11, -12]],
@@ -74,14 +76,12 @@ fn a_field_is_described_before_it_is_enabled() {
     let (raymarcher, block) = probe(IDENT);
     let mut raymarcher = raymarcher.unwrap();
     let faces = [0, 1, 2, 3, 4, 5, 6, 7].map(|face| [230, 130, face]);
-    let (tuning, cube_half) = (Tuning::default().with_cap(43), 3 << 11);
-    let (outside, bounds) = ([[4, 5, 6], [13, 14, 15]], [19, 20, 21]);
+    let tuning = Tuning::default().with_cap(1020);
+    let bounds = [19, 20, 21];
     let field = Field {
         faces: &faces,
         ..field(Form::March {
-            cube_half,
             tuning,
-            outside: outside.each_ref(),
             bounds: &bounds,
         })
     };
@@ -89,7 +89,6 @@ fn a_field_is_described_before_it_is_enabled() {
     let r = registers();
     assert_eq!(r.solid().read(), field.solid);
     assert!(!r.exits().read().enable());
-    assert_eq!(r.cube_half().read(), cube_half);
     let half = [r.half_x(), r.half_y(), r.half_z()];
     assert_eq!(half.map(|x| x.read()), field.half);
     assert_eq!(r.tuning().read(), tuning);
@@ -101,15 +100,6 @@ fn a_field_is_described_before_it_is_enabled() {
     ];
     let origins = origins.map(|row| row.map(|x| x.read().cast_signed() << 7 >> 7));
     assert_eq!(origins, field.origins);
-    let found = [
-        [r.outside_left_x(), r.outside_left_y(), r.outside_left_z()],
-        [
-            r.outside_right_x(),
-            r.outside_right_y(),
-            r.outside_right_z(),
-        ],
-    ];
-    assert_eq!(found.map(|row| row.map(|x| x.read())), outside);
     let first = [
         [r.first_left_x(), r.first_left_y(), r.first_left_z()],
         [r.first_right_x(), r.first_right_y(), r.first_right_z()],
@@ -117,7 +107,7 @@ fn a_field_is_described_before_it_is_enabled() {
     let first = first.map(|row| row.map(|x| x.read().cast_signed()));
     assert_eq!(first, field.first);
     let found = [r.bounds_x(), r.bounds_y(), r.bounds_z()];
-    assert_eq!(found.map(|x| x.read()), bounds);
+    assert_eq!(found.map(|x| x.read() as i32), bounds);
     let steps = [
         [r.across_x(), r.across_y(), r.across_z()],
         [r.down_x(), r.down_y(), r.down_z()],
@@ -163,11 +153,13 @@ fn rays_by_exits_have_the_prism_around_each_eye() {
     };
     let prism =
         |eye: u32| [0, 1].map(|way| [0, 1, 2, 3].map(|axis| start(8 * eye + 4 * way + axis)));
-    raymarcher.unwrap().set_field(&field(Form::Exits {
+    raymarcher.unwrap().set_field(&Field {
         exits,
-        borders: [-1, 2, -3],
         prisms: [prism(0), prism(1)],
-    }));
+        ..field(Form::Exits {
+            borders: [-1, 2, -3],
+        })
+    });
     let r = registers();
     assert_eq!(r.exits().read(), exits.with_enable(true));
     let borders = [r.border_x(), r.border_y(), r.border_z()];

@@ -15,14 +15,13 @@ pub(super) struct Directions {
     /// Change of the direction per pixel down.
     pub down: [i64; 3],
     /// The exponent e, 0 to 3: D is 2^−e times the direction whose component along the camera's forward axis n is 1. This
-    /// makes D shorter than 1.
+    /// makes each component of D smaller than 1.
     pub exponent: u32,
 }
 
 impl Directions {
-    /// Computes the directions for the cameras of two eyes, which differ only in position and shift, or for one camera given twice. With
-    /// `round` the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum norm.
-    pub fn new(eyes: &[View; 2], width: u32, height: u32, round: bool) -> Self {
+    /// Computes the directions for the cameras of two eyes, which differ only in position and shift, or for one camera given twice.
+    pub fn new(eyes: &[View; 2], width: u32, height: u32) -> Self {
         let [view, _] = eyes;
         let half_width = view.half_width().to_bits() as i64;
         // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
@@ -37,7 +36,7 @@ impl Directions {
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });
-        // The direction is linear over the picture, so it is longest in a corner.
+        // The direction is linear over the picture, so each component is largest in a corner.
         let corners = first.iter().flat_map(|&first| {
             [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
                 [0, 1, 2].map(|i: usize| {
@@ -48,19 +47,10 @@ impl Directions {
                 })
             })
         });
-        // Limits of a length (51 fraction bits) and of a squared length (50 fraction bits). They are slightly below 1,
-        // because the steps are rounded.
+        // Slightly below 1, because the steps are rounded.
         const ONE: i64 = (1 << 51) - (1 << 36);
-        const SQUARE: i64 = (1 << 50) - (1 << 40);
-        let exponent = if round {
-            // Squares the components, each with 25 fraction bits and 3 integer bits.
-            let squares = corners.map(|d| d.map(|x| ((x >> 26) + 1).pow(2)).iter().sum());
-            let longest: i64 = squares.max().unwrap_or(0);
-            (0..3).find(|&e| longest >> (2 * e) < SQUARE).unwrap_or(3)
-        } else {
-            let largest = corners.flatten().max().unwrap_or(0);
-            (0..3).find(|&e| largest >> e < ONE).unwrap_or(3)
-        };
+        let largest = corners.flatten().max().unwrap_or(0);
+        let exponent = (0..3).find(|&e| largest >> e < ONE).unwrap_or(3);
         Self {
             first,
             across,

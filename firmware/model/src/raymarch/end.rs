@@ -27,8 +27,8 @@ pub struct RayEnd {
     pub evaluations: u32,
     /// Whether a face is in the shadow of the first light.
     pub shadow: bool,
-    /// How far up a ray leads: the component along z of its direction in the maximum norm, or in the Euclidean norm for a marching ray in
-    /// a scene with spheres; u0.8, rounded down, 0 for a ray that leads down. The colour of the sky depends on it.
+    /// How far up a ray leads: the component along z of its direction, divided by the largest component; u0.8, rounded down, 0 for a ray that
+    /// leads down. The colour of the sky depends on it.
     pub height: u8,
     /// At a hit on a sphere or fillet, the vector from the sphere's centre to the hit, in field units with 12 fraction bits. It is about
     /// as long as the radius. At a hit on the lateral face of a cone, the vector from the apex.

@@ -6,9 +6,9 @@ use glint_core::field::{Field, FixedSpheres};
 use glint_core::fixed::Q32_32;
 use glint_core::stereo::Tint;
 
-use super::directions::{Directions, check};
+use super::directions::check;
 use super::exits::{Exits, Words};
-use super::marching::{Marching, placed};
+use super::marching::{Marching, extent};
 use super::options::FieldOptions;
 use crate::depth::DepthScale;
 use crate::error::RenderError;
@@ -61,23 +61,27 @@ impl FieldSetup {
     ) -> Result<Self, RenderError> {
         check(view, (width, height))?;
         let stereo = options.stereo.filter(|_| STEREO.is_built);
-        let solid = placed(field);
-        let nearest = nearest(view, solid.0.extent);
-        let marches = options.marches && Marching::draws(field);
-        let (form, scale, exponent) = if Exits::draws(field) && !marches {
-            let exits = Exits::new(field, view, (width, height), stereo, Words::CHOSEN)?;
-            let exits = match options.sun {
-                Some(direction) => exits.with_shadows(direction),
-                None => exits,
-            };
-            (Form::Exits(exits), exits.scale, exits.exponent)
-        } else {
-            let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
-            let rays = Directions::new(&views, width, height, field.is_round());
-            let scale = solid.0.scale;
-            let marching = Marching::new(solid, &views, &rays, nearest, options.tuning);
-            (Form::Marching(marching), scale, rays.exponent)
+        let extent = match field {
+            Field::Primitive(primitive) => primitive.placed().extent,
+            Field::Union(union) => extent(union),
         };
+        let nearest = nearest(view, extent);
+        let (form, exits) = match (field, extent) {
+            (Field::Union(union), Some(half)) if SPHERES.is_built && !Exits::draws(field) => {
+                let tuning = options.tuning;
+                let marching = Marching::new(union, half, view, (width, height), stereo, tuning)?;
+                (Form::Marching(marching), marching.entry)
+            }
+            _ => {
+                let exits = Exits::new(field, view, (width, height), stereo, Words::CHOSEN)?;
+                let exits = match options.sun {
+                    Some(direction) => exits.with_shadows(direction),
+                    None => exits,
+                };
+                (Form::Exits(exits), exits)
+            }
+        };
+        let (scale, exponent) = (exits.scale, exits.exponent);
         let near = i64::from(view.near().to_bits()) << 9;
         let world_depth = DepthScale::from_nearest(nearest.max(near));
         Ok(Self {
@@ -114,7 +118,7 @@ impl FieldSetup {
             Form::Exits(Exits { spheres, .. }) => {
                 (SPHERES.is_built && spheres.count > 0).then_some(spheres)
             }
-            Form::Marching(marching) => marching.spheres(),
+            Form::Marching(marching) => Some(marching.spheres()),
         }
     }
 

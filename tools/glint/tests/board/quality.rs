@@ -8,7 +8,7 @@ use glint_core::field::Field;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_model::FrameBuffer;
-use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Tuning, render_field};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Tuning, render_field};
 
 /// Size, and threshold and footprint of marching rays.
 const STATED: [(Quality, Size, [u32; 2]); 3] = [
@@ -41,7 +41,7 @@ fn a_quality_is_a_size_and_a_threshold() {
             let tuning = Tuning {
                 threshold,
                 footprint,
-                ..DEFAULT_TUNING
+                ..Tuning::default()
             };
             let options = FieldOptions {
                 tuning,

@@ -347,7 +347,7 @@ fn draw_field(
             None => camera.ray(centre, size()),
         };
         // The far limit of the model's rays.
-        let farthest = reach(setup, eye, x, y, ray.direction);
+        let farthest = reach(setup, eye, ray.direction);
         *pixel = field_pixel(&field, appearance, &appeared, &ray, (camera.near, farthest));
     }
     Ok(())

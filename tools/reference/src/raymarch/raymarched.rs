@@ -7,7 +7,7 @@ use glint_core::field::{
 };
 use glint_core::fixed::Q32_32;
 use glint_model::raymarch::exits::Exits;
-use glint_model::raymarch::{FieldOptions, FieldSetup, Form, RayEnd};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Form, Marching, RayEnd};
 
 use super::metrics::{self, Accuracy, Expected, Quantiles, RayOutcome, accuracy};
 use super::rendered::outcome;
@@ -40,15 +40,12 @@ pub fn depth(setup: &FieldSetup, depth: u64) -> f64 {
     units / setup.scale.to_num::<f64>()
 }
 
-/// Returns the largest depth of a hit by the ray of pixel (x, y), in world units along the camera's n. `direction` is the ray's direction,
-/// whose component along n is 1.
-pub fn reach(setup: &FieldSetup, eye: usize, x: u32, y: u32, direction: Vector) -> f64 {
+/// Returns the largest depth of a hit by a ray, in world units along the camera's n. `direction` is the ray's direction, whose component along n
+/// is 1.
+pub fn reach(setup: &FieldSetup, eye: usize, direction: Vector) -> f64 {
     match &setup.form {
         Form::Exits(exits) => exited::reach(exits, eye, direction),
-        Form::Marching(marching) => {
-            let ray = marching.ray(eye, x, y);
-            depth(setup, marching.depth_of(&ray, marching.tuning.far))
-        }
+        Form::Marching(marching) => depth(setup, marching.depth_of(Marching::FARTHEST)),
     }
 }
 
@@ -62,7 +59,7 @@ fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected>
     let reaches: Vec<f64> = pixels(setup)
         .map(|(x, y)| {
             let ray = camera.ray([x, y].map(f64::from), size);
-            reach(setup, 0, x, y, ray.direction)
+            reach(setup, 0, ray.direction)
         })
         .collect();
     let farthest = reaches.iter().copied().fold(0.0, f64::max);

@@ -309,18 +309,3 @@ fn stiff_pictures_of_cones() {
     }
     assert!(failed.is_empty(), "{failed:?}");
 }
-
-#[test]
-fn rays_march_to_a_cone() {
-    for subject in subjects().into_iter().step_by(3) {
-        let options = FieldOptions {
-            marches: true,
-            ..FieldOptions::of(&subject.parsed)
-        };
-        let found = Measured::new(&subject.expected, &subject.picture(&options)).accuracy;
-        let name = format!("{} {}", subject.scene, subject.name);
-        println!("{name}: {found:?}");
-        assert!(found.iou >= 0.998, "{name}");
-        assert!(found.depth.expect("a hit").p99 <= 3e-3, "{name}");
-    }
-}

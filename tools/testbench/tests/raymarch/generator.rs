@@ -1,12 +1,14 @@
 //! Tests of the ray generator: its rays equal the model's rays of a frame, in order.
 
-use glint_model::raymarch::{FieldSetup, Form, Marching};
+use glint_model::raymarch::{FieldSetup, Form};
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
 use crate::scenes::{FIELDS, ROUND, marching_setup, setup};
 use glint_model::raymarch::exits::Exits;
-use glint_testbench::raymarch::{RayPlace, exit_ray, ray, set_generator, with_meaning};
+use glint_testbench::raymarch::{
+    RayPlace, exit_ray, marching_part, marching_ray, set_generator, with_meaning,
+};
 use glint_vectors::Random;
 
 /// The module with rays by exits, and its variant with all kinds of rays.
@@ -25,15 +27,6 @@ impl Bench {
             round: name == GENERATORS[1],
         }
     }
-}
-
-/// The output port for the rays of a frame, and their type.
-fn output(module: &Module, setup: &FieldSetup) -> (&'static str, Layout) {
-    let (port, kind) = match setup.form {
-        Form::Exits(_) => ("exit", "exit_pkg::ray_t"),
-        Form::Marching(_) => ("ray", "raymarch_pkg::ray_t"),
-    };
-    (port, module.packed_type(kind).clone())
 }
 
 /// Returns the model's rays of the first `lines` lines of a frame, in the order of the generator.
@@ -61,7 +54,7 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32, round: bool) -> Vec
                 exit_ray(layout, exits, place, &beam, cones.as_ref())
             }
             Form::Marching(marching) => {
-                ray(layout, place, &marching.ray(place.eye, place.column, y))
+                marching_ray(layout, place, &marching.ray(place.eye, place.column, y))
             }
         })
         .collect()
@@ -71,15 +64,13 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32, round: bool) -> Vec
 fn check(bench: &mut Bench, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     let Bench { module, round } = bench;
     set_generator(module, setup, band_rows(setup.width));
-    let is_round = setup.marching().is_some_and(Marching::is_round);
-    module.drive("round", is_round);
-    let (port, layout) = output(module, setup);
+    let layout = module.packed_type("exit_pkg::ray_t").clone();
     let rays = expected(&layout, setup, lines, *round);
-    let (taken, clocks) = run(module, port, rays.len(), stalls);
+    let (taken, clocks) = run(module, rays.len(), stalls);
     for (number, (item, wanted)) in taken.iter().zip(rays).enumerate() {
         let found = match &setup.form {
             Form::Exits(exits) => with_meaning(&layout.record_of(*item), exits),
-            Form::Marching(_) => *item,
+            Form::Marching(_) => marching_part(&layout, &layout.record_of(*item)),
         };
         assert_eq!(found, wanted, "ray {number} of {setup:?}");
     }
@@ -87,9 +78,9 @@ fn check(bench: &mut Bench, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u
     clocks
 }
 
-/// Starts the generator and takes `count` rays from its output `port`; returns them, and the number of clocks.
-fn run(module: &mut Module, port: &str, count: usize, stalls: Stalls) -> (Vec<Bits>, u64) {
-    let mut sink = Sink::new(module, "out", &[port], stalls);
+/// Starts the generator and takes `count` rays; returns them, and the number of clocks.
+fn run(module: &mut Module, count: usize, stalls: Stalls) -> (Vec<Bits>, u64) {
+    let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let start = module.port("start");
     module.set(start, 1);
     module.clock();
@@ -134,7 +125,7 @@ fn beginnings_of_random_frames() {
         let [exits, all] = &mut modules;
         match number % 4 {
             0 => check(exits, &setup(&mut random, &FIELDS), 3, stalls),
-            1 => check(all, &marching_setup(&mut random, &FIELDS), 3, stalls),
+            1 => check(all, &marching_setup(&mut random), 3, stalls),
             _ => check(all, &setup(&mut random, &fields), 3, stalls),
         };
     }
@@ -146,7 +137,7 @@ fn whole_frames_and_one_ray_a_clock() {
     for (number, name) in (0..).zip([GENERATORS[1], GENERATORS[0], GENERATORS[1]]) {
         let mut bench = Bench::new(name, 2);
         let setup = match number {
-            0 => marching_setup(&mut random, &FIELDS),
+            0 => marching_setup(&mut random),
             _ => setup(&mut random, &FIELDS),
         };
         let eyes = if setup.stereo.is_some() { 2 } else { 1 };

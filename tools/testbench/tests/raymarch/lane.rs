@@ -1,11 +1,11 @@
-//! Tests of a single lane of the raymarcher: every ray ends once, with the model's result, under any back-pressure.
+//! Tests of a lane of marching rays: every ray ends once, with the model's result, under any back-pressure.
 
 use std::collections::HashMap;
 
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Pipe};
 
-use crate::scenes::{SPONGES, every_field, examples, marching_setup};
+use crate::scenes::marching_setup;
 use glint_testbench::raymarch::{End, RayPlace, marching, ray, set_lane};
 use glint_vectors::Random;
 
@@ -101,28 +101,17 @@ fn benches(name: &str) -> Vec<Bench> {
     numbered.map(bench).collect()
 }
 
-fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
+#[test]
+fn random_rays_in_smooth_unions() {
     let mut random = Random(3);
-    let mut benches = benches(name);
+    let mut benches: Vec<_> = ["ring_lane", "ring_lane_all"]
+        .into_iter()
+        .flat_map(benches)
+        .collect();
     for frame in 0..rays() / RAYS {
-        let setup = marching_setup(&mut random, fields);
+        let setup = marching_setup(&mut random);
         let bench = frame % benches.len();
         let rays = some_rays(&mut random, &benches[bench].ray(), &setup);
         benches[bench].check(&setup, rays);
     }
-}
-
-#[test]
-fn random_rays_in_sponges() {
-    random_rays("ring_lane", &SPONGES);
-}
-
-#[test]
-fn random_rays_in_an_example_of_each_kind() {
-    random_rays("ring_lane_all", &examples());
-}
-
-#[test]
-fn random_rays_in_all_fields() {
-    random_rays("ring_lane_all", &every_field());
 }

@@ -1,12 +1,12 @@
 //! Tests of the module `ray_paint`, which computes colours and depths from the ends of rays.
 
 use glint_core::field::Surface;
-use glint_model::raymarch::{FieldSetup, Marching, Palette, Ray, RayEnd, RayResult, State};
+use glint_model::raymarch::{FieldSetup, Palette, RayEnd, State};
 use glint_model::triangle::descriptor::band_rows;
-use glint_testbench::{Bits, Layout, Pipe};
+use glint_testbench::Pipe;
 
-use crate::scenes::{FIELDS, marching_setup, setup};
-use glint_testbench::raymarch::{Pixel, RayPlace, end, exit_end, marching, pixel, set_paint};
+use crate::scenes::{FIELDS, setup};
+use glint_testbench::raymarch::{Pixel, RayPlace, exit_end, pixel, set_paint};
 use glint_vectors::Random;
 
 fn palette(random: &mut Random) -> Palette {
@@ -25,34 +25,8 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// Makes a result of the ray `start`: the model's, or a random result with `t` above 0, even if no ray of the scene can produce it.
-fn ending(random: &mut Random, marching: &Marching, start: &Ray) -> RayResult {
-    if random.coin() {
-        return marching.march(start);
-    }
-    let state = match random.bits() % 8 {
-        0 => State::Miss,
-        1 => State::Undecided,
-        number => State::Hit(Surface::Face {
-            axis: (number % 3) as u8,
-            positive: random.coin(),
-        }),
-    };
-    let gap = match state {
-        State::Hit(_) => random.integer(0, 4095) as u32,
-        _ => 0,
-    };
-    RayResult {
-        state,
-        t: random.logarithmic(1.0, 8_388_608.0) as u32,
-        gap,
-        slope: random.integer(0, 1023) as u32,
-        steps: random.integer(1, 255) as u32,
-    }
-}
-
-/// Makes an end of a ray by exits: the model's, or a random end with a depth above 0, even if no ray of the scene can produce it.
-fn exit_ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayEnd {
+/// Makes an end of a ray: the model's, or a random end with a depth above 0, even if no ray of the scene can produce it.
+fn ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayEnd {
     let end = setup.tracer().trace(place.eye, place.column, place.line);
     if random.coin() {
         return end;
@@ -74,12 +48,8 @@ fn exit_ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayE
     }
 }
 
-/// Sends ends of rays through a module, in frames of `new_setup`. `ending` makes an end, and its bits.
-fn check(
-    name: &str,
-    new_setup: impl Fn(&mut Random) -> FieldSetup,
-    ending: impl Fn(&mut Random, &Layout, &FieldSetup, RayPlace) -> (Bits, RayEnd),
-) {
+/// Sends ends of rays through a module.
+fn check(name: &str, has_shadows: bool) {
     const COUNT: usize = 4_000;
     let mut random = Random(8);
     let (input, output) = (("in", &["end"][..]), ("out", &Pixel::PAYLOAD[..]));
@@ -87,7 +57,7 @@ fn check(
         let share = [0.0, 0.5][frame as usize % 2];
         let mut pipe = Pipe::new(name, frame, input, output, [share; 2]);
         let layout = pipe.module.packed_type("raymarch_pkg::end_t").clone();
-        let setup = new_setup(&mut random);
+        let setup = setup(&mut random, &FIELDS);
         let palette = palette(&mut random);
         set_paint(&mut pipe.module, &setup, &palette);
         pipe.module.drive("stride", setup.width / 8);
@@ -100,8 +70,9 @@ fn check(
                     column: random.integer(0, i64::from(setup.width) - 1) as u32,
                     eye: (random.bits() % 2) as usize,
                 };
-                let (bits, end) = ending(&mut random, &layout, &setup, place);
-                pipe.source.push(vec![bits]);
+                let mut end = ending(&mut random, &setup, place);
+                end.shadow &= has_shadows;
+                pipe.source.push(vec![exit_end(&layout, place, &end)]);
                 (pixel(&setup, &palette, place, &end), end)
             })
             .collect();
@@ -117,35 +88,7 @@ fn check(
 }
 
 #[test]
-fn ends_of_random_rays_by_exits() {
-    for (name, has_shadows) in [
-        ("ray_paint", false),
-        ("ray_paint_march", false),
-        ("ray_paint_shadow", true),
-    ] {
-        check(
-            name,
-            |random| setup(random, &FIELDS),
-            |random, layout, setup, place| {
-                let mut end = exit_ending(random, setup, place);
-                end.shadow &= has_shadows;
-                (exit_end(layout, place, &end), end)
-            },
-        );
-    }
-}
-
-#[test]
-fn ends_of_random_marching_rays() {
-    check(
-        "ray_paint_march",
-        |random| marching_setup(random, &FIELDS),
-        |random, layout, setup, place| {
-            let marching = marching(setup);
-            let start = marching.ray(place.eye, place.column, place.line);
-            let outcome = ending(random, marching, &start);
-            let bits = end(layout, place, &start, &outcome);
-            (bits, marching.seen(&start, &outcome))
-        },
-    );
+fn ends_of_random_rays() {
+    check("ray_paint", false);
+    check("ray_paint_shadow", true);
 }

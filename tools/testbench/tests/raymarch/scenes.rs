@@ -4,9 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
-use glint_model::raymarch::{
-    FieldOptions, FieldSetup, Form, Light, Lights, Marching, Shine, Stereo, Tint,
-};
+use glint_model::raymarch::{FieldOptions, FieldSetup, Form, Light, Lights, Shine, Stereo, Tint};
 
 use glint_vectors::{Camera, Random};
 
@@ -23,6 +21,19 @@ pub const ROUND: [&str; 8] = [
     "moving:0.25,0.75,200",
     "spheres:0,0,0,0.75;1,0.25,0.5,0.5;-0.75,-0.5,0.75,0.25",
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
+];
+
+/// Unions with a fillet, in which rays march, for a build with sponges up to depth 4.
+pub const SMOOTH: [&str; 9] = [
+    "smooth:0.25,menger:2+sphere:1",
+    "smooth:0.5,menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
+    "smooth:0.01,menger:1+moving:1,0.5,30",
+    "smooth:0.1,menger:4+moving:0.5,1,60",
+    "smooth:0.25,box:1,1,0.25+sphere:0.625",
+    "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
+    "smooth:0.5,box:12,12,12+spheres:0,0,11.4,0.5;1,2,-10.9,1",
+    "smooth:0.5,box:0.01,0.01,0.01+spheres:8,-8,8,3.5;-11,-11,-11,0.75",
+    "smooth:0.05,box:0.5,12,0.02+spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
 /// Unions of a bounded field with flat faces and of spheres.
@@ -75,41 +86,6 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Returns an example of each kind of field in which rays of the gateware march.
-pub fn examples() -> Vec<&'static str> {
-    Primitive::EXAMPLES
-        .into_iter()
-        .filter(|text| marches(text))
-        .collect()
-}
-
-/// Whether rays of the gateware march in a field.
-fn marches(text: &str) -> bool {
-    let field = Field::parse(text).unwrap();
-    Marching::draws(&field) && !field.has_cone()
-}
-
-/// Returns fields of all kinds in which rays can march: `FIELDS`, `ROUND`, unions, an example of each kind, and random fields, some with values at the ends of their ranges.
-pub fn every_field() -> Vec<String> {
-    let boxes = [
-        "union:box:1,0.5,0.25+moving:0.25,1",
-        "smooth:0.2,box:1,0.5,0.25+moving:0.25,1",
-    ];
-    let mut random = Random(17);
-    let fixed = [
-        &FIELDS[..],
-        &ROUND,
-        &UNIONS,
-        &ENDLESS_UNIONS,
-        &boxes,
-        &examples(),
-    ]
-    .concat();
-    let drawn = (0..60).map(|_| Field::draw(|| random.bits() as u32).to_string());
-    let all = fixed.into_iter().map(String::from).chain(drawn);
-    all.filter(|text| marches(text)).collect()
-}
-
 /// Makes a random camera inside or outside of a field, with any direction.
 pub fn camera(random: &mut Random) -> View {
     let distance = match random.bits() % 4 {
@@ -118,6 +94,11 @@ pub fn camera(random: &mut Random) -> View {
         2 => random.real(0.0, 8.0),
         _ => 1.2,
     };
+    camera_at(random, distance)
+}
+
+/// Makes a random camera at a distance from the origin, with any direction.
+fn camera_at(random: &mut Random, distance: f64) -> View {
     let eye = random.direction().map(|x| x * distance);
     let towards = match random.bits() % 4 {
         0 => random.direction(),
@@ -138,8 +119,8 @@ pub fn camera(random: &mut Random) -> View {
 
 /// Lowers the step limit of a frame's rays, which march, to `cap` if it is higher.
 pub fn limit_steps(setup: &mut FieldSetup, cap: u32) {
-    if let Form::Marching(Marching { tuning, .. }) = &mut setup.form {
-        tuning.cap = tuning.cap.min(cap);
+    if let Form::Marching(marching) = &mut setup.form {
+        marching.cap = marching.cap.min(cap);
     }
 }
 
@@ -154,31 +135,34 @@ pub fn unshaded_setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldS
 
 /// Makes random frame constants, with random tuning and one or two eyes.
 pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
-    setup_of(random, fields, false)
+    let camera = camera(random);
+    setup_from(random, fields, &camera)
 }
 
-/// Makes random frame constants of marching rays, also of fields that are drawn by exits.
-pub fn marching_setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
-    setup_of(random, fields, true)
-}
-
-fn setup_of(random: &mut Random, fields: &[impl AsRef<str>], marches: bool) -> FieldSetup {
-    let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
-    let mut options = FieldOptions {
-        marches,
-        ..FieldOptions::of(&field)
+/// Makes random frame constants of marching rays in fields of [`SMOOTH`], some of them seen from very far away.
+pub fn marching_setup(random: &mut Random) -> FieldSetup {
+    let camera = match random.bits() % 4 {
+        0 => {
+            let distance = random.real(8.0, 31.0);
+            camera_at(random, distance)
+        }
+        _ => camera(random),
     };
+    setup_from(random, &SMOOTH, &camera)
+}
+
+fn setup_from(random: &mut Random, fields: &[impl AsRef<str>], camera: &View) -> FieldSetup {
+    let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
+    let mut options = FieldOptions::of(&field);
     options.stereo = random.coin().then(|| stereo(random));
     options.sun = random.coin().then(|| sun(random));
     if random.coin() {
         let tuning = &mut options.tuning;
         tuning.threshold = random.logarithmic(1.0, 65536.0) as u32;
         tuning.footprint = random.integer(7, 15) as u32;
-        tuning.cap = random.logarithmic(1.0, 256.0) as u32;
-        tuning.far = random.logarithmic(1.0, 8_388_608.0) as u32;
+        tuning.cap = random.logarithmic(1.0, 1024.0) as u32;
     }
-    let camera = camera(random);
-    FieldSetup::new(&field, &camera, size(random), &options).unwrap()
+    FieldSetup::new(&field, camera, size(random), &options).unwrap()
 }
 
 /// Makes a random direction to a light, along an axis in some cases.

@@ -116,7 +116,7 @@ impl FlatSolid for FixedSponge {
         FlatConstants {
             kind: Self::CODE,
             levels: ((1_u32 << self.depth) - 1) as u8,
-            cube_half: self.half as u32,
+            half: [self.half as u32; 3],
             ..FlatConstants::default()
         }
     }
@@ -125,7 +125,7 @@ impl FlatSolid for FixedSponge {
         Self {
             levels: LEVELS,
             depth: (constants.levels.trailing_ones() as u8).min(MAX_DEPTH),
-            half: constants.cube_half as i32,
+            half: constants.half[0] as i32,
         }
     }
 }

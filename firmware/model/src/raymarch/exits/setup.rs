@@ -161,7 +161,7 @@ impl Exits {
         let world = member.placed();
         let (solid, scale) = placed(member, &world);
         let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
-        let rays = Directions::new(&views, width, height, false);
+        let rays = Directions::new(&views, width, height);
         let narrow = |direction: [i64; 3]| along(&solid, direction).map(|x| rays.narrow(x));
         let steps = [narrow(rays.across), narrow(rays.down)];
         let eye = |i: usize| {

@@ -1,15 +1,15 @@
 //! Converts the registers to the constants of a frame with a field.
 
-use glint_core::field::{FixedSpheres, Flat, FlatConstants, Solid};
+use glint_core::field::{FixedBox, FixedSpheres, FixedSponge, FlatConstants, FlatSolid, Solid};
 use glint_core::fixed::Q32_32;
 use glint_core::picture::Size;
 use glint_core::stereo::Tint;
 use glint_model::DepthScale;
 use glint_model::raymarch::exits::{self, Exits, Rule, Side, Start, Words};
-use glint_model::raymarch::{Beside, Eye, FieldSetup, Form, Marching, Palette, Tuning};
+use glint_model::raymarch::{Beside, FieldSetup, Form, Marching, Palette};
 use litex_pac::raymarch::{
-    Control, DepthScale as DepthScaleRegister, Exit, Exits as ExitsRegister, Kind,
-    Rule as RuleRegister, Solid as SolidRegister, Stereo, Tuning as TuningRegister, offset,
+    Control, DepthScale as DepthScaleRegister, Exit, Exits as ExitsRegister, Rule as RuleRegister,
+    Solid as SolidRegister, Stereo, Tuning as TuningRegister, offset,
 };
 use litex_pac::register::Value;
 
@@ -44,10 +44,11 @@ pub fn field_setup(
         origin: None,
     };
     let exits = ExitsRegister::from_bits(parameters.word(offset::EXITS));
+    let leaving = leaving(parameters, exits, spheres, [width, height]);
     let form = if exits.enable() {
-        Form::Exits(leaving(parameters, exits, spheres, [width, height]))
+        Form::Exits(leaving)
     } else {
-        Form::Marching(marching(parameters, spheres))
+        Form::Marching(marching(parameters, spheres, leaving))
     };
     FieldSetup {
         width,
@@ -69,6 +70,8 @@ fn leaving(
     spheres: &Spheres,
     [width, height]: [u32; 2],
 ) -> Exits {
+    const AXIS: u32 = offset::ORIGIN_LEFT_Y - offset::ORIGIN_LEFT_X;
+    const RAY: u32 = offset::FIRST_LEFT_X - offset::ORIGIN_LEFT_X;
     let field = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let rule = match register.rule() {
         RuleRegister::Planes => Rule::Planes,
@@ -99,11 +102,11 @@ fn leaving(
         scale: Q32_32::ONE,
         exponent: 0,
         eyes: eyes.map(|(first, exit)| {
-            let eye = eye(parameters, first);
-            let [x, y, z] = eye.origin.map(i64::from);
+            let rows = [0, AXIS, 2 * AXIS].map(|axis| first + axis);
+            let [x, y, z] = rows.map(|at| i64::from(parameters.signed(at, 25)));
             let place = [x, y, z, 0];
             exits::Eye {
-                first: axes(eye.first),
+                first: axes(rows.map(|at| parameters.signed(at + RAY, 32))),
                 start: start(parameters, &solid, first, exit),
                 ..exits::Eye::placed(place, &Some(solid))
             }
@@ -149,66 +152,45 @@ fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option
     }
 }
 
-/// The constants of marching rays.
-fn marching(parameters: &Parameters, spheres: &Spheres) -> Marching {
-    let (solid, beside) = solid(parameters, spheres);
-    let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
-    Marching {
-        solid,
-        beside,
-        bounds: [offset::BOUNDS_X, offset::BOUNDS_Y, offset::BOUNDS_Z]
-            .map(|at| parameters.unsigned(at, 24)),
-        eyes: [offset::ORIGIN_LEFT_X, offset::ORIGIN_RIGHT_X].map(|first| eye(parameters, first)),
-        steps: [offset::ACROSS_X, offset::DOWN_X].map(|first| parameters.row(first, 32)),
-        near: parameters.unsigned(offset::NEAR, 23),
-        tuning: Tuning {
-            threshold: tuning.threshold().into(),
-            footprint: tuning.footprint().into(),
-            cap: tuning.cap().into(),
-            far: parameters.unsigned(offset::FAR, 23),
-        },
-    }
-}
-
-/// Constants of the eye whose registers begin at `first`: for each axis the position of the eye, its distance to the box, and the direction
-/// of the first ray.
-fn eye(parameters: &Parameters, first: u32) -> Eye {
-    const AXIS: u32 = offset::ORIGIN_LEFT_Y - offset::ORIGIN_LEFT_X;
-    const OUTSIDE: u32 = offset::OUTSIDE_LEFT_X - offset::ORIGIN_LEFT_X;
-    const RAY: u32 = offset::FIRST_LEFT_X - offset::ORIGIN_LEFT_X;
-    let axes = [0, AXIS, 2 * AXIS].map(|axis| first + axis);
-    Eye {
-        origin: axes.map(|at| parameters.signed(at, 25)),
-        outside: axes.map(|at| parameters.unsigned(at + OUTSIDE, 24)),
-        first: axes.map(|at| parameters.signed(at + RAY, 32)),
-    }
-}
-
-/// The solid; for a union, the flat solid and the spheres that are united with it.
-fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) {
+/// The constants of marching rays. `entry` is that of the rays by exits to the bounding box.
+fn marching(parameters: &Parameters, spheres: &Spheres, entry: Exits) -> Marching {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
-    let round = round(register, spheres);
-    if register.is_round() && !register.flat_too() {
-        return (Solid::Spheres(round), None);
+    let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
+    let bounds = [offset::BOUNDS_X, offset::BOUNDS_Y, offset::BOUNDS_Z];
+    let [x, y, z] = bounds.map(|at| 2 * i64::from(parameters.unsigned(at, 21)));
+    Marching {
+        entry: Exits {
+            solid: Some(exits::Solid {
+                rule: Rule::Box,
+                side: [x, y, z, x],
+            }),
+            ..entry
+        },
+        solid: solid(parameters, register),
+        beside: Beside {
+            spheres: round(register, spheres),
+            blend: spheres.blend,
+            bend: 0,
+        },
+        threshold: tuning.threshold().into(),
+        footprint: u32::from(tuning.footprint()) + 7,
+        cap: tuning.cap().into(),
     }
+}
+
+/// The flat solid of marching rays: a box, or a sponge with levels.
+fn solid(parameters: &Parameters, register: SolidRegister) -> Solid {
     let lengths = [offset::HALF_X, offset::HALF_Y, offset::HALF_Z];
     let constants = FlatConstants {
-        // A field of an unknown kind is not drawn.
-        kind: register.kind().unwrap_or(Kind::Menger) as u8,
         levels: register.levels(),
-        has: register.has(),
-        room: register.room(),
-        repeated: register.repeated(),
-        cube_half: parameters.unsigned(offset::CUBE_HALF, 22),
+        has: 0b111,
         half: lengths.map(|at| parameters.unsigned(at, 22)),
+        ..FlatConstants::default()
     };
-    let flat = Flat::of(&constants).map_or(Solid::Spheres(round), Solid::Flat);
-    let beside = register.is_round().then_some(Beside {
-        spheres: round,
-        blend: spheres.blend,
-        bend: 0,
-    });
-    (flat, beside)
+    match constants.levels {
+        0 => FixedBox::of(&constants).into(),
+        _ => FixedSponge::of(&constants).into(),
+    }
 }
 
 /// The spheres.

@@ -1,7 +1,7 @@
 //! Constants of the firmware, the gateware and the experiments that the text of the report's pages quotes.
 
 use glint_core::quality::{Quality, Threshold};
-use glint_model::raymarch::ROUND_TUNING;
+use glint_model::raymarch::Tuning;
 use glint_testbench::Raymarcher;
 use serde::{Deserialize, Serialize};
 
@@ -25,10 +25,10 @@ pub fn all() -> Vec<Row> {
         let name = name.to_owned();
         rows.push(Row { name, value });
     };
-    let Threshold { base, footprint } = Quality::default().preset().round;
+    let Threshold { base, footprint } = Quality::default().preset().threshold;
     add("threshold", base.to_string());
     add("footprint", footprint.to_string());
-    add("step_limit", (4 * ROUND_TUNING.cap).to_string());
+    add("step_limit", Tuning::default().cap.to_string());
     for (kind, level, bounds) in [
         ("exits", "", EXITS),
         ("exits", "_goal", EXITS_GOAL),

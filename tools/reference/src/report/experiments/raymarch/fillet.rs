@@ -11,7 +11,7 @@ use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
 /// Errors and cost of a threshold over the pictures of all fields with fillets: a line of `raymarch-fillet.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
-    /// Exponent of the part of the threshold that grows with t, t·2^−`footprint`.
+    /// Exponent of the part of the threshold that grows with the depth z, z·2^−`footprint`.
     pub footprint: u32,
     /// Constant part of the threshold, in field units with 12 fraction bits.
     pub threshold: u32,
@@ -65,7 +65,7 @@ fn row(subjects: &[Subject], expected: &[Expected], threshold: Threshold) -> Row
     let measured = Measured::new(expected, &rays);
     let accuracy = measured.accuracy;
     let mut qualities = Quality::ALL.into_iter();
-    let quality = qualities.find(|quality| quality.preset().round == threshold);
+    let quality = qualities.find(|quality| quality.preset().threshold == threshold);
     Row {
         footprint: threshold.footprint,
         threshold: threshold.base,
