@@ -17,7 +17,7 @@ module root_table (
     logic [27:0] latched;
 
     // An entry is {18 fraction bits of the root, difference to the next root}. Floating-point numbers are precise enough to round the
-    // entries correctly, as in round_inverse.
+    // entries correctly; an integer loop for the root would take Yosys a minute.
     initial begin
         for (int i = 0; i < 512; i++)
             entries[i] = {
