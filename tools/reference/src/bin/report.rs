@@ -7,7 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
     constants, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
@@ -365,7 +365,7 @@ fn measure_quality(
 ) -> Result<()> {
     let only = only.unwrap_or_default();
     if study != Some("cycles") {
-        let wanted = |variant: quality::Variant| !quick || variant.size == Size::W320;
+        let wanted = |quality: Quality| !quick || quality == Quality::Fast;
         to.write("quality", &quality::errors(only, wanted)?)?;
     }
     if study != Some("errors") && !quick {

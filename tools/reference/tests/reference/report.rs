@@ -477,25 +477,21 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Draws the small frames and the frames of the exact quality of quality.csv again, and compares their errors with the committed errors.
+/// Draws the frames of the fast and of the exact quality of quality.csv again, and compares their errors with the committed errors.
 /// Frames of the exact quality differ from the reference only along edges, and by the rounding of colours.
 #[test]
 fn the_committed_errors_of_qualities_hold() {
     let rows: Vec<quality::Row> = committed("quality.csv");
-    let now = quality::errors("", |variant| {
-        variant.size == Size::W320 || variant.quality() == Some(Quality::Exact)
-    });
+    let now = quality::errors("", |quality| quality != Quality::Balanced);
     let now = now.expect("built-in scenes");
-    assert!(now.len() >= 2 * quality::scenes("").count());
+    assert_eq!(now.len(), 2 * quality::scenes("").count());
     for now in now {
-        let same = |row: &&quality::Row| {
-            (&row.scene, row.width, &row.rays) == (&now.scene, now.width, &now.rays)
-        };
+        let same = |row: &&quality::Row| (&row.scene, row.width) == (&now.scene, now.width);
         let row = rows.iter().find(same).expect("a committed row");
         let name = |column| format!("quality.csv: {column} of {} {}", row.scene, row.width);
         assert_close(row.wrong, now.wrong, 1e-6, &name("wrong"));
         assert_close(row.colour, now.colour, 1e-6, &name("colour"));
-        if row.quality.as_deref() == Some("exact") {
+        if row.quality == "exact" {
             assert!(now.wrong < 0.01 && now.colour < 6.0, "{now:?}");
         }
     }
