@@ -43,7 +43,11 @@ fn frames_of_all_fields_with_stalls() {
 fn draw_in_short(bench: &mut Raymarcher, random: &mut Random, fields: &[&str]) {
     let mut setup = setup(random, fields);
     limit_steps(&mut setup, 40);
-    bench.draw(Some(random), &setup, &Palette::default());
+    let palette = match setup.stereo {
+        Some(_) => Palette::default().grey(),
+        None => Palette::default(),
+    };
+    bench.draw(Some(random), &setup, &palette);
 }
 
 #[test]
