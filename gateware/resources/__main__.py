@@ -12,7 +12,7 @@ from pathlib import Path
 from verilate.programs import GATEWARE
 
 from . import machine, route, scenes, size, tables
-from .blocks import ALL, ENGINES, FLAT_PARTS, OWN, SOC, row, selection
+from .blocks import ALL, FLAT_PARTS, OWN, SHOWN, SOC, row, selection
 from .budget import Budget, with_flat_build
 from .tools import ToolError
 
@@ -96,7 +96,7 @@ def main():
     if not arguments.route or arguments.write:
         sizes = measured_sizes(selection(arguments.blocks, ALL))
     if arguments.route:
-        rates = measured_rates(selection(arguments.blocks, OWN + ((*ENGINES, *machine.MACHINES) if arguments.write else ())))
+        rates = measured_rates(selection(arguments.blocks, OWN + (SHOWN if arguments.write else ())))
     if arguments.json:
         print(json.dumps(tables.as_json(sizes, rates, budget), indent=2, sort_keys=True))
     else:

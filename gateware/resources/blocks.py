@@ -14,8 +14,9 @@ BUILDS = ("triangle_engine_smooth", "raymarcher", "triangle_engine", "raymarcher
 """Engines that consist of the own blocks, in several builds, and parts of the raymarcher. The tables list them, but they take too long to
 be measured by `cargo xtask test`."""
 
-ENGINES = ("triangle_engine", "raymarcher_faces")
-"""Engines of the Urbana's default build, which the page shows placed and routed besides the own blocks."""
+SHOWN = ("soc_core", "triangle_engine", "raymarcher_faces", "ray_generator")
+"""What the page shows placed and routed besides the own blocks: the computer without its engines, and the engines of the Urbana's default
+build with a part. The whole SoC takes an hour."""
 
 FLAT_PARTS = ("vertex_stage", "setup", "triangle_raster")
 """Blocks that together are the smallest triangle engine, which draws triangles of one colour each."""
