@@ -1,6 +1,6 @@
 //! Tests of whole frames of the raymarcher.
 
-use glint_model::raymarch::{Lights, Palette, Shine, State};
+use glint_model::raymarch::{FieldSetup, Lights, Palette, Shine, State};
 use glint_testbench::{Raymarcher, Taken};
 use glint_vectors::Random;
 
@@ -79,6 +79,21 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
+/// A random frame of 320 columns of a field, and a palette with random lights.
+fn small_and_lit(random: &mut Random, text: &str) -> (FieldSetup, Palette) {
+    let setup = loop {
+        let setup = setup(random, &[text]);
+        if setup.width == 320 {
+            break setup;
+        }
+    };
+    let palette = Palette {
+        lights: lights(random, setup.stereo.is_some()),
+        ..Palette::default()
+    };
+    (setup, palette)
+}
+
 /// Cones alone and in unions, in all lights, also after spheres and without a cone after one.
 #[test]
 fn frames_of_cones_in_all_lights() {
@@ -94,16 +109,7 @@ fn frames_of_cones_in_all_lights() {
         "cone:0.05,2",
     ];
     for (frame, text) in fields.into_iter().enumerate() {
-        let setup = loop {
-            let setup = setup(&mut random, &[text]);
-            if setup.width == 320 {
-                break setup;
-            }
-        };
-        let palette = Palette {
-            lights: lights(&mut random, setup.stereo.is_some()),
-            ..Palette::default()
-        };
+        let (setup, palette) = small_and_lit(&mut random, text);
         let stalls = (frame % 2 == 1).then_some(&mut random);
         bench.draw(stalls, &setup, &palette);
     }
@@ -115,16 +121,7 @@ fn frames_of_spheres_in_endless_fields() {
     let mut random = Random(14);
     let mut bench = Raymarcher::new("raymarcher", 1);
     for text in ENDLESS_UNIONS {
-        let setup = loop {
-            let setup = setup(&mut random, &[text]);
-            if setup.width == 320 {
-                break setup;
-            }
-        };
-        let palette = Palette {
-            lights: lights(&mut random, setup.stereo.is_some()),
-            ..Palette::default()
-        };
+        let (setup, palette) = small_and_lit(&mut random, text);
         bench.draw(None, &setup, &palette);
     }
 }

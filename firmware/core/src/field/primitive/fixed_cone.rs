@@ -74,8 +74,9 @@ impl FixedCone {
         [across * x, across * y, -along * z].map(|product| (product >> 26) as i32)
     }
 
-    /// Computes a lower bound of the distance from the cone of a point at a distance from the axis, and the nearest surface: the larger one of the distances to the
-    /// cone without a base and to the half-space above the base. Lengths are rounded down. `number` is that of the lateral face.
+    /// Returns a lower bound of the distance from a point to the cone, rounded down, and the nearest surface. The bound is the larger one of
+    /// the distances to the cone without a base and to the half-space above the base. `from_axis` is the point's distance from the axis,
+    /// `number` that of the lateral face.
     pub(super) fn sample(&self, from_axis: i32, z: i32, number: u8) -> FieldSample {
         let [sine, cosine] = self.angle.map(i64::from);
         let below_apex = i64::from(self.half) - i64::from(z);
