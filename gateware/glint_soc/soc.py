@@ -4,9 +4,9 @@ A board adds its platform, its clocks (domains `sys` and `pix`), its memory with
 which firmware can see, are here.
 """
 
-import litedram.core
+from unittest.mock import patch
+
 from litedram.common import LiteDRAMNativePort
-from litedram.core.controller import ControllerSettings
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
@@ -21,7 +21,7 @@ from .i2c import I2CMaster
 from .identity import Identity
 from .raymarch import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
-from .memory_crossbar import MemoryCrossbar
+from .memory_controller import MemoryController
 from .parameters import without_reading
 from .register_bus import RegisterBank, RegisterBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
@@ -84,8 +84,6 @@ class GlintSoC(SoCCore):
             if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
         }
         self.crg = crg
-        # LiteX has no parameters to select these classes.
-        csr_bus.CSRBank, wishbone.Wishbone2CSR = RegisterBank, RegisterBridge
         SoCCore.__init__(
             self, platform, clk_freq=int(sys_clk_freq),
             cpu_type="vexriscv", cpu_variant="full",
@@ -121,6 +119,11 @@ class GlintSoC(SoCCore):
             # If no host answers, the BIOS starts the firmware at this address.
             self.add_constant("FLASH_BOOT_ADDRESS", _FLASH + FLASH_FIRMWARE)
 
+    def finalize(self, *arguments, **options):
+        """Finalizes the SoC, with register banks and their bridge of this project: LiteX has no parameters for these classes."""
+        with patch.object(csr_bus, "CSRBank", RegisterBank), patch.object(wishbone, "Wishbone2CSR", RegisterBridge):
+            SoCCore.finalize(self, *arguments, **options)
+
     def do_finalize(self):
         # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.
         for name, _, _, bank in self.csr_bankarray.banks:
@@ -146,11 +149,7 @@ class GlintSoC(SoCCore):
 
     def add_dram(self, phy, module):
         """Adds the controller of the memory `module` over the board's PHY, then the blocks that access memory."""
-        # With longer runs of reads and writes than LiteDRAM's 32 and 16, memory switches less often between reads and writes, which takes
-        # a dozen clocks each time. LiteX has no parameter for the class of the crossbar.
-        litedram.core.LiteDRAMCrossbar = MemoryCrossbar
-        self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
-                       controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=8))
+        self.sdram = MemoryController(phy, module, self.sys_clk_freq)
         # The BIOS does not read back these registers of each phase.
         for injector in (getattr(self.sdram.dfii, f"pi{phase}") for phase in range(phy.settings.nphases)):
             for name in ("_command", "_address", "_baddress", "_wrdata"):

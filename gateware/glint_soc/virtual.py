@@ -3,7 +3,6 @@
 import os
 import re
 
-from litedram.core.bankmachine import BankMachine
 from litedram.modules import MT41K64M16
 from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
 from litex.build.sim.common import sim_special_overrides
@@ -133,7 +132,7 @@ class VirtualSoC(PinSoC):
         self._gate_clocks(self.platform)
 
     def _gate_clocks(self, platform):
-        """Stops the clocks of idle blocks, and of idle banks of LiteDRAM, which the simulation then does not evaluate.
+        """Stops the clocks of idle blocks, and of idle banks of the memory, which the simulation then does not evaluate.
 
         Free-running counters of blocks, such as the turns of an arbiter, stop with their clock. So the cycles of a pass differ by about
         1 % from those with clocks that never stop, as they differ with the time of its start.
@@ -144,8 +143,7 @@ class VirtualSoC(PinSoC):
                 self._gate_clock(name, block, control.enable)
                 for register in block.get_csrs():
                     register.clock_domain = name
-        banks = [module for _, module in self.sdram.controller._submodules if isinstance(module, BankMachine)]
-        for number, bank in enumerate(banks):
+        for number, bank in enumerate(self.sdram.controller.banks):
             control = ClockControl(bank.req.valid | bank.req.lock | bank.refresh_req)
             setattr(self, f"bank{number}_clock_control", control)
             self._gate_clock(f"bank{number}", bank, control.enable)

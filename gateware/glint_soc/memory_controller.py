@@ -1,0 +1,57 @@
+"""Memory controller: LiteDRAM's, with banks, a refresher and a crossbar whose paths are short."""
+
+from litedram.common import LiteDRAMInterface, burst_lengths
+from litedram.core.controller import ControllerSettings
+from litedram.core.multiplexer import Multiplexer
+from litedram.dfii import DFIInjector
+from litedram.phy import dfi
+from litex.gen import LiteXModule
+from migen import log2_int
+
+from .memory_bank import MemoryBank
+from .memory_crossbar import MemoryCrossbar
+from .memory_refresh import MemoryRefresher
+
+
+class _Controller(LiteXModule):
+    """Replaces `LiteDRAMController`, whose members it has as far as LiteX, the crossbar and the BIOS read them."""
+
+    def __init__(self, phy, module, clk_freq, settings):
+        geometry, burst = module.geom_settings, burst_lengths[phy.settings.memtype]
+        self.settings = settings
+        settings.phy, settings.geom, settings.timing = phy.settings, geometry, module.timing_settings
+        alignment = log2_int(burst)
+        self.interface = LiteDRAMInterface(alignment, settings)
+        self.dfi = dfi.Interface(geometry.addressbits, geometry.bankbits, phy.settings.nranks, phy.settings.dfi_databits,
+                                 phy.settings.nphases)
+
+        # # #
+
+        self.refresher = MemoryRefresher(settings, clk_freq)
+        self.banks = [MemoryBank(number, self.interface.address_width, alignment, settings)
+                      for number in range(2**geometry.bankbits)]
+        for number, bank in enumerate(self.banks):
+            self.submodules += bank
+            self.comb += getattr(self.interface, f"bank{number}").connect(bank.req)
+        self.multiplexer = Multiplexer(settings, self.banks, self.refresher, self.dfi, self.interface)
+
+
+class MemoryController(LiteXModule):
+    """Replaces `LiteDRAMCore`: registers by which the BIOS initialises the memory `module` behind `phy`, controller and crossbar.
+
+    With longer runs of reads and writes than LiteDRAM's 32 and 16, memory switches less often between reads and writes, which takes
+    a dozen clocks each time.
+    """
+
+    def __init__(self, phy, module, clk_freq):
+        if phy.settings.nranks != 1:
+            raise ValueError(f"{phy.settings.nranks} ranks of memory: expected 1")
+        geometry = module.geom_settings
+        self.dfii = DFIInjector(geometry.addressbits, geometry.bankbits, 1, phy.settings.dfi_databits, phy.settings.nphases)
+        self.controller = _Controller(phy, module, clk_freq,
+                                      ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=8))
+        self.crossbar = MemoryCrossbar(self.controller.interface)
+        self.comb += [
+            self.dfii.master.connect(phy.dfi),
+            self.controller.dfi.connect(self.dfii.slave),
+        ]
