@@ -110,6 +110,10 @@ def _smooth(old, new, fails):
     return Mutation("smooth_shader.sv", old, new, fails)
 
 
+def _cpu_bus(old, new, fails):
+    return Mutation("cpu_bus.py", old, new, fails)
+
+
 def _crossbar(old, new, fails):
     return Mutation("memory_crossbar.py", old, new, fails)
 
@@ -359,6 +363,15 @@ MUTATIONS = {
         _queue("level == '0;", "level <= LEVEL_BITS'(1);", "idle_when_empty"),
         _smooth("finished <= valid[LATENCY] && ends;", "finished <= valid[LATENCY] && ends && !group_valid;", "shown_in_time"),
         _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
+    ],
+    "cpu_bus": [
+        _cpu_bus("busy.eq(asks_data | asks_instructions)", "busy.eq(asks_data)", "shown"),
+        _cpu_bus("& ~reads_data)", ")", "unchanged"),
+        _cpu_bus("Cat(data.adr, data.sel,", "Cat(data.adr, instructions.sel,", "written_as"),
+        _cpu_bus("Cat(instructions.adr, instructions.sel,", "Cat(instructions.adr, data.sel,", "read_whole"),
+        _cpu_bus("word != _LINE_WORDS - 1", "word != _LINE_WORDS - 2", "burst_ends"),
+        _cpu_bus("(asks_data & data.we & free)", "(asks_data & data.we & ~busy)", "answered"),
+        _cpu_bus("instructions.dat_r.eq(bus.dat_r)", "instructions.dat_r.eq(0)", "data_pass"),
     ],
     "memory_crossbar": [
         _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),

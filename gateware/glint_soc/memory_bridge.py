@@ -3,7 +3,7 @@
 from litex.gen import LiteXModule
 from litex.soc.interconnect import stream
 from litex.soc.interconnect.wishbone import CTI_BURST_INCREMENTING
-from migen import FSM, Array, Cat, Constant, If, NextState, NextValue, Replicate, Signal, log2_int
+from migen import FSM, Array, Cat, Constant, If, Mux, NextState, NextValue, Replicate, Signal, log2_int
 
 _BUS_BITS = 32
 _LINE_BITS = 256
@@ -18,9 +18,9 @@ class MemoryBridge(LiteXModule):
     line fill sees what DMA has written.
 
     Writes: a write is acknowledged in the cycle after the controller has taken its command, which fixes its order among
-    all accesses to the same bank; the data follow when the controller asks for them. A word takes two cycles if the
-    memory keeps up. A port with a converter takes a command before the controller does (`early`). Then a write is
-    acknowledged when its data have been taken, which fixes the order too.
+    all accesses to the same bank. Its data are stored in that cycle too, before the controller asks for them, which takes at least
+    two cycles. A word takes two cycles if the memory keeps up. A port with a converter takes a command before the controller
+    does (`early`). Then a write is acknowledged when its data have been taken, which fixes the order too.
 
     A command is withdrawn only if the bus gives up its access before memory has taken the command, which the CPU never does.
     LiteX's own converter makes one access to memory for each 32-bit word, one after the other.
@@ -39,10 +39,12 @@ class MemoryBridge(LiteXModule):
         word = address[log2_int(words):]
         self.comb += address.eq(bus.adr - base_address // (_BUS_BITS // 8))
 
-        # Holds write data from the acceptance of their command until the controller requests the data.
+        # Holds write data from the cycle after the acceptance of their command until the controller requests the data.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", len(beat))], depth=8)
-        # FIFO for all words of a cache line, because the controller sends them without back-pressure.
+        # FIFO for all words of a cache line, because the controller sends them without back-pressure. A word that comes while it is
+        # empty can be taken at once.
         self.reads = reads = stream.SyncFIFO([("data", port.data_width)], depth=line)
+        there, takes = Signal(), Signal()
         self.comb += [
             writes.sink.data.eq(bus.dat_w),
             writes.sink.sel.eq(bus.sel),
@@ -52,8 +54,14 @@ class MemoryBridge(LiteXModule):
             port.wdata.data.eq(Replicate(writes.source.data, words)),
             port.wdata.we.eq(Cat(*[
                 Replicate(writes.source.beat == place, _BUS_BITS // 8) & writes.source.sel for place in range(words)])),
-            port.rdata.connect(reads.sink, omit={"first", "last"}),
-            bus.dat_r.eq(Array(reads.source.data[_BUS_BITS * place:][:_BUS_BITS] for place in range(words))[beat]),
+            port.rdata.ready.eq(1),
+            there.eq(reads.source.valid | port.rdata.valid),
+            reads.sink.valid.eq(port.rdata.valid & (reads.source.valid | ~takes)),
+            reads.sink.data.eq(port.rdata.data),
+            reads.source.ready.eq(takes),
+            bus.dat_r.eq(Mux(reads.source.valid, *(
+                Array(data[_BUS_BITS * place:][:_BUS_BITS] for place in range(words))[beat]
+                for data in (reads.source.data, port.rdata.data)))),
         ]
 
         # Address of the next word of the line, stored because the bus access may end before memory takes the word's command.
@@ -62,14 +70,14 @@ class MemoryBridge(LiteXModule):
         # The bus ended the burst before all commands of its line were taken.
         given_up = Signal()
 
-        # Number of requested port words that have not been removed from `reads`.
+        # Number of requested port words that have not been taken.
         owed = Signal(max=line + 1)
         asked = Signal()
         taken = Signal()
         more = Signal()
         self.comb += [
             asked.eq(port.cmd.valid & port.cmd.ready & ~port.cmd.we),
-            taken.eq(reads.source.valid & reads.source.ready),
+            taken.eq(there & takes),
             more.eq(bus.cti == CTI_BURST_INCREMENTING),
             is_last.eq(next_word[:log2_int(line)] == line - 1),
         ]
@@ -83,7 +91,6 @@ class MemoryBridge(LiteXModule):
             If(port.cmd.valid & port.cmd.ready,
                 NextValue(given_up, 0),
                 If(bus.we,
-                    writes.sink.valid.eq(1),
                     NextState("WRITTEN"),
                 ).Elif(more & (word[:log2_int(line)] != line - 1),
                     NextValue(next_word, word + 1),
@@ -93,12 +100,13 @@ class MemoryBridge(LiteXModule):
                 )
             )
         )
+        acknowledge = [bus.ack.eq(bus.cyc & bus.stb), NextState("COMMAND")]
         fsm.act("WRITTEN",
-            If(~writes.source.valid if early else Constant(1),
-                bus.ack.eq(bus.cyc & bus.stb),
-                NextState("COMMAND"),
-            )
+            writes.sink.valid.eq(1),
+            *([NextState("WAIT")] if early else acknowledge),
         )
+        if early:
+            fsm.act("WAIT", If(~writes.source.valid, *acknowledge))
         fsm.act("REST",
             port.cmd.valid.eq(1),
             port.cmd.addr.eq(next_word),
@@ -116,11 +124,11 @@ class MemoryBridge(LiteXModule):
             )
         )
         fsm.act("SERVE",
-            bus.ack.eq(bus.cyc & bus.stb & ~bus.we & reads.source.valid),
+            bus.ack.eq(bus.cyc & bus.stb & ~bus.we & there),
             If(bus.ack,
-                # Removes the port word from `reads` when the bus gets the last of the word's 32-bit parts, or when the burst ends.
+                # Takes the port word when the bus gets the last of the word's 32-bit parts, or when the burst ends.
                 # After the last requested word, the bus needs a new request.
-                reads.source.ready.eq(~more | (beat == words - 1)),
+                takes.eq(~more | (beat == words - 1)),
                 If(~more | ((beat == words - 1) & (owed == 1)),
                     NextState("DROP"),
                     If(owed == 1,
@@ -134,8 +142,8 @@ class MemoryBridge(LiteXModule):
         )
         # Discards the words of a burst that the bus did not take before the burst ended.
         fsm.act("DROP",
-            reads.source.ready.eq(1),
-            If((owed == 0) | ((owed == 1) & reads.source.valid),
+            takes.eq(1),
+            If((owed == 0) | ((owed == 1) & there),
                 NextState("COMMAND"),
             )
         )

@@ -1,21 +1,23 @@
-"""Register banks and their bridge on the CPU's bus, with one more clock of latency than LiteX's, for the address decoder."""
+"""Register banks and their bridge on the CPU's bus, with flip-flops at each bank for the address decoder."""
 
+from litex.gen import LiteXModule
+from litex.soc.interconnect import wishbone
 from litex.soc.interconnect.csr_bus import CSRBank, Interface
-from litex.soc.interconnect.wishbone import Wishbone2CSR
-from migen import Cat, ClockDomainsRenamer, NextState, Signal, log2_int
+from migen import FSM, Cat, ClockDomainsRenamer, If, NextState, Signal, log2_int
 
 
 class RegisterBank(CSRBank):
     """A bank of registers that a flip-flop selects.
 
     In LiteX's bank, the whole address of the bus selects a register. On its way from the bridge to the block, that takes longer than
-    anything else in a large FPGA. Here each bank compares the number of its window, and stores the result with the rest of the
-    access:
+    anything else in a large FPGA. Here each bank compares the number of its window, and stores the result with the address in
+    the window:
 
         bus ─▶ is this the window? ─▶ flip-flops ─▶ LiteX's bank ─▶ data
 
-    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX. `addressed` is high while
-    `bus` shows an address of the bank. A bank is in the clock domain `clock_domain` of its registers, if they have this attribute.
+    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX: the bus must still
+    show the written data then. `addressed` is high while `bus` shows an access to the bank. A bank is in the clock domain `clock_domain` of its
+    registers, if they have this attribute.
     """
 
     def __init__(self, description, address=0, bus=None, paging=0x800, ordering="big"):
@@ -25,16 +27,17 @@ class RegisterBank(CSRBank):
 
         # # #
 
-        number = Signal(log2_int(paging // 4))
+        number, in_window = Signal(log2_int(paging // 4)), Signal()
         self.comb += [
-            self.addressed.eq(bus.adr[len(number):] == address),
+            in_window.eq(bus.adr[len(number):] == address),
+            self.addressed.eq(in_window & (bus.re | bus.we)),
             access.adr.eq(Cat(number, selected)),
+            access.dat_w.eq(bus.dat_w),
             bus.dat_r.eq(access.dat_r),
         ]
         self.sync += [
-            selected.eq(self.addressed),
+            selected.eq(in_window),
             number.eq(bus.adr),
-            access.dat_w.eq(bus.dat_w),
             access.we.eq(bus.we),
             access.re.eq(bus.re),
         ]
@@ -42,12 +45,35 @@ class RegisterBank(CSRBank):
             ClockDomainsRenamer(domain)(self)
 
 
-class RegisterBridge(Wishbone2CSR):
-    """LiteX's bridge, modified for banks whose data come one clock later."""
+class RegisterBridge(LiteXModule):
+    """Replaces LiteX's bridge, for banks of this class: a Wishbone slave whose request comes from flip-flops, and the bus of the banks.
+
+        clock   0        1         2
+        csr     access   address, written data stay
+        bank             effect    data of a read
+        wishbone                   acknowledgement
+    """
 
     def __init__(self, bus_wishbone=None, bus_csr=None, register=True):
-        if not register:
-            raise ValueError("expected a bridge with registers")
-        Wishbone2CSR.__init__(self, bus_wishbone, bus_csr, register)
-        self.fsm.act("WRITE-READ", NextState("SELECTED"))
-        self.fsm.act("SELECTED", NextState("ACK"))
+        self.wishbone, self.csr = bus_wishbone or wishbone.Interface(), bus_csr or Interface(data_width=32)
+
+        # # #
+
+        self.comb += [
+            self.csr.adr.eq(self.wishbone.adr),
+            self.csr.dat_w.eq(self.wishbone.dat_w),
+            self.wishbone.dat_r.eq(self.csr.dat_r),
+        ]
+        self.fsm = fsm = FSM()
+        fsm.act("ACCESS",
+            If(self.wishbone.cyc & self.wishbone.stb,
+                self.csr.re.eq(~self.wishbone.we & (self.wishbone.sel != 0)),
+                self.csr.we.eq(self.wishbone.we & (self.wishbone.sel != 0)),
+                NextState("EFFECT"),
+            )
+        )
+        fsm.act("EFFECT", NextState("DATA"))
+        fsm.act("DATA",
+            self.wishbone.ack.eq(1),
+            NextState("ACCESS"),
+        )

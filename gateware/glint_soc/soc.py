@@ -11,9 +11,10 @@ from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import csr_bus, wishbone
-from migen import Cat, Constant, Signal, log2_int
+from migen import Cat, Constant, ResetInserter, Signal, log2_int
 
 from .constants import FLASH_BYTES, FLASH_FIRMWARE
+from .cpu_bus import CpuBus
 from .digits import Digits
 from .flash import FlashReader
 from .gesture import GestureEngine
@@ -118,6 +119,14 @@ class GlintSoC(SoCCore):
             self.bus.add_slave("flash", self.flash.bus, SoCRegion(origin=_FLASH, size=FLASH_BYTES, mode="rx"))
             # If no host answers, the BIOS starts the firmware at this address.
             self.add_constant("FLASH_BOOT_ADDRESS", _FLASH + FLASH_FIRMWARE)
+
+    def add_cpu(self, *arguments, **options):
+        """Adds the CPU with one bus in place of its two."""
+        SoCCore.add_cpu(self, *arguments, **options)
+        self.bus.masters.clear()
+        self.cpu_bus = ResetInserter()(CpuBus(self.cpu.dbus, self.cpu.ibus))
+        self.comb += self.cpu_bus.reset.eq(self.cpu.reset)
+        self.bus.add_master("cpu", self.cpu_bus.bus)
 
     def finalize(self, *arguments, **options):
         """Finalizes the SoC, with register banks and their bridge of this project: LiteX has no parameters for these classes."""

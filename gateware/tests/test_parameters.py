@@ -41,7 +41,9 @@ def test_loads():
         yield bus.dat_w.eq(value)
         yield bus.we.eq(1)
         yield
+        # The bridge holds address and data until the write has its effect.
         yield bus.we.eq(0)
+        yield
         if window == _WINDOW:
             written[number] = value & (1 << registers[number].size) - 1
 

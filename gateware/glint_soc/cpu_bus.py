@@ -1,0 +1,61 @@
+"""The stage between the CPU's two buses and the shared bus: one request at a time, in flip-flops."""
+
+from litex.gen import LiteXModule
+from litex.soc.interconnect import wishbone
+from litex.soc.interconnect.wishbone import CTI_BURST_END, CTI_BURST_INCREMENTING
+from migen import Cat, If, Mux, Signal
+
+_LINE_WORDS = 8
+"""Words of a cache line of the CPU. A burst ends with the last word of its line."""
+
+
+class CpuBus(LiteXModule):
+    """Passes the requests of `data` and `instructions`, Wishbone buses of the CPU, to `bus`, those of data first.
+
+        data ─────────┐   ┌───────────────────────────┐
+                      ├──▶│ request, in flip-flops    ├──▶ bus ─▶ address decoder ─▶ memories, registers
+        instructions ─┘   └───────────────────────────┘
+               ◀──────────────── acknowledgement, data of reads
+
+    A request reaches `bus` one clock after the CPU shows it. A write is acknowledged when it is stored here; it takes effect before
+    each later request. A burst counts its own address, so only the first of its words takes the additional clock.
+    """
+
+    def __init__(self, data, instructions):
+        self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+
+        # # #
+
+        # Set while a read of the data or instruction bus is pending. That bus then still shows this read.
+        reads_data, reads_instructions = Signal(), Signal()
+        asks_data, asks_instructions, busy, bursts, more, free = (Signal() for _ in range(6))
+        word = bus.adr[:_LINE_WORDS.bit_length() - 1]
+        self.comb += [
+            asks_data.eq(data.cyc & data.stb & ~reads_data),
+            asks_instructions.eq(instructions.cyc & instructions.stb & ~reads_instructions & ~asks_data),
+            more.eq(bursts & (word != _LINE_WORDS - 1)),
+            free.eq(~busy | (bus.ack & ~more)),
+            bus.cyc.eq(busy),
+            bus.stb.eq(busy),
+            bus.cti.eq(Mux(more, CTI_BURST_INCREMENTING, CTI_BURST_END)),
+            data.ack.eq((reads_data & bus.ack) | (asks_data & data.we & free)),
+            instructions.ack.eq(reads_instructions & bus.ack),
+            data.dat_r.eq(bus.dat_r),
+            instructions.dat_r.eq(bus.dat_r),
+        ]
+        self.sync += [
+            If(bus.ack, word.eq(word + 1)),
+            If(free,
+                busy.eq(asks_data | asks_instructions),
+                reads_data.eq(asks_data & ~data.we),
+                reads_instructions.eq(asks_instructions),
+                bus.dat_w.eq(data.dat_w),
+                bus.we.eq(asks_data & data.we),
+                If(asks_data,
+                    Cat(bus.adr, bus.sel, bursts).eq(Cat(data.adr, data.sel, data.cti == CTI_BURST_INCREMENTING)),
+                ).Else(
+                    Cat(bus.adr, bus.sel, bursts).eq(
+                        Cat(instructions.adr, instructions.sel, instructions.cti == CTI_BURST_INCREMENTING)),
+                ),
+            ),
+        ]
