@@ -4,6 +4,7 @@ import shutil
 
 import pytest
 
+import memory_machine
 from resources import size
 from resources.modules import MODULES
 from resources.tools import run_yosys
@@ -16,7 +17,7 @@ _BUILDS = [pytest.param(module, name, parameters, id=name) for module in MODULES
 @pytest.fixture(scope="module", autouse=True)
 def _no_other_models():
     """Deletes the models that no build makes any more: a test that still uses one fails here, not only in a fresh clone."""
-    names = {name for module in MODULES for name in module.builds() if name not in module.measured} | {"runtime"}
+    names = {name for module in MODULES for name in module.builds() if name not in module.measured} | {"runtime", memory_machine.NAME}
     for path in verilated_module.MODELS.glob("*"):
         if path.stem not in names:
             # Several processes of the test run may delete the same model.
@@ -31,6 +32,12 @@ def test_model(module, name, parameters):
                       *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)
     else:
         verilated_module.build(module.top, module.sources, name, parameters)
+
+
+def test_model_of_the_memory():
+    """Builds the model of the way to main memory, in Verilog that LiteX wrote."""
+    source = memory_machine.write(verilated_module.MODELS.parent / memory_machine.NAME)
+    verilated_module.build(memory_machine.NAME, [source], memory_machine.NAME, {}, warnings=("-Wno-fatal", "-Wno-lint"))
 
 
 @pytest.mark.parametrize(("module", "name", "parameters"), _BUILDS)

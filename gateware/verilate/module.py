@@ -11,11 +11,12 @@ MODELS = GATEWARE.parent / "target" / "gateware" / "models"
 _OPTIMISE = "-O2"
 
 # Registers start with random values, and each `x` becomes a random value: tests then detect reads of values that were never written.
-_VERILATE = ["-Wall", "--x-initial", "unique", "--x-assign", "unique"]
+_VERILATE = ["--x-initial", "unique", "--x-assign", "unique"]
 
 
-def build(top, sources, name, parameters):
-    """Builds the module `top` with the given parameters as `target/gateware/models/NAME.so`, unless it is up to date."""
+def build(top, sources, name, parameters, warnings=("-Wall",)):
+    """Builds the module `top` with the given parameters as `target/gateware/models/NAME.so`, unless it is up to date. `warnings` are
+    Verilator's options for warnings, which are errors."""
     library, folder = MODELS / f"{name}.so", MODELS / name
     stamp = folder / "inputs"
     inputs = digest([*sources, *compiler.RECIPE, Path(__file__)], top, name, parameters)
@@ -23,7 +24,7 @@ def build(top, sources, name, parameters):
         return
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    compiler.verilate(top, sources, parameters, folder, _VERILATE)
+    compiler.verilate(top, sources, parameters, folder, [*warnings, *_VERILATE])
     options = [*compiler.flags(folder), _OPTIMISE]
     # All files are compiled as one file: compiling one of them alone takes as long as compiling all of them as one.
     parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
