@@ -11,6 +11,8 @@ module buffer_proof #(
     parameter bit BLOCK = 1'b0,
     // Whether the FIFO in block RAM has a clock without an item after each item.
     parameter bit PAUSE = 1'b0,
+    // Whether the FIFO has no output register.
+    parameter bit DIRECT = 1'b0,
     // Number of clocks of the pipeline before the credit_fifo; 0 selects one of the other buffers.
     parameter int unsigned FLIGHT = 0
 ) (
@@ -38,13 +40,13 @@ module buffer_proof #(
 
         delay #(.WIDTH(WIDTH), .CLOCKS(FLIGHT)) flight (.clk, .enable(1'b1), .in(in_data), .out(arriving));
 
-        credit_fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) dut (
+        credit_fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .DIRECT(DIRECT)) dut (
             .clk, .rst, .idle, .credit(in_ready), .sent(in_valid), .in_valid(valid[FLIGHT-1]), .in_data(arriving),
             .out_valid, .out_ready, .out_data
         );
         wire _unused = idle;
     end else begin : memory
-        fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(PAUSE)) dut (
+        fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(PAUSE), .DIRECT(DIRECT)) dut (
             .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
         );
     end
@@ -56,7 +58,7 @@ module buffer_proof #(
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_data)
     );
     order_checker #(
-        .WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1 + (BLOCK && !PAUSE)), .WITHIN(FLIGHT == 0 ? 2 + BLOCK : FLIGHT + 5)
+        .WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1 + (BLOCK && !PAUSE) - DIRECT), .WITHIN(FLIGHT == 0 ? 2 + BLOCK : FLIGHT + 5)
     ) order (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );

@@ -135,14 +135,27 @@ def _exits(old, new, fails):
 
 
 _FIFO = [
-    _fifo("read_valid <= stored ||", "read_valid <= stored && in_valid ||", "order.shown_in_time"),
+    _fifo("DIRECT || stored ||", "DIRECT || stored && in_valid ||", "order.shown_in_time"),
     _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "shown.payload_stable"),
     _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
-    _fifo("read_valid <= stored ||", "read_valid <= stored || in_valid ||", "order.nothing_made_up"),
+    _fifo("DIRECT || stored ||", "DIRECT || stored || in_valid ||", "order.nothing_made_up"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "1'b1", "order.nothing_too_many"),
     _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
     _fifo("'(in_valid && in_ready)", "'(in_valid)", "order.in_order"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "head == '0", "order.taken_in_time"),
+]
+
+_DIRECT = [
+    _fifo("DIRECT ? stored", "DIRECT ? stored && in_valid", "order.shown_in_time"),
+    _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "shown.payload_stable"),
+    _fifo("DIRECT ? stored", "DIRECT ? stored && !in_valid", "shown.valid_stays"),
+    _fifo("DIRECT ? stored", "DIRECT ? stored || in_valid", "order.nothing_made_up"),
+]
+
+_CREDIT = [
+    _credit("next > COUNT_BITS'(1)", "next != '0", "order.nothing_too_many"),
+    _credit("gave    <= out_valid && out_ready;", "gave    <= out_valid && out_ready && !sent;", "order.taken_in_time"),
+    _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
 ]
 
 _PAUSE = [
@@ -163,6 +176,7 @@ MUTATIONS = {
     ],
     "fifo of 2": _FIFO,
     "fifo of 4": _FIFO,
+    "fifo without register": [*_DIRECT, *_FIFO[4:]],
     "fifo in block RAM": [
         _FIFO[0],
         *_FIFO[3:],
@@ -175,14 +189,10 @@ MUTATIONS = {
         *_FIFO[3:],
         *_PAUSE,
     ],
-    "credit_fifo": [
-        *_FIFO[:4],
-        _credit("next > COUNT_BITS'(1)", "next != '0", "order.nothing_too_many"),
-        _credit("gave    <= out_valid && out_ready;", "gave    <= out_valid && out_ready && !sent;", "order.taken_in_time"),
-        _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
-    ],
+    "credit_fifo": [*_FIFO[:4], *_CREDIT],
+    "credit_fifo without register": [*_DIRECT, *_CREDIT],
     "ray_generator": [
-        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _generator("assign out_valid  = kept_valid;", "assign out_valid  = kept_valid && walking;", "shown.valid_stays"),
         _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _start("out_valid = valid[LAST];", "out_valid = valid[LAST] || valid[LAST-1];", "nothing_made_up"),
         _credit("next > COUNT_BITS'(1)", "1'b1", "in_order"),
@@ -280,15 +290,15 @@ MUTATIONS = {
     "read_port": [
         _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "commands.valid_stays"),
         _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)", "commands.payload_stable"),
-        _read(".in_data(ask_addr[turn *", ".in_data(ask_addr[chosen *", "first.commands_in_order"),
+        _read(".in_data(ask_addr[turn *", ".in_data(ask_addr[chosen *", "second.commands_in_order"),
         _read("(commands && moves) owners[asked[OWNER_BITS-1:0]] <= turn;", "(commands && moves) owners[asked[OWNER_BITS-1:0]] <= chosen;",
               "first.words_in_order"),
         # Fault: a word that comes while `drop` falls is stored.
-        _read(" && !drop && !rst;", " && !rst;", "first.words_in_order"),
+        _read(" && !drop && !rst;", " && !rst;", "second.words_in_order"),
         _read("'(rdata_valid);", "'(rdata_valid && !drop);", "idle_is_answered"),
-        _read(".rst       (rst || drop)", ".rst       (rst)", "first.none_after_drop"),
+        _read(".rst       (rst || drop)", ".rst       (rst)", "second.none_after_drop"),
         _read("room[0] && !has_turn", "room[0]", "second.places_suffice"),
-        _fifo("read_valid <= stored ||", "read_valid <= stored && in_valid ||", "first.shown_in_time"),
+        _fifo("DIRECT || stored ||", "DIRECT || stored && in_valid ||", "second.shown_in_time"),
         _read("given <= any;", "given <= any && cmd_valid;", "first.taken_in_time"),
     ],
     "write_port": [
@@ -449,7 +459,7 @@ MUTATIONS = {
         _line_setup("= finished && !out_valid;", "= finished;", "then_the_next"),
     ],
     "line_raster": [
-        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("DIRECT ? stored", "DIRECT ? stored && !in_valid", "shown.valid_stays"),
         _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _line_raster("room && active && shown};", "room && shown};", "nothing_made_up"),
         _line_raster("pixel.colour <= colour;", "pixel.colour <= in_piece.colour;", "in_order"),
@@ -476,7 +486,7 @@ MUTATIONS = {
         _capture("{14'd0, between, half}", "{15'd0, between}", "has_bytes"),
     ],
     "lanes": [
-        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("DIRECT ? stored", "DIRECT ? stored && !in_valid", "shown.valid_stays"),
         _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _lanes("valid[4] && mask != '0;", "valid[4];", "nothing_made_up"),
         _lanes("{line_4, column_4, colour_4}", "{line_4, column_3, colour_4}", "in_order"),

@@ -26,7 +26,7 @@ module ray_generator_proof (
 
     assign its_place = ray.place;
 
-    ray_generator #(.PLACES(2)) dut (
+    ray_generator #(.PLACES(4)) dut (
         .clk, .rst, .start, .busy, .last_column(11'(COLUMNS - 1)), .last_line({5'd0, two_lines}), .last_band({5'd0, two_bands}),
         .stereo, .exits(1'b1), .first('0), .across('0), .down('0), .near_limit('0), .far_limit('1), .choice('0), .distances('0), .there('0), .away('0), .last('0), .nexts('0),
         .diagonals(1'b0), .sum_distances('0), .sum_there('0), .sum_away('0), .out_valid, .out_ready, .out_ray(ray)
@@ -62,7 +62,7 @@ module ray_generator_proof (
         shown_in_time:     assert (unseen < 6'd30);
 
         all_came: cover (finished && !busy);
-        // Rays enter the pipeline while credits are left: two for the FIFO after the pipeline, and one for the output.
+        // Rays enter the pipeline while credits are left, one for each place of the FIFO after the pipeline.
         waits:    cover (begun && out_valid && !out_ready && place.column == 11'd1 && stereo);
     end
 endmodule

@@ -11,14 +11,16 @@
 // item may be dropped in the pipeline (pipeline_fifo allows drops, but must keep one entry free per clock of the pipeline). `credit` comes
 // from a register. `idle` is high while no item is in the pipeline or in the FIFO.
 //
-// Latency 2 clocks, throughput one item per clock if DEPTH is at least the number of clocks from `sent` to `in_valid` plus 4. DEPTH is a
+// Latency 2 clocks, or 1 with DIRECT; throughput one item per clock if DEPTH is at least the number of clocks from `sent` to `in_valid` plus 4. DEPTH is a
 // power of two.
 
 `default_nettype none
 
 module credit_fifo #(
     parameter int unsigned WIDTH = 8,
-    parameter int unsigned DEPTH = 32
+    parameter int unsigned DEPTH = 32,
+    // No output register, as in `fifo`.
+    parameter bit          DIRECT = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -31,15 +33,16 @@ module credit_fifo #(
     input  wire              out_ready,
     output logic [WIDTH-1:0] out_data
 );
-    localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2);
+    localparam int unsigned PLACES     = DEPTH + 32'(!DIRECT);
+    localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
 
-    // Free credits. There are DEPTH + 1 credits, because of the FIFO's output register. The count is one clock late, so `credit` already
+    // Free credits, one for each place of the FIFO. The count is one clock late, so `credit` already
     // falls when one credit is free: it is for an item that is sent before the previous item has been counted.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 
     assign next = credits - COUNT_BITS'(took) + COUNT_BITS'(gave);
-    assign idle = credits == COUNT_BITS'(DEPTH + 1) && !took;
+    assign idle = credits == COUNT_BITS'(PLACES) && !took;
 
     always_ff @(posedge clk) begin
         took    <= sent && credit;
@@ -50,12 +53,12 @@ module credit_fifo #(
         if (rst) begin
             took    <= 1'b0;
             gave    <= 1'b0;
-            credits <= COUNT_BITS'(DEPTH + 1);
+            credits <= COUNT_BITS'(PLACES);
             credit  <= 1'b0;
         end
     end
 
-    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) fifo (
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .DIRECT(DIRECT)) fifo (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 

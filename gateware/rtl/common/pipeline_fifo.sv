@@ -10,7 +10,7 @@
 // high. An item may also be dropped in the pipeline. `room` comes from a register and depends on the number of items two clocks earlier, so
 // it already falls when FLIGHT + 2 entries are free.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two. If DEPTH
+// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two. If DEPTH
 // exceeds 2·(FLIGHT + 2), the FIFO does not run empty before `room` is high again. `idle` is high while the FIFO is empty; items in the
 // pipeline have no effect on `idle`.
 
@@ -21,7 +21,9 @@ module pipeline_fifo #(
     parameter int unsigned DEPTH  = 16,
     parameter int unsigned FLIGHT = 4,
     // BLOCK: the FIFO is in block RAM, and each item is followed by a clock without an item.
-    parameter bit          BLOCK  = 1'b0
+    parameter bit          BLOCK  = 1'b0,
+    // No output register, as in `fifo`.
+    parameter bit          DIRECT = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -53,7 +55,7 @@ module pipeline_fifo #(
         end
     end
 
-    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(BLOCK)) fifo (
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(BLOCK), .DIRECT(DIRECT)) fifo (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 

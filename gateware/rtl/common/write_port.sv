@@ -59,7 +59,7 @@ module write_port #(
         .out_data  (cmd_addr)
     );
 
-    fifo #(.WIDTH(144), .DEPTH(DEPTH)) words (
+    fifo #(.WIDTH(144), .DEPTH(DEPTH), .DIRECT(1'b1)) words (
         .clk       (clk),
         .rst       (rst),
         .in_valid  (move),

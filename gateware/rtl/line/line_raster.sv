@@ -137,7 +137,7 @@ module line_raster (
         if (rst) valid <= '0;
     end
 
-    pipeline_fifo #(.WIDTH($bits(made)), .DEPTH(16), .FLIGHT(2)) pipeline_fifo (
+    pipeline_fifo #(.WIDTH($bits(made)), .DEPTH(16), .FLIGHT(2), .DIRECT(1'b1)) pipeline_fifo (
         .clk, .rst, .idle(fifo_idle), .room, .in_valid(valid[2]), .in_data(made),
         .out_valid(group_valid), .out_ready(group_ready), .out_data(group)
     );

@@ -91,7 +91,7 @@ module ray_generator #(
     logic                 kept_valid, kept_ready;
     logic [KEPT_BITS-1:0] kept;
 
-    credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) leaving_rays (
+    credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES), .DIRECT(1'b1)) leaving_rays (
         .clk, .rst, .idle(empty), .credit, .sent(running), .in_valid(started), .in_data(ray_in[KEPT_BITS-1:0]),
         .out_valid(kept_valid), .out_ready(kept_ready), .out_data(kept)
     );

@@ -137,7 +137,7 @@ module triangle_raster #(
     end else begin : flat
         logic [15:0] colour;
 
-        pipeline_fifo #(.WIDTH(GROUP_BITS + 16), .DEPTH(16), .FLIGHT(FLIGHT)) pipeline_fifo (
+        pipeline_fifo #(.WIDTH(GROUP_BITS + 16), .DEPTH(16), .FLIGHT(FLIGHT), .DIRECT(1'b1)) pipeline_fifo (
             .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_data({found, found_colour}),
             .out_valid(group_valid), .out_ready(group_ready), .out_data({group, colour})
         );
