@@ -3,52 +3,31 @@
 import runpy
 
 from litex.soc.interconnect import wishbone
-from migen import Cat, Module, Signal
+from migen import Module
 from migen.fhdl import verilog
 
 from crossbar import connect
+from ports import add_ports, members
 
 
-class _Proved(Module):
-    """A module whose ports are vectors of signals, the first one in the lowest bits."""
-
-    def __init__(self):
-        self.ios = set()
-
-    def add_ports(self, inputs, outputs):
-        """Adds ports, each of the given name with the given signals."""
-        for names, is_input in (inputs, True), (outputs, False):
-            for name, signals in names.items():
-                port = Signal(sum(map(len, signals)), name=name)
-                self.ios.add(port)
-                self.comb += Cat(*signals).eq(port) if is_input else port.eq(Cat(*signals))
-
-
-class _CpuBus(_Proved):
+class _CpuBus(Module):
     """A stage of the class `cpu_bus` between the buses of the CPU and the shared one."""
 
     def __init__(self, cpu_bus):
-        _Proved.__init__(self)
         data, instructions = (wishbone.Interface(data_width=32, address_width=32, addressing="word") for _ in range(2))
         self.submodules.stage = stage = cpu_bus(data, instructions)
         self.comb += [data.stb.eq(data.cyc), instructions.stb.eq(instructions.cyc), instructions.sel.eq(0b1111)]
         masters, slave = {"data": data, "instructions": instructions}, {"bus": stage.bus}
-        self.add_ports(
-            _members(masters, "cyc adr cti") | _members({"data": data}, "we dat_w sel") | _members(slave, "ack dat_r"),
-            _members(slave, "cyc stb we adr dat_w sel cti") | _members(masters, "ack dat_r"))
+        self.ios = add_ports(
+            self, members(masters, "cyc adr cti") | members({"data": data}, "we dat_w sel") | members(slave, "ack dat_r"),
+            members(slave, "cyc stb we adr dat_w sel cti") | members(masters, "ack dat_r"))
 
 
-def _members(buses, names):
-    """The ports of the given members of buses, each called BUS_MEMBER."""
-    return {f"{bus}_{name}": [getattr(interface, name)] for bus, interface in buses.items() for name in names.split()}
-
-
-class _Crossbar(_Proved):
+class _Crossbar(Module):
     """A crossbar of the class `crossbar` between three ports (both ways, read, write) and two banks. Its ports have an element
     for each port or bank. An address is {row, bank, column} of 1, 1 and 3 bits."""
 
     def __init__(self, crossbar):
-        _Proved.__init__(self)
         self.submodules.crossbar, controller, ports = connect(
             crossbar, ("both", "read", "write"), latencies=(1, 0), depth=5, bits=8, column_bits=3, bank_bits=1)
         banks = [controller.bank0, controller.bank1]
@@ -71,7 +50,7 @@ class _Crossbar(_Proved):
             "bank_addr": [bank.addr for bank in banks],
             "memory_wdata": [controller.wdata],
         }
-        self.add_ports(inputs, outputs)
+        self.ios = add_ports(self, inputs, outputs)
 
 
 _MODULES = {"memory_crossbar": (_Crossbar, "MemoryCrossbar"), "cpu_bus": (_CpuBus, "CpuBus")}

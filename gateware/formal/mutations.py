@@ -379,7 +379,7 @@ MUTATIONS = {
         _cpu_bus("& ~reads_data)", ")", "unchanged"),
         _cpu_bus("Cat(data.adr, data.sel,", "Cat(data.adr, instructions.sel,", "written_as"),
         _cpu_bus("Cat(instructions.adr, instructions.sel,", "Cat(instructions.adr, data.sel,", "read_whole"),
-        _cpu_bus("word != _LINE_WORDS - 1", "word != _LINE_WORDS - 2", "burst_ends"),
+        _cpu_bus("word != LINE_WORDS - 1", "word != LINE_WORDS - 2", "burst_ends"),
         _cpu_bus("(asks_data & data.we & free)", "(asks_data & data.we & ~busy)", "answered"),
         _cpu_bus("instructions.dat_r.eq(bus.dat_r)", "instructions.dat_r.eq(0)", "data_pass"),
     ],

@@ -3,9 +3,9 @@
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
 from litex.soc.interconnect.wishbone import CTI_BURST_END, CTI_BURST_INCREMENTING
-from migen import Cat, If, Mux, Signal
+from migen import Cat, If, Mux, Signal, log2_int
 
-_LINE_WORDS = 8
+LINE_WORDS = 8
 """Words of a cache line of the CPU. A burst ends with the last word of its line."""
 
 
@@ -29,11 +29,11 @@ class CpuBus(LiteXModule):
         # Set while a read of the data or instruction bus is pending. That bus then still shows this read.
         reads_data, reads_instructions = Signal(), Signal()
         asks_data, asks_instructions, busy, bursts, more, free = (Signal() for _ in range(6))
-        word = bus.adr[:_LINE_WORDS.bit_length() - 1]
+        word = bus.adr[:log2_int(LINE_WORDS)]
         self.comb += [
             asks_data.eq(data.cyc & data.stb & ~reads_data),
             asks_instructions.eq(instructions.cyc & instructions.stb & ~reads_instructions & ~asks_data),
-            more.eq(bursts & (word != _LINE_WORDS - 1)),
+            more.eq(bursts & (word != LINE_WORDS - 1)),
             free.eq(~busy | (bus.ack & ~more)),
             bus.cyc.eq(busy),
             bus.stb.eq(busy),

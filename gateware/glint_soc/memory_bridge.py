@@ -5,8 +5,9 @@ from litex.soc.interconnect import stream
 from litex.soc.interconnect.wishbone import CTI_BURST_INCREMENTING
 from migen import FSM, Array, Cat, Constant, If, Mux, NextState, NextValue, Replicate, Signal, log2_int
 
+from .cpu_bus import LINE_WORDS
+
 _BUS_BITS = 32
-_LINE_BITS = 256
 
 
 class MemoryBridge(LiteXModule):
@@ -33,7 +34,8 @@ class MemoryBridge(LiteXModule):
             raise ValueError(f"expected a memory port of 32, 64 or 128 bits, got {port.data_width}")
 
         # Number of bus words per port word, and of port words per cache line.
-        words, line = port.data_width // _BUS_BITS, _LINE_BITS // port.data_width
+        words = port.data_width // _BUS_BITS
+        line = LINE_WORDS // words
         address = Signal.like(bus.adr)
         beat = address[:log2_int(words)] if words > 1 else Constant(0)
         word = address[log2_int(words):]

@@ -11,12 +11,9 @@ from glint_soc.memory_bridge import MemoryBridge
 from glint_soc.memory_controller import MemoryController
 from glint_soc.memory_model import MemoryModel
 from glint_soc.soc import SYS_CLK_FREQ
+from ports import add_ports, members
 
 NAME = "memory_machine"
-
-_PORTS = {"data": ("cyc", "we", "adr", "dat_w", "sel", "cti"), "instructions": ("cyc", "adr", "cti")}
-"""Inputs of the CPU's buses; the address is that of a word of 32 bits in main memory."""
-
 
 class _Memory(MT41K64M16):
     """The Urbana's memory with fewer rows."""
@@ -25,8 +22,9 @@ class _Memory(MT41K64M16):
 
 
 class _Machine(LiteXModule):
-    """Ports: `clk`, `rst`; BUS_SIGNAL of both buses of the CPU; PORT_SIGNAL of the ports `read0`, `read1`, `write0`, `write1` and
-    `scanout`, with words of 128 bits; and `refreshed`, high for one clock at the end of a refresh."""
+    """Ports: `clk`, `rst`; the members of both buses of the CPU, whose addresses are those of words of 32 bits in main memory; commands and
+    data of the ports `read0`, `read1`, `write0`, `write1` and `scanout`, with words of 128 bits; and `refreshed`, high for one clock at
+    the end of a refresh."""
 
     def __init__(self):
         self.cd_sys = ClockDomain()
@@ -37,39 +35,24 @@ class _Machine(LiteXModule):
         self.phy = MemoryModel(module, data_width=16, clk_freq=SYS_CLK_FREQ)
         self.memory = MemoryController(self.phy, module, SYS_CLK_FREQ)
         get_port = self.memory.crossbar.get_port
-        buses = {name: wishbone.Interface(data_width=32, address_width=32, addressing="word") for name in _PORTS}
-        self.stage = CpuBus(**buses)
+        data, instructions = (wishbone.Interface(data_width=32, address_width=32, addressing="word") for _ in range(2))
+        self.stage = CpuBus(data, instructions)
         self.bridge = MemoryBridge(self.stage.bus, get_port("both", 128), 0)
-        for name, bus in buses.items():
-            self.comb += bus.stb.eq(bus.cyc)
-            for signal in _PORTS[name]:
-                self._input(f"{name}_{signal}", getattr(bus, signal))
-            self._output(f"{name}_ack", bus.ack)
-            self._output(f"{name}_dat_r", bus.dat_r)
-        self.comb += buses["instructions"].sel.eq(0b1111)
-        for name, mode in {"read0": "read", "read1": "read", "write0": "write", "write1": "write", "scanout": "read"}.items():
-            port = get_port(mode, 128)
-            self._input(f"{name}_valid", port.cmd.valid)
-            self._input(f"{name}_addr", port.cmd.addr)
-            self._output(f"{name}_ready", port.cmd.ready)
-            if mode == "read":
-                self._output(f"{name}_data_valid", port.rdata.valid)
-                self._output(f"{name}_data", port.rdata.data)
-            else:
-                self.comb += [port.cmd.we.eq(1), port.wdata.valid.eq(1), port.wdata.we.eq(0xffff)]
-                self._input(f"{name}_data", port.wdata.data)
-                self._output(f"{name}_data_ready", port.wdata.ready)
-        self._output("refreshed", self.memory.controller.refresher.cmd.last)
-
-    def _input(self, name, signal):
-        port = Signal(len(signal), name=name)
-        self.ios.add(port)
-        self.comb += signal.eq(port)
-
-    def _output(self, name, signal):
-        port = Signal(len(signal), name=name)
-        self.ios.add(port)
-        self.comb += port.eq(signal)
+        self.comb += [data.stb.eq(data.cyc), instructions.stb.eq(instructions.cyc), instructions.sel.eq(0b1111)]
+        readers = {name: get_port("read", 128) for name in ("read0", "read1", "scanout")}
+        writers = {name: get_port("write", 128) for name in ("write0", "write1")}
+        for port in writers.values():
+            self.comb += [port.cmd.we.eq(1), port.wdata.valid.eq(1), port.wdata.we.eq(0xffff)]
+        masters, ports = {"data": data, "instructions": instructions}, readers | writers
+        commands = {name: port.cmd for name, port in ports.items()}
+        read, written = ({f"{name}_word": getattr(port, kind) for name, port in part.items()}
+                         for part, kind in ((readers, "rdata"), (writers, "wdata")))
+        self.ios |= add_ports(
+            self,
+            members(masters, "cyc adr cti") | members({"data": data}, "we dat_w sel") | members(commands, "valid addr")
+            | members(written, "data"),
+            members(masters, "ack dat_r") | members(commands, "ready") | members(read, "valid data") | members(written, "ready")
+            | {"refreshed": [self.memory.controller.refresher.cmd.last]})
 
 
 def write(folder):

@@ -1,4 +1,4 @@
-"""Tests of the parts of the memory controller: banks beside LiteDRAM's, clock for clock, and the refresher's commands."""
+"""Tests of the parts of the memory controller: a bank beside LiteDRAM's, and the refresher's commands."""
 
 import math
 import random
@@ -58,7 +58,7 @@ class _Machine:
             if is_write:
                 self.last["write"] = cycle
             self.columns.append((self.row, address & 0x3ff, is_write))
-            if address >> 10 & 1: # the memory closes the row by itself, as early as it may
+            if address >> 10 & 1: # the memory closes the row after the access
                 self.row = None
         elif (yield cmd.we):
             self._event("precharge", cycle)

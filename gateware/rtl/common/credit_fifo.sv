@@ -11,8 +11,8 @@
 // item may be dropped in the pipeline (pipeline_fifo allows drops, but must keep one entry free per clock of the pipeline). `credit` comes
 // from a register. `idle` is high while no item is in the pipeline or in the FIFO.
 //
-// Latency 2 clocks, or 1 with DIRECT; throughput one item per clock if DEPTH is at least the number of clocks from `sent` to `in_valid` plus 4. DEPTH is a
-// power of two.
+// Latency 2 clocks, or 1 with DIRECT; throughput one item per clock if DEPTH is at least the number of clocks from `sent` to `in_valid`
+// plus 4. DEPTH is a power of two.
 
 `default_nettype none
 
@@ -36,8 +36,8 @@ module credit_fifo #(
     localparam int unsigned PLACES     = DEPTH + 32'(!DIRECT);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
 
-    // Free credits, one for each place of the FIFO. The count is one clock late, so `credit` already
-    // falls when one credit is free: it is for an item that is sent before the previous item has been counted.
+    // Free credits, one for each place of the FIFO. The count is one clock late, so `credit` already falls when one credit is free: it is for
+    // an item that is sent before the previous item has been counted.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 

@@ -4,8 +4,8 @@
 // therefore needs no enable. With DIRECT there is no output register: the FIFO holds DEPTH items, and its output is an item in LUTRAM, valid
 // a little later in the clock.
 //
-// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with PAUSE. Stream protocol on both sides:
-// an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
+// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with PAUSE. Stream protocol on both
+// sides: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
 // moved. `in_ready`, and `out_valid` except with DIRECT, come directly from registers. DEPTH is a power of two.
 //
 //            ┌──────────────┐    ┌───────────────────┐    ┌──────────┐
@@ -34,8 +34,8 @@ module fifo #(
 );
     localparam int unsigned PLACE_BITS = $clog2(DEPTH);
 
-    // With DIRECT, `read_valid` is always high. The pointers have one bit more than the index of an entry: if the pointers are equal, the FIFO is empty; if they differ by DEPTH, its
-    // memory is full.
+    // The pointers have one bit more than the index of an entry: if the pointers are equal, the FIFO is empty; if they differ by DEPTH, its
+    // memory is full. With DIRECT, `read_valid` is always high.
     logic [PLACE_BITS:0] head, tail;
     logic                stored, load, read_valid, read_ready;
 

@@ -10,9 +10,9 @@
 // high. An item may also be dropped in the pipeline. `room` comes from a register and depends on the number of items two clocks earlier, so
 // it already falls when FLIGHT + 2 entries are free.
 //
-// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two. If DEPTH
-// exceeds 2·(FLIGHT + 2), the FIFO does not run empty before `room` is high again. `idle` is high while the FIFO is empty; items in the
-// pipeline have no effect on `idle`.
+// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two.
+// If DEPTH exceeds 2·(FLIGHT + 2), the FIFO does not run empty before `room` is high again. `idle` is high while the FIFO is empty; items
+// in the pipeline have no effect on `idle`.
 
 `default_nettype none
 

@@ -140,8 +140,8 @@ impl Client {
             valid: port("valid"),
             ready: port("ready"),
             addr: port("addr"),
-            data: port("data"),
-            moves: port(if reads { "data_valid" } else { "data_ready" }),
+            data: port("word_data"),
+            moves: port(if reads { "word_valid" } else { "word_ready" }),
             asks: VecDeque::new(),
             words: VecDeque::new(),
         }
