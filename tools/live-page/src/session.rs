@@ -188,7 +188,7 @@ impl<'a> Session<'a> {
         self.board.read(&mut output, LOOK_MS)?;
         self.pass(&mut output)?;
         if !self.is_idle() {
-            return match self.receive() {
+            return match self.receive()? {
                 // The user's keys go to the running program, as on a terminal.
                 Some(Request::Command(line)) => self.type_line(&line),
                 Some(Request::Choose(list, name)) => self.choose(list, &name),
@@ -200,8 +200,11 @@ impl<'a> Session<'a> {
                 None => Ok(()),
             };
         }
-        let next = self.waiting.pop_front();
-        match next.or_else(|| self.receive()) {
+        let next = match self.waiting.pop_front() {
+            None => self.receive()?,
+            waiting => waiting,
+        };
+        match next {
             Some(Request::Command(line)) => self.type_line(&line),
             Some(Request::Choose(list, name)) => self.choose(list, &name),
             Some(Request::Help(command)) => {
@@ -233,14 +236,22 @@ impl<'a> Session<'a> {
         self.move_field()
     }
 
-    /// The next request of a page. A request that may change the picture ends the motion of a field.
-    fn receive(&mut self) -> Option<Request> {
-        let request = self.requests.try_recv().ok()?;
+    /// The next request of a page, after the motion of the camera that came before it. A request that may change the picture ends the
+    /// motion of a field.
+    fn receive(&mut self) -> Result<Option<Request>, BoardError> {
+        let Ok(request) = self.requests.try_recv() else {
+            return Ok(None);
+        };
+        if self.is_idle()
+            && let Some(drag) = self.channels.take_drag()
+        {
+            self.move_camera(&drag)?;
+        }
         if !matches!(request, Request::Help(_) | Request::Picture) {
             self.frames.clear();
             self.orbit = None;
         }
-        Some(request)
+        Ok(Some(request))
     }
 
     /// Types the commands of a choice: the first one at once, as it may end a running program, the others one after another.

@@ -73,11 +73,16 @@ fn the_mouse_moves_the_camera() {
     let page = open(&mut browser, &served.url);
     let number = "Number(document.getElementById('monitor').dataset.number)";
     let log = "document.getElementById('log').textContent";
-    // The camera of the board, by the distance of its eye, which is `view EX EY EZ ...`.
-    let view = |browser: &mut Browser, mark: &str| -> [f64; 3] {
-        browser.evaluate(&page, "document.getElementById('line').focus()");
-        browser.type_line(&page, "view");
-        browser.type_line(&page, &format!("echo {mark}"));
+    // The eye of the board's camera after an action, of `view EX EY EZ ...`.
+    let view_after = |browser: &mut Browser, action: &str, mark: &str| -> [f64; 3] {
+        let enter = |line| format!("enter('{line}');");
+        let lines = ["view", &format!("echo {mark}")].map(enter).concat();
+        browser.evaluate(
+            &page,
+            &format!(
+                "{{ const enter = (line) => {{ document.getElementById('line').value = line; document.getElementById('command').requestSubmit(); }}; {action} {lines} }}"
+            ),
+        );
         browser.wait(&page, &format!("/^{mark}$/m.test({log})"));
         let eye = browser.evaluate(
             &page,
@@ -87,6 +92,7 @@ fn the_mouse_moves_the_camera() {
         );
         [0, 1, 2].map(|axis| eye[axis].as_f64().unwrap())
     };
+    let view = |browser: &mut Browser, mark: &str| view_after(browser, "", mark);
     let length = |eye: [f64; 3]| eye.iter().map(|c| c * c).sum::<f64>().sqrt();
     // A sensor that steers does not take the camera back.
     browser.evaluate(&page, "document.getElementById('line').focus()");
@@ -146,6 +152,14 @@ fn the_mouse_moves_the_camera() {
     assert!(
         (0..3).all(|i| (same[i] - near[i]).abs() < 0.01),
         "{near:?} {same:?}"
+    );
+
+    // A command comes after the motion before it: half a turn.
+    let turn = "for (let step = 0; step < 36; step++) document.getElementById('monitor').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }));";
+    let behind = view_after(&mut browser, turn, "behind");
+    assert!(
+        (0..2).all(|i| (behind[i] + same[i]).abs() < 0.01),
+        "{same:?} {behind:?}"
     );
 }
 
