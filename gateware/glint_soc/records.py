@@ -102,8 +102,24 @@ VERTEX = Record("Vertex", "Vertex of a mesh.", (
 
 TRIANGLE = Record("Triangle", "Triangle of a mesh.", (
     Field("indices", 16, "numbers of the vertices in the chunk, counter-clockwise seen from outside", count=3),
-    _COLOUR, _vector("normal", "normal of the face"), _reserved(16),
+    _COLOUR, _vector("normal", "normal of the face"),
+    Field("texture", 8, "number of its texture among those of the mesh, from 1; 0: none"), _reserved(8),
 ), rtl="triangle_t")
+
+TEXTURE = Record("TextureHeader", "Header of a texture.", (
+    Field("magic", 8, "`GLT1`", count=4),
+    Field("length", 32, "length of the whole in bytes"),
+    Field("checksum", 32, "CRC-32 of all other bytes"),
+    Field("width_log2", 8, "base-2 logarithm of the width, 3 to 10"),
+    Field("height_log2", 8, "base-2 logarithm of the height, 3 to 10"),
+    Field("levels", 8, "number of mip levels: 1, or down to a side of 1 in both directions"),
+    Field("format", 8, "texels: 0 RGB565, 1 indices of 256 colours, 2 indices of 16 colours"),
+    Field("wrap", 8, "beyond the sides, across and down: 0 repeat, 1 mirror, 2 clamp", count=2),
+    Field("filter", 8, "0: the nearest texel; 1: bilinear"),
+    Field("cut_out", 8, "1: texels with the value of `key` are transparent"),
+    Field("key", 16, "value of a transparent texel: a colour or an index"),
+    _reserved(16, count=5),
+))
 
 ATTRIBUTES = (
     Record("TextureCoordinates", "Texture coordinates of a vertex.", (
@@ -116,6 +132,9 @@ ATTRIBUTES = (
 FIRST_ATTRIBUTE = 4
 """Number of the bit of the first optional attribute. The bits before it stand for the attributes that every mesh has in its records:
 positions, faces, normals and colours. They are 0."""
+
+TEXTURES_BIT = 31
+"""Number of the bit of `attributes` that a mesh with textures sets. The textures follow the arrays of its attributes."""
 
 SEGMENT_END = Record("segment_end", "End point of a segment.", (
     Field("x", 20, "x, s12.8"), _reserved(12), Field("y", 20, "y, s12.8"), _reserved(12),
@@ -197,7 +216,7 @@ FIRMWARE_HEADER = Record("FirmwareHeader", "Header of the firmware in a flash im
     Field("checksum", 32, "CRC-32 of the program"),
 ))
 
-RECORDS = (HEADER, CHUNK, VERTEX, TRIANGLE, *ATTRIBUTES, SEGMENT_END, STEPS, DESCRIPTOR, PLANE, PLANES, PIECE, STORED_PIECE,
+RECORDS = (HEADER, CHUNK, VERTEX, TRIANGLE, *ATTRIBUTES, TEXTURE, SEGMENT_END, STEPS, DESCRIPTOR, PLANE, PLANES, PIECE, STORED_PIECE,
            FLASH_HEADER, FLASH_ENTRY, FIRMWARE_HEADER)
 
 DESCRIPTOR_BYTES = {"flat": DESCRIPTOR.size, "smooth": 2 * DESCRIPTOR.size}
@@ -252,6 +271,9 @@ pub const WORD: usize = {WORD_BYTES};
 
 /// The mark of a piece of a line that is stored as a descriptor.
 pub const PIECE_MARK: u64 = {PIECE_MARK};
+
+/// The bit in [`MeshHeader::attributes`] of a mesh with textures, which follow the arrays of its attributes.
+pub const TEXTURES: u32 = 1 << {TEXTURES_BIT};
 
 /// An optional attribute of a mesh's vertices. The discriminant is the number of its bit in [`MeshHeader::attributes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -384,7 +406,8 @@ def _page():
         "## Optional attributes", "",
         "Of the vertices of a mesh: the bits of `attributes` in the header of the mesh.", "",
         "| bit | attribute | element |", "|---|---|---|",
-        f"| 0–{FIRST_ATTRIBUTE - 1} | positions, faces, normals, colours | in the records of every mesh; the bits are 0 |", *attributes, "",
+        f"| 0–{FIRST_ATTRIBUTE - 1} | positions, faces, normals, colours | in the records of every mesh; the bits are 0 |", *attributes,
+        f"| {TEXTURES_BIT} | textures | [those of the mesh](texture.md), after the arrays of the attributes |", "",
         "## Bands", "",
         "Horizontal strips of a picture, in which it is drawn.", "",
         "| picture | lines of a band | bands |", "|---|---|---|", *sizes, "",

@@ -10,3 +10,4 @@ pub mod object;
 pub mod picture;
 pub mod quality;
 pub mod stereo;
+pub mod texture;

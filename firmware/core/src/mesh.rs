@@ -11,8 +11,9 @@ use core::fmt;
 use core::ops::Range;
 
 pub use crate::colour::Rgb565;
-use crate::records::WORD;
 pub use crate::records::{Attribute, ChunkHeader, MeshHeader, Triangle, Vertex};
+use crate::records::{TEXTURES, WORD};
+use crate::texture::{Texture, TextureError};
 pub use checksum::{checksum, set_checksum, stated_checksum};
 #[cfg(feature = "alloc")]
 pub use encode::{EncodeError, IndexedTriangle, encode, encode_with};
@@ -41,6 +42,8 @@ pub struct Mesh<'a> {
     records: &'a [[u8; WORD]],
     /// The arrays of the optional attributes, after the chunks.
     arrays: &'a [[u8; WORD]],
+    /// The textures, after the arrays.
+    textures: &'a [[u8; WORD]],
     attributes: u32,
     vertices: u32,
     triangles: u32,
@@ -99,7 +102,9 @@ impl<'a> Mesh<'a> {
             header.radius,
             header.radius <= MAX_RADIUS,
         )?;
-        let known = Attribute::ALL.iter().fold(0, |bits, one| bits | one.bit());
+        let known = Attribute::ALL
+            .iter()
+            .fold(TEXTURES, |bits, one| bits | one.bit());
         let unknown = header.attributes & !known;
         expect(
             start(MeshHeader::ATTRIBUTES),
@@ -110,20 +115,39 @@ impl<'a> Mesh<'a> {
 
         let mut walk = Walk::new(records);
         let (mut seen_vertices, mut seen_triangles) = (0, 0);
+        // The largest number of a texture, and its place.
+        let mut largest_texture = (0, 0);
         for _ in 0..header.chunks {
             let (offset, chunk) = walk.chunk()?;
             chunk.check(offset, header.radius)?;
+            largest_texture = largest_texture.max(chunk.largest_texture(offset));
             seen_vertices += chunk.vertices.len() as u32;
             seen_triangles += chunk.triangles.len() as u32;
         }
-        let arrays = walk.rest;
-        let [expected, rest] = [array_words(header.attributes, seen_vertices), arrays.len()]
-            .map(|words| (words * WORD) as u32);
+        let rest = walk.rest;
+        let words = array_words(header.attributes, seen_vertices);
+        let (arrays, textures) = rest.split_at_checked(words).unwrap_or((rest, &[]));
+        let has_textures = header.attributes & TEXTURES != 0;
+        let [expected, found] = [words, rest.len()].map(|words| (words * WORD) as u32);
+        let count = if has_textures {
+            Expected::AtLeast("bytes after the last chunk", expected + WORD as u32)
+        } else {
+            Expected::Exactly("bytes after the last chunk", expected)
+        };
+        let holds = if has_textures {
+            found > expected
+        } else {
+            found == expected
+        };
+        expect(walk.offset, count, found, holds)?;
+        let textures_offset = walk.offset + expected;
+        let texture_count = check_textures(textures, textures_offset)?;
+        let (number, offset) = largest_texture;
         expect(
-            walk.offset,
-            Expected::Exactly("bytes after the last chunk", expected),
-            rest,
-            rest == expected,
+            offset,
+            Expected::AtMost("as the number of a texture", texture_count),
+            number,
+            number <= texture_count,
         )?;
         expect(
             start(MeshHeader::VERTICES),
@@ -138,12 +162,13 @@ impl<'a> Mesh<'a> {
             header.triangles == seen_triangles,
         )?;
         let (records, _) = records
-            .split_at_checked(records.len() - arrays.len())
+            .split_at_checked(records.len() - rest.len())
             .unwrap_or_default();
         Ok(Self {
             bytes,
             records,
             arrays,
+            textures,
             attributes: header.attributes,
             vertices: header.vertices,
             triangles: header.triangles,
@@ -205,6 +230,17 @@ impl<'a> Mesh<'a> {
             .then(|| elements.get(..self.vertices as usize * attribute.bytes()))?
     }
 
+    /// The textures in order: a triangle with the number n of a texture has the one with index n − 1.
+    pub fn textures(&self) -> impl Iterator<Item = Texture<'a>> + Clone + use<'a> {
+        let mut rest = self.textures.as_flattened();
+        core::iter::from_fn(move || {
+            // In a checked mesh an error means the end of the textures.
+            let texture = Texture::new_checked(rest).ok()?;
+            rest = rest.get(texture.bytes().len()..).unwrap_or_default();
+            Some(texture)
+        })
+    }
+
     /// The chunks in order.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk<'a>> + Clone + use<'a> {
         Chunks(Walk::new(self.records))
@@ -249,6 +285,14 @@ impl<'a> Chunk<'a> {
         self.triangles.iter().map(Triangle::from_bytes)
     }
 
+    /// The largest number of a texture, and its offset in the mesh, for a chunk whose header is at byte `offset`.
+    fn largest_texture(&self, offset: u32) -> (u32, u32) {
+        let first = offset as usize + WORD * (1 + self.vertices.len()) + Triangle::TEXTURE.start;
+        let numbers = self.triangles().map(|triangle| u32::from(triangle.texture));
+        let places = (first as u32..).step_by(WORD);
+        numbers.zip(places).max().unwrap_or((0, 0))
+    }
+
     /// Checks the records of the chunk, whose header is at byte `offset` of a mesh with the given radius.
     fn check(&self, offset: u32, radius: u32) -> Result<(), MeshError> {
         let count = self.vertices.len() as u32;
@@ -287,6 +331,24 @@ impl<'a> Chunk<'a> {
         }
         Ok(())
     }
+}
+
+/// Checks the textures of a mesh, which begin at byte `offset`. Returns their number.
+fn check_textures(textures: &[[u8; WORD]], mut offset: u32) -> Result<u32, MeshError> {
+    let mut rest = textures.as_flattened();
+    let mut count = 0;
+    while !rest.is_empty() {
+        let texture = Texture::new_checked(rest).map_err(|error| MeshError {
+            offset: offset + error.offset,
+            expected: Expected::Texture(error),
+            found: error.found,
+        })?;
+        let length = texture.bytes().len();
+        rest = rest.get(length..).unwrap_or_default();
+        offset += length as u32;
+        count += 1;
+    }
+    Ok(count)
 }
 
 /// Divides the records after the mesh's header into chunks.
@@ -446,10 +508,15 @@ pub enum Expected {
     Below(&'static str, u32),
     /// A multiple of this number of items.
     MultipleOf(&'static str, u32),
+    /// A texture, which has an error.
+    Texture(TextureError),
 }
 
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if let Expected::Texture(error) = self.expected {
+            return write!(f, "mesh byte {}: {error}", self.offset);
+        }
         write!(
             f,
             "mesh byte {}: expected {}, found ",
@@ -461,7 +528,8 @@ impl fmt::Display for MeshError {
             | Expected::AtLeast(..)
             | Expected::AtMost(..)
             | Expected::Below(..)
-            | Expected::MultipleOf(..) => write!(f, "{}", self.found),
+            | Expected::MultipleOf(..)
+            | Expected::Texture(_) => write!(f, "{}", self.found),
         }
     }
 }
@@ -475,6 +543,7 @@ impl fmt::Display for Expected {
             Self::AtMost(what, count) => write!(f, "at most {count} {what}"),
             Self::Below(what, count) => write!(f, "less than the {count} {what}"),
             Self::MultipleOf(what, count) => write!(f, "a multiple of {count} {what}"),
+            Self::Texture(_) => f.write_str("a texture"),
         }
     }
 }

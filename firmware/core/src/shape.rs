@@ -230,6 +230,7 @@ impl Writer<'_> {
             indices,
             colour: self.written(indices[0]).colour,
             normal: normal.map(|x| x as i16),
+            texture: 0,
         };
         let place = HEADERS + usize::from(self.vertices) + usize::from(self.triangles);
         *self.records.get_mut(place)? = triangle.to_bytes();

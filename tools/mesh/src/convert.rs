@@ -292,6 +292,7 @@ fn index(
                     .or_else(|| mean_colour(polygons, triangle.corners)),
             ),
             normal: direction(triangle.normal),
+            texture: 0,
         });
     }
     (vertices, indexed)

@@ -152,6 +152,7 @@ impl Model {
                     indices,
                     colour: Rgb565((i as u16).wrapping_mul(0x9E37) | 0x8410),
                     normal: normal.map(|x| (x * 16384.0).round() as i16),
+                    texture: 0,
                 }
             })
             .collect();

@@ -12,6 +12,9 @@ pub const WORD: usize = 16;
 /// The mark of a piece of a line that is stored as a descriptor.
 pub const PIECE_MARK: u64 = 3;
 
+/// The bit in [`MeshHeader::attributes`] of a mesh with textures, which follow the arrays of its attributes.
+pub const TEXTURES: u32 = 1 << 31;
+
 /// An optional attribute of a mesh's vertices. The discriminant is the number of its bit in [`MeshHeader::attributes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attribute {
@@ -206,6 +209,8 @@ pub struct Triangle {
     pub colour: Rgb565,
     /// Normal of the face, s2.14.
     pub normal: [i16; 3],
+    /// Number of its texture among those of the mesh, from 1; 0: none.
+    pub texture: u8,
 }
 
 impl Triangle {
@@ -217,8 +222,10 @@ impl Triangle {
     pub const COLOUR: Range<usize> = 6..8;
     /// Place of the field `normal`.
     pub const NORMAL: Range<usize> = 8..14;
+    /// Place of the field `texture`.
+    pub const TEXTURE: Range<usize> = 14..15;
     /// Place of the field `reserved`.
-    pub const RESERVED: Range<usize> = 14..16;
+    pub const RESERVED: Range<usize> = 15..16;
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
@@ -226,6 +233,7 @@ impl Triangle {
             indices: [u16::from_le_bytes(field(bytes, 0)), u16::from_le_bytes(field(bytes, 2)), u16::from_le_bytes(field(bytes, 4))],
             colour: Rgb565(u16::from_le_bytes(field(bytes, 6))),
             normal: [i16::from_le_bytes(field(bytes, 8)), i16::from_le_bytes(field(bytes, 10)), i16::from_le_bytes(field(bytes, 12))],
+            texture: u8::from_le_bytes(field(bytes, 14)),
         }
     }
 
@@ -238,7 +246,8 @@ impl Triangle {
         let [b8, b9] = self.normal[0].to_le_bytes();
         let [b10, b11] = self.normal[1].to_le_bytes();
         let [b12, b13] = self.normal[2].to_le_bytes();
-        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, 0, 0]
+        let b14 = self.texture;
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, 0]
     }
 }
 
@@ -272,6 +281,99 @@ impl TextureCoordinates {
         let [b0, b1, b2, b3] = self.s.to_le_bytes();
         let [b4, b5, b6, b7] = self.t.to_le_bytes();
         [b0, b1, b2, b3, b4, b5, b6, b7]
+    }
+}
+
+/// Header of a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TextureHeader {
+    /// `GLT1`.
+    pub magic: [u8; 4],
+    /// Length of the whole in bytes.
+    pub length: u32,
+    /// CRC-32 of all other bytes.
+    pub checksum: u32,
+    /// Base-2 logarithm of the width, 3 to 10.
+    pub width_log2: u8,
+    /// Base-2 logarithm of the height, 3 to 10.
+    pub height_log2: u8,
+    /// Number of mip levels: 1, or down to a side of 1 in both directions.
+    pub levels: u8,
+    /// Texels: 0 RGB565, 1 indices of 256 colours, 2 indices of 16 colours.
+    pub format: u8,
+    /// Beyond the sides, across and down: 0 repeat, 1 mirror, 2 clamp.
+    pub wrap: [u8; 2],
+    /// 0: the nearest texel; 1: bilinear.
+    pub filter: u8,
+    /// 1: texels with the value of `key` are transparent.
+    pub cut_out: u8,
+    /// Value of a transparent texel: a colour or an index.
+    pub key: u16,
+}
+
+impl TextureHeader {
+    /// Bytes of the record.
+    pub const BYTES: usize = 32;
+    /// Place of the field `magic`.
+    pub const MAGIC: Range<usize> = 0..4;
+    /// Place of the field `length`.
+    pub const LENGTH: Range<usize> = 4..8;
+    /// Place of the field `checksum`.
+    pub const CHECKSUM: Range<usize> = 8..12;
+    /// Place of the field `width_log2`.
+    pub const WIDTH_LOG2: Range<usize> = 12..13;
+    /// Place of the field `height_log2`.
+    pub const HEIGHT_LOG2: Range<usize> = 13..14;
+    /// Place of the field `levels`.
+    pub const LEVELS: Range<usize> = 14..15;
+    /// Place of the field `format`.
+    pub const FORMAT: Range<usize> = 15..16;
+    /// Place of the field `wrap`.
+    pub const WRAP: Range<usize> = 16..18;
+    /// Place of the field `filter`.
+    pub const FILTER: Range<usize> = 18..19;
+    /// Place of the field `cut_out`.
+    pub const CUT_OUT: Range<usize> = 19..20;
+    /// Place of the field `key`.
+    pub const KEY: Range<usize> = 20..22;
+    /// Place of the field `reserved`.
+    pub const RESERVED: Range<usize> = 22..32;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        Self {
+            magic: field(bytes, 0),
+            length: u32::from_le_bytes(field(bytes, 4)),
+            checksum: u32::from_le_bytes(field(bytes, 8)),
+            width_log2: u8::from_le_bytes(field(bytes, 12)),
+            height_log2: u8::from_le_bytes(field(bytes, 13)),
+            levels: u8::from_le_bytes(field(bytes, 14)),
+            format: u8::from_le_bytes(field(bytes, 15)),
+            wrap: field(bytes, 16),
+            filter: u8::from_le_bytes(field(bytes, 18)),
+            cut_out: u8::from_le_bytes(field(bytes, 19)),
+            key: u16::from_le_bytes(field(bytes, 20)),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let b0 = self.magic[0];
+        let b1 = self.magic[1];
+        let b2 = self.magic[2];
+        let b3 = self.magic[3];
+        let [b4, b5, b6, b7] = self.length.to_le_bytes();
+        let [b8, b9, b10, b11] = self.checksum.to_le_bytes();
+        let b12 = self.width_log2;
+        let b13 = self.height_log2;
+        let b14 = self.levels;
+        let b15 = self.format;
+        let b16 = self.wrap[0];
+        let b17 = self.wrap[1];
+        let b18 = self.filter;
+        let b19 = self.cut_out;
+        let [b20, b21] = self.key.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
     }
 }
 

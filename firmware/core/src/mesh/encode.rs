@@ -7,7 +7,7 @@ use super::{
     Attribute, ChunkHeader, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, MeshHeader, Rgb565, Triangle,
     Vertex, set_checksum,
 };
-use crate::records::WORD;
+use crate::records::{TEXTURES, WORD};
 
 /// A triangle of an indexed mesh of any size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,6 +18,8 @@ pub struct IndexedTriangle {
     pub colour: Rgb565,
     /// Normal of the triangle, s2.14.
     pub normal: [i16; 3],
+    /// Number of its texture, from 1; 0 for none.
+    pub texture: u8,
 }
 
 /// Encodes an indexed mesh, divided into chunks of at most 65,535 vertices.
@@ -28,11 +30,11 @@ pub struct IndexedTriangle {
 /// # Errors
 /// The mesh has no vertex, a triangle uses a missing vertex, or the encoded mesh exceeds [`MAX_BYTES`].
 pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
-    encode_with(vertices, triangles, &[])
+    encode_with(vertices, triangles, &[], &[])
 }
 
-/// Encodes an indexed mesh with optional attributes, in the order of their numbers. Each attribute has one element per vertex.
-/// Missing elements are 0.
+/// Encodes an indexed mesh with optional attributes, in the order of their numbers, and with textures. Each attribute has one element
+/// per vertex. Missing elements are 0. The bytes of textures are not checked.
 ///
 /// # Errors
 /// The errors of [`encode`].
@@ -40,8 +42,10 @@ pub fn encode_with(
     vertices: &[Vertex],
     triangles: &[IndexedTriangle],
     attributes: &[(Attribute, &[u8])],
+    textures: &[Vec<u8>],
 ) -> Result<Vec<u8>, EncodeError> {
     let mut writer = Writer {
+        textures,
         arrays: attributes
             .iter()
             .map(|&(attribute, elements)| (attribute, elements, Vec::new()))
@@ -80,6 +84,7 @@ pub fn encode_with(
             indices,
             colour: triangle.colour,
             normal: triangle.normal,
+            texture: triangle.texture,
         };
         records.push(record.to_bytes());
     }
@@ -99,6 +104,7 @@ struct Writer<'a> {
     records: Vec<[u8; WORD]>,
     /// For each attribute the elements of the mesh's vertices, and the elements of the chunks' vertices.
     arrays: Vec<(Attribute, &'a [u8], Vec<u8>)>,
+    textures: &'a [Vec<u8>],
     chunks: u32,
     vertices: u32,
     triangles: u32,
@@ -116,7 +122,8 @@ impl Writer<'_> {
         let arrays: usize = (self.arrays.iter())
             .map(|(attribute, _, array)| array.len() + attribute.bytes() * used.len() + WORD)
             .sum();
-        if MeshHeader::BYTES + WORD * records + arrays > MAX_BYTES as usize {
+        let textures: usize = self.textures.iter().map(Vec::len).sum();
+        if MeshHeader::BYTES + WORD * records + arrays + textures > MAX_BYTES as usize {
             return Err(EncodeError::TooLarge);
         }
         let header = ChunkHeader {
@@ -156,6 +163,13 @@ impl Writer<'_> {
             body.extend(array);
             body.resize(body.len().next_multiple_of(WORD), 0);
         }
+        self.textures
+            .iter()
+            .for_each(|texture| body.extend(texture));
+        let attributes = self
+            .arrays
+            .iter()
+            .fold(0, |bits, (attribute, ..)| bits | attribute.bit());
         let header = MeshHeader {
             magic: MAGIC,
             length: (MeshHeader::BYTES + body.len()) as u32,
@@ -164,8 +178,12 @@ impl Writer<'_> {
             triangles: self.triangles,
             radius: floor + u32::from(floor.pow(2) < self.squared_radius),
             checksum: 0,
-            attributes: (self.arrays.iter())
-                .fold(0, |bits, (attribute, ..)| bits | attribute.bit()),
+            attributes: attributes
+                | if self.textures.is_empty() {
+                    0
+                } else {
+                    TEXTURES
+                },
         };
         let mut bytes = header.to_bytes().to_vec();
         bytes.extend(body);
@@ -208,7 +226,7 @@ impl fmt::Display for EncodeError {
             }
             Self::TooLarge => write!(
                 f,
-                "mesh: expected at most {MAX_BYTES} bytes, found more vertices and triangles than fit"
+                "mesh: expected at most {MAX_BYTES} bytes, found more vertices, triangles and textures than fit"
             ),
         }
     }

@@ -30,11 +30,13 @@ impl Mesh<'_> {
         }
         let bytes: &[u8] = memory;
         let words = bytes.get(MeshHeader::BYTES..)?.as_chunks().0;
-        let (records, arrays) = words.split_at_checked(self.records.len())?;
+        let (records, rest) = words.split_at_checked(self.records.len())?;
+        let (arrays, textures) = rest.split_at_checked(self.arrays.len())?;
         Some(Mesh {
             bytes,
             records,
             arrays,
+            textures,
             ..*self
         })
     }

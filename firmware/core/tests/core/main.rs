@@ -26,6 +26,7 @@ mod random;
 mod shape;
 mod steering;
 mod stereo;
+mod texture;
 mod trig;
 mod wire;
 mod wireframe;

@@ -1,9 +1,11 @@
 //! Tests of meshes: encoding, decoding and error messages.
 
 use glint_core::mesh::{
-    Attribute, EncodeError, IndexedTriangle, MAX_RADIUS, Mesh, MeshHeader, Rgb565, Vertex,
-    checksum, encode, encode_with, set_checksum, stated_checksum,
+    Attribute, EncodeError, IndexedTriangle, MAX_RADIUS, Mesh, MeshHeader, Rgb565, Triangle,
+    Vertex, checksum, encode, encode_with, set_checksum, stated_checksum,
 };
+use glint_core::records::WORD;
+use glint_core::texture::{self, Source};
 use proptest::prelude::*;
 
 fn vertex(i: u32) -> Vertex {
@@ -20,6 +22,7 @@ fn triangle(indices: [u32; 3]) -> IndexedTriangle {
         indices,
         colour: Rgb565(indices[0] as u16),
         normal: indices.map(|x| !(x as i16)),
+        texture: 0,
     }
 }
 
@@ -47,6 +50,79 @@ fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
 }
 
 /// An optional attribute is an array after the chunks: one element per vertex, in the order of the chunks.
+/// A texture of 8×8 texels, RGB565, without mip levels.
+fn texture(colour: u16) -> Vec<u8> {
+    let levels = vec![vec![colour; 64]];
+    let size_log2 = [3, 3];
+    texture::encode(&Source {
+        size_log2,
+        levels,
+        ..Source::default()
+    })
+    .expect("a good texture")
+}
+
+#[test]
+fn textures_follow_the_arrays() {
+    let vertices: Vec<Vertex> = (0..5).map(vertex).collect();
+    let triangles = [triangle([4, 1, 2]), triangle([4, 2, 3])];
+    let textured = triangles.map(|triangle| IndexedTriangle {
+        texture: 2,
+        ..triangle
+    });
+    let attributes = [(Attribute::TextureCoordinates, &[7; 40][..])];
+    let textures = [texture(0x1234), texture(0x5678)];
+    let encode =
+        |textures| encode_with(&vertices, &textured, &attributes, textures).expect("a mesh");
+    let bytes = encode(&textures);
+    let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
+    let found: Vec<_> = mesh
+        .textures()
+        .map(|texture| texture.value(0, [5, 6]))
+        .collect();
+    assert_eq!(found, [0x1234, 0x5678]);
+    let coordinates = mesh.attribute(Attribute::TextureCoordinates);
+    assert_eq!(coordinates.map(<[u8]>::len), Some(4 * 8));
+    let chunk = mesh.chunks().next().expect("a chunk");
+    assert!(chunk.triangles().all(|triangle| triangle.texture == 2));
+
+    // Vertices 4, 1, 2 and 3 are before the triangles.
+    let number = MeshHeader::BYTES + WORD + 4 * WORD + Triangle::TEXTURE.start;
+    let text = |bytes: &[u8]| Mesh::new_checked(bytes).map(drop).unwrap_err().to_string();
+    assert_eq!(
+        text(&encode(&textures[..1])),
+        format!(
+            "mesh byte {}: expected at most 1 as the number of a texture, found 2",
+            number + WORD
+        )
+    );
+    assert_eq!(
+        text(&encode(&[])),
+        format!(
+            "mesh byte {}: expected at most 0 as the number of a texture, found 2",
+            number + WORD
+        )
+    );
+    let first = bytes.len() - 2 * textures[0].len();
+    let mut wrong = bytes.clone();
+    wrong[first + 12] = 1;
+    assert_eq!(
+        text(&wrong),
+        format!(
+            "mesh byte {}: texture byte 12: expected 3 to 10, the logarithm of a side, found 1",
+            first + 12
+        )
+    );
+    // The flag without textures.
+    let mut wrong = encode_with(&vertices, &triangles, &[], &[]).expect("a mesh");
+    wrong[MeshHeader::ATTRIBUTES.start + 3] = 0x80;
+    let end = wrong.len();
+    assert_eq!(
+        text(&wrong),
+        format!("mesh byte {end}: expected at least 16 bytes after the last chunk, found 0")
+    );
+}
+
 #[test]
 fn an_optional_attribute_follows_the_chunks() {
     let vertices: Vec<Vertex> = (0..5).map(vertex).collect();
@@ -55,7 +131,7 @@ fn an_optional_attribute_follows_the_chunks() {
     let element = |vertex: u8| [vertex; 8];
     let elements = [0, 1, 2, 3, 4].map(element);
     let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
-    let bytes = encode_with(&vertices, &triangles, &attributes).expect("a good mesh");
+    let bytes = encode_with(&vertices, &triangles, &attributes, &[]).expect("a good mesh");
     let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
     let without = Mesh::new_checked(&plain).expect("a good mesh");
     assert_eq!(mesh.records(), without.records());
@@ -132,6 +208,7 @@ fn the_layout_is_that_of_the_formats() {
         indices: [0; 3],
         colour: Rgb565(0x07E0),
         normal: [0x4000, 0, -1],
+        texture: 0,
     }];
     #[rustfmt::skip]
     let expected = [
@@ -269,7 +346,7 @@ fn every_field_is_checked() {
         ),
         (40, 9, "40: expected 0 (reserved), found 9"),
         (60, 1 << 16, "62: expected 0 (reserved), found 1"),
-        (124, 1 << 24, "126: expected 0 (reserved), found 256"),
+        (124, 1 << 24, "127: expected 0 (reserved), found 1"),
     ] {
         let mut bytes = small();
         let field = &mut bytes[at..at + 4];

@@ -82,6 +82,7 @@ fn equal_vertices_are_lit_as_flat_triangles() {
                     indices: [3 * i, 3 * i + 1, 3 * i + 2],
                     colour,
                     normal,
+                    texture: 0,
                 }
             })
             .collect();

@@ -56,6 +56,7 @@ fn the_order_in_the_mesh_does_not_matter() {
                 indices: [0; 3].map(|_| random.integer(0, 29) as u32),
                 colour: Rgb565(random.bits() as u16),
                 normal: random.direction().map(|x| (x * 16_384.0) as i16),
+                texture: 0,
             })
             .collect();
         let view = Camera::inside(&mut random).rounded();

@@ -54,6 +54,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
             indices: [3 * i, 3 * i + 1, 3 * i + 2],
             colour: Rgb565::WHITE,
             normal: [0; 3],
+            texture: 0,
         })
         .collect();
     encode(&vertices, &triangles).expect("a small mesh")

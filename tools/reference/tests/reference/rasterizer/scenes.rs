@@ -95,6 +95,7 @@ impl Scene {
                 indices,
                 colour: Rgb565(self.colours.get(i).copied().unwrap_or(0xFFFF)),
                 normal: self.normals.get(i).copied().unwrap_or_default(),
+                texture: 0,
             })
             .collect();
         encode(&vertices, &triangles).expect("a valid small mesh")

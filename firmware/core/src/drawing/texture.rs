@@ -1,0 +1,408 @@
+//! Textures in memory (docs/formats/texture.md): a header, a palette, and mip levels in the order of the engine's cache.
+//!
+//! [`Texture::new_checked`] checks the bytes of a texture once, and returns a view whose accessors do not fail.
+
+#[cfg(feature = "alloc")]
+mod encode;
+
+use core::fmt;
+use core::ops::RangeInclusive;
+
+use crate::colour::Rgb565;
+pub use crate::records::TextureHeader;
+use crate::records::WORD;
+use crate::wire::CRC_32;
+#[cfg(feature = "alloc")]
+pub use encode::{Source, encode};
+
+/// The first four bytes of a texture.
+pub const MAGIC: [u8; 4] = *b"GLT1";
+/// Base-2 logarithms of the sides that a texture may have.
+pub const SIDES_LOG2: RangeInclusive<u8> = 3..=10;
+/// Largest number of mip levels.
+pub const MAX_LEVELS: usize = *SIDES_LOG2.end() as usize + 1;
+/// Bytes of a block, the unit that the engine's cache loads.
+pub const BLOCK_BYTES: usize = 2 * WORD;
+
+/// The representation of a texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// A colour.
+    #[default]
+    Rgb565,
+    /// An index of 256 colours.
+    Palette256,
+    /// An index of 16 colours.
+    Palette16,
+}
+
+impl Format {
+    /// All formats, by their numbers in the header.
+    pub const ALL: [Self; 3] = [Self::Rgb565, Self::Palette256, Self::Palette16];
+
+    /// Bits of a texel.
+    pub const fn bits(self) -> usize {
+        match self {
+            Self::Rgb565 => 16,
+            Self::Palette256 => 8,
+            Self::Palette16 => 4,
+        }
+    }
+
+    /// Number of colours of the palette; 0 for a format without one.
+    pub const fn colours(self) -> usize {
+        match self {
+            Self::Rgb565 => 0,
+            Self::Palette256 => 256,
+            Self::Palette16 => 16,
+        }
+    }
+
+    /// Base-2 logarithms of the width and height of a block in texels.
+    pub const fn block_log2(self) -> [u32; 2] {
+        match self {
+            Self::Rgb565 => [2, 2],
+            Self::Palette256 => [3, 2],
+            Self::Palette16 => [3, 3],
+        }
+    }
+}
+
+/// The texels beyond the sides of a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// The texture again.
+    #[default]
+    Repeat,
+    /// The texture again, every other time reversed.
+    Mirror,
+    /// The texels at the side.
+    Clamp,
+}
+
+impl Wrap {
+    /// All kinds, by their numbers in the header.
+    pub const ALL: [Self; 3] = [Self::Repeat, Self::Mirror, Self::Clamp];
+
+    /// The column or row in a level of 2^`side_log2` texels that stands for `place`, which may be outside of the level.
+    pub fn place(self, place: i32, side_log2: u32) -> u32 {
+        let side = 1 << side_log2;
+        let inside = place & (side - 1);
+        let place = match self {
+            Self::Repeat => inside,
+            Self::Mirror if place & side != 0 => side - 1 - inside,
+            Self::Mirror => inside,
+            Self::Clamp => place.clamp(0, side - 1),
+        };
+        place as u32
+    }
+}
+
+/// The colour between texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Filter {
+    /// The colour of the nearest texel.
+    #[default]
+    Nearest,
+    /// The average of the four nearest texels, by their distances.
+    Bilinear,
+}
+
+impl Filter {
+    /// All filters, by their numbers in the header.
+    pub const ALL: [Self; 2] = [Self::Nearest, Self::Bilinear];
+}
+
+/// How a texture is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sampler {
+    /// Beyond the left and right side, and beyond the upper and lower side.
+    pub wrap: [Wrap; 2],
+    /// Between texels.
+    pub filter: Filter,
+}
+
+/// A checked texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texture<'a> {
+    bytes: &'a [u8],
+    format: Format,
+    size_log2: [u32; 2],
+    levels: u32,
+    sampler: Sampler,
+    key: Option<u16>,
+}
+
+impl<'a> Texture<'a> {
+    /// Checks the header, the lengths of palette and levels, and the reserved bytes of a texture, which may be followed by other
+    /// bytes. This does not check the checksum, which protects files; [`checksum`] computes it.
+    ///
+    /// # Errors
+    /// The first deviation from the format, with its position.
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, TextureError> {
+        let found = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        let short = |expected: usize| TextureError {
+            offset: 0,
+            expected: Expected::Bytes(expected as u32),
+            found,
+        };
+        let record = bytes.first_chunk().ok_or(short(TextureHeader::BYTES))?;
+        let header = TextureHeader::from_bytes(record);
+        let magic = u32::from_le_bytes(header.magic);
+        expect(
+            TextureHeader::MAGIC.start,
+            Expected::Magic,
+            magic,
+            header.magic == MAGIC,
+        )?;
+        let sides = [
+            (TextureHeader::WIDTH_LOG2.start, header.width_log2),
+            (TextureHeader::HEIGHT_LOG2.start, header.height_log2),
+        ];
+        for (at, side) in sides {
+            expect(
+                at,
+                Expected::SideLog2,
+                side.into(),
+                SIDES_LOG2.contains(&side),
+            )?;
+        }
+        let size_log2 = [header.width_log2, header.height_log2].map(u32::from);
+        let all = 1 + size_log2[0].max(size_log2[1]);
+        let levels = u32::from(header.levels);
+        expect(
+            TextureHeader::LEVELS.start,
+            Expected::Levels(all),
+            levels,
+            levels == 1 || levels == all,
+        )?;
+        let format = one_of(TextureHeader::FORMAT.start, header.format, &Format::ALL)?;
+        let wrap = TextureHeader::WRAP.start;
+        let sampler = Sampler {
+            wrap: [
+                one_of(wrap, header.wrap[0], &Wrap::ALL)?,
+                one_of(wrap + 1, header.wrap[1], &Wrap::ALL)?,
+            ],
+            filter: one_of(TextureHeader::FILTER.start, header.filter, &Filter::ALL)?,
+        };
+        let cut_out = one_of(TextureHeader::CUT_OUT.start, header.cut_out, &[false, true])?;
+        let key = u32::from(header.key);
+        let largest = if cut_out { (1 << format.bits()) - 1 } else { 0 };
+        expect(
+            TextureHeader::KEY.start,
+            Expected::AtMost(largest),
+            key,
+            key <= largest,
+        )?;
+        let reserved = record.get(TextureHeader::RESERVED).unwrap_or_default();
+        let reserved = reserved.iter().copied().find(|&byte| byte != 0);
+        let reserved = u32::from(reserved.unwrap_or(0));
+        let at = TextureHeader::RESERVED.start;
+        expect(at, Expected::AtMost(0), reserved, reserved == 0)?;
+        let texture = Self {
+            bytes,
+            format,
+            size_log2,
+            levels,
+            sampler,
+            key: cut_out.then_some(header.key),
+        };
+        let length = texture.level_start(levels);
+        expect(
+            TextureHeader::LENGTH.start,
+            Expected::Bytes(length as u32),
+            header.length,
+            header.length == length as u32,
+        )?;
+        let bytes = bytes.get(..length).ok_or(short(length))?;
+        Ok(Self { bytes, ..texture })
+    }
+
+    /// All bytes of the texture, including its header.
+    pub const fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// The representation of its texels.
+    pub const fn format(&self) -> Format {
+        self.format
+    }
+
+    /// How it is read.
+    pub const fn sampler(&self) -> Sampler {
+        self.sampler
+    }
+
+    /// Base-2 logarithms of width and height.
+    pub const fn size_log2(&self) -> [u32; 2] {
+        self.size_log2
+    }
+
+    /// Number of mip levels, at least 1.
+    pub const fn levels(&self) -> u32 {
+        self.levels
+    }
+
+    /// Base-2 logarithms of the width and height of a level: each is one less than in the level before, and at least 0.
+    pub fn level_log2(&self, level: u32) -> [u32; 2] {
+        self.size_log2.map(|side| side.saturating_sub(level))
+    }
+
+    /// Offset in bytes of a level; for the number of levels, the length of the texture.
+    fn level_start(&self, level: u32) -> usize {
+        let blocks: usize = (0..level).map(|level| self.blocks(level)).sum();
+        TextureHeader::BYTES + 2 * self.format.colours() + BLOCK_BYTES * blocks
+    }
+
+    /// Number of blocks of a level.
+    fn blocks(&self, level: u32) -> usize {
+        let [across, down] = self.blocks_log2(level);
+        1 << (across + down)
+    }
+
+    /// Base-2 logarithms of the numbers of blocks across and down of a level. A level that is smaller than a block takes a block.
+    fn blocks_log2(&self, level: u32) -> [u32; 2] {
+        let (sides, block) = (self.level_log2(level), self.format.block_log2());
+        [0, 1].map(|axis: usize| sides[axis].saturating_sub(block[axis]))
+    }
+
+    /// The value of a texel of a level, a colour or an index; 0 outside of the level.
+    pub fn value(&self, level: u32, [x, y]: [u32; 2]) -> u16 {
+        let [width, height] = self.format.block_log2();
+        let [across, _] = self.blocks_log2(level);
+        let block = ((y >> height) << across) + (x >> width);
+        let at = self.level_start(level) + BLOCK_BYTES * block as usize;
+        let bit = texel_bit(self.format, [x, y]);
+        let Some(bytes) = self.bytes.get(at + bit / 8..).and_then(<[u8]>::first_chunk) else {
+            // A texel of fewer than 16 bits may be in the last byte.
+            let byte = self.bytes.get(at + bit / 8).copied().unwrap_or(0);
+            return texel(self.format, byte.into(), bit);
+        };
+        texel(self.format, u16::from_le_bytes(*bytes), bit)
+    }
+
+    /// The colour of a texel of a level; `None` if it is transparent.
+    pub fn colour(&self, level: u32, place: [u32; 2]) -> Option<Rgb565> {
+        let value = self.value(level, place);
+        if self.key == Some(value) {
+            return None;
+        }
+        Some(match self.format {
+            Format::Rgb565 => Rgb565(value),
+            Format::Palette256 | Format::Palette16 => self.palette(value),
+        })
+    }
+
+    /// The colour of an index.
+    fn palette(&self, index: u16) -> Rgb565 {
+        let at = TextureHeader::BYTES + 2 * usize::from(index);
+        let colour = self.bytes.get(at..).and_then(<[u8]>::first_chunk);
+        Rgb565(colour.map_or(0, |bytes| u16::from_le_bytes(*bytes)))
+    }
+}
+
+/// The position of a texel's lowest bit in its block. The texels of even columns and even rows come first, in the first 32 bits of each
+/// word, then those of odd columns and even rows, then odd rows: four neighbours are in four memories of the engine.
+fn texel_bit(format: Format, [x, y]: [u32; 2]) -> usize {
+    let [width, height] = format.block_log2();
+    let [x, y] = [x & ((1 << width) - 1), y & ((1 << height) - 1)];
+    let class = (y & 1) << 1 | x & 1;
+    let number = (y >> 1) << (width - 1) | x >> 1;
+    let in_class = number as usize * format.bits();
+    (in_class / 32) * 128 + class as usize * 32 + in_class % 32
+}
+
+/// The texel in 16 bits of memory that contain its lowest bit, number `bit`, in their lowest byte.
+const fn texel(format: Format, bits: u16, bit: usize) -> u16 {
+    let value = bits >> (bit % 8);
+    match format {
+        Format::Rgb565 => value,
+        Format::Palette256 => value & 0xFF,
+        Format::Palette16 => value & 0xF,
+    }
+}
+
+/// The checksum of a texture: the CRC-32 of all bytes except the checksum's own bytes.
+pub fn checksum(texture: &[u8]) -> u32 {
+    let place = TextureHeader::CHECKSUM;
+    let (before, rest) = texture.split_at(place.start.min(texture.len()));
+    let mut digest = CRC_32.digest();
+    digest.update(before);
+    digest.update(rest.get(place.len()..).unwrap_or_default());
+    digest.finalize()
+}
+
+fn expect(offset: usize, expected: Expected, found: u32, holds: bool) -> Result<(), TextureError> {
+    if holds {
+        return Ok(());
+    }
+    Err(TextureError {
+        offset: offset as u32,
+        expected,
+        found,
+    })
+}
+
+/// The value with a number in the header.
+fn one_of<T: Copy>(offset: usize, number: u8, values: &[T]) -> Result<T, TextureError> {
+    values
+        .get(usize::from(number))
+        .copied()
+        .ok_or(TextureError {
+            offset: offset as u32,
+            expected: Expected::AtMost(values.len() as u32 - 1),
+            found: number.into(),
+        })
+}
+
+/// Reason why bytes are not a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextureError {
+    /// Offset of the error in bytes from the start of the texture.
+    pub offset: u32,
+    /// The content that was expected at this position.
+    pub expected: Expected,
+    /// The number found in the texture.
+    pub found: u32,
+}
+
+/// The content that a texture should have at the offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// The four bytes of [`MAGIC`].
+    Magic,
+    /// A number of [`SIDES_LOG2`].
+    SideLog2,
+    /// One mip level, or this number.
+    Levels(u32),
+    /// A number up to this one.
+    AtMost(u32),
+    /// This number of bytes in all.
+    Bytes(u32),
+}
+
+impl fmt::Display for TextureError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "texture byte {}: expected ", self.offset)?;
+        match self.expected {
+            Expected::Magic => write!(
+                f,
+                "\"{}\", found \"{}\"",
+                MAGIC.escape_ascii(),
+                self.found.to_le_bytes().escape_ascii()
+            ),
+            Expected::SideLog2 => write!(
+                f,
+                "{} to {}, the logarithm of a side, found {}",
+                SIDES_LOG2.start(),
+                SIDES_LOG2.end(),
+                self.found
+            ),
+            Expected::Levels(all) => write!(f, "1 or {all} mip levels, found {}", self.found),
+            Expected::AtMost(largest) => write!(f, "at most {largest}, found {}", self.found),
+            Expected::Bytes(length) => write!(f, "{length} bytes, found {}", self.found),
+        }
+    }
+}
+
+impl core::error::Error for TextureError {}

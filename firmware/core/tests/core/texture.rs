@@ -1,0 +1,193 @@
+//! Textures in memory: encoding, reading, and what is refused.
+
+use glint_core::colour::Rgb565;
+use glint_core::records::TextureHeader;
+use glint_core::texture::{
+    BLOCK_BYTES, Filter, Format, Sampler, Source, Texture, Wrap, checksum, encode,
+};
+
+/// A source in which every texel of every level has a value of its own, as far as the format has so many.
+fn source(format: Format, size_log2: [u8; 2], levels: u8) -> Source {
+    let size = |level: u8| size_log2.map(|side| 1_usize << side.saturating_sub(level));
+    Source {
+        format,
+        size_log2,
+        sampler: Sampler {
+            wrap: [Wrap::Mirror, Wrap::Clamp],
+            filter: Filter::Bilinear,
+        },
+        key: Some(3),
+        palette: (0..format.colours() as u16)
+            .map(|i| Rgb565(i * 257))
+            .collect(),
+        levels: (0..levels)
+            .map(|level| {
+                let [width, height] = size(level);
+                let mask = (1_u32 << format.bits()) - 1;
+                let value = |i: usize| ((i as u32 * 40_503 + u32::from(level)) & mask) as u16;
+                (0..width * height).map(value).collect()
+            })
+            .collect(),
+    }
+}
+
+#[test]
+fn texels_are_read_as_they_were_encoded() {
+    for format in Format::ALL {
+        for (size_log2, levels) in [([3, 3], 4), ([3, 10], 11), ([10, 3], 1), ([5, 4], 6)] {
+            let source = source(format, size_log2, levels);
+            let bytes = encode(&source).unwrap();
+            let texture = Texture::new_checked(&bytes).unwrap();
+            assert_eq!(texture.sampler(), source.sampler);
+            assert_eq!(texture.levels(), u32::from(levels));
+            assert_eq!(texture.size_log2(), size_log2.map(u32::from));
+            for (level, texels) in (0..).zip(&source.levels) {
+                let [width, height] = texture.level_log2(level).map(|side| 1_u32 << side);
+                assert_eq!((width * height) as usize, texels.len());
+                for (i, &expected) in (0..).zip(texels) {
+                    let place = [i % width, i / width];
+                    let name = format!("{format:?} {size_log2:?} level {level} {place:?}");
+                    assert_eq!(texture.value(level, place), expected, "{name}");
+                    let colour = match format {
+                        _ if expected == 3 => None,
+                        Format::Rgb565 => Some(Rgb565(expected)),
+                        Format::Palette256 | Format::Palette16 => Some(Rgb565(expected * 257)),
+                    };
+                    assert_eq!(texture.colour(level, place), colour, "{name}");
+                }
+            }
+            assert_eq!(texture.value(40, [5000, 5000]), 0);
+        }
+    }
+}
+
+/// The four neighbours of a bilinear texel are in four different quarters of words, so that four memories deliver them in one clock.
+#[test]
+fn neighbours_are_in_different_quarters() {
+    for format in Format::ALL {
+        let empty = source(format, [4, 4], 1);
+        let at = |x: u32, y: u32| {
+            let mut texels = vec![0; 256];
+            texels[(16 * y + x) as usize] = u16::MAX;
+            let bytes = encode(&Source {
+                levels: vec![texels],
+                ..empty.clone()
+            })
+            .unwrap();
+            let body = &bytes[TextureHeader::BYTES + 2 * format.colours()..];
+            let byte = body.iter().position(|&byte| byte != 0).unwrap();
+            assert!(byte < body.len().next_multiple_of(BLOCK_BYTES));
+            byte % 16 / 4
+        };
+        for (x, y) in [(0, 0), (1, 0), (7, 3), (3, 7), (14, 14)] {
+            let mut quarters = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
+            quarters.sort_unstable();
+            assert_eq!(quarters, [0, 1, 2, 3], "{format:?} {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn places_beyond_the_sides() {
+    for (wrap, expected) in [
+        (Wrap::Repeat, [7, 0, 7, 0, 1, 0]),
+        (Wrap::Mirror, [0, 0, 7, 7, 6, 0]),
+        (Wrap::Clamp, [0, 0, 7, 7, 7, 0]),
+    ] {
+        let found = [-1, 0, 7, 8, 9, i32::MIN].map(|place| wrap.place(place, 3));
+        assert_eq!(found, expected, "{wrap:?}");
+        assert_eq!(wrap.place(i32::MAX, 0), 0);
+    }
+}
+
+#[test]
+fn rubbish_is_refused_with_its_place() {
+    let good = encode(&source(Format::Palette16, [3, 4], 5)).unwrap();
+    let with = |at: usize, byte: u8| {
+        let mut bytes = good.clone();
+        bytes[at] = byte;
+        Texture::new_checked(&bytes)
+            .map(drop)
+            .unwrap_err()
+            .to_string()
+    };
+    for (at, byte, expected) in [
+        (0, b'X', "texture byte 0: expected \"GLT1\", found \"XLT1\""),
+        (
+            12,
+            11,
+            "texture byte 12: expected 3 to 10, the logarithm of a side, found 11",
+        ),
+        (
+            13,
+            2,
+            "texture byte 13: expected 3 to 10, the logarithm of a side, found 2",
+        ),
+        (
+            14,
+            2,
+            "texture byte 14: expected 1 or 5 mip levels, found 2",
+        ),
+        (15, 3, "texture byte 15: expected at most 2, found 3"),
+        (17, 3, "texture byte 17: expected at most 2, found 3"),
+        (18, 2, "texture byte 18: expected at most 1, found 2"),
+        (19, 2, "texture byte 19: expected at most 1, found 2"),
+        (20, 16, "texture byte 20: expected at most 15, found 16"),
+        (31, 9, "texture byte 22: expected at most 0, found 9"),
+    ] {
+        assert_eq!(with(at, byte), expected);
+    }
+    let length = good.len();
+    let text = |bytes: &[u8]| {
+        Texture::new_checked(bytes)
+            .map(drop)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        text(&good[..9]),
+        "texture byte 0: expected 32 bytes, found 9"
+    );
+    assert_eq!(
+        text(&good[..length - 1]),
+        format!(
+            "texture byte 0: expected {length} bytes, found {}",
+            length - 1
+        )
+    );
+    // Bytes behind the texture do not belong to it.
+    let longer = [&good[..], &[7; 5]].concat();
+    assert_eq!(Texture::new_checked(&longer).unwrap().bytes(), good);
+    let header = TextureHeader::from_bytes(good.first_chunk().unwrap());
+    assert_eq!(header.checksum, checksum(&good));
+    assert_eq!(checksum(&[]), 0);
+}
+
+#[test]
+fn sizes_that_no_texture_has_are_not_encoded() {
+    for size_log2 in [[2, 3], [3, 11], [200, 200]] {
+        assert!(
+            encode(&Source {
+                size_log2,
+                ..source(Format::Rgb565, [3, 3], 1)
+            })
+            .is_err()
+        );
+    }
+    let levels = vec![Vec::new(); 2];
+    assert!(
+        encode(&Source {
+            levels,
+            ..source(Format::Rgb565, [3, 3], 1)
+        })
+        .is_err()
+    );
+    // Missing texels are 0, larger values are cut.
+    let short = Source {
+        levels: vec![vec![0x5E]],
+        ..source(Format::Palette16, [3, 3], 1)
+    };
+    let bytes = encode(&short).unwrap();
+    let texture = Texture::new_checked(&bytes).unwrap();
+    assert_eq!([0, 1].map(|x| texture.value(0, [x, 0])), [0xE, 0]);
+}
