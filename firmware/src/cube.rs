@@ -126,6 +126,7 @@ impl Writer {
         let mut triangle = 0;
         while triangle < 2 {
             let record = Triangle {
+                texture: 0,
                 indices: [
                     quad[0] as u16,
                     quad[1 + triangle] as u16,

@@ -55,6 +55,8 @@ features! {
     MESH = "mesh";
     /// Several meshes in a picture, each with its own model matrix.
     OBJECT = "object";
+    /// Textures of meshes.
+    TEXTURE = "texture";
     /// Edges of a mesh.
     EDGES = "edges";
     /// Programs of the wireframe simulator and their upload, and board buttons as its keys.

@@ -230,6 +230,11 @@ impl<'a> Mesh<'a> {
             .then(|| elements.get(..self.vertices as usize * attribute.bytes()))?
     }
 
+    /// Whether the mesh has textures.
+    pub const fn has_textures(&self) -> bool {
+        !self.textures.is_empty()
+    }
+
     /// The textures in order: a triangle with the number n of a texture has the one with index n − 1.
     pub fn textures(&self) -> impl Iterator<Item = Texture<'a>> + Clone + use<'a> {
         let mut rest = self.textures.as_flattened();

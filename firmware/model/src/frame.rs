@@ -13,8 +13,9 @@ use crate::edges::EdgeStats;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::raymarch::{FieldStats, RayEnd, render_field};
-use crate::triangle::setup::Setup;
-use crate::triangle::{DrawnTriangle, PreparedMesh, Projected, Stats, draw_parts, set_up_parts};
+use crate::triangle::{
+    DrawnTriangle, Emit, PreparedMesh, Projected, Stats, draw_parts, set_up_parts,
+};
 use crate::wireframe::{WireframeStats, render_wireframe};
 
 pub use constants::{FieldConstants, FrameConstants};
@@ -80,7 +81,7 @@ impl Frame<'_> {
         &self,
         constants: &FrameConstants,
         scratch: &mut [Projected],
-        emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
+        emit: &mut Emit,
     ) -> Result<Stats, RenderError> {
         let Some(setup) = constants.mesh() else {
             return Ok(Stats::default());

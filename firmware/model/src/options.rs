@@ -17,6 +17,8 @@ pub struct MeshOptions {
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
+    /// Whether triangles have their textures.
+    pub textures: bool,
 }
 
 /// The options of [`MeshSubject::new`].
@@ -27,6 +29,7 @@ impl Default for MeshOptions {
             shading: Shading::Flat,
             clip: Clip::Guard,
             winding: Winding::Mesh,
+            textures: true,
         }
     }
 }
@@ -40,6 +43,7 @@ impl MeshOptions {
             shading: self.shading,
             clip: self.clip,
             winding: self.winding,
+            textures: self.textures,
         }
     }
 }

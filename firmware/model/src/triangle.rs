@@ -20,6 +20,7 @@ mod render;
 pub(crate) mod rounding;
 pub mod setup;
 pub mod shade;
+pub mod textured;
 pub mod vertex;
 pub mod vertex_cache;
 pub mod volume;
@@ -29,10 +30,10 @@ pub use exceptions::clip_exceptions;
 pub use mesh_light::MeshLight;
 pub use mesh_setup::MeshSetup;
 pub use object::Placement;
-pub use primitive::{Options, Placed, light_of};
+pub use primitive::{Interpolated, Options, Placed, light_of};
 pub use render::{
-    DrawnTriangle, PreparedMesh, Stats, draw_parts, project_chunk, render, set_up_parts, trace,
-    trace_frame,
+    DrawnTriangle, Emit, PreparedMesh, Stats, draw_parts, project_chunk, render, set_up_parts,
+    trace, trace_frame,
 };
 pub use vertex::{Projected, ScreenVertex};
 pub use volume::Clip;

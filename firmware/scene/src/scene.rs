@@ -370,6 +370,7 @@ impl Scene {
             }
             Setting::Shading { shading } => self.options.shading = shading,
             Setting::Cull { on } => self.options.cull = on,
+            Setting::Textures { on } => self.options.textures = on,
             Setting::Clip { far } => {
                 self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
             }

@@ -4,7 +4,7 @@ use core::fmt::{self, Display, Write};
 
 use glint_core::choice::switch_name;
 use glint_core::console::OptionName;
-use glint_core::feature::ANIMATE;
+use glint_core::feature::{ANIMATE, TEXTURE};
 use glint_core::fixed::{Turns, U4_28};
 use glint_core::light::{HexColour, Rgb};
 use glint_core::picture::Size;
@@ -194,6 +194,9 @@ impl Scene {
             OptionName::Backend => self.put(name, from, out, |scene| scene.backend),
             OptionName::Shading => self.put(name, from, out, |scene| scene.options.shading),
             OptionName::Cull => self.put(name, from, out, |scene| switch_name(scene.options.cull)),
+            OptionName::Textures => TEXTURE.when_built(|| {
+                self.put(name, from, out, |scene| switch_name(scene.options.textures))
+            }),
             OptionName::Clip => self.put(name, from, out, |scene| match scene.options.clip {
                 Clip::Guard => OrOff(None),
                 Clip::View { far } => OrOff(Some(far)),

@@ -15,6 +15,8 @@ pub enum Fallback {
     Field(Missing),
     /// This gateware is built without smooth shading.
     NoSmoothShading,
+    /// The triangle engine draws no textures.
+    NoTextures,
     /// This gateware is built without a depth buffer.
     NoDepths,
     /// The eye is farther from the origin than the number formats of the triangle engine allow.
@@ -43,7 +45,11 @@ impl Fallback {
             }
             Self::NoDepths => Some("without --no-depths"),
             Self::Descriptors(Unsupported::Geometry) => Some("without --no-geometry"),
-            Self::Triangle(_) | Self::Eye | Self::Orthographic | Self::Descriptors(_) => None,
+            Self::Triangle(_)
+            | Self::NoTextures
+            | Self::Eye
+            | Self::Orthographic
+            | Self::Descriptors(_) => None,
         }
     }
 
@@ -93,6 +99,9 @@ impl fmt::Display for Fallback {
             Self::NoSmoothShading => {
                 f.write_str("triangle engine: this gateware has no smooth shading")?;
             }
+            Self::NoTextures => f.write_str(
+                "triangle engine: it draws no textures; `textures off` draws the mesh without them, fast",
+            )?,
             Self::NoDepths => f.write_str("triangle engine: this gateware has no depths")?,
             Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,
             Self::Orthographic => {

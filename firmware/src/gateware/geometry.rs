@@ -14,6 +14,7 @@ use glint_hal::triangle::{Counts, EngineError, Error, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
 use glint_model::triangle::descriptor::{ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
+use glint_model::triangle::textured::Textured;
 use glint_model::{
     Clip, DrawnTriangle, Frame, FrameConstants, MeshSetup, Subject, clip_exceptions,
 };
@@ -281,7 +282,7 @@ impl GeometryPasses {
         );
         let scratch = cpu.scratch.vertices(frame.scratch_vertices());
         let joins = joins_clipped(frame);
-        let mut put = |triangle: &DrawnTriangle, setup: &Setup| {
+        let mut put = |triangle: &DrawnTriangle, setup: &Setup, _: Option<&Textured>| {
             if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
                 (cpu.progress)();
             }

@@ -426,6 +426,9 @@ impl GatewareRenderer {
             if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
                 return Err(Fallback::NoSmoothShading);
             }
+            if mesh.has_textures() {
+                return Err(Fallback::NoTextures);
+            }
             if mesh.shading == Shading::Smooth
                 && frame.view.projection() == Projection::Orthographic
             {

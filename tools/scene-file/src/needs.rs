@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glint_core::block::Block;
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SPHERES, UPLOAD};
+use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SPHERES, TEXTURE, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::light::Material;
 use glint_core::picture::Backend;
@@ -131,11 +131,13 @@ impl SceneFile {
             cull,
             clip,
             winding,
+            textures,
             shading: _,
         } = scene.options;
         // The soft core makes the descriptors of such meshes, or draws the whole picture.
         if scene.backend == Backend::Cpu
             || !cull
+            || textures && features.contains(&TEXTURE)
             || clip != Clip::Guard
             || winding == Winding::Screen
             || scene.view.projection() == Projection::Orthographic

@@ -391,6 +391,8 @@ fn parts_of_the_firmware_follow_from_the_commands() {
     let table = r#"
         model = "torus" → mesh view
         model = "cow.obj" → mesh upload view
+        model = "cow.obj"; textures = true → cpu mesh texture upload view
+        model = "cow.obj"; textures = false → mesh texture upload view
         model = "torus"; backend = "cpu" → cpu mesh view
         model = "torus"; clip = 3 → cpu mesh view
         model = "torus"; edges = "over" → edges mesh view

@@ -46,6 +46,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
         }
         for (number, (corners, colour)) in (0_u16..).zip(*chunk) {
             let triangle = mesh::Triangle {
+                texture: 0,
                 indices: [0, 1, 2].map(|corner| 3 * number + corner),
                 colour: Rgb565(*colour),
                 // A triangle's normal only dims its colour, so any vector serves: here the position of a corner.

@@ -38,10 +38,11 @@ const ONLY: &str = "only-";
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
 /// A command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
-const COMMANDS: [(Feature, &str); 20] = [
+const COMMANDS: [(Feature, &str); 21] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),
+    (feature::TEXTURE, "textures on"),
     (feature::EDGES, "edges"),
     (feature::WIREFRAME, "program"),
     (feature::FIT, "fit"),

@@ -181,6 +181,9 @@ commands! {
         winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)"
             => key(Order::Option, "screen").with(MESHES)
                 .host(option("winding", "WINDING", "The rule for the seen side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the upper left vertex: all triangles are seen, and none is culled) [default: mesh]"));
+        textures Textures(on: bool) in TEXTURE: "turn textures of meshes on or off"
+            => key(Order::Option, "off").with(MESHES)
+                .host(switch("no-textures", "off", "Draw meshes without their textures"));
         edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces"
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));

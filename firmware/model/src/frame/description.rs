@@ -3,7 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT};
+use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
 use glint_core::field::Field;
 use glint_core::framing::BoundingSphere;
 use glint_core::light::MeshLighting;
@@ -77,6 +77,8 @@ pub struct MeshSubject<'a> {
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
+    /// Whether triangles have their textures.
+    pub textures: bool,
 }
 
 /// A distance field and its options.
@@ -96,6 +98,7 @@ impl<'a> MeshSubject<'a> {
             cull: self.cull,
             shading: self.shading,
             winding: self.winding,
+            textures: self.textures,
             ..Options::default()
         }
     }
@@ -103,6 +106,11 @@ impl<'a> MeshSubject<'a> {
     /// Whether back faces are culled: with [`Winding::Screen`] no triangle is culled.
     pub fn culls(&self) -> bool {
         self.cull && self.winding == Winding::Mesh
+    }
+
+    /// Whether the mesh has textures that are drawn.
+    pub const fn has_textures(&self) -> bool {
+        TEXTURE.is_built && self.textures && self.mesh.has_textures()
     }
 
     /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
@@ -113,6 +121,7 @@ impl<'a> MeshSubject<'a> {
             shading: Shading::Flat,
             clip: Clip::Guard,
             winding: Winding::Mesh,
+            textures: true,
         }
     }
 }

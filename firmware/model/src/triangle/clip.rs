@@ -148,6 +148,15 @@ impl Plane {
             light: a
                 .light
                 .zip_with(b.light, |a, b| between(a.into(), b.into()) as u16),
+            coordinates: [0, 1].map(|i: usize| {
+                let [a, b] = [a, b].map(|vertex| i64::from(vertex.coordinates[i]));
+                // Most triangles have no texture, and a portion takes divisions.
+                if a == b {
+                    a as i32
+                } else {
+                    between(a, b) as i32
+                }
+            }),
         }
     }
 }

@@ -4,6 +4,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
+use glint_core::texture::Texture;
 
 use crate::triangle::clip::{clip, off_picture};
 use crate::triangle::facing::Facing;
@@ -11,6 +12,7 @@ use crate::triangle::mesh_light::MeshLight;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::setup::{Bounds, Oriented, Setup};
 use crate::triangle::shade::{Light, Lit, intensity, lit};
+use crate::triangle::textured::{Textured, flat_light};
 use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 
 /// Options of drawing a mesh.
@@ -32,6 +34,8 @@ pub struct Options<'a> {
     pub normals: Option<&'a Normals>,
     /// Whether the light is in world coordinates, and not in the coordinates of the mesh.
     pub lit_in_world: bool,
+    /// Whether triangles have their textures.
+    pub textures: bool,
 }
 
 impl Options<'_> {
@@ -73,12 +77,13 @@ impl Default for Options<'_> {
             light: None,
             normals: None,
             lit_in_world: false,
+            textures: true,
         }
     }
 }
 
 /// A triangle on the screen that reaches the walker, the stage that finds its pixels.
-pub struct Placed {
+pub struct Placed<'a> {
     /// Vertices in clockwise order, and the visible side.
     pub oriented: Oriented,
     /// Bounds of the covered pixels.
@@ -89,20 +94,42 @@ pub struct Placed {
     pub lit: Option<[Lit; 3]>,
     /// The projection, which determines whether light is linear on the screen.
     pub projection: Projection,
+    /// The texture, which `colour` then does not contain.
+    pub texture: Option<PlacedTexture<'a>>,
 }
 
-impl Placed {
+/// The texture of a triangle on the screen.
+pub struct PlacedTexture<'a> {
+    /// The texture.
+    texture: Texture<'a>,
+    /// Coordinates s and t of the vertices, in their order on the screen.
+    coordinates: [[i32; 2]; 3],
+    /// Light of the triangle under flat shading.
+    light: [u8; 3],
+}
+
+/// What is interpolated between the vertices of a triangle besides the depth, by the order of its vertices in the mesh.
+#[derive(Clone, Copy, Default)]
+pub struct Interpolated<'a, 'b> {
+    /// Light, under smooth shading.
+    pub light: Option<&'b [Light; 3]>,
+    /// The texture and its coordinates s and t, s16.16.
+    pub texture: Option<&'b (Texture<'a>, [[i32; 2]; 3])>,
+}
+
+impl<'a> Placed<'a> {
     /// Prepares a triangle; `None` for a culled back face, and for a triangle without bounds ([`Bounds::new`]).
     pub fn new(
         frame: &MeshSetup,
         options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        light: Option<&[Light; 3]>,
+        interpolated: Interpolated<'a, '_>,
     ) -> Option<Self> {
-        let is_plain = options.light.is_none() && options.colour.is_none();
+        let Interpolated { light, texture } = interpolated;
+        let is_plain = options.light.is_none() && options.colour.is_none() && texture.is_none();
         if frame.is_placed || options.winding == Winding::Screen || !is_plain {
-            return Self::optional(frame, options, triangle, vertices, light);
+            return Self::optional(frame, options, triangle, vertices, interpolated);
         }
         let oriented = Oriented::new(vertices.map(|v| *v))?;
         let facing = oriented.facing;
@@ -117,11 +144,12 @@ impl Placed {
             colour: lit(triangle.colour, [intensity; 3]),
             lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
             projection: frame.projection,
+            texture: None,
         })
     }
 
-    /// Prepares a triangle that is part of an object, has a replaced colour, is lit by another light than white light at the camera, or
-    /// has its visible side determined by [`Winding::Screen`]; with [`Winding::Screen`] it is never culled.
+    /// Prepares a triangle that is part of an object, has a replaced colour or a texture, is lit by another light than white light at the
+    /// camera, or has its visible side determined by [`Winding::Screen`]; with [`Winding::Screen`] it is never culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]
@@ -130,7 +158,7 @@ impl Placed {
         options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        light: Option<&[Light; 3]>,
+        Interpolated { light, texture }: Interpolated<'a, '_>,
     ) -> Option<Self> {
         let vertices = vertices.map(|v| *v);
         let normal = options.turned(triangle.normal);
@@ -163,16 +191,36 @@ impl Placed {
                 light.to(facing)
             }
         };
+        let (colour, shares) = (
+            options.colour.unwrap_or(triangle.colour),
+            options.shares(intensity),
+        );
         Some(Self {
             oriented,
             bounds,
-            colour: lit(
-                options.colour.unwrap_or(triangle.colour),
-                options.shares(intensity),
-            ),
+            colour: lit(colour, shares),
             lit: light.map(|light| order.map(|i| light_of(light[i]))),
             projection: frame.projection,
+            texture: texture.map(|(texture, coordinates)| PlacedTexture {
+                texture: *texture,
+                coordinates: order.map(|i| coordinates[i]),
+                light: flat_light(colour, shares),
+            }),
         })
+    }
+
+    /// Computes the planes of the texture's coordinates, if the triangle has a texture; `setup` is its setup.
+    pub fn textured(&self, setup: &Setup) -> Option<Textured<'a>> {
+        let placed = self.texture.as_ref()?;
+        let is_linear = self.projection == Projection::Orthographic;
+        Some(Textured::new(
+            placed.texture,
+            &self.oriented,
+            setup,
+            &placed.coordinates,
+            placed.light,
+            is_linear,
+        ))
     }
 
     /// Computes the edge functions and planes of the triangle.
@@ -244,6 +292,8 @@ pub struct Corner {
     pub place: ScreenVertex,
     /// Light of the vertex under smooth shading; black under flat shading.
     pub light: Light,
+    /// Coordinates s and t of its texture, s16.16; 0 without a texture.
+    pub coordinates: [i32; 2],
 }
 
 /// The light of three vertices of a clipped triangle; `None` under flat shading.
@@ -251,12 +301,13 @@ pub fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]
     (shading == Shading::Smooth).then(|| corners.map(|corner| corner.light))
 }
 
-/// Clips a triangle and emits the remaining polygon as a fan.
+/// Clips a triangle, whose vertices have these coordinates of its texture, and emits the remaining polygon as a fan.
 pub fn clip_fan(
     frame: &MeshSetup,
     options: &Options,
     triangle: &Triangle,
     chunk: &Chunk,
+    coordinates: &[[i32; 2]; 3],
     emit: &mut dyn FnMut([&Corner; 3]),
 ) {
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
@@ -265,23 +316,27 @@ pub fn clip_fan(
     // The fan starts at the vertex whose position is the first in lexicographic order, so that a cyclic shift of the triangle's indices has
     // no effect.
     let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
-    let mut vertices = if p <= q && p <= r {
-        [a, b, c]
+    let mut order = if p <= q && p <= r {
+        [0, 1, 2]
     } else if q <= r {
-        [b, c, a]
+        [1, 2, 0]
     } else {
-        [c, a, b]
+        [2, 0, 1]
     };
-    if options.winding == Winding::Screen && vertices[2].position < vertices[1].position {
+    let vertices = [a, b, c];
+    if options.winding == Winding::Screen
+        && vertices[order[2]].position < vertices[order[1]].position
+    {
         // The vertex order in the mesh has no effect on the result.
-        vertices.swap(1, 2);
+        order.swap(1, 2);
     }
-    let corners = vertices.map(|vertex| CameraVertex {
+    let corners = order.map(|i: usize| CameraVertex {
         light: match options.shading {
             Shading::Flat => Light::default(),
-            Shading::Smooth => light_of(frame, options, &vertex),
+            Shading::Smooth => light_of(frame, options, &vertices[i]),
         },
-        ..transform(frame, vertex.position)
+        coordinates: coordinates[i],
+        ..transform(frame, vertices[i].position)
     });
     if off_picture(frame, &corners) {
         return;
@@ -290,6 +345,7 @@ pub fn clip_fan(
     let mut left = polygon.vertices().iter().map(|vertex| Corner {
         place: snap(frame, vertex),
         light: vertex.light,
+        coordinates: vertex.coordinates,
     });
     let (Some(first), Some(mut last)) = (left.next(), left.next()) else {
         return;

@@ -12,6 +12,7 @@ use crate::frame_buffer::FrameBuffer;
 use crate::triangle::descriptor::GROUP;
 use crate::triangle::quotient;
 use crate::triangle::setup::{Edge, Plane, Setup};
+use crate::triangle::textured::Textured;
 
 /// Counts of the pixels of one triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,6 +66,12 @@ fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> C
     draw_with(setup, Smooth::new(setup, light), target)
 }
 
+/// Draws a triangle with a texture. Not inlined, for the reason given at [`draw_smooth`].
+#[inline(never)]
+pub fn draw_textured(setup: &Setup, textured: &Textured, target: &mut FrameBuffer) -> Coverage {
+    draw_with(setup, Textures::new(setup, textured), target)
+}
+
 fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Coverage {
     if setup.narrow {
         walk::<i32>(setup, brush, target)
@@ -82,8 +89,8 @@ trait Brush {
     fn go_right(&mut self);
     /// Moves to the next row. The column is unspecified until the next `go_to`.
     fn go_down(&mut self);
-    /// The colour of the pixel; `depth` is its depth accumulator plus half a code.
-    fn colour(&self, depth: u32) -> Rgb565;
+    /// The colour of the pixel; `depth` is its depth accumulator plus half a code. `None` for a transparent pixel.
+    fn colour(&self, depth: u32) -> Option<Rgb565>;
 }
 
 /// Flat shading: every pixel has the triangle's colour.
@@ -91,8 +98,8 @@ impl Brush for Rgb565 {
     fn go_to(&mut self, _: u32, _: [i32; 2]) {}
     fn go_right(&mut self) {}
     fn go_down(&mut self) {}
-    fn colour(&self, _: u32) -> Rgb565 {
-        *self
+    fn colour(&self, _: u32) -> Option<Rgb565> {
+        Some(*self)
     }
 }
 
@@ -115,12 +122,12 @@ impl<B: Brush> Brush for Grouped<'_, B> {
         self.brush.go_down();
         self.row += 1;
     }
-    fn colour(&self, depth: u32) -> Rgb565 {
+    fn colour(&self, depth: u32) -> Option<Rgb565> {
         self.brush.colour(depth)
     }
 }
 
-/// A plane of light, with its value at the current pixel (`value`) and at the start column of the current row (`row`).
+/// A plane, with its value at the current pixel (`value`) and at the start column of the current row (`row`).
 #[derive(Clone, Copy)]
 struct Accumulation {
     plane: Plane,
@@ -135,6 +142,20 @@ impl Accumulation {
             row: plane.start,
             value: plane.start,
         }
+    }
+
+    fn go_to(&mut self, offset: u32) {
+        self.value = self
+            .row
+            .wrapping_add(self.plane.step_x.wrapping_mul(offset));
+    }
+
+    fn go_right(&mut self) {
+        self.value = self.value.wrapping_add(self.plane.step_x);
+    }
+
+    fn go_down(&mut self) {
+        self.row = self.row.wrapping_add(self.plane.step_y);
     }
 }
 
@@ -156,25 +177,82 @@ impl Smooth {
 
 impl Brush for Smooth {
     fn go_to(&mut self, offset: u32, _: [i32; 2]) {
-        for light in &mut self.light {
-            light.value = light
-                .row
-                .wrapping_add(light.plane.step_x.wrapping_mul(offset));
-        }
+        self.light.iter_mut().for_each(|light| light.go_to(offset));
     }
     fn go_right(&mut self) {
-        for light in &mut self.light {
-            light.value = light.value.wrapping_add(light.plane.step_x);
+        self.light.iter_mut().for_each(Accumulation::go_right);
+    }
+    fn go_down(&mut self) {
+        self.light.iter_mut().for_each(Accumulation::go_down);
+    }
+    fn colour(&self, depth: u32) -> Option<Rgb565> {
+        let depth = self.weight.unwrap_or(depth);
+        Some(quotient::colour(self.light.map(|light| light.value), depth))
+    }
+}
+
+/// A texture: its colour is multiplied by the light of the triangle, or under smooth shading by that of each pixel.
+struct Textures<'a> {
+    setup: &'a Setup,
+    textured: &'a Textured<'a>,
+    /// The coordinates, each times the depth.
+    places: [Accumulation; 2],
+    light: Option<[Accumulation; 3]>,
+    /// The depth, with half a code added.
+    depth: Accumulation,
+    column: i32,
+    /// The mip level of the group of columns.
+    level: u32,
+}
+
+impl<'a> Textures<'a> {
+    fn new(setup: &'a Setup, textured: &'a Textured) -> Self {
+        let mut depth = Accumulation::new(setup.depth);
+        depth.row = depth.row.wrapping_add(1 << 13);
+        Self {
+            setup,
+            textured,
+            places: textured.axes.map(|axis| Accumulation::new(axis.plane)),
+            light: setup.light.map(|light| light.map(Accumulation::new)),
+            depth,
+            column: 0,
+            level: 0,
+        }
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut Accumulation> {
+        let light = self.light.iter_mut().flatten();
+        let places = self.places.iter_mut();
+        places.chain(light).chain(core::iter::once(&mut self.depth))
+    }
+
+    /// Determines the mip level of the group from its first covered pixel.
+    fn set_level(&mut self) {
+        let places = self.places.map(|place| place.value);
+        self.level = self.textured.level(self.setup, self.depth.value, places);
+    }
+}
+
+impl Brush for Textures<'_> {
+    fn go_to(&mut self, offset: u32, [first, _]: [i32; 2]) {
+        self.all().for_each(|plane| plane.go_to(offset));
+        self.column = first;
+        self.set_level();
+    }
+    fn go_right(&mut self) {
+        self.all().for_each(Accumulation::go_right);
+        self.column += 1;
+        if self.column % GROUP == 0 {
+            self.set_level();
         }
     }
     fn go_down(&mut self) {
-        for light in &mut self.light {
-            light.row = light.row.wrapping_add(light.plane.step_y);
-        }
+        self.all().for_each(Accumulation::go_down);
     }
-    fn colour(&self, depth: u32) -> Rgb565 {
-        let depth = self.weight.unwrap_or(depth);
-        quotient::colour(self.light.map(|light| light.value), depth)
+    fn colour(&self, depth: u32) -> Option<Rgb565> {
+        let light = self.light.map(|light| light.map(|light| light.value));
+        let places = self.places.map(|place| place.value);
+        self.textured.colour(depth, places, self.level, light)
     }
 }
 
@@ -258,9 +336,11 @@ fn fill(
     let mut drawn = 0;
     for (pixel, stored) in colours.iter_mut().zip(depths) {
         let code = (depth >> 14).max(1);
-        if code >= *stored {
+        if code >= *stored
+            && let Some(colour) = brush.colour(depth)
+        {
             *stored = code;
-            *pixel = brush.colour(depth).0;
+            *pixel = colour.0;
             drawn += 1;
         }
         depth = depth.wrapping_add(step);

@@ -2,7 +2,9 @@
 
 use glint_core::camera::View;
 use glint_core::colour::Shading;
+use glint_core::feature::TEXTURE;
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
+use glint_core::texture::Texture;
 
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
@@ -10,10 +12,13 @@ use crate::triangle::classify::Path;
 use crate::triangle::clip::contains;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
-use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners, vertex_light};
+use crate::triangle::primitive::{
+    Corner, Interpolated, Options, Placed, clip_fan, lit_corners, vertex_light,
+};
 use crate::triangle::raster;
 use crate::triangle::setup::Setup;
-use crate::triangle::shade::{Light, Lit};
+use crate::triangle::shade::Lit;
+use crate::triangle::textured::{MeshTextures, Textured};
 use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
 use crate::triangle::volume::Volume;
 
@@ -71,6 +76,9 @@ pub struct DrawnTriangle {
     /// Whether the triangle was made by the clipper.
     pub clipped: bool,
 }
+
+/// Takes a triangle, its setup, and its texture if it has one.
+pub type Emit<'b> = dyn FnMut(&DrawnTriangle, &Setup, Option<&Textured>) + 'b;
 
 /// Draws a mesh.
 ///
@@ -159,13 +167,16 @@ pub fn draw_parts<'a>(
     let mut pixels = Stats::default();
     let mut tested = 0;
     let mut is_clear = false;
-    let mut draw = |triangle: &DrawnTriangle, setup: &Setup| {
+    let mut draw = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
         if !is_clear {
             target.clear(clear);
             is_clear = true;
         }
         show(triangle);
-        let coverage = raster::draw(setup, triangle.colour, target);
+        let coverage = match textured {
+            Some(textured) if TEXTURE.is_built => raster::draw_textured(setup, textured, target),
+            _ => raster::draw(setup, triangle.colour, target),
+        };
         tested += u64::from(coverage.tested);
         pixels.pixels_covered += u64::from(coverage.covered);
         pixels.pixels_drawn += u64::from(coverage.drawn);
@@ -182,7 +193,7 @@ pub fn draw_parts<'a>(
     })
 }
 
-/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each triangle and its setup. `part` returns a part by
+/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each triangle, its setup, and its texture if it has one. `part` returns a part by
 /// its number, and `None` after the last part; it is called twice for a part with triangles to clip. The pixel counts in the result are 0.
 ///
 /// Unclipped triangles come first, by part and index, then clipped triangles, by part and index: the order in which the gateware draws
@@ -197,7 +208,7 @@ pub fn set_up_parts<'a>(
     part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
     (width, height): (u32, u32),
     scratch: &mut [Projected],
-    emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
+    emit: &mut Emit,
 ) -> Result<Stats, RenderError> {
     let mut stats = Stats::default();
     // Number of the first part with triangles to clip; count of such parts; number of the part whose vertices are in the scratch memory.
@@ -224,6 +235,7 @@ pub fn set_up_parts<'a>(
         let mut renderer = Renderer {
             frame,
             options,
+            textures: MeshTextures::new(&mesh, &options),
             emit,
             stats,
         };
@@ -248,6 +260,7 @@ pub fn set_up_parts<'a>(
         let mut renderer = Renderer {
             frame,
             options,
+            textures: MeshTextures::new(&mesh, &options),
             emit,
             stats,
         };
@@ -295,14 +308,17 @@ fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
 struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options<'a>,
-    emit: &'b mut dyn FnMut(&DrawnTriangle, &Setup),
+    /// The textures of the mesh, if it has some and they are drawn.
+    textures: Option<MeshTextures<'a>>,
+    emit: &'b mut Emit<'b>,
     stats: Stats,
 }
 
-impl Renderer<'_, '_> {
+impl<'a> Renderer<'a, '_> {
     /// Makes the triangles that need no clipping, and counts the others.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
+        let mut first = 0;
         for chunk in mesh.chunks() {
             project_chunk(&self.frame, &chunk, scratch);
             for triangle in chunk.triangles() {
@@ -318,13 +334,19 @@ impl Renderer<'_, '_> {
                                 &chunk,
                             )),
                         };
-                        let drawn = self.draw(index, &triangle, vertices, light.as_ref(), false);
+                        let texture = self.texture(first, &triangle);
+                        let interpolated = Interpolated {
+                            light: light.as_ref(),
+                            texture: texture.as_ref(),
+                        };
+                        let drawn = self.draw(index, &triangle, vertices, interpolated, false);
                         self.stats.drawn += u32::from(drawn);
                     }
                     Path::Exception => self.stats.clipped += 1,
                 }
                 index += 1;
             }
+            first += chunk.vertex_count();
         }
     }
 
@@ -338,13 +360,14 @@ impl Renderer<'_, '_> {
         mut left: u32,
     ) -> u32 {
         let mut index = 0;
+        let mut first = 0;
         for chunk in mesh.chunks() {
             if !is_projected {
                 project_chunk(&self.frame, &chunk, scratch);
             }
             for triangle in chunk.triangles() {
                 if let Path::Exception = self.path(&triangle, scratch) {
-                    let drawn = self.clip(index, &triangle, &chunk);
+                    let drawn = self.clip(index, &triangle, &chunk, first);
                     self.stats.drawn += u32::from(drawn);
                     left -= 1;
                     if left == 0 {
@@ -353,8 +376,14 @@ impl Renderer<'_, '_> {
                 }
                 index += 1;
             }
+            first += chunk.vertex_count();
         }
         left
+    }
+
+    /// The texture of a triangle, with the coordinates of its vertices, for the chunk whose first vertex has this number in the mesh.
+    fn texture(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
+        self.textures.as_ref()?.of(first, triangle)
     }
 
     fn path<'s>(&self, triangle: &Triangle, scratch: &'s [Projected]) -> Path<'s> {
@@ -366,20 +395,25 @@ impl Renderer<'_, '_> {
         Path::of(&self.frame, [a, b, c])
     }
 
-    /// Clips a triangle and sets up its parts. Returns whether a part reached the walker.
-    fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
+    /// Clips a triangle and sets up its parts. Returns whether a part reached the walker. `first` is the number of the chunk's first
+    /// vertex in the mesh.
+    fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk, first: usize) -> bool {
         let (frame, options) = (self.frame, self.options);
+        let texture = self.texture(first, triangle);
+        let coordinates = texture.map_or([[0; 2]; 3], |(_, coordinates)| coordinates);
         let mut any = false;
-        clip_fan(&frame, &options, triangle, chunk, &mut |corners| {
+        let mut draw = |corners: [&Corner; 3]| {
             let light = lit_corners(options.shading, corners);
-            any |= self.draw(
-                index,
-                triangle,
-                corners.map(|c| &c.place),
-                light.as_ref(),
-                true,
-            );
-        });
+            let texture =
+                texture.map(|(texture, _)| (texture, corners.map(|corner| corner.coordinates)));
+            let interpolated = Interpolated {
+                light: light.as_ref(),
+                texture: texture.as_ref(),
+            };
+            let places = corners.map(|c| &c.place);
+            any |= self.draw(index, triangle, places, interpolated, true);
+        };
+        clip_fan(&frame, &options, triangle, chunk, &coordinates, &mut draw);
         any
     }
 
@@ -389,11 +423,11 @@ impl Renderer<'_, '_> {
         index: u32,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        light: Option<&[Light; 3]>,
+        interpolated: Interpolated,
         clipped: bool,
     ) -> bool {
-        let Some(placed) = Placed::new(&self.frame, &self.options, triangle, vertices, light)
-        else {
+        let placed = Placed::new(&self.frame, &self.options, triangle, vertices, interpolated);
+        let Some(placed) = placed else {
             return false;
         };
         let triangle = DrawnTriangle {
@@ -404,7 +438,13 @@ impl Renderer<'_, '_> {
             lit: placed.lit,
             clipped,
         };
-        (self.emit)(&triangle, &placed.setup());
+        let setup = placed.setup();
+        let textured = if TEXTURE.is_built {
+            placed.textured(&setup)
+        } else {
+            None
+        };
+        (self.emit)(&triangle, &setup, textured.as_ref());
         true
     }
 }

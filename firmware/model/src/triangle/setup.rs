@@ -177,7 +177,7 @@ impl Plane {
     /// A difference of values is below 2^24 and a difference of positions below 2^20, so Nx and Ny are below 2^45.
     /// Inlined, because this call computes the only plane of a flat triangle.
     #[inline(always)]
-    fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
+    pub(super) fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
         let (x10, y10, w10) = (
             i64::from(v1.x - v0.x),
@@ -222,7 +222,7 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
 }
 
 /// The weight of light in orthographic projection, u18.6: half a code less than 2^17 codes, so that no bit of the light is lost.
-const WEIGHT: u32 = (1 << 23) - HALF_CODE;
+pub const WEIGHT: u32 = (1 << 23) - HALF_CODE;
 
 /// The input of the walker, which finds the pixels of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -273,6 +273,11 @@ impl Setup {
         }
     }
 
+    /// Column and row of the start pixel.
+    pub(super) const fn start(&self) -> [i32; 2] {
+        [self.start_column, self.bounds.top]
+    }
+
     /// Computes steps 4 to 9 of the setup (docs/formats/triangle.md, "Triangle setup"), for a triangle under smooth shading. `lit`
     /// is the light of its vertices, in the order of the vertices.
     ///
@@ -296,7 +301,7 @@ impl Setup {
     /// Adds the light planes; `w` is the weight of the light at each vertex.
     fn with_light(self, triangle: &Oriented, lit: &[Lit; 3], w: [u32; 3]) -> Self {
         let setup = self;
-        let start = [setup.start_column, setup.bounds.top];
+        let start = setup.start();
         let [a, b, c] = [0, 1, 2].map(|i| lit[i].weighted(w[i]));
         let light = [0, 1, 2]
             .map(|channel| Plane::new(triangle, [a[channel], b[channel], c[channel]], start));

@@ -7,6 +7,7 @@ use glint_model::line::{Segment, band_bounds};
 use glint_model::triangle::descriptor::{Contents, Descriptor};
 use glint_model::triangle::raster::{draw, draw_groups};
 use glint_model::triangle::setup::Bounds;
+use glint_model::triangle::textured::Textured;
 use glint_model::{FrameBuffer, MeshOptions, Projected, SIZES};
 use glint_vectors::segments;
 use glint_vectors::triangles::{random_triangle, set_up};
@@ -86,7 +87,7 @@ fn smooth_triangles_keep_their_pixels() {
     let mut expected = Picture::blank(SIZES[0]);
     let mut found = expected.clone();
     let mut descriptors = vec![];
-    let mut put = |triangle: &glint_model::DrawnTriangle, setup: &_| {
+    let mut put = |triangle: &glint_model::DrawnTriangle, setup: &_, _: Option<&Textured>| {
         draw(setup, triangle.colour, &mut expected.target());
         let descriptor = Descriptor::new(setup, triangle.colour);
         descriptors.push(descriptor.words(Shading::Smooth).to_vec());

@@ -19,6 +19,7 @@ mod render;
 mod selftest;
 mod smooth;
 mod stereo;
+mod textured;
 mod volume;
 mod walker;
 mod winding;

@@ -90,7 +90,7 @@ fn lines_are_drawn_over_triangles() {
         &mut |number| (number == 0).then_some(part),
         (640, 360),
         &mut scratch,
-        &mut |triangle, setup| {
+        &mut |triangle, setup, _| {
             draw(setup, triangle.colour, &mut expected.target());
         },
     )

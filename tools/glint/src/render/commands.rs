@@ -54,6 +54,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
             shading: options.shading,
             clip: options.clip,
             winding: options.winding,
+            textures: options.textures,
         };
         scene.appearance = appearance(frame);
     }

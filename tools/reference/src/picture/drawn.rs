@@ -129,7 +129,7 @@ fn draw_triangles(frame: &Frame, buffer: &mut Picture) -> Result<Vec<Seen>> {
     let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
     let mut target = buffer.target();
     let mut triangles = Vec::new();
-    frame.set_up_meshes(&constants, &mut scratch, &mut |triangle, setup| {
+    frame.set_up_meshes(&constants, &mut scratch, &mut |triangle, setup, _| {
         let object = objects.map_or(0, |_| triangle.colour.0.into());
         triangles.push(Seen::Triangle {
             object,

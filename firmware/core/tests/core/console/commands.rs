@@ -132,6 +132,7 @@ echo x-1 => Echo { word: "x-1" }
 view => Show(View)
 clip off => Set(Clip { far: None })
 winding screen => Set(Winding { rule: Screen })
+textures off => Set(Textures { on: false })
 edges => Show(Edges)
 edges hidden => Set(Edges { edges: Some(Hidden) })
 edges off => Set(Edges { edges: None })

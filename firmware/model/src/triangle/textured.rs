@@ -1,0 +1,347 @@
+//! Textures on triangles (docs/formats/textured.md): the planes of the coordinates, and the colour of a pixel.
+
+use glint_core::colour::Rgb565;
+use glint_core::feature::TEXTURE;
+use glint_core::mesh::{Attribute, Mesh, Triangle};
+use glint_core::records::TextureCoordinates;
+use glint_core::texture::{Filter, Texture, Wrap};
+
+use crate::triangle::primitive::Options;
+use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
+use crate::triangle::shade::HALF_CODE;
+
+/// Fraction bits of a coordinate in the mesh, s16.16.
+const COORDINATE_BITS: u32 = 16;
+/// Fraction bits of a share σ of the range of a coordinate, u0.17.
+const SHARE_BITS: u32 = 17;
+/// Fraction bits of a position in texels.
+const PLACE_BITS: u32 = 8;
+/// Bits of a weight of bilinear filtering.
+const WEIGHT_BITS: u32 = 4;
+/// Bits of the channels of a colour: red, green and blue.
+const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
+
+/// A triangle with a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Textured<'a> {
+    /// The texture.
+    pub texture: Texture<'a>,
+    /// The planes of the coordinates s and t.
+    pub axes: [Axis; 2],
+    /// Light of each channel under flat shading, u0.8 as a channel of [`lit`].
+    pub light: [u8; 3],
+    /// The weight of the coordinates in orthographic projection, in the format of the depth accumulator.
+    pub weight: Option<u32>,
+}
+
+/// The textures of a mesh, and the coordinates of its vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshTextures<'a> {
+    mesh: Mesh<'a>,
+    coordinates: &'a [u8],
+}
+
+impl<'a> MeshTextures<'a> {
+    /// The textures of a mesh; `None` if it has none, no coordinates, or if the options leave them out.
+    pub fn new(mesh: &Mesh<'a>, options: &Options) -> Option<Self> {
+        if !(TEXTURE.is_built && options.textures && mesh.has_textures()) {
+            return None;
+        }
+        let coordinates = mesh.attribute(Attribute::TextureCoordinates)?;
+        Some(Self {
+            mesh: *mesh,
+            coordinates,
+        })
+    }
+
+    /// The texture of a triangle, with the coordinates s and t of its vertices; `None` if it has none. `first` is the number in the mesh
+    /// of the first vertex of the triangle's chunk.
+    pub fn of(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
+        let number = usize::from(triangle.texture).checked_sub(1)?;
+        let texture = self.mesh.textures().nth(number)?;
+        let coordinates = triangle.indices.map(|index| {
+            let at = TextureCoordinates::BYTES * (first + usize::from(index));
+            let element = self.coordinates.get(at..).and_then(<[u8]>::first_chunk);
+            // Every vertex of a checked mesh has an element.
+            let element = element.map_or(TextureCoordinates::default(), |element| {
+                TextureCoordinates::from_bytes(element)
+            });
+            [element.s, element.t]
+        });
+        Some((texture, coordinates))
+    }
+}
+
+/// A coordinate of a texture on a triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Axis {
+    /// The plane of σ times the depth, or times a constant in orthographic projection. The coordinate is `base` + σ·2^`range_log2`.
+    pub plane: Plane,
+    /// Base-2 logarithm of the range of the coordinate, in repeats of the texture; 0 to 17.
+    pub range_log2: u32,
+    /// An even number of repeats, which only clamping needs.
+    pub base: i32,
+}
+
+impl<'a> Textured<'a> {
+    /// Computes the planes of a triangle with perspective or, by `is_linear`, orthographic projection. `coordinates` are s and t of its
+    /// vertices, s16.16, in the order of the vertices of `triangle`.
+    ///
+    /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
+    #[inline(never)]
+    pub fn new(
+        texture: Texture<'a>,
+        triangle: &Oriented,
+        setup: &Setup,
+        coordinates: &[[i32; 2]; 3],
+        light: [u8; 3],
+        is_linear: bool,
+    ) -> Self {
+        let weights = if is_linear {
+            [WEIGHT; 3]
+        } else {
+            triangle.vertices.map(|vertex| vertex.w)
+        };
+        let axis =
+            |number: usize| Axis::new(triangle, setup, coordinates.map(|c| c[number]), weights);
+        Self {
+            texture,
+            axes: [axis(0), axis(1)],
+            light,
+            weight: is_linear.then_some((WEIGHT + HALF_CODE) << 8),
+        }
+    }
+
+    /// The colour of a pixel from its depth accumulator plus half a code, the accumulators of its coordinates, its mip level, and under
+    /// smooth shading the accumulators of its light; `None` where the texture is transparent.
+    pub fn colour(
+        &self,
+        depth: u32,
+        values: [u32; 2],
+        level: u32,
+        light: Option<[u32; 3]>,
+    ) -> Option<Rgb565> {
+        let inverse = Inverse::of(self.weight.unwrap_or(depth));
+        let texel = sample(&self.texture, level, self.places_by(&inverse, values))?;
+        let light = match light {
+            None => self.light,
+            // To nearest; the accumulators of light have the weight of the coordinates.
+            Some(light) => light.map(|value| ((inverse.share(value, 8 + 1) + 1) >> 1) as u8),
+        };
+        Some(lit(texel, light))
+    }
+
+    /// The position of a pixel in the texture, in texels of level 0 with 8 fraction bits, rounded down; `depth` and `values` as for
+    /// [`colour`](Self::colour).
+    pub fn places(&self, depth: u32, values: [u32; 2]) -> [i64; 2] {
+        self.places_by(&Inverse::of(self.weight.unwrap_or(depth)), values)
+    }
+
+    fn places_by(&self, inverse: &Inverse, values: [u32; 2]) -> [i64; 2] {
+        let sides = self.texture.size_log2();
+        let wrap = self.texture.sampler().wrap;
+        [0, 1].map(|i: usize| {
+            let axis = &self.axes[i];
+            let bits = axis.range_log2 + sides[i] + PLACE_BITS;
+            let place = inverse.share(values[i], bits);
+            match wrap[i] {
+                Wrap::Clamp => place as i64 + (i64::from(axis.base) << (sides[i] + PLACE_BITS)),
+                // Modulo 2^24 texels.
+                Wrap::Repeat | Wrap::Mirror => (place as u32).into(),
+            }
+        })
+    }
+
+    /// The mip level of a pixel: the level whose texels are 0.75 to 1.5 pixels apart where they are farthest apart, of the two
+    /// coordinates and the two directions on the screen, within an eighth.
+    pub fn level(&self, setup: &Setup, depth: u32, values: [u32; 2]) -> u32 {
+        let last = self.texture.levels() - 1;
+        if last == 0 {
+            return 0;
+        }
+        let depth = self.weight.unwrap_or(depth);
+        let inverse = Inverse::of(depth);
+        let depth_steps = match self.weight {
+            None => [setup.depth.step_x, setup.depth.step_y],
+            Some(_) => [0; 2],
+        };
+        let sides = self.texture.size_log2();
+        let mut most = 0;
+        for (i, axis) in self.axes.iter().enumerate() {
+            let share = inverse.share(values[i], SHARE_BITS) as i64;
+            let steps = [axis.plane.step_x, axis.plane.step_y];
+            for (step, depth_step) in steps.into_iter().zip(depth_steps) {
+                let [step, depth_step] = [step, depth_step].map(|step| i64::from(step as i32));
+                let change = step - ((share * depth_step) >> SHARE_BITS);
+                most = most.max(change.unsigned_abs() << (axis.range_log2 + sides[i]));
+            }
+        }
+        level_of(most, depth.into()).min(last)
+    }
+}
+
+impl Axis {
+    fn new(triangle: &Oriented, setup: &Setup, coordinates: [i32; 3], weights: [u32; 3]) -> Self {
+        let [a, b, c] = coordinates.map(i64::from);
+        // Two repeats are a period of a mirrored texture.
+        let period = 2 << COORDINATE_BITS;
+        let base = a.min(b).min(c) & -period;
+        let [a, b, c] = [a, b, c].map(|coordinate| (coordinate - base) as u64);
+        // As light, a share is at most 63/64, so that an accumulator just below 0 is known by its highest bits.
+        let most = a.max(b).max(c);
+        let mut range_log2 = 0;
+        while most << 6 > 63 << (COORDINATE_BITS + range_log2) {
+            range_log2 += 1;
+        }
+        let weighted = |coordinate: u64, weight: u32| {
+            // A share is exact for a range of at most two repeats.
+            let share = ((coordinate << 2 >> range_log2) + 1) >> 1;
+            let product = share * u64::from(weight + HALF_CODE);
+            ((product + (1 << (SHARE_BITS - 1))) >> SHARE_BITS) as u32
+        };
+        let [x, y, z] = weights;
+        Self {
+            plane: Plane::new(
+                triangle,
+                [weighted(a, x), weighted(b, y), weighted(c, z)],
+                setup.start(),
+            ),
+            range_log2,
+            base: (base >> COORDINATE_BITS) as i32,
+        }
+    }
+}
+
+/// `INVERSES[i]` is 2^20/(1 + i/512) to nearest, u0.20, for i up to 512.
+const INVERSES: [u32; 513] = {
+    let mut table = [0; 513];
+    let mut i = 0;
+    while i < table.len() {
+        let d = 512 + i as u32;
+        table[i] = ((1 << 30) + d) / (2 * d);
+        i += 1;
+    }
+    table
+};
+
+/// The inverse of a depth.
+struct Inverse {
+    /// 1 divided by the depth's mantissa in [1, 2), u0.18.
+    mantissa: u32,
+    /// Number of zeros above the depth's highest one, at most 11.
+    zeros: u32,
+}
+
+impl Inverse {
+    fn of(depth: u32) -> Self {
+        let zeros = depth.leading_zeros().min(11);
+        let normalised = depth << zeros;
+        let (i, part) = (
+            (normalised >> 22 & 0x1FF) as usize,
+            normalised >> 13 & 0x1FF,
+        );
+        // The index has 9 bits.
+        let [from, to] = [i, i + 1].map(|i| INVERSES.get(i).copied().unwrap_or(0));
+        let inverse = from - (((from - to) * part + (1 << 8)) >> 9);
+        Self {
+            mantissa: ((inverse + 2) >> 2).min((1 << 18) - 1),
+            zeros,
+        }
+    }
+
+    /// An accumulator divided by the depth, with `bits` fraction bits, rounded down.
+    fn share(&self, value: u32, bits: u32) -> u64 {
+        // As for light, the highest six bits of an accumulator that is just below 0 are ones.
+        let value = if value >> 26 == 0x3F { 0 } else { value >> 8 };
+        let product = u64::from(value) * u64::from(self.mantissa);
+        // The product has 42 bits, and as a share 41 − zeros fraction bits.
+        let fraction = 41 - self.zeros;
+        if bits <= fraction {
+            product >> (fraction - bits)
+        } else {
+            product << (bits - fraction)
+        }
+    }
+}
+
+/// The smallest level l with `most`/`depth` ≤ 1.5·2^l, of both numbers truncated to four bits; 0 for a negative one.
+fn level_of(most: u64, depth: u64) -> u32 {
+    let parts = |number: u64| {
+        let lead = number.max(1).ilog2();
+        // Three bits below the leading one.
+        (lead as i32, (number << 3 >> lead) as u32)
+    };
+    let ((lead, most), (depth_lead, depth)) = (parts(most), parts(depth));
+    let more = if 2 * most > 3 * depth {
+        1
+    } else if 4 * most > 3 * depth {
+        0
+    } else {
+        -1
+    };
+    (lead - depth_lead + more).max(0) as u32
+}
+
+/// The colour of a texture at a position in texels of level 0 with 8 fraction bits: the integer part of each channel with its number of
+/// bits, and fraction bits up to 8; `None` where the texture is transparent.
+pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]> {
+    let (sides, level_sides) = (texture.size_log2(), texture.level_log2(level));
+    let sampler = texture.sampler();
+    let at = |place: [i64; 2]| {
+        let place = [0, 1].map(|i: usize| {
+            let place = place[i].clamp(i32::MIN.into(), i32::MAX.into());
+            sampler.wrap[i].place(place as i32, level_sides[i])
+        });
+        texture.colour(level, place).map(Rgb565::channels)
+    };
+    let places = [0, 1].map(|i: usize| places[i] >> (sides[i] - level_sides[i]));
+    let nearest = at(places.map(|place| place >> PLACE_BITS))?;
+    match sampler.filter {
+        Filter::Nearest => {
+            let [r, g, b] = nearest;
+            Some([r << 3, g << 2, b << 3])
+        }
+        Filter::Bilinear => {
+            // Half a texel to the upper left, plus half a unit of the weights.
+            let corner = places.map(|place| place - 128 + 8);
+            let [x, y] = corner.map(|place| place >> PLACE_BITS);
+            let weights = corner.map(|place| (place >> WEIGHT_BITS & 0xF) as u32);
+            // A transparent neighbour has no colour of its own.
+            let texels = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]]
+                .map(|place| at(place).unwrap_or(nearest));
+            Some([0, 1, 2].map(|channel: usize| {
+                let [a, b, c, d] = texels.map(|texel| u32::from(texel[channel]));
+                let between = |a: u32, b: u32, weight: u32| a * (16 - weight) + b * weight;
+                let [across, down] = weights;
+                let sum = between(between(a, b, across), between(c, d, across), down);
+                let bits = CHANNEL_BITS[channel];
+                // With 8 fraction bits, of which 8 − bits stay.
+                ((sum + (1 << (bits - 1))) >> bits) as u8
+            }))
+        }
+    }
+}
+
+/// A colour of [`sample`] times the light of each channel, to nearest. The light is u0.8, at most 31/32 of 2^8 for red and blue and 63/64
+/// for green, as colours are; the product with this light is the colour itself.
+pub fn lit(texel: [u8; 3], light: [u8; 3]) -> Rgb565 {
+    let mut colour = 0;
+    for (channel, bits) in CHANNEL_BITS.into_iter().enumerate() {
+        let light = u32::from(light[channel]);
+        let share = light + ((light + (1 << (8 - bits))) >> bits);
+        let product = u32::from(texel[channel]) * share;
+        let cut = 16 - bits;
+        colour = colour << bits | ((product + (1 << (cut - 1))) >> cut);
+    }
+    Rgb565(colour as u16)
+}
+
+/// The light of a flat triangle for [`lit`]: its colour times the share of each channel, u1.8.
+pub fn flat_light(colour: Rgb565, shares: [u32; 3]) -> [u8; 3] {
+    let channels = colour.channels();
+    [0, 1, 2].map(|i: usize| {
+        let bits = CHANNEL_BITS[i];
+        let product = u32::from(channels[i]) * shares[i];
+        ((product + (1 << (bits - 1))) >> bits) as u8
+    })
+}

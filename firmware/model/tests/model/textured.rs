@@ -1,0 +1,325 @@
+//! Textures on triangles against exact perspective: positions in the texture, mip levels, and the colours of whole pictures.
+
+use glint_core::colour::{Rgb565, Shading};
+use glint_core::light::{Light, MeshLighting};
+use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, Vertex, encode_with};
+use glint_core::picture::Size;
+use glint_core::records::TextureCoordinates;
+use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
+use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::textured::{Textured, flat_light, lit, sample};
+use glint_model::{Frame, MeshSubject, Subject};
+use glint_vectors::triangles::{SIZE, random_triangle};
+use glint_vectors::{Camera, Picture, Random};
+
+/// The value of each texel is its place: the row in the high byte, the column in the low byte.
+fn places(wrap: Wrap, filter: Filter) -> Source {
+    Source {
+        size_log2: [8, 8],
+        sampler: Sampler {
+            wrap: [wrap; 2],
+            filter,
+        },
+        levels: vec![(0..=u16::MAX).collect()],
+        ..Source::default()
+    }
+}
+
+/// A texture with mip levels; the colour of a level is its number.
+fn levels(size_log2: [u8; 2]) -> Vec<u8> {
+    let [width, height] = size_log2;
+    let level = |level: u8| {
+        let [width, height] = [width, height].map(|side| 1 << side.saturating_sub(level));
+        vec![u16::from(level); width * height]
+    };
+    encode(&Source {
+        size_log2,
+        levels: (0..=width.max(height)).map(level).collect(),
+        ..Source::default()
+    })
+    .unwrap()
+}
+
+/// A linear function over the corners of a triangle.
+fn blend(weights: [f64; 3], values: [f64; 3]) -> f64 {
+    weights.iter().zip(values).map(|(a, b)| a * b).sum()
+}
+
+/// Positions in random triangles are within a sixteenth of a texel of the exact ones, where the depth code is at least 2^12 and the
+/// triangle has at most four repeats of 1024 texels, or within the bound of docs/formats/textured.md. Mip levels are within an eighth of
+/// their limits.
+#[test]
+fn positions_and_levels_are_those_of_exact_perspective() {
+    let mut random = Random(1);
+    let bytes = levels([10, 10]);
+    let texture = Texture::new_checked(&bytes).unwrap();
+    let (mut worst, mut pixels) = (0.0_f64, 0);
+    for _ in 0..4000 {
+        let mut vertices = random_triangle(&mut random);
+        let least = 1 << random.integer(12, 17);
+        for vertex in &mut vertices {
+            vertex.w =
+                random.integer(least * 64, (least * 64 * 8).min(((1 << 18) - 4) * 64)) as u32;
+        }
+        let Some(triangle) = Oriented::new(vertices) else {
+            continue;
+        };
+        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+            continue;
+        };
+        let range = 1 << random.integer(8, 18);
+        let place = random.integer(-(1 << 24), 1 << 24);
+        let coordinates =
+            [(); 3].map(|()| [(); 2].map(|()| (place + random.integer(0, range)) as i32));
+        let setup = Setup::new(&triangle, bounds);
+        let textured = Textured::new(texture, &triangle, &setup, &coordinates, [0; 3], false);
+        let corners = triangle.vertices.map(|v| [v.x, v.y].map(f64::from));
+        let doubled = triangle.doubled_area as f64;
+        let weights = triangle.vertices.map(|v| f64::from(v.w) / 64.0 + 0.5);
+        for _ in 0..20 {
+            let column = random.integer(bounds.left.into(), i64::from(bounds.right) - 1) as i32;
+            let row = random.integer(bounds.top.into(), i64::from(bounds.bottom) - 1) as i32;
+            let at = |plane: glint_model::triangle::setup::Plane| {
+                plane
+                    .start
+                    .wrapping_add(
+                        plane
+                            .step_x
+                            .wrapping_mul((column - setup.start_column) as u32),
+                    )
+                    .wrapping_add(plane.step_y.wrapping_mul((row - bounds.top) as u32))
+            };
+            let point = [column, row].map(|x| f64::from(256 * x + 128));
+            let opposite = |i: usize| {
+                let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+                ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) / doubled
+            };
+            let shares = [opposite(0), opposite(1), opposite(2)];
+            if shares.iter().any(|&share| share < 0.0) {
+                continue;
+            }
+            let exact_depth = blend(shares, weights);
+            let depth = at(setup.depth).wrapping_add(1 << 13);
+            let found = textured.places(depth, textured.axes.map(|axis| at(axis.plane)));
+            // The share of each coordinate, and how fast it changes to the right and down.
+            let (mut most, mut steepest) = (0.0_f64, 0.0_f64);
+            for axis in 0..2 {
+                let values =
+                    [0, 1, 2].map(|i| f64::from(coordinates[i][axis]) / 65_536.0 * weights[i]);
+                let exact = blend(shares, values) / exact_depth;
+                let period = 1024.0 * 2.0 * 256.0;
+                let error = (found[axis] as f64 - exact * 1024.0 * 256.0 + 0.5).rem_euclid(period);
+                worst = worst.max(error.min(period - error) / 256.0);
+                for direction in 0..2 {
+                    let step = |values: [f64; 3]| {
+                        let moved = |i: usize| {
+                            let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+                            256.0 * [a[1] - b[1], b[0] - a[0]][direction] / doubled
+                        };
+                        blend([moved(0), moved(1), moved(2)], values)
+                    };
+                    steepest = steepest.max(step(weights).abs()).max(step(values).abs());
+                    let change = (step(values) - exact * step(weights)) / exact_depth;
+                    most = most.max(1024.0 * change.abs());
+                }
+            }
+            let level = textured.level(&setup, depth, textured.axes.map(|axis| at(axis.plane)));
+            // Steps of more codes do not fit an accumulator.
+            if steepest > f64::from(1 << 17) {
+                continue;
+            }
+            let apart = most / f64::from(1 << level);
+            assert!(
+                apart < 1.5 * 9.0 / 8.0 || level == 10,
+                "level {level}: {apart}"
+            );
+            assert!(
+                apart > 0.75 * 7.0 / 8.0 || level == 0,
+                "level {level}: {apart}"
+            );
+            pixels += 1;
+        }
+    }
+    println!("{pixels} pixels: at most {worst:.4} texels of 1024 off");
+    assert!(pixels > 10_000);
+    assert!(worst < 1.0 / 16.0, "{worst}");
+}
+
+/// A floor from below the camera to 8 units away, with coordinates of its two triangles: `scale` repeats a unit.
+fn floor(texture: Vec<u8>, scale: f64) -> Vec<u8> {
+    let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
+    let vertices = corners.map(|[x, y]: [f64; 2]| Vertex {
+        position: [x * 16_383.0, y * 16_383.0, 0.0].map(|c| c as i16),
+        normal: [0, 0, 1 << 14],
+        colour: Rgb565::WHITE,
+    });
+    let elements = corners.map(|corner| {
+        let [s, t] = corner.map(|c| (c * scale * 65_536.0) as i32);
+        TextureCoordinates { s, t }.to_bytes()
+    });
+    let triangles = [[0, 1, 2], [0, 2, 3]].map(|indices| IndexedTriangle {
+        indices,
+        colour: Rgb565::WHITE,
+        normal: [0, 0, 1 << 14],
+        texture: 1,
+    });
+    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
+    encode_with(&vertices, &triangles, &attributes, &[texture]).unwrap()
+}
+
+/// A frame of a mesh in full light, without shading.
+fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
+    Frame {
+        subject: Subject::Mesh(MeshSubject {
+            shading,
+            ..MeshSubject::new(mesh)
+        }),
+        view: camera.rounded(),
+        size: Size::W640,
+        clear: Rgb565(0x001F),
+        lighting: MeshLighting {
+            ambient: [0xFF; 3],
+            light: Light::at_camera([0; 3]),
+        },
+        stereo: None,
+    }
+}
+
+/// The texels of a floor that passes under the camera, clipped and not, are those that exact rays hit.
+#[test]
+fn a_floor_has_the_texels_that_rays_hit() {
+    let bytes = floor(encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap(), 0.5);
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    for (eye, shading) in [
+        ([0.3, -0.4, 0.3], Shading::Flat),
+        ([-1.0, -1.9, 0.1], Shading::Smooth),
+    ] {
+        let camera = Camera::looking(eye, [0.2, 1.0, 0.0], 0.8, 0.02);
+        let frame = frame(mesh, &camera, shading);
+        let picture = Picture::of_frame(&frame);
+        let camera = Camera::of(&frame.view);
+        let (mut hits, mut wrong, mut worst) = (0, 0, 0.0_f64);
+        for (i, (&colour, &code)) in (0..).zip(picture.colour.iter().zip(&picture.depth)) {
+            let pixel = [i % 640, i / 640].map(f64::from);
+            let [width, height] = frame.size.pixels();
+            let ray = camera.ray(pixel, glint_vectors::camera::Size { width, height });
+            let t = -ray.origin[2] / ray.direction[2];
+            let hit = ray.at(t);
+            let is_hit = t > 0.05 && hit[0].abs() < 1.99 && hit[1].abs() < 1.99;
+            if code == 0 || !is_hit {
+                assert!(code != 0 || !is_hit, "pixel {pixel:?} is empty");
+                continue;
+            }
+            let found = [colour & 0xFF, colour >> 8].map(f64::from);
+            for axis in 0..2 {
+                let exact = hit[axis] * 0.5 * 256.0;
+                // The distance from the texel, which is 1 wide.
+                let off = (exact - found[axis]).rem_euclid(256.0);
+                let off = if off > 128.0 {
+                    256.0 - off
+                } else {
+                    (off - 1.0).max(0.0)
+                };
+                worst = worst.max(off);
+                wrong += usize::from(off > 0.0);
+            }
+            hits += 1;
+        }
+        println!("{hits} pixels, {wrong} coordinates in the next texel, at most {worst:.4} off");
+        assert!(hits > 50_000 && wrong < hits / 20, "{hits} {wrong}");
+        // A pixel near the horizon is many texels wide, and its centre is within 2^-7 pixel.
+        assert!(worst < 0.7, "{worst}");
+    }
+}
+
+/// Transparent texels leave the background and its depth.
+#[test]
+fn cut_out_texels_leave_colour_and_depth() {
+    let chess = (0..64).map(|i| if (i + i / 8) % 2 == 0 { 0xF800 } else { 0x07E0 });
+    let texture = encode(&Source {
+        size_log2: [3, 3],
+        key: Some(0xF800),
+        levels: vec![chess.collect()],
+        ..Source::default()
+    });
+    let bytes = floor(texture.unwrap(), 0.25);
+    let camera = Camera::looking([0.0, -0.01, 2.5], [0.0; 3], 0.7, 0.1);
+    let picture = Picture::of_frame(&frame(
+        Mesh::new_checked(&bytes).unwrap(),
+        &camera,
+        Shading::Flat,
+    ));
+    let mut counts = [0_u32; 2];
+    for (&colour, &code) in picture.colour.iter().zip(&picture.depth) {
+        match colour {
+            0x001F => assert_eq!(code, 0),
+            0x07E0 => assert_ne!(code, 0),
+            other => panic!("colour {other:04x}"),
+        }
+        counts[usize::from(code == 0)] += 1;
+    }
+    let [green, clear] = counts;
+    assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
+}
+
+/// Full light does not change a colour, and no light is black; bilinear filtering of equal texels gives their colour.
+#[test]
+fn colours_at_the_limits_are_exact() {
+    for colour in (0..=u16::MAX).map(Rgb565) {
+        let [r, g, b] = colour.channels();
+        let texel = [r << 3, g << 2, b << 3];
+        assert_eq!(lit(texel, flat_light(Rgb565::WHITE, [256; 3])), colour);
+        assert_eq!(lit(texel, flat_light(Rgb565::WHITE, [0; 3])), Rgb565(0));
+    }
+    let mut random = Random(7);
+    for format in Format::ALL {
+        let colour = Rgb565(random.bits() as u16);
+        let (values, palette) = match format {
+            Format::Rgb565 => (colour.0, vec![]),
+            Format::Palette256 | Format::Palette16 => (1, vec![Rgb565(0), colour]),
+        };
+        let bytes = encode(&Source {
+            format,
+            size_log2: [4, 3],
+            sampler: Sampler {
+                filter: Filter::Bilinear,
+                ..Sampler::default()
+            },
+            palette,
+            levels: vec![vec![values; 128]],
+            ..Source::default()
+        });
+        let bytes = bytes.unwrap();
+        let texture = Texture::new_checked(&bytes).unwrap();
+        let [r, g, b] = colour.channels();
+        for _ in 0..1000 {
+            let place = [(); 2].map(|()| random.bits() as i64 >> random.integer(0, 40));
+            assert_eq!(sample(&texture, 0, place), Some([r << 3, g << 2, b << 3]));
+        }
+    }
+}
+
+/// Between the middles of two texels the colours change evenly, over a side as well.
+#[test]
+fn bilinear_colours_are_between_their_texels() {
+    for wrap in Wrap::ALL {
+        let bytes = encode(&places(wrap, Filter::Bilinear)).unwrap();
+        let texture = Texture::new_checked(&bytes).unwrap();
+        // Blue is the column modulo 32.
+        for place in 0..16 {
+            let at = 256 * 5 + 128 + 16 * place;
+            let [_, _, blue] = sample(&texture, 0, [at, 128]).unwrap();
+            assert_eq!(
+                i64::from(blue),
+                (16 * 5 * 8 + 8 * place + 8) / 16,
+                "{wrap:?} {place}"
+            );
+        }
+        let [_, _, left] = sample(&texture, 0, [0, 128]).unwrap();
+        let expected = match wrap {
+            Wrap::Repeat => (31 * 8) / 2,
+            Wrap::Mirror | Wrap::Clamp => 0,
+        };
+        assert_eq!(i64::from(left), expected, "{wrap:?}");
+    }
+}
