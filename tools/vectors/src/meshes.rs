@@ -1,7 +1,8 @@
-//! Meshes of triangles that share no vertices, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in memory").
+//! Meshes of triangles that share no vertices, and a square with a texture, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in memory").
 
 use glint_core::camera::View;
-use glint_core::mesh::{self, ChunkHeader, MeshHeader, Rgb565, Vertex};
+use glint_core::mesh::{self, Attribute, ChunkHeader, IndexedTriangle, MeshHeader, Rgb565, Vertex};
+use glint_core::records::TextureCoordinates;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -112,4 +113,31 @@ pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
             )
         })
         .collect()
+}
+
+/// A white square from (−2, −2, 0) to (2, 2, 0) with a texture, which has `repeats` repeats in a world unit.
+///
+/// # Panics
+/// If the texture is too large for a mesh.
+#[must_use]
+pub fn textured_square(texture: Vec<u8>, repeats: f64) -> Vec<u8> {
+    let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
+    let up = [0, 0, 1 << 14];
+    let vertices = corners.map(|[x, y]: [f64; 2]| Vertex {
+        position: [x * 16_383.0, y * 16_383.0, 0.0].map(|c| c as i16),
+        normal: up,
+        colour: Rgb565::WHITE,
+    });
+    let elements = corners.map(|corner| {
+        let [s, t] = corner.map(|c| (c * repeats * 65_536.0) as i32);
+        TextureCoordinates { s, t }.to_bytes()
+    });
+    let triangles = [[0, 1, 2], [0, 2, 3]].map(|indices| IndexedTriangle {
+        indices,
+        colour: Rgb565::WHITE,
+        normal: up,
+        texture: 1,
+    });
+    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
+    mesh::encode_with(&vertices, &triangles, &attributes, &[texture]).unwrap()
 }

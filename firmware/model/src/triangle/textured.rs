@@ -1,4 +1,4 @@
-//! Textures on triangles (docs/formats/textured.md): the planes of the coordinates, and the colour of a pixel.
+//! Textures on triangles (docs/formats/texture.md, "On a triangle"): the planes of the coordinates, and the colour of a pixel.
 
 use glint_core::colour::Rgb565;
 use glint_core::feature::TEXTURE;

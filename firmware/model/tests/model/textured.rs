@@ -2,13 +2,13 @@
 
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::light::{Light, MeshLighting};
-use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, Vertex, encode_with};
+use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::textured::{Textured, flat_light, lit, sample};
 use glint_model::{Frame, MeshSubject, Subject};
+use glint_vectors::meshes::textured_square;
 use glint_vectors::triangles::{SIZE, random_triangle};
 use glint_vectors::{Camera, Picture, Random};
 
@@ -46,8 +46,7 @@ fn blend(weights: [f64; 3], values: [f64; 3]) -> f64 {
 }
 
 /// Positions in random triangles are within a sixteenth of a texel of the exact ones, where the depth code is at least 2^12 and the
-/// triangle has at most four repeats of 1024 texels, or within the bound of docs/formats/textured.md. Mip levels are within an eighth of
-/// their limits.
+/// triangle has at most four repeats of 1024 texels. Mip levels are within an eighth of their limits.
 #[test]
 fn positions_and_levels_are_those_of_exact_perspective() {
     let mut random = Random(1);
@@ -145,28 +144,6 @@ fn positions_and_levels_are_those_of_exact_perspective() {
     assert!(worst < 1.0 / 16.0, "{worst}");
 }
 
-/// A floor from below the camera to 8 units away, with coordinates of its two triangles: `scale` repeats a unit.
-fn floor(texture: Vec<u8>, scale: f64) -> Vec<u8> {
-    let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
-    let vertices = corners.map(|[x, y]: [f64; 2]| Vertex {
-        position: [x * 16_383.0, y * 16_383.0, 0.0].map(|c| c as i16),
-        normal: [0, 0, 1 << 14],
-        colour: Rgb565::WHITE,
-    });
-    let elements = corners.map(|corner| {
-        let [s, t] = corner.map(|c| (c * scale * 65_536.0) as i32);
-        TextureCoordinates { s, t }.to_bytes()
-    });
-    let triangles = [[0, 1, 2], [0, 2, 3]].map(|indices| IndexedTriangle {
-        indices,
-        colour: Rgb565::WHITE,
-        normal: [0, 0, 1 << 14],
-        texture: 1,
-    });
-    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
-    encode_with(&vertices, &triangles, &attributes, &[texture]).unwrap()
-}
-
 /// A frame of a mesh in full light, without shading.
 fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
     Frame {
@@ -188,7 +165,7 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
 /// The texels of a floor that passes under the camera, clipped and not, are those that exact rays hit.
 #[test]
 fn a_floor_has_the_texels_that_rays_hit() {
-    let bytes = floor(encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap(), 0.5);
+    let bytes = textured_square(encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap(), 0.5);
     let mesh = Mesh::new_checked(&bytes).unwrap();
     for (eye, shading) in [
         ([0.3, -0.4, 0.3], Shading::Flat),
@@ -242,7 +219,7 @@ fn cut_out_texels_leave_colour_and_depth() {
         levels: vec![chess.collect()],
         ..Source::default()
     });
-    let bytes = floor(texture.unwrap(), 0.25);
+    let bytes = textured_square(texture.unwrap(), 0.25);
     let camera = Camera::looking([0.0, -0.01, 2.5], [0.0; 3], 0.7, 0.1);
     let picture = Picture::of_frame(&frame(
         Mesh::new_checked(&bytes).unwrap(),

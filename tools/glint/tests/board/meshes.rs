@@ -12,6 +12,8 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::fixed::U8_28;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::picture::{Backend, Size};
+use glint_core::texture::{self, Filter, Sampler, Source};
+use glint_vectors::meshes::textured_square;
 use std::path::Path;
 use std::process::Command;
 
@@ -54,6 +56,44 @@ fn smooth_shading_is_the_models_on_every_backend() {
             info.iter().any(|line| line == "shading smooth"),
             "{info:#?}"
         );
+    }
+}
+
+/// The soft core draws textures, with a note; without them the triangle engine draws the mesh.
+#[test]
+fn textures_are_the_models_on_every_backend() {
+    let mut board = emulator_with(Shading::Smooth);
+    let mut renderer = renderer(&mut board);
+    let texture = texture::encode(&Source {
+        size_log2: [4, 4],
+        sampler: Sampler {
+            filter: Filter::Bilinear,
+            ..Sampler::default()
+        },
+        key: Some(0),
+        levels: vec![(0..256).map(|i| i * 0x101).collect()],
+        ..Source::default()
+    });
+    let mesh = textured_square(texture.unwrap(), 0.5);
+    for (shading, textures) in [
+        (Shading::Flat, true),
+        (Shading::Smooth, true),
+        (Shading::Flat, false),
+    ] {
+        let subject = Subject::Mesh(MeshSubject {
+            shading,
+            textures,
+            ..plain(&mesh)
+        });
+        let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
+        let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "textures");
+        let by = if textures { "cpu" } else { "gateware" };
+        assert_eq!(stats.backend.as_deref(), Some(by));
+        let notes = renderer.console().command("stats").unwrap();
+        let fell_back = notes.iter().any(|line| {
+            line == "fallback triangle engine: it draws no textures; `textures off` draws the mesh without them, fast"
+        });
+        assert_eq!(fell_back, textures, "{notes:#?}");
     }
 }
 
