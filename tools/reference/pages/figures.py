@@ -25,6 +25,13 @@ def stiff(errors):
     return sorted(subjects, key=lambda subject: subject.get("on_virtual_board", False))
 
 
+def worst_runs(runs):
+    """The largest error of each way to compute positions in a texture, over all scenes."""
+    forms = runs.groupby("form", sort=False)
+    return forms.agg(max_err=("max_err", "max"), divisions=("divisions", "first"), shipped=("shipped", "first")).reset_index().assign(
+        family=lambda forms: np.where(forms.form.str.endswith("linear"), "linear", forms.form.where(forms.shipped, "a parabola")))
+
+
 def timeline(frames, lanes):
     """Bottleneck of each frame, the cycles that it takes, and rates without it.
 

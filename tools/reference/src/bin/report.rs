@@ -11,7 +11,7 @@ use glint_core::quality::Quality;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
     constants, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
-    timeline, triangle,
+    textures, timeline, triangle,
 };
 use glint_reference::report::provenance::{Commit, Provenance};
 use glint_reference::report::table::write_csv;
@@ -75,6 +75,8 @@ enum Page {
         #[arg(long, conflicts_with = "quick")]
         earlier: bool,
     },
+    /// Textures: errors of positions with fewer divisions, and misses of caches for texels
+    Textures,
     /// Matrices, normals and projection with several word lengths: errors and cycles; drift of the wireframe simulator's rotation
     Geometry {
         #[command(flatten)]
@@ -162,7 +164,7 @@ impl Page {
             | Self::Raymarch { quick, only, .. }
             | Self::Quality { quick, only, .. } => *quick || only.is_some(),
             Self::Timeline { only } | Self::Stiff { only, .. } => only.is_some(),
-            Self::Geometry { .. } | Self::Gesture { .. } | Self::Pages => false,
+            Self::Geometry { .. } | Self::Gesture { .. } | Self::Textures | Self::Pages => false,
         }
     }
 }
@@ -241,6 +243,10 @@ fn main() -> Result<()> {
             measure_raymarch(quick, study.as_deref(), only.as_deref(), &to)?;
         }
         Page::Gouraud { quick, earlier } => measure_gouraud(quick, earlier, &to)?,
+        Page::Textures => {
+            to.write("textures-runs", &textures::runs::measure())?;
+            to.write("textures-cache", &textures::cache::measure())?;
+        }
         Page::Geometry { cycles } => {
             let cycles = cycles.measure("geometry")?;
             to.write("geometry-precision", &geometry::precision::measure(&cycles))?;

@@ -11,5 +11,6 @@ pub mod quality;
 pub mod raymarch;
 pub mod sine;
 pub mod stiff;
+pub mod textures;
 pub mod timeline;
 pub mod triangle;

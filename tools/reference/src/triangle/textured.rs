@@ -1,0 +1,242 @@
+//! Scenes for studies of textures: floors, walls and a sphere, and their pixels in the order in which the triangle engine draws them.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use glint_core::colour::Rgb565;
+use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, Vertex, encode_with};
+use glint_core::picture::Size;
+use glint_core::records::TextureCoordinates;
+use glint_core::texture::{Filter, Sampler, Source, encode};
+use glint_model::triangle::setup::{Edge, Plane, Setup};
+use glint_model::triangle::textured::Textured;
+use glint_model::{Frame, Projected, Subject};
+use glint_vectors::Camera;
+use glint_vectors::math::{cross, normalised, subtract};
+
+/// A mesh with a texture in front of a camera.
+pub struct Scene {
+    /// Description of the scene.
+    pub name: &'static str,
+    /// Size of the picture.
+    pub size: Size,
+    mesh: Vec<u8>,
+    camera: Camera,
+}
+
+/// A triangle with a texture.
+pub struct Drawn<'a> {
+    /// Its edges and its plane of depth.
+    pub setup: Setup,
+    /// The planes of its coordinates, and its texture.
+    pub textured: Textured<'a>,
+}
+
+/// A covered pixel of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Pixel {
+    /// Column in the picture.
+    pub column: i32,
+    /// Depth accumulator with half a code.
+    pub depth: u32,
+    /// Accumulators of the coordinates.
+    pub values: [u32; 2],
+}
+
+impl Drawn<'_> {
+    /// The covered pixels of a row, from left to right.
+    pub fn row(&self, row: i32) -> Vec<Pixel> {
+        let setup = &self.setup;
+        let down = i64::from(row - setup.bounds.top);
+        let is_inside = |edge: &Edge, right: i64| {
+            edge.start + right * i64::from(edge.step_x) + down * i64::from(edge.step_y) >= 0
+        };
+        let columns = setup.bounds.left..setup.bounds.right;
+        let covered = columns.filter(|column| {
+            let right = i64::from(column - setup.start_column);
+            setup.edges.iter().all(|edge| is_inside(edge, right))
+        });
+        covered
+            .map(|column| {
+                let right = column - setup.start_column;
+                let at = |plane: &Plane| {
+                    plane
+                        .start
+                        .wrapping_add(plane.step_x.wrapping_mul(right as u32))
+                        .wrapping_add(plane.step_y.wrapping_mul(down as u32))
+                };
+                Pixel {
+                    column,
+                    depth: at(&setup.depth).wrapping_add(1 << 13),
+                    values: self.textured.axes.map(|axis| at(&axis.plane)),
+                }
+            })
+            .collect()
+    }
+
+    /// The exact position of a pixel in the texture, in texels of level 0: the quotient of its accumulators.
+    pub fn exact(&self, pixel: &Pixel) -> [f64; 2] {
+        [0, 1].map(|i: usize| {
+            let axis = &self.textured.axes[i];
+            let side = f64::from(1 << self.textured.texture.size_log2()[i]);
+            // An accumulator just below 0 has wrapped.
+            let value = f64::from(pixel.values[i] as i32);
+            let value = if value < f64::from(-(1 << 26)) {
+                f64::from(pixel.values[i])
+            } else {
+                value
+            };
+            value / f64::from(pixel.depth) * f64::from(1 << axis.range_log2) * side
+        })
+    }
+
+    /// The mip level of a pixel.
+    pub fn level(&self, pixel: &Pixel) -> u32 {
+        self.textured.level(&self.setup, pixel.depth, pixel.values)
+    }
+}
+
+impl Scene {
+    /// Calls `visit` with each row of each triangle and its covered pixels, band after band, as the engine draws them.
+    ///
+    /// # Panics
+    /// If the model refuses the frame.
+    pub fn rows(&self, visit: &mut dyn FnMut(&Drawn, &[Pixel])) {
+        let mesh = Mesh::new_checked(&self.mesh).expect("a good mesh");
+        let frame = Frame::new(Subject::mesh(mesh), self.camera.rounded(), self.size);
+        let constants = frame.constants().expect("a good frame");
+        let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+        let mut drawn = Vec::new();
+        // The textures of the mesh outlive those that the model shows.
+        let textures: Vec<_> = mesh.textures().collect();
+        let texture = textures[0];
+        frame
+            .set_up_meshes(&constants, &mut scratch, &mut |_, setup, textured| {
+                let textured = textured.expect("a texture");
+                drawn.push(Drawn {
+                    setup: *setup,
+                    textured: Textured {
+                        texture,
+                        ..*textured
+                    },
+                });
+            })
+            .expect("enough memory");
+        let lines = self.size.band_lines() as i32;
+        for top in (0..self.size.height() as i32).step_by(lines as usize) {
+            for triangle in &drawn {
+                let bounds = triangle.setup.bounds;
+                for row in bounds.top.max(top)..bounds.bottom.min(top + lines) {
+                    visit(triangle, &triangle.row(row));
+                }
+            }
+        }
+    }
+}
+
+/// All scenes, with a texture of 1024×1024 texels and all mip levels, or only the first one.
+#[must_use]
+pub fn scenes(has_levels: bool) -> Vec<Scene> {
+    let texture = |size_log2: [u8; 2]| {
+        let [width, height] = size_log2;
+        let last = if has_levels { width.max(height) } else { 0 };
+        encode(&Source {
+            size_log2,
+            sampler: Sampler {
+                filter: Filter::Nearest,
+                ..Sampler::default()
+            },
+            levels: vec![Vec::new(); usize::from(last) + 1],
+            ..Source::default()
+        })
+        .expect("a good texture")
+    };
+    let square = glint_vectors::meshes::textured_square(texture([10, 10]), 0.5);
+    let floor = |name, size| Scene {
+        name,
+        size,
+        mesh: square.clone(),
+        camera: Camera::looking([0.0, -1.9, 0.3], [0.0, 2.0, 0.0], 0.8, 0.02),
+    };
+    let wall = |name, size, degrees: f64| Scene {
+        name,
+        size,
+        mesh: square.clone(),
+        camera: across(degrees.to_radians()),
+    };
+    let globe = |name, size| Scene {
+        name,
+        size,
+        mesh: globe(texture([9, 8]), 24),
+        camera: Camera::looking([0.0, -1.8, 0.6], [0.0; 3], 0.8, 0.1),
+    };
+    vec![
+        floor("floor to the horizon, 320×180", Size::W320),
+        floor("floor to the horizon, 1280×720", Size::W1280),
+        wall("wall at 45°, 320×180", Size::W320, 45.0),
+        wall("wall at 10°, 320×180", Size::W320, 10.0),
+        wall("wall at 10°, 1280×720", Size::W1280, 10.0),
+        globe("globe of 512×256, 320×180", Size::W320),
+        globe("globe of 512×256, 1280×720", Size::W1280),
+    ]
+}
+
+/// A camera that sees the square at z = 0 as a wall to its left, at this angle to the line of sight.
+fn across(angle: f64) -> Camera {
+    let (sin, cos) = angle.sin_cos();
+    let eye = [0.0, -1.2 * cos, 1.2 * sin];
+    let n = normalised(subtract([0.0; 3], eye));
+    let up = [1.0, 0.0, 0.0];
+    let u = normalised(cross(n, up));
+    Camera {
+        eye,
+        u,
+        v: cross(n, u),
+        n,
+        half_width: 0.8,
+        near: 0.02,
+    }
+}
+
+/// A sphere of radius 1 about the origin, of `bands` bands and twice as many sectors, with a texture that spans it once.
+fn globe(texture: Vec<u8>, bands: u32) -> Vec<u8> {
+    let sectors = 2 * bands;
+    let places = (0..=bands).flat_map(|band| (0..=sectors).map(move |sector| [sector, band]));
+    let (vertices, elements): (Vec<_>, Vec<_>) = places
+        .map(|[sector, band]| {
+            let [s, t] = [
+                f64::from(sector) / f64::from(sectors),
+                f64::from(band) / f64::from(bands),
+            ];
+            let (longitude, latitude) = (TAU * s, FRAC_PI_2 - PI * t);
+            let direction = [
+                longitude.cos() * latitude.cos(),
+                longitude.sin() * latitude.cos(),
+                latitude.sin(),
+            ];
+            let normal = direction.map(|c| (c * 16_384.0) as i16);
+            let vertex = Vertex {
+                position: normal,
+                normal,
+                colour: Rgb565::WHITE,
+            };
+            let [s, t] = [s, t].map(|c| (c * 65_536.0) as i32);
+            (vertex, TextureCoordinates { s, t }.to_bytes())
+        })
+        .unzip();
+    let at = |sector: u32, band: u32| band * (sectors + 1) + sector;
+    let triangles: Vec<_> = (0..bands)
+        .flat_map(|band| (0..sectors).map(move |sector| [sector, band]))
+        .flat_map(|[x, y]| {
+            let [a, b, c, d] = [at(x, y), at(x, y + 1), at(x + 1, y + 1), at(x + 1, y)];
+            [[a, b, c], [a, c, d]]
+        })
+        .map(|indices| IndexedTriangle {
+            indices,
+            colour: Rgb565::WHITE,
+            normal: [0, 0, 1 << 14],
+            texture: 1,
+        })
+        .collect();
+    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
+    encode_with(&vertices, &triangles, &attributes, &[texture]).expect("a small mesh")
+}
