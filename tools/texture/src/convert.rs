@@ -1,0 +1,444 @@
+//! A picture as a texture in a board's memory layout, with a report.
+
+use crate::error::PictureError;
+use crate::levels::{Level, Texel, colour};
+use crate::options::{MAX_SIDE, MIN_SIDE, Options, format_name};
+use crate::palette::{Nearest, palette};
+use crate::picture::Picture;
+use glint_core::colour::Rgb565;
+use glint_core::texture::{Format, Source, encode};
+use serde::Serialize;
+
+/// Report of a conversion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Width and height of the picture.
+    pub picture: [u32; 2],
+    /// Width and height of the texture.
+    pub size: [u32; 2],
+    /// The representation of the texels.
+    pub format: &'static str,
+    /// Number of colours in the palette; 0 without a palette.
+    pub colours: usize,
+    /// Number of mip levels.
+    pub levels: usize,
+    /// Whether the texture has transparent texels.
+    pub cut_out: bool,
+    /// Length of the texture in bytes.
+    pub bytes: usize,
+    /// Root mean square of the differences between the picture, after resizing, and the opaque texels of the largest level, over the
+    /// three channels, in units of 1/255.
+    pub error_rms: f64,
+    /// The largest of these differences.
+    pub error_max: f64,
+    /// Remarks for the user, such as the sizes before and after resizing.
+    pub remarks: Vec<String>,
+}
+
+/// Converts a picture to a texture with all mip levels: the sides become powers of two, and levels are averages in linear light.
+///
+/// With a cutoff, texels are transparent where their opacity, averaged over the picture's texels, is below the cutoff. The value that
+/// marks them is one that no opaque texel has.
+///
+/// # Errors
+/// The picture has no texel, or the largest side of the options is outside of [`MIN_SIDE`] to [`MAX_SIDE`].
+pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report), PictureError> {
+    let [width, height] = picture.size;
+    if picture.texels.len() as u64 != u64::from(width) * u64::from(height)
+        || picture.texels.is_empty()
+    {
+        let found = format!("{width}×{height} and {} texels", picture.texels.len());
+        return Err(PictureError::new("a picture with texels", found));
+    }
+    if !(MIN_SIDE..=MAX_SIDE).contains(&options.largest_side) {
+        let expected = format!("a largest side of {MIN_SIDE} to {MAX_SIDE}");
+        return Err(PictureError::new(
+            expected,
+            options.largest_side.to_string(),
+        ));
+    }
+    let size_log2 = picture
+        .size
+        .map(|side| side_log2(side, options.largest_side));
+    let size = size_log2.map(|side| 1 << side);
+    let mut remarks = Vec::new();
+    if size != picture.size {
+        remarks.push(format!(
+            "resized from {width}×{height} to {}×{}",
+            size[0], size[1]
+        ));
+    }
+    let cutoff = options.cutoff.filter(|&cutoff| cutoff > 0.0);
+    let mut levels = vec![Level::resized(
+        picture,
+        size,
+        options.sampler.wrap,
+        cutoff.is_some(),
+    )];
+    while let Some(next) = levels.last().and_then(Level::next) {
+        levels.push(next);
+    }
+    let cutoff = cutoff.unwrap_or(0.0);
+    let opaque = |level: &Level| {
+        let texels = level.texels.iter();
+        texels.map(|&texel| opaque(texel, cutoff)).collect()
+    };
+    let texels: Vec<Vec<Option<[u8; 3]>>> = levels.iter().map(opaque).collect();
+    let count = texels.iter().flatten().flatten().count();
+    let cut_out = count < texels.iter().map(Vec::len).sum::<usize>();
+    if count == 0 {
+        remarks.push("each texel is transparent".into());
+    }
+    let Values {
+        palette,
+        key,
+        levels: values,
+    } = match options.format {
+        Format::Rgb565 => coloured(&texels, cut_out),
+        Format::Palette256 | Format::Palette16 => indexed(&texels, options.format, cut_out),
+    };
+    let (error_rms, error_max) = errors(&levels, &values, |value| match options.format {
+        _ if key == Some(value) => None,
+        Format::Rgb565 => Some(Rgb565(value)),
+        Format::Palette256 | Format::Palette16 => palette.get(usize::from(value)).copied(),
+    });
+    let source = Source {
+        format: options.format,
+        size_log2,
+        sampler: options.sampler,
+        key,
+        palette,
+        levels: values,
+    };
+    let bytes = encode(&source).map_err(|error| {
+        // The checks above exclude all of its errors.
+        PictureError::new("a texture", error.to_string())
+    })?;
+    let report = Report {
+        picture: picture.size,
+        size,
+        format: format_name(options.format),
+        colours: source.palette.len(),
+        levels: source.levels.len(),
+        cut_out,
+        bytes: bytes.len(),
+        error_rms,
+        error_max,
+        remarks,
+    };
+    Ok((bytes, report))
+}
+
+/// Base-2 logarithm of the power of two from [`MIN_SIDE`] to `largest` that has the smallest ratio to a side.
+fn side_log2(side: u32, largest: u32) -> u8 {
+    // The squares of larger sides could exceed 64 bits, and no power of two above the largest is chosen.
+    let side = u64::from(side.clamp(MIN_SIDE, MAX_SIDE));
+    let below = side.ilog2();
+    // side / 2^below > √2
+    let nearest = below + u32::from(side * side > 1 << (2 * below + 1));
+    nearest.min(largest.ilog2()) as u8
+}
+
+/// The colour of an opaque texel, rounded; `None` for a transparent one.
+fn opaque(texel: Texel, cutoff: f32) -> Option<[u8; 3]> {
+    let [.., opacity] = texel;
+    (opacity > 0.0 && opacity >= cutoff).then(|| colour(texel).map(|value| value.round() as u8))
+}
+
+/// The values of the texels of all levels.
+struct Values {
+    palette: Vec<Rgb565>,
+    key: Option<u16>,
+    levels: Vec<Vec<u16>>,
+}
+
+/// Colours, and a key that no opaque texel has.
+fn coloured(texels: &[Vec<Option<[u8; 3]>>], cut_out: bool) -> Values {
+    let value = |texel: &Option<[u8; 3]>| texel.map(|rgb| Rgb565::from_rgb888(rgb).0);
+    if !cut_out {
+        let all = |level: &Vec<_>| {
+            level
+                .iter()
+                .map(|texel| value(texel).unwrap_or(0))
+                .collect()
+        };
+        return Values {
+            palette: Vec::new(),
+            key: None,
+            levels: texels.iter().map(all).collect(),
+        };
+    }
+    let mut counts = vec![0_u32; 1 << 16];
+    for value in texels.iter().flatten().filter_map(value) {
+        counts[usize::from(value)] += 1;
+    }
+    // The first of the rarest values. If opaque texels have it, as in a picture with all values, they get a colour one step of blue away.
+    let rarest = (0..=u16::MAX).min_by_key(|&value| counts[usize::from(value)]);
+    let key = rarest.unwrap_or(0);
+    let marked = |texel: &Option<[u8; 3]>| match value(texel) {
+        None => key,
+        Some(value) if value == key => value ^ 1,
+        Some(value) => value,
+    };
+    Values {
+        palette: Vec::new(),
+        key: Some(key),
+        levels: texels
+            .iter()
+            .map(|level| level.iter().map(marked).collect())
+            .collect(),
+    }
+}
+
+/// Indices of a palette for the colours of all levels. The last index marks transparent texels.
+fn indexed(texels: &[Vec<Option<[u8; 3]>>], format: Format, cut_out: bool) -> Values {
+    let colours: Vec<[u8; 3]> = texels.iter().flatten().flatten().copied().collect();
+    let palette = palette(&colours, format.colours() - usize::from(cut_out));
+    let key = (format.colours() - 1) as u16;
+    let mut nearest = Nearest::new(&palette);
+    let mut values = |level: &Vec<Option<[u8; 3]>>| -> Vec<u16> {
+        let texels = level.iter();
+        texels
+            .map(|texel| texel.map_or(key, |rgb| nearest.index(rgb)))
+            .collect()
+    };
+    Values {
+        levels: texels.iter().map(&mut values).collect(),
+        palette,
+        key: cut_out.then_some(key),
+    }
+}
+
+/// Root mean square and maximum of the differences between the largest level before and after rounding.
+fn errors(
+    levels: &[Level],
+    values: &[Vec<u16>],
+    colour_of: impl Fn(u16) -> Option<Rgb565>,
+) -> (f64, f64) {
+    let (Some(before), Some(after)) = (levels.first(), values.first()) else {
+        return (0.0, 0.0);
+    };
+    let (mut squares, mut largest, mut count) = (0.0, 0.0_f64, 0_u32);
+    for (&texel, &value) in before.texels.iter().zip(after) {
+        let Some(rounded) = colour_of(value) else {
+            continue;
+        };
+        for (before, after) in colour(texel).into_iter().zip(rounded.to_rgb888()) {
+            let difference = f64::from(before - f32::from(after)).abs();
+            squares += difference * difference;
+            largest = largest.max(difference);
+            count += 1;
+        }
+    }
+    let mean = squares / f64::from(count.max(1));
+    (mean.sqrt(), largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sheet::sheet;
+    use glint_core::texture::{Sampler, Texture, TextureHeader, Wrap, checksum};
+
+    fn picture(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
+        let [width, height] = size;
+        let rows = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let texels = rows.map(|[x, y]| texel(x, y)).collect();
+        Picture { size, texels }
+    }
+
+    fn ramp(size: [u32; 2]) -> Picture {
+        picture(size, |x, y| {
+            [(4 * x) as u8, (4 * y) as u8, (x ^ y) as u8, 255]
+        })
+    }
+
+    #[test]
+    fn sides_become_the_nearest_powers_of_two() {
+        for (side, largest, power) in [
+            (1, 1024, 8),
+            (3, 1024, 8),
+            (8, 1024, 8),
+            (11, 1024, 8),
+            (12, 1024, 16),
+            (90, 1024, 64),
+            (91, 1024, 128),
+            (724, 1024, 512),
+            (725, 1024, 1024),
+            (5000, 1024, 1024),
+            (u32::MAX, 1024, 1024),
+            (5000, 8, 8),
+            (5000, 100, 64),
+        ] {
+            assert_eq!(1 << side_log2(side, largest), power, "{side} {largest}");
+        }
+    }
+
+    #[test]
+    fn sizes_of_all_kinds() {
+        for (size, expected, levels) in [
+            ([1, 1], [8, 8], 4),
+            ([1, 1024], [8, 1024], 11),
+            ([5000, 3], [1024, 8], 11),
+            ([64, 64], [64, 64], 7),
+        ] {
+            let (bytes, report) = convert(&ramp(size), &Options::default()).unwrap();
+            let texture = Texture::new_checked(&bytes).unwrap();
+            assert_eq!(texture.size_log2().map(|side| 1 << side), expected);
+            assert_eq!((report.size, report.levels), (expected, levels));
+            assert_eq!(report.bytes, bytes.len());
+            let resized = if size == expected {
+                vec![]
+            } else {
+                let [width, height] = size;
+                let [to_width, to_height] = expected;
+                vec![format!(
+                    "resized from {width}×{height} to {to_width}×{to_height}"
+                )]
+            };
+            assert_eq!(report.remarks, resized);
+            let stated = TextureHeader::from_bytes(bytes.first_chunk().unwrap()).checksum;
+            assert_eq!(stated, checksum(&bytes));
+        }
+        for size in [[0, 0], [0, 8], [8, 0]] {
+            let error = convert(&ramp(size), &Options::default()).unwrap_err();
+            assert_eq!(error.expected, "a picture with texels");
+        }
+        for largest_side in [0, 7, 1025, u32::MAX] {
+            let options = Options {
+                largest_side,
+                ..Options::default()
+            };
+            let error = convert(&ramp([8, 8]), &options).unwrap_err();
+            let expected = format!("expected a largest side of 8 to 1024, found {largest_side}");
+            assert_eq!(error.to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn colours_are_the_nearest() {
+        let ramp = ramp([64, 64]);
+        let (bytes, report) = convert(&ramp, &Options::default()).unwrap();
+        let texture = Texture::new_checked(&bytes).unwrap();
+        for (i, &[red, green, blue, _]) in (0..).zip(&ramp.texels) {
+            let value = texture.value(0, [i % 64, i / 64]);
+            assert_eq!(Rgb565(value), Rgb565::from_rgb888([red, green, blue]));
+        }
+        assert!(report.error_max <= 5.0, "{report:?}");
+        assert!((0.5..2.5).contains(&report.error_rms), "{report:?}");
+        assert!(!report.cut_out);
+    }
+
+    #[test]
+    fn palettes_have_more_error_and_fewer_bytes() {
+        let mut last = (usize::MAX, 0.0);
+        for (format, colours) in Format::ALL.into_iter().zip([0, 256, 16]) {
+            let options = Options {
+                format,
+                ..Options::default()
+            };
+            let (bytes, report) = convert(&ramp([64, 64]), &options).unwrap();
+            assert!(report.colours <= colours && report.colours >= colours / 2);
+            assert!(
+                bytes.len() < last.0 && report.error_rms > last.1,
+                "{report:?}"
+            );
+            last = (bytes.len(), report.error_rms);
+        }
+        assert!(last.1 < 25.0);
+    }
+
+    #[test]
+    fn cut_out_in_each_format() {
+        // Opaque, just opaque, just transparent, and transparent columns.
+        let opacity = |x: u32| [255, 128, 127, 0][x as usize % 4];
+        let holes = picture([16, 16], |x, y| {
+            [(16 * x) as u8, (16 * y) as u8, 0, opacity(x)]
+        });
+        for format in Format::ALL {
+            let options = Options {
+                format,
+                cutoff: Some(0.5),
+                ..Options::default()
+            };
+            let (bytes, report) = convert(&holes, &options).unwrap();
+            assert!(report.cut_out);
+            let texture = Texture::new_checked(&bytes).unwrap();
+            for x in 0..16 {
+                for y in 0..16 {
+                    let colour = texture.colour(0, [x, y]);
+                    assert_eq!(colour.is_some(), x % 4 < 2, "{format:?} {x} {y}");
+                }
+            }
+            let opaque = Options {
+                cutoff: None,
+                ..options
+            };
+            assert!(!convert(&holes, &opaque).unwrap().1.cut_out);
+            let zero = Options {
+                cutoff: Some(0.0),
+                ..options
+            };
+            assert!(!convert(&holes, &zero).unwrap().1.cut_out);
+        }
+        let clear = picture([8, 8], |_, _| [1, 2, 3, 0]);
+        for format in Format::ALL {
+            let options = Options {
+                format,
+                cutoff: Some(0.5),
+                ..Options::default()
+            };
+            let (_, report) = convert(&clear, &options).unwrap();
+            assert_eq!(report.remarks, ["each texel is transparent"]);
+            assert_eq!((report.error_rms, report.error_max), (0.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn the_key_is_no_colour_of_an_opaque_texel() {
+        // All values of RGB565, and a transparent texel.
+        let texels = (0..=u16::MAX).map(|value| {
+            let [red, green, blue] = Rgb565(value).to_rgb888();
+            [red, green, blue, if value == 0x8000 { 0 } else { 255 }]
+        });
+        let all = Picture {
+            size: [256, 256],
+            texels: texels.collect(),
+        };
+        let options = Options {
+            cutoff: Some(0.5),
+            ..Options::default()
+        };
+        let (bytes, _) = convert(&all, &options).unwrap();
+        let texture = Texture::new_checked(&bytes).unwrap();
+        let mut transparent = Vec::new();
+        for y in 0..256 {
+            for x in 0..256 {
+                if texture.colour(0, [x, y]).is_none() {
+                    transparent.push([x, y]);
+                }
+            }
+        }
+        assert_eq!(transparent, [[0, 128]]);
+    }
+
+    #[test]
+    fn the_sampler_is_kept_and_the_sheet_shows_all_levels() {
+        let options = Options {
+            sampler: Sampler {
+                wrap: [Wrap::Clamp, Wrap::Mirror],
+                ..Sampler::default()
+            },
+            ..Options::default()
+        };
+        let red = picture([16, 8], |_, _| [255, 0, 0, 255]);
+        let (bytes, _) = convert(&red, &options).unwrap();
+        let texture = Texture::new_checked(&bytes).unwrap();
+        assert_eq!(texture.sampler(), options.sampler);
+        let sheet = sheet(&texture);
+        assert_eq!(sheet.size, [16 + 8 + 4 + 2 + 1, 8]);
+        let visible = sheet.texels.iter().filter(|texel| texel[3] == 255);
+        assert_eq!(visible.count(), 128 + 32 + 8 + 2 + 1);
+        assert_eq!(Picture::decode(&sheet.png().unwrap()).unwrap(), sheet);
+    }
+}

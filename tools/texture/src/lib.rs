@@ -1,0 +1,20 @@
+//! Textures for boards, from the pictures of image files.
+//!
+//! | module | purpose |
+//! |---|---|
+//! | [`picture`] | pictures of PNG and JPEG files in memory, and PNG files of pictures |
+//! | [`mod@convert`] | a picture as a texture in a board's memory layout, with a report |
+//! | [`options`] | options of a conversion, and their words on command lines |
+//! | [`levels`] | resizing and mip levels, in linear light |
+//! | [`palette`] | palettes for the colours of a picture |
+//! | [`sheet`] | the levels of a texture side by side, as a board shows them |
+//! | [`error`] | errors in image files |
+#![forbid(unsafe_code)]
+
+pub mod convert;
+pub mod error;
+pub mod levels;
+pub mod options;
+pub mod palette;
+pub mod picture;
+pub mod sheet;

@@ -1,0 +1,58 @@
+//! Options of a conversion, and their words on command lines.
+
+use glint_core::texture::{Filter, Format, SIDES_LOG2, Sampler, Wrap};
+
+/// Largest side of a texture.
+pub const MAX_SIDE: u32 = 1 << *SIDES_LOG2.end();
+/// Smallest side of a texture.
+pub const MIN_SIDE: u32 = 1 << *SIDES_LOG2.start();
+
+/// Options of a conversion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The representation of the texels: colours, or indices of a palette.
+    pub format: Format,
+    /// The largest side. A texture has the power of two up to this number that is nearest to the picture's side.
+    pub largest_side: u32,
+    /// How the texture is read.
+    pub sampler: Sampler,
+    /// Opacity, 0 to 1, below which texels are transparent. `None`: the texture is opaque, and the picture's opacity has no effect.
+    pub cutoff: Option<f32>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            format: Format::Rgb565,
+            largest_side: MAX_SIDE,
+            sampler: Sampler::default(),
+            cutoff: None,
+        }
+    }
+}
+
+/// The word for a representation of texels.
+pub const fn format_name(format: Format) -> &'static str {
+    match format {
+        Format::Rgb565 => "rgb565",
+        Format::Palette256 => "palette 256",
+        Format::Palette16 => "palette 16",
+    }
+}
+
+/// The word for the texels beyond a side.
+pub const fn wrap_name(wrap: Wrap) -> &'static str {
+    match wrap {
+        Wrap::Repeat => "repeat",
+        Wrap::Mirror => "mirror",
+        Wrap::Clamp => "clamp",
+    }
+}
+
+/// The word for a filter.
+pub const fn filter_name(filter: Filter) -> &'static str {
+    match filter {
+        Filter::Nearest => "nearest",
+        Filter::Bilinear => "bilinear",
+    }
+}
