@@ -1,6 +1,10 @@
 //! A mesh as read from a file: points, and polygons with these points as corners.
 
-use crate::error::{FormatError, Location, MAX_POINTS, MAX_POLYGON, MAX_REMARKS, MAX_TRIANGLES};
+use crate::error::{
+    FormatError, Location, MAX_FILE, MAX_POINTS, MAX_POLYGON, MAX_REMARKS, MAX_TRIANGLES,
+};
+use glint_core::texture::Sampler;
+use std::sync::Arc;
 
 /// A point or a direction, in the file's unit.
 pub type Vector = [f64; 3];
@@ -10,6 +14,8 @@ pub type Vector = [f64; 3];
 pub struct Rgb8(pub [u8; 3]);
 
 impl Rgb8 {
+    /// White, the colour of a surface that shows its texture unchanged.
+    pub const WHITE: Self = Self([255; 3]);
     /// Colour of surfaces without a colour: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
@@ -41,17 +47,22 @@ pub struct Corner {
     pub point: u32,
     /// Index into [`Polygons::normals`], or [`NO_NORMAL`](Self::NO_NORMAL).
     pub normal: u32,
+    /// Index into [`Polygons::coordinates`], or [`NO_COORDINATES`](Self::NO_COORDINATES).
+    pub coordinates: u32,
 }
 
 impl Corner {
     /// Index that marks a corner without a normal.
     pub const NO_NORMAL: u32 = u32::MAX;
+    /// Index that marks a corner without texture coordinates.
+    pub const NO_COORDINATES: u32 = u32::MAX;
 
-    /// A corner without a normal.
+    /// A corner without a normal and texture coordinates.
     pub fn at(point: u32) -> Self {
         Self {
             point,
             normal: Self::NO_NORMAL,
+            coordinates: Self::NO_COORDINATES,
         }
     }
 }
@@ -63,10 +74,43 @@ pub struct Face {
     pub first: u32,
     /// Number of corners, at least 3.
     pub count: u32,
-    /// Colour of the face, if any.
+    /// Colour of the face, if any. The colours of its texture are multiplied by it.
     pub colour: Option<Rgb8>,
+    /// Number of the texture in [`Polygons::textures`], from 1; 0 for none.
+    pub texture: u8,
     /// Whether the face is visible from both sides.
     pub double_sided: bool,
+}
+
+/// A texture of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// The name of its file, or its number in the file of the mesh, for messages.
+    pub name: String,
+    /// What it shows.
+    pub content: Content,
+    /// How it is read.
+    pub sampler: Sampler,
+    /// Opacity, 0 to 1, below which texels are transparent; `None` for an opaque texture.
+    pub cutoff: Option<f32>,
+}
+
+/// The content of a texture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// The bytes of an image file, not checked.
+    Picture(Arc<Vec<u8>>),
+    /// A checked texture in a board's memory layout, whose header states how it is read.
+    Board(Vec<u8>),
+}
+
+impl Content {
+    fn len(&self) -> usize {
+        match self {
+            Self::Picture(bytes) => bytes.len(),
+            Self::Board(bytes) => bytes.len(),
+        }
+    }
 }
 
 /// Points, and polygons with these points as corners.
@@ -81,6 +125,10 @@ pub struct Polygons {
     pub point_colours: Vec<Rgb8>,
     /// Normals from the file. Their vectors may have any length; a normal of length 0 counts as none.
     pub normals: Vec<Vector>,
+    /// Texture coordinates: s across and t down, from the upper left corner of the texture, whose sides have the length 1.
+    pub coordinates: Vec<[f64; 2]>,
+    /// The textures; at most [`MAX_TEXTURES`].
+    pub textures: Vec<Texture>,
     /// The corners of all faces.
     pub corners: Vec<Corner>,
     /// The faces.
@@ -89,9 +137,14 @@ pub struct Polygons {
     pub remarks: Vec<String>,
     triangles: usize,
     skipped_faces: Tally,
+    invalid_coordinates: Tally,
     largest_point: Largest,
     largest_normal: Largest,
+    largest_coordinates: Largest,
 }
+
+/// Maximum number of textures of a mesh: a triangle has 8 bits for the number of its texture.
+pub const MAX_TEXTURES: usize = 255;
 
 /// The largest index that a face has used so far, and the position of that face. Faces may use points or normals that come later in the
 /// file, so this index is checked at the end of the file.
@@ -155,6 +208,50 @@ impl Polygons {
         push(&mut self.normals, normal, "normals", place)
     }
 
+    /// Adds texture coordinates and returns their index. Coordinates that are infinite or not a number become 0, with a remark.
+    ///
+    /// # Errors
+    /// There are more than [`MAX_POINTS`] texture coordinates.
+    pub fn add_coordinates(
+        &mut self,
+        coordinates: [f64; 2],
+        place: Location,
+    ) -> Result<u32, FormatError> {
+        let is_valid = coordinates.iter().all(|c| c.is_finite());
+        if !is_valid {
+            self.invalid_coordinates.count(place);
+        }
+        let coordinates = coordinates.map(|c| if c.is_finite() { c } else { 0.0 });
+        push(
+            &mut self.coordinates,
+            coordinates,
+            "texture coordinates",
+            place,
+        )
+    }
+
+    /// Adds a texture and returns its number, from 1. If the bytes of all textures exceed [`MAX_FILE`], the texture is left out with a
+    /// remark, and the number is 0.
+    ///
+    /// # Errors
+    /// There are more than [`MAX_TEXTURES`] textures.
+    pub fn add_texture(&mut self, texture: Texture) -> Result<u8, FormatError> {
+        let bytes: usize = self.textures.iter().map(|one| one.content.len()).sum();
+        if bytes + texture.content.len() > MAX_FILE {
+            self.remark(format!(
+                "texture {}: expected at most {MAX_FILE} bytes of all textures, found more: its faces have their colours",
+                texture.name
+            ));
+            return Ok(0);
+        }
+        if self.textures.len() >= MAX_TEXTURES {
+            let expected = format!("at most {MAX_TEXTURES} textures");
+            return Err(FormatError::whole(expected, "more"));
+        }
+        self.textures.push(texture);
+        Ok(self.textures.len() as u8)
+    }
+
     /// Adds a polygon. The indices of its corners may refer to points added later. A polygon of fewer than three corners is skipped with
     /// a remark.
     ///
@@ -191,19 +288,23 @@ impl Polygons {
             if corner.normal != Corner::NO_NORMAL {
                 self.largest_normal.update(corner.normal, place);
             }
+            if corner.coordinates != Corner::NO_COORDINATES {
+                self.largest_coordinates.update(corner.coordinates, place);
+            }
         }
         self.faces.push(Face {
             first: self.corners.len() as u32,
             count: count as u32,
             colour,
+            texture: 0,
             double_sided: false,
         });
         self.corners.extend_from_slice(corners);
         Ok(())
     }
 
-    /// Checks that a face exists and that the points of all corners exist, and removes indices of normals that do not exist. Adds
-    /// remarks on them and on skipped faces.
+    /// Checks that a face exists and that the points of all corners exist, and removes indices of normals and texture coordinates that do
+    /// not exist. Adds remarks on them, on texture coordinates that are no numbers, and on skipped faces.
     ///
     /// # Errors
     /// There is no face, or the index of a point is out of range; the error has the position of the largest index.
@@ -214,6 +315,19 @@ impl Polygons {
             self.remark(format!(
                 "{}{count} corners have a normal that does not exist: it is computed from the faces",
                 error.place
+            ));
+        }
+        let check = self.largest_coordinates.check(self.coordinates.len(), "");
+        if let Err(error) = check {
+            let count = self.remove_missing_coordinates();
+            self.remark(format!(
+                "{}{count} corners have texture coordinates that do not exist: their faces have their colours",
+                error.place
+            ));
+        }
+        if let Some((count, first)) = self.invalid_coordinates.0 {
+            self.remark(format!(
+                "{first}{count} texture coordinates are no finite numbers: they are 0"
             ));
         }
         if let Some((count, first)) = self.skipped_faces.0 {
@@ -240,6 +354,18 @@ impl Polygons {
             .count()
     }
 
+    /// Returns the number of corners whose texture coordinates did not exist.
+    fn remove_missing_coordinates(&mut self) -> usize {
+        let count = self.coordinates.len();
+        let corners = self.corners.iter_mut();
+        let missing = corners.filter(|corner| {
+            corner.coordinates != Corner::NO_COORDINATES && corner.coordinates as usize >= count
+        });
+        missing
+            .map(|corner| corner.coordinates = Corner::NO_COORDINATES)
+            .count()
+    }
+
     /// The corners of a face.
     pub fn corners_of(&self, face: &Face) -> &[Corner] {
         &self.corners[face.first as usize..][..face.count as usize]
@@ -257,9 +383,9 @@ impl Polygons {
 }
 
 /// Appends a vector to a list that holds at most [`MAX_POINTS`], and returns the vector's index.
-fn push(
-    list: &mut Vec<Vector>,
-    vector: Vector,
+fn push<const N: usize>(
+    list: &mut Vec<[f64; N]>,
+    vector: [f64; N],
     name: &str,
     place: Location,
 ) -> Result<u32, FormatError> {

@@ -45,6 +45,9 @@ pub fn add(polygons: &mut Polygons) -> Result<(), FormatError> {
             };
         }
         polygons.add_face(&corners, face.colour, Location::Whole)?;
+        if let Some(back) = polygons.faces.last_mut() {
+            back.texture = face.texture;
+        }
         polygons.faces[number].double_sided = false;
     }
     polygons.remark(format!(

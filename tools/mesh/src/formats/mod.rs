@@ -11,7 +11,7 @@ pub mod write;
 
 use crate::error::{FormatError, InputError, MAX_FILE, USUAL_COORDINATE};
 use crate::polygons::Polygons;
-use std::fs::{File, Metadata};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 use text::BYTE_ORDER_MARK;
@@ -154,18 +154,20 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Returns a reader of auxiliary files in the folder of `path`. A link to a file in another folder is not followed, because a mesh file
-/// from others could then read any file.
+/// Returns a reader of auxiliary files in the folder of `path` and in the folders within it; of a name with a path that does not exist
+/// there, the last part is tried. A link to a file in another folder is not followed, because a mesh file from others could then read any
+/// file.
 pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
     move |name| {
-        let file = path.with_file_name(Path::new(name).file_name()?);
         let folder = Path::new(".").join(path.parent()?).canonicalize().ok()?;
-        let file = file.canonicalize().ok()?;
-        if file.parent() != Some(&folder) {
-            return None;
-        }
-        // Reading a device or a pipe could block, or never end.
-        file.metadata().ok().filter(Metadata::is_file)?;
+        let within = |name: &Path| {
+            let file = folder.join(name).canonicalize().ok()?;
+            // Reading a device or a pipe could block, or never end.
+            let is_file = file.metadata().is_ok_and(|data| data.is_file());
+            (is_file && file.starts_with(&folder)).then_some(file)
+        };
+        let name = Path::new(name);
+        let file = within(name).or_else(|| within(Path::new(name.file_name()?)))?;
         read_file(&file).ok()
     }
 }

@@ -1,26 +1,48 @@
-//! Diffuse colours of a Wavefront material file.
+//! Colours and textures of a Wavefront material file.
 
 use super::text::{Lines, any_number, component};
 use crate::error::{FormatError, quote};
 use crate::polygons::Rgb8;
 use std::collections::HashMap;
 
+/// A material.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Material {
+    /// The diffuse colour (`Kd`).
+    pub colour: Option<Rgb8>,
+    /// The texture of the diffuse colour (`map_Kd`).
+    pub texture: Option<Map>,
+}
+
+/// The texture of a material.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Map {
+    /// The name of its file, which may contain spaces.
+    pub file: Vec<u8>,
+    /// Whether the texels at its sides continue beyond (`-clamp on`); otherwise it repeats.
+    pub is_clamped: bool,
+}
+
 /// Properties of materials that change the picture, and are ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ignored {
-    /// A texture of the diffuse colour (`map_Kd`).
-    pub has_texture: bool,
+    /// Options of a texture other than `-clamp`, except those without effect on its colours.
+    pub has_options: bool,
     /// Transparency: an opacity `d` below 1, a transparency `Tr` above 0, or a texture of either.
     pub is_transparent: bool,
     /// Light from the surface (`Ke`).
     pub has_light: bool,
 }
 
-/// Adds each material's diffuse colour (`Kd`) to the palette; other statements are skipped. Returns the ignored properties, for a remark.
+/// Adds the file's materials with their diffuse colours (`Kd`) and textures (`map_Kd`) to `materials`; other statements are skipped.
+/// Returns the ignored properties, for a remark.
 ///
 /// # Errors
 /// A line is too long, or a `Kd` comes before the first `newmtl` or has no numbers.
-pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<Ignored, FormatError> {
+pub fn parse(
+    text: &[u8],
+    materials: &mut HashMap<Vec<u8>, Material>,
+) -> Result<Ignored, FormatError> {
     let mut name: Option<Vec<u8>> = None;
     let mut ignored = Ignored::default();
     let mut lines = Lines::new(text);
@@ -34,7 +56,7 @@ pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<Ignore
             Some(b"Kd") => {
                 let place = line.place();
                 let name = name
-                    .as_ref()
+                    .clone()
                     .ok_or_else(|| FormatError::new(place, "newmtl before the first Kd", "none"))?;
                 let Some(first) = words.next() else {
                     return Err(FormatError::new(
@@ -48,9 +70,16 @@ pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<Ignore
                 }
                 let red = component(first, place)?;
                 let mut next = || words.next().map_or(Ok(red), |word| component(word, place));
-                palette.insert(name.clone(), Rgb8::from_unit([red, next()?, next()?]));
+                let colour = Rgb8::from_unit([red, next()?, next()?]);
+                materials.entry(name).or_default().colour = Some(colour);
             }
-            Some(b"map_Kd") => ignored.has_texture = true,
+            Some(b"map_Kd") => {
+                let (map, has_options) = map(line.text);
+                ignored.has_options |= has_options;
+                if let Some(name) = &name {
+                    materials.entry(name.clone()).or_default().texture = map;
+                }
+            }
             Some(b"map_d" | b"map_Tr") => ignored.is_transparent = true,
             Some(b"d") => {
                 // The word `-halo` may precede the number.
@@ -70,33 +99,109 @@ pub fn parse(text: &[u8], palette: &mut HashMap<Vec<u8>, Rgb8>) -> Result<Ignore
     Ok(ignored)
 }
 
+/// The texture of a statement: a keyword, options, and the name of a file; `None` without a name. Also returns whether it has options that
+/// change its colours and are ignored.
+fn map(statement: &[u8]) -> (Option<Map>, bool) {
+    let (_, mut rest) = first_word(statement);
+    let mut map = Map::default();
+    let mut is_ignored = false;
+    loop {
+        let (option, after) = first_word(rest);
+        // At least and at most so many words follow an option; those beyond the least are numbers.
+        let (least, most) = match option {
+            b"-clamp" | b"-cc" | b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-texres"
+            | b"-boost" | b"-bm" => (1, 1),
+            b"-mm" => (2, 2),
+            b"-o" | b"-s" | b"-t" => (1, 3),
+            _ => break,
+        };
+        rest = after;
+        let mut first = None;
+        for count in 0..most {
+            let (word, after) = first_word(rest);
+            if count >= least && any_number(word).is_none() {
+                break;
+            }
+            first.get_or_insert(word);
+            rest = after;
+        }
+        match (option, first) {
+            (b"-clamp", Some(word)) => map.is_clamped = word == b"on",
+            // These have no effect on colours between texels of level 0.
+            (b"-cc" | b"-blendu" | b"-blendv" | b"-type" | b"-texres" | b"-boost", _) => {}
+            _ => is_ignored = true,
+        }
+    }
+    map.file = rest.trim_ascii().to_vec();
+    ((!map.file.is_empty()).then_some(map), is_ignored)
+}
+
+/// The first word of a text, and the text after it.
+fn first_word(text: &[u8]) -> (&[u8], &[u8]) {
+    let text = text.trim_ascii_start();
+    let end = text.iter().position(u8::is_ascii_whitespace);
+    text.split_at(end.unwrap_or(text.len()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn colours() {
-        let mut palette = HashMap::new();
+        let mut materials = HashMap::new();
         let ignored = parse(
             b"# c\nnewmtl a\n Kd 1 0.5 0\nnewmtl b\nKd 1\nnewmtl c\nKd spectral x.rfl\n",
-            &mut palette,
+            &mut materials,
         )
         .unwrap();
         assert_eq!(ignored, Ignored::default());
-        assert_eq!(palette.get(&b"a"[..]), Some(&Rgb8([255, 128, 0])));
-        assert_eq!(palette.get(&b"b"[..]), Some(&Rgb8([255, 255, 255])));
-        assert_eq!(palette.len(), 2);
+        let colour = |name: &[u8]| materials.get(name).and_then(|material| material.colour);
+        assert_eq!(colour(b"a"), Some(Rgb8([255, 128, 0])));
+        assert_eq!(colour(b"b"), Some(Rgb8::WHITE));
+        assert_eq!(materials.len(), 2);
         assert_eq!(
-            parse(b"\nKd 1 1 1", &mut palette).unwrap_err().to_string(),
+            parse(b"\nKd 1 1 1", &mut materials)
+                .unwrap_err()
+                .to_string(),
             "line 2: expected newmtl before the first Kd, found none"
         );
-        assert!(parse(b"newmtl a\nKd x", &mut palette).is_err());
+        assert!(parse(b"newmtl a\nKd x", &mut materials).is_err());
+    }
+
+    #[test]
+    fn textures_and_their_options() {
+        for (statement, file, is_clamped, has_options) in [
+            ("map_Kd a.png", "a.png", false, false),
+            (" map_Kd\ta b.png ", "a b.png", false, false),
+            ("map_Kd -clamp on a.png", "a.png", true, false),
+            ("map_Kd -clamp off -cc on 1.png", "1.png", false, false),
+            ("map_Kd -o 1 2 -s 1 1 1 -mm 0 1 a.png", "a.png", false, true),
+            ("map_Kd -s 2 -clamp on 2 b.png", "2 b.png", true, true),
+            ("map_Kd -new a.png", "-new a.png", false, false),
+        ] {
+            let mut materials = HashMap::new();
+            let text = format!("newmtl x\n{statement}\n");
+            let ignored = parse(text.as_bytes(), &mut materials).unwrap();
+            let map = Map {
+                file: file.into(),
+                is_clamped,
+            };
+            assert_eq!(materials[&b"x"[..]].texture, Some(map), "{statement}");
+            assert_eq!(ignored.has_options, has_options, "{statement}");
+        }
+        for statement in ["map_Kd", "map_Kd -clamp", "map_Kd -s 1 1 1", "map_Kd -mm"] {
+            let mut materials = HashMap::new();
+            let text = format!("newmtl x\n{statement}\n");
+            parse(text.as_bytes(), &mut materials).unwrap();
+            assert_eq!(materials[&b"x"[..]].texture, None, "{statement}");
+        }
     }
 
     #[test]
     fn ignored_properties() {
         for (text, expected) in [
-            ("map_Kd x.png", [true, false, false]),
+            ("map_Kd -bm 2 x.png", [true, false, false]),
             ("d 0.5", [false, true, false]),
             ("d -halo 0.5", [false, true, false]),
             ("Tr 0.2", [false, true, false]),
@@ -106,7 +211,7 @@ mod tests {
         ] {
             let text = format!("newmtl x\n{text}\n");
             let found = parse(text.as_bytes(), &mut HashMap::new()).unwrap();
-            let found = [found.has_texture, found.is_transparent, found.has_light];
+            let found = [found.has_options, found.is_transparent, found.has_light];
             assert_eq!(found, expected, "{text}");
         }
     }

@@ -3,12 +3,14 @@
 //! This parser replaces `tobj`, whose errors have no line number, and which accepts NaN and infinity as coordinates and lines of any
 //! length.
 
-use super::mtl::{self, Ignored};
+use super::mtl::{self, Ignored, Map, Material};
 use super::text::{Line, Lines, component, coordinate, vector};
 use crate::error::{FormatError, InputError, Location, MAX_LINE, MAX_REMARKS, quote};
-use crate::polygons::{Corner, Polygons, Rgb8};
+use crate::polygons::{Content, Corner, Polygons, Rgb8, Texture};
+use glint_core::texture::{Filter, Sampler, Wrap};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// Keywords of statements without effect on the drawn surface.
 const IGNORED: &[&[u8]] = &[
@@ -44,7 +46,6 @@ const IGNORED: &[&[u8]] = &[
 
 /// Keywords of statements that other programs draw, and the remark that they are ignored.
 const UNDRAWN: &[(&[&[u8]], &str)] = &[
-    (&[b"vt"], "texture coordinates are ignored (vt)"),
     (&[b"l", b"p"], "points and lines are ignored"),
     (
         &[b"curv", b"curv2", b"surf"],
@@ -52,7 +53,10 @@ const UNDRAWN: &[(&[&[u8]], &str)] = &[
     ),
 ];
 
-/// Reads a material file by name; `None` if it does not exist.
+/// Opacity below which the texels of a picture are transparent. A material file does not state it.
+const CUTOFF: f32 = 0.5;
+
+/// Reads a material file or an image file by name; `None` if it does not exist.
 pub type Materials<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
 /// An error in an OBJ or in its material file.
@@ -71,8 +75,8 @@ impl From<FormatError> for ObjError {
 }
 
 /// Parses an OBJ. Supports faces with any number of corners, indices from the start or (negative) from the end, normals, vertex
-/// colours (`v x y z r g b`, up to 1 or up to 255) and the diffuse colour (`Kd`) of materials. Texture coordinates, lines,
-/// points and curves are skipped.
+/// colours (`v x y z r g b`, up to 1 or up to 255), texture coordinates, and the diffuse colour (`Kd`) and texture (`map_Kd`) of
+/// materials. Lines, points and curves are skipped.
 ///
 /// # Errors
 /// The first violation of the format, with its line.
@@ -122,8 +126,14 @@ struct Reader {
     polygons: Polygons,
     /// Colours of the points as in the file. Whether 1 or 255 means full intensity is known only at the end of the file.
     point_colours: Vec<Option<[f32; 3]>>,
-    palette: HashMap<Vec<u8>, Rgb8>,
+    materials: HashMap<Vec<u8>, Material>,
     colour: Option<Rgb8>,
+    /// Number of the current texture; 0 for none.
+    texture: u8,
+    /// The numbers of the textures that were requested; 0 for one that cannot be read.
+    textures: HashMap<Map, u8>,
+    /// The image files that were requested.
+    pictures: HashMap<Vec<u8>, Option<Arc<Vec<u8>>>>,
     corners: Vec<Corner>,
     /// Unknown keywords that already have a remark.
     skipped: Vec<Vec<u8>>,
@@ -147,7 +157,8 @@ impl Reader {
                 self.polygons.add_normal(normal, place)?;
             }
             b"f" | b"fo" => self.face(&mut words, place)?,
-            b"usemtl" => self.colour = self.palette.get(rest_of(line)).copied(),
+            b"vt" => self.coordinates(&mut words, place)?,
+            b"usemtl" => self.material(rest_of(line), materials)?,
             b"mtllib" => self.library(rest_of(line), materials)?,
             _ if IGNORED.contains(&keyword) => {}
             _ if self.is_undrawn(keyword) => {}
@@ -223,6 +234,83 @@ impl Reader {
         Ok(())
     }
 
+    fn coordinates<'a>(
+        &mut self,
+        words: &mut impl Iterator<Item = &'a [u8]>,
+        place: Location,
+    ) -> Result<(), FormatError> {
+        let expected = "one to three texture coordinates";
+        let first = words
+            .next()
+            .ok_or_else(|| FormatError::new(place, expected, "none"))?;
+        let s = component(first, place)?;
+        let t = words
+            .next()
+            .map_or(Ok(0.0), |word| component(word, place))?;
+        // The origin of the file's coordinates is the lower left corner.
+        self.polygons.add_coordinates([s, 1.0 - t], place)?;
+        Ok(())
+    }
+
+    /// Selects the material of the next faces.
+    fn material(&mut self, name: &[u8], files: &mut Materials) -> Result<(), FormatError> {
+        let material = self.materials.get(name).cloned().unwrap_or_default();
+        self.colour = material.colour;
+        self.texture = match material.texture {
+            None => 0,
+            Some(map) => self.texture(map, files)?,
+        };
+        // Some programs write a black diffuse colour for a material with a texture, and mean the colours of the texture.
+        if self.texture != 0 && self.colour == Some(Rgb8([0; 3])) {
+            self.colour = None;
+        }
+        Ok(())
+    }
+
+    /// The number of a texture, or 0 with a remark if its file cannot be read.
+    fn texture(&mut self, map: Map, files: &mut Materials) -> Result<u8, FormatError> {
+        if let Some(&number) = self.textures.get(&map) {
+            return Ok(number);
+        }
+        let picture = self.pictures.entry(map.file.clone()).or_insert_with(|| {
+            let name = std::str::from_utf8(&map.file).ok()?;
+            let file = files(name).or_else(|| {
+                // A name from another system.
+                name.contains('\\')
+                    .then(|| files(&name.replace('\\', "/")))
+                    .flatten()
+            });
+            file.map(Arc::new)
+        });
+        let number = match picture {
+            Some(picture) => {
+                let wrap = if map.is_clamped {
+                    Wrap::Clamp
+                } else {
+                    Wrap::Repeat
+                };
+                self.polygons.add_texture(Texture {
+                    name: quote(&map.file),
+                    content: Content::Picture(picture.clone()),
+                    sampler: Sampler {
+                        wrap: [wrap; 2],
+                        filter: Filter::Bilinear,
+                    },
+                    cutoff: Some(CUTOFF),
+                })?
+            }
+            None => {
+                self.polygons.remark(format!(
+                    "no image file {} beside the mesh: its faces have their colours",
+                    quote(&map.file)
+                ));
+                0
+            }
+        };
+        self.textures.insert(map, number);
+        Ok(number)
+    }
+
     fn face<'a>(
         &mut self,
         words: &mut impl Iterator<Item = &'a [u8]>,
@@ -242,13 +330,19 @@ impl Reader {
                 .next()
                 .and_then(|part| index(part, self.polygons.points.len()))
                 .ok_or_else(|| expected("a vertex index (1, 2, … or -1, -2, …)"))?;
-            match parts.next() {
-                None | Some(b"") => {}
+            let coordinates = match parts.next() {
+                None | Some(b"") => Corner::NO_COORDINATES,
                 Some(part) => {
-                    // Texture indices have no effect, so their range is not checked.
                     integer(part).ok_or_else(|| expected("a texture index"))?;
+                    // Without a texture they have no effect, so their range is not checked.
+                    if self.texture == 0 {
+                        Corner::NO_COORDINATES
+                    } else {
+                        index(part, self.polygons.coordinates.len())
+                            .unwrap_or(Corner::NO_COORDINATES - 1)
+                    }
                 }
-            }
+            };
             let normal = match parts.next() {
                 None | Some(b"") => Corner::NO_NORMAL,
                 Some(part) => {
@@ -260,9 +354,18 @@ impl Reader {
             if parts.next().is_some() {
                 return Err(expected("at most three indices"));
             }
-            self.corners.push(Corner { point, normal });
+            self.corners.push(Corner {
+                point,
+                normal,
+                coordinates,
+            });
         }
-        self.polygons.add_face(&self.corners, self.colour, place)
+        let faces = self.polygons.faces.len();
+        self.polygons.add_face(&self.corners, self.colour, place)?;
+        for face in &mut self.polygons.faces[faces..] {
+            face.texture = self.texture;
+        }
+        Ok(())
     }
 
     fn library(&mut self, names: &[u8], materials: &mut Materials) -> Result<(), ObjError> {
@@ -282,7 +385,7 @@ impl Reader {
             };
             if let Some(text) = materials(name) {
                 found = true;
-                let ignored = mtl::parse(&text, &mut self.palette)
+                let ignored = mtl::parse(&text, &mut self.materials)
                     .map_err(|error| ObjError::Mtl(error.in_file(name)))?;
                 self.remark_ignored(ignored);
                 if name.as_bytes() == names {
@@ -301,14 +404,14 @@ impl Reader {
 
     fn remark_ignored(&mut self, ignored: Ignored) {
         let Ignored {
-            has_texture,
+            has_options,
             is_transparent,
             has_light,
         } = ignored;
         for (is_ignored, remark) in [
             (
-                has_texture,
-                "textures are ignored: materials have their diffuse colours",
+                has_options,
+                "options of textures other than -clamp are ignored (map_Kd)",
             ),
             (
                 is_transparent,
@@ -401,7 +504,10 @@ mod tests {
     fn normals_and_textures() {
         let polygons = read(&format!("{SQUARE}vn 0 0 1\nvt 0 0\nf 1/1/1 2/1/-1 3//1\n")).unwrap();
         assert!(polygons.corners.iter().all(|c| c.normal == 0));
-        assert_eq!(polygons.remarks, ["texture coordinates are ignored (vt)"]);
+        let without = |c: &Corner| c.coordinates == Corner::NO_COORDINATES;
+        assert!(polygons.corners.iter().all(without));
+        assert_eq!(polygons.coordinates, [[0.0, 1.0]]);
+        assert!(polygons.remarks.is_empty());
     }
 
     #[test]
@@ -412,7 +518,6 @@ mod tests {
         assert_eq!(
             read(&text).unwrap().remarks,
             [
-                "texture coordinates are ignored (vt)",
                 "points and lines are ignored",
                 "curves and free-form surfaces are ignored",
             ]
@@ -478,18 +583,100 @@ mod tests {
         assert!(polygons.remarks.is_empty());
         let polygons = parse(
             format!("mtllib b\n{SQUARE}f 1 2 3\n").as_bytes(),
-            &mut |_| Some(b"newmtl b\nmap_Kd b.png\nd 0.5\nKe 1 1 1\n".to_vec()),
+            &mut |_| Some(b"newmtl b\nmap_Kd -s 2 b.png\nd 0.5\nKe 1 1 1\n".to_vec()),
         );
         assert_eq!(
             polygons.unwrap().remarks,
             [
-                "textures are ignored: materials have their diffuse colours",
+                "options of textures other than -clamp are ignored (map_Kd)",
                 "transparency is ignored: surfaces are opaque",
                 "light from surfaces is ignored (Ke)",
             ]
         );
         let polygons = read(&format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
         assert_eq!(polygons.remarks.len(), 1);
+    }
+
+    const TEXTURED: &str = "vt 0 0\nvt 1 0.25 9\nvt 2\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 2/2 3/-1\n\
+         usemtl c\nf 1/1 2/2 3/3\nusemtl d\nf 1/1 2/2 3/3\nusemtl e\nf 1/1 2 3/9\n";
+
+    #[test]
+    fn textures_of_materials() {
+        let mtl = "newmtl a\nKd 0 0 0\nmap_Kd sub\\a b.png\nnewmtl b\nKd 0 1 0\nmap_Kd -clamp on sub\\a b.png\n\
+                   newmtl c\nKd 1 0 0\nmap_Kd gone.png\nnewmtl d\nKd 0 0 0\nnewmtl e\nmap_Kd sub\\a b.png\n";
+        let mut read = Vec::new();
+        let text = format!("mtllib m\n{SQUARE}{TEXTURED}");
+        let polygons = parse(text.as_bytes(), &mut |name| {
+            read.push(name.to_owned());
+            match name {
+                "m" => Some(mtl.into()),
+                "sub/a b.png" => Some(b"picture".to_vec()),
+                _ => None,
+            }
+        })
+        .unwrap();
+        assert_eq!(read, ["m", "sub\\a b.png", "sub/a b.png", "gone.png"]);
+        assert_eq!(polygons.coordinates, [[0.0, 1.0], [1.0, 0.75], [2.0, 1.0]]);
+        let faces = polygons.faces.iter();
+        let faces: Vec<_> = faces.map(|face| (face.texture, face.colour)).collect();
+        let [black, red, green] = [[0, 0, 0], [255, 0, 0], [0, 255, 0]].map(|rgb| Some(Rgb8(rgb)));
+        assert_eq!(
+            faces,
+            [(1, None), (2, green), (0, red), (0, black), (1, None)]
+        );
+        let wraps = polygons.textures.iter().map(|one| one.sampler.wrap[0]);
+        assert_eq!(wraps.collect::<Vec<_>>(), [Wrap::Repeat, Wrap::Clamp]);
+        let coordinates: Vec<u32> = polygons.corners.iter().map(|c| c.coordinates).collect();
+        let none = Corner::NO_COORDINATES;
+        assert_eq!(coordinates[..6], [0, 1, 2, 0, 1, 2]);
+        assert_eq!(
+            coordinates[6..],
+            [[none; 6], [0, none, none, 0, 0, 0]].as_flattened()[..9]
+        );
+        assert_eq!(
+            polygons.remarks,
+            [
+                "no image file 'gone.png' beside the mesh: its faces have their colours",
+                "line 18: 1 corners have texture coordinates that do not exist: their faces have their colours",
+            ]
+        );
+    }
+
+    #[test]
+    fn texture_coordinates_that_are_no_numbers() {
+        let text = format!("{SQUARE}vt nan 0\nvt 0 inf\nvt 1e300 -1e300\nf 1 2 3\n");
+        let polygons = read(&text).unwrap();
+        assert_eq!(
+            polygons.coordinates,
+            [[0.0, 1.0], [0.0, 0.0], [1e300, 1e300]]
+        );
+        let remark = "line 5: 2 texture coordinates are no finite numbers: they are 0";
+        assert_eq!(polygons.remarks, [remark]);
+        assert_eq!(
+            error("vt\n"),
+            "line 1: expected one to three texture coordinates, found none"
+        );
+        assert_eq!(error("vt 0 x\n"), "line 1: expected a number, found 'x'");
+    }
+
+    #[test]
+    fn more_textures_than_numbers() {
+        let names: Vec<String> = (0..256).map(|i| format!("m{i}")).collect();
+        let material = |name: &String| format!("newmtl {name}\nmap_Kd {name}.png\n");
+        let mtl: String = names.iter().map(material).collect();
+        let uses: String = names
+            .iter()
+            .map(|name| format!("usemtl {name}\nf 1 2 3\n"))
+            .collect();
+        let text = format!("mtllib m\n{SQUARE}{uses}");
+        let parsed = parse(text.as_bytes(), &mut |_| Some(mtl.clone().into_bytes()));
+        let Err(ObjError::Obj(error)) = parsed else {
+            panic!("256 textures are refused");
+        };
+        assert_eq!(
+            error.to_string(),
+            "expected at most 255 textures, found more"
+        );
     }
 
     #[test]
