@@ -3,6 +3,7 @@
 mod back_faces;
 mod order;
 mod rounding;
+mod textures;
 mod winding;
 
 use crate::error::FormatError;
@@ -10,11 +11,14 @@ use crate::normals::NormalSums;
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use crate::triangulate::{self, area_vector, dot, unit};
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex};
-use order::Encoded;
+use glint_core::records::TextureCoordinates;
+use order::{Encoded, Extra};
 use rounding::{ONE, Placing, Rounded, Unusual};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::HashMap;
+use textures::Textures;
+pub use textures::{TextureOptions, TextureReport};
 
 /// Options of a conversion.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,6 +30,8 @@ pub struct Options {
     pub keep_order: bool,
     /// Reverses faces with the wrong winding.
     pub fix_winding: bool,
+    /// The conversion of textures.
+    pub textures: TextureOptions,
 }
 
 /// Report of a conversion.
@@ -61,6 +67,8 @@ pub struct Report {
     pub error_max_lsb: f64,
     /// `error_rms` in units of 2^-14.
     pub error_rms_lsb: f64,
+    /// The textures of the mesh.
+    pub textures: Vec<TextureReport>,
     /// Remarks for the user, such as a warning that the file may be damaged.
     pub remarks: Vec<String>,
 }
@@ -68,7 +76,7 @@ pub struct Report {
 /// Converts polygons with checked indices to the board's memory layout.
 ///
 /// # Errors
-/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
+/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large, also with its textures.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
     let unusual = Unusual::of(polygons).filter(|_| !options.keep_scale);
     let polygons = &*prepared(polygons, options, unusual)?;
@@ -81,13 +89,23 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
             format!("only degenerate ones ({degenerate})"),
         ));
     }
-    let (vertices, indexed) = index(polygons, &rounded, &triangles);
-    let in_file_order = Encoded::new(&vertices, &indexed)?;
+    let textures = Textures::of(polygons, &options.textures)?;
+    let Indexed {
+        vertices,
+        coordinates,
+        triangles: indexed,
+    } = index(polygons, &rounded, &triangles, &textures);
+    let extra = Extra {
+        coordinates: &coordinates,
+        textures: &textures.encoded,
+    };
+    let in_file_order = Encoded::new(&vertices, &indexed, &extra)?;
     let fetches_before = in_file_order.fetches;
     let ordered = if options.keep_order {
         None
     } else {
-        let encoded = Encoded::new(&vertices, &order::for_cache(vertices.len(), &indexed))?;
+        let ordered = order::for_cache(vertices.len(), &indexed);
+        let encoded = Encoded::new(&vertices, &ordered, &extra)?;
         (encoded.fetches < fetches_before).then_some(encoded)
     };
     let Encoded { bytes, fetches } = ordered.unwrap_or(in_file_order);
@@ -110,7 +128,11 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         error_rms: rounded.error_rms,
         error_max_lsb: rounded.error_max * ONE,
         error_rms_lsb: rounded.error_rms * ONE,
-        remarks: polygons.remarks.iter().cloned().chain(crossing).collect(),
+        textures: textures.reports,
+        remarks: (polygons.remarks.iter().cloned())
+            .chain(crossing)
+            .chain(textures.remarks)
+            .collect(),
     };
     Ok((bytes, report))
 }
@@ -164,7 +186,8 @@ pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatErro
 struct FlatTriangle {
     corners: [Corner; 3],
     normal: Vector,
-    colour: Option<Rgb8>,
+    /// Index of its face.
+    face: usize,
 }
 
 /// Returns all triangles with a non-zero area after rounding, the number of triangles of area 0, and a remark on faces that cross
@@ -183,7 +206,7 @@ fn flat_triangles(
                 Some(normal) => triangles.push(FlatTriangle {
                     corners,
                     normal,
-                    colour: face.colour,
+                    face: number,
                 }),
                 None => degenerate += 1,
             }
@@ -242,12 +265,21 @@ fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Optio
     )
 }
 
+/// The vertices of a mesh, and its triangles as indices of vertices.
+struct Indexed {
+    vertices: Vec<Vertex>,
+    /// The texture coordinates of the vertices, in the board's memory layout; empty without textures.
+    coordinates: Vec<u8>,
+    triangles: Vec<IndexedTriangle>,
+}
+
 /// Returns the mesh's unique vertices, and its triangles as indices of vertices.
 fn index(
     polygons: &Polygons,
     rounded: &Rounded,
     triangles: &[FlatTriangle],
-) -> (Vec<Vertex>, Vec<IndexedTriangle>) {
+    textures: &Textures,
+) -> Indexed {
     let mut smooth = NormalSums::new(rounded.positions.len());
     for triangle in triangles {
         let numbers = triangle
@@ -260,9 +292,17 @@ fn index(
         );
     }
     let mut vertices = Vec::new();
+    let mut coordinates = Vec::new();
     let mut numbers: HashMap<VertexKey, u32> = HashMap::new();
     let mut indexed = Vec::with_capacity(triangles.len());
     for triangle in triangles {
+        let face = &polygons.faces[triangle.face];
+        let texture = textures.number(polygons, face);
+        let no_colour = if texture == 0 {
+            Rgb8::DEFAULT
+        } else {
+            Rgb8::WHITE
+        };
         let indices = triangle.corners.map(|corner| {
             let given = polygons
                 .normals
@@ -272,43 +312,58 @@ fn index(
             let normal = given
                 .or_else(|| smooth.at(rounded.number(corner) as usize))
                 .unwrap_or(triangle.normal);
+            let colour = point_colour(polygons, corner).or(face.colour);
             let vertex = Vertex {
                 position: rounded.position(corner),
                 normal: direction(normal),
-                colour: rgb565(point_colour(polygons, corner).or(triangle.colour)),
+                colour: rgb565(colour.unwrap_or(no_colour)),
+            };
+            let [s, t] = if texture == 0 {
+                [0; 2]
+            } else {
+                textures.coordinates(polygons, triangle.face, corner)
             };
             *numbers
-                .entry(VertexKey(vertex.position, vertex.normal, vertex.colour))
+                .entry(VertexKey(
+                    vertex.position,
+                    vertex.normal,
+                    vertex.colour,
+                    [s, t],
+                ))
                 .or_insert_with(|| {
                     vertices.push(vertex);
+                    if !textures.encoded.is_empty() {
+                        coordinates.extend(TextureCoordinates { s, t }.to_bytes());
+                    }
                     (vertices.len() - 1) as u32
                 })
         });
+        let colour = (face.colour).or_else(|| mean_colour(polygons, triangle.corners));
         indexed.push(IndexedTriangle {
             indices,
-            colour: rgb565(
-                triangle
-                    .colour
-                    .or_else(|| mean_colour(polygons, triangle.corners)),
-            ),
+            colour: rgb565(colour.unwrap_or(no_colour)),
             normal: direction(triangle.normal),
-            texture: 0,
+            texture,
         });
     }
-    (vertices, indexed)
+    Indexed {
+        vertices,
+        coordinates,
+        triangles: indexed,
+    }
 }
 
-/// Position, normal and colour of a vertex. Equal vertices become one vertex of the mesh.
+/// Position, normal, colour and texture coordinates of a vertex. Equal vertices become one vertex of the mesh.
 #[derive(PartialEq, Eq, Hash)]
-struct VertexKey([i16; 3], [i16; 3], Rgb565);
+struct VertexKey([i16; 3], [i16; 3], Rgb565, [i32; 2]);
 
 /// Rounds a unit vector to Q2.14, to nearest.
 fn direction(unit: Vector) -> [i16; 3] {
     unit.map(|c| (c * ONE + 0.5).floor() as i16)
 }
 
-fn rgb565(colour: Option<Rgb8>) -> Rgb565 {
-    Rgb565::from_rgb888(colour.unwrap_or(Rgb8::DEFAULT).0)
+fn rgb565(colour: Rgb8) -> Rgb565 {
+    Rgb565::from_rgb888(colour.0)
 }
 
 fn point_colour(polygons: &Polygons, corner: Corner) -> Option<Rgb8> {
@@ -350,6 +405,12 @@ mod tests {
         keep_scale: true,
         keep_order: false,
         fix_winding: false,
+        textures: TextureOptions {
+            left_out: false,
+            format: None,
+            largest_side: 1024,
+            filter: None,
+        },
     };
 
     #[test]

@@ -6,7 +6,7 @@ use crate::options::{MAX_SIDE, MIN_SIDE, Options, format_name};
 use crate::palette::{Nearest, palette};
 use crate::picture::Picture;
 use glint_core::colour::Rgb565;
-use glint_core::texture::{Format, Source, encode};
+use glint_core::texture::{Format, Source, Texture, TextureHeader, encode};
 use serde::Serialize;
 
 /// Report of a conversion.
@@ -18,7 +18,7 @@ pub struct Report {
     pub size: [u32; 2],
     /// The representation of the texels.
     pub format: &'static str,
-    /// Number of colours in the palette; 0 without a palette.
+    /// Number of colours in the palette that the conversion uses; 0 without a palette.
     pub colours: usize,
     /// Number of mip levels.
     pub levels: usize,
@@ -127,6 +127,24 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
         remarks,
     };
     Ok((bytes, report))
+}
+
+/// The report on a texture that is kept as it is.
+pub fn kept(texture: &Texture) -> Report {
+    let header = texture.bytes().first_chunk().map(TextureHeader::from_bytes);
+    let size = texture.size_log2().map(|side| 1 << side);
+    Report {
+        picture: size,
+        size,
+        format: format_name(texture.format()),
+        colours: texture.format().colours(),
+        levels: texture.levels() as usize,
+        cut_out: header.is_some_and(|header| header.cut_out != 0),
+        bytes: texture.bytes().len(),
+        error_rms: 0.0,
+        error_max: 0.0,
+        remarks: Vec::new(),
+    }
 }
 
 /// Base-2 logarithm of the power of two from [`MIN_SIDE`] to `largest` that has the smallest ratio to a side.
@@ -238,7 +256,7 @@ fn errors(
 mod tests {
     use super::*;
     use crate::sheet::sheet;
-    use glint_core::texture::{Sampler, Texture, TextureHeader, Wrap, checksum};
+    use glint_core::texture::{Sampler, Wrap, checksum};
 
     fn picture(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
         let [width, height] = size;

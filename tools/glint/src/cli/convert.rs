@@ -121,6 +121,7 @@ impl ConvertArguments {
             keep_scale: self.keep_scale,
             keep_order: self.keep_order,
             fix_winding: self.fix_winding,
+            ..Options::default()
         };
         convert_to(
             polygons,

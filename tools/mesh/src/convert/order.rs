@@ -2,7 +2,7 @@
 
 use crate::error::FormatError;
 use crate::formats::glm;
-use glint_core::mesh::{self, IndexedTriangle, Vertex};
+use glint_core::mesh::{self, Attribute, IndexedTriangle, Vertex};
 use glint_model::triangle::vertex_cache;
 
 /// A mesh in the board's memory layout, with the number of vertices that the engine fetches for it.
@@ -13,17 +13,42 @@ pub struct Encoded {
     pub fetches: u32,
 }
 
+/// Parts of a mesh beyond vertices and triangles.
+#[derive(Default)]
+pub struct Extra<'a> {
+    /// The texture coordinates of the vertices in the board's memory layout; empty if the mesh has none.
+    pub coordinates: &'a [u8],
+    /// The textures in the board's memory layout.
+    pub textures: &'a [Vec<u8>],
+}
+
 impl Encoded {
     /// Encodes triangles in the order given, and in each chunk the vertices in the order of their first use.
     ///
     /// # Errors
     /// The mesh is too large.
-    pub fn new(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Self, FormatError> {
-        let bytes = mesh::encode(vertices, triangles).map_err(|error| match error {
-            mesh::EncodeError::TooLarge => FormatError::whole(
-                format!("a mesh of at most {} bytes", mesh::MAX_BYTES),
-                "more",
-            ),
+    pub fn new(
+        vertices: &[Vertex],
+        triangles: &[IndexedTriangle],
+        extra: &Extra,
+    ) -> Result<Self, FormatError> {
+        let attributes = [(Attribute::TextureCoordinates, extra.coordinates)];
+        let attributes = if extra.coordinates.is_empty() {
+            &[][..]
+        } else {
+            &attributes
+        };
+        let encoded = mesh::encode_with(vertices, triangles, attributes, extra.textures);
+        let bytes = encoded.map_err(|error| match error {
+            mesh::EncodeError::TooLarge => {
+                let expected = format!("a mesh of at most {} bytes", mesh::MAX_BYTES);
+                let textures: usize = extra.textures.iter().map(Vec::len).sum();
+                let found = match textures {
+                    0 => "more".into(),
+                    _ => format!("more, {textures} of them for textures"),
+                };
+                FormatError::whole(expected, found)
+            }
             other => FormatError::whole("a mesh", other.to_string()),
         })?;
         let fetches = vertex_cache::fetches(&glm::check(&bytes)?);
@@ -195,9 +220,13 @@ mod tests {
         let (vertices, mut triangles) = grid(150);
         triangles.sort_by_key(|triangle| triangle.indices[0] % 151);
         triangles.sort_by_key(|triangle| triangle.colour.0 % 7);
-        let before = Encoded::new(&vertices, &triangles).unwrap().fetches;
+        let before = Encoded::new(&vertices, &triangles, &Extra::default())
+            .unwrap()
+            .fetches;
         let ordered = for_cache(vertices.len(), &triangles);
-        let after = Encoded::new(&vertices, &ordered).unwrap().fetches;
+        let after = Encoded::new(&vertices, &ordered, &Extra::default())
+            .unwrap()
+            .fetches;
         let count = vertices.len() as u32;
         assert!(
             before > 3 * count && after < count + count / 50,

@@ -1,10 +1,12 @@
 //! Conversion of GLM, Glint's own mesh format, to polygons.
 
 use crate::error::{FormatError, Location};
-use crate::polygons::{Corner, Polygons, Rgb8};
-use glint_core::mesh::{Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
+use crate::polygons::{Content, Corner, MAX_TEXTURES, Polygons, Rgb8, Texture};
+use glint_core::mesh::{Attribute, Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
+use glint_core::records::TextureCoordinates;
 
-/// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are merged.
+/// Parses a GLM. Positions, normals and texture coordinates are converted exactly, colours by bit replication. The chunks of the mesh are
+/// merged. Textures are kept.
 ///
 /// # Errors
 /// Those of [`check_file`], or the mesh has no triangles.
@@ -13,6 +15,20 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
     let rgb8 = |colour: Rgb565| Rgb8(colour.to_rgb888());
     let mut polygons = Polygons::default();
+    for (number, texture) in (1..=MAX_TEXTURES).zip(mesh.textures()) {
+        polygons.add_texture(Texture {
+            name: number.to_string(),
+            content: Content::Board(texture.bytes().to_vec()),
+            sampler: texture.sampler(),
+            cutoff: None,
+        })?;
+    }
+    let coordinates = mesh.attribute(Attribute::TextureCoordinates);
+    for element in coordinates.unwrap_or_default().as_chunks().0 {
+        let TextureCoordinates { s, t } = TextureCoordinates::from_bytes(element);
+        let coordinates = [s, t].map(|c| f64::from(c) / 65536.0);
+        polygons.add_coordinates(coordinates, Location::Whole)?;
+    }
     for chunk in mesh.chunks() {
         let first = polygons.points.len() as u32;
         for vertex in chunk.vertices() {
@@ -21,15 +37,22 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
             polygons.point_colours.push(rgb8(vertex.colour));
         }
         for triangle in chunk.triangles() {
-            let corner = |index| Corner {
-                normal: first + u32::from(index),
-                ..Corner::at(first + u32::from(index))
+            let corner = |index| {
+                let vertex = first + u32::from(index);
+                Corner {
+                    point: vertex,
+                    normal: vertex,
+                    coordinates: coordinates.map_or(Corner::NO_COORDINATES, |_| vertex),
+                }
             };
             polygons.add_face(
                 &triangle.indices.map(corner),
                 Some(rgb8(triangle.colour)),
                 Location::Whole,
             )?;
+            if let Some(face) = polygons.faces.last_mut() {
+                face.texture = triangle.texture;
+            }
         }
     }
     polygons.finish()?;

@@ -1,0 +1,562 @@
+//! The textures of a mesh for boards, and the texture coordinates of its faces.
+
+use crate::error::{FormatError, MAX_REMARKS};
+use crate::polygons::{Content, Corner, Face, Polygons, Texture};
+use glint_core::mesh::MAX_BYTES;
+use glint_core::texture::{self, Filter, Format, Sampler, Wrap};
+use glint_texture::convert::{Report, convert, kept};
+use glint_texture::error::PictureError;
+use glint_texture::options::{MAX_SIDE, Options};
+use glint_texture::picture::Picture;
+use glint_texture::sheet::largest_level;
+use serde::Serialize;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// One in s16.16.
+const ONE: f64 = 65536.0;
+/// Opacity between those of opaque and transparent texels of a board's texture.
+const HALF: f32 = 0.5;
+
+/// Options of the conversion of textures.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureOptions {
+    /// Leaves textures out: faces have their colours.
+    pub left_out: bool,
+    /// The representation of texels; `None`: RGB565, and a texture in a board's memory layout keeps its own.
+    pub format: Option<Format>,
+    /// The largest side.
+    pub largest_side: u32,
+    /// The colour between texels; `None`: as the file states it.
+    pub filter: Option<Filter>,
+}
+
+impl Default for TextureOptions {
+    fn default() -> Self {
+        Self {
+            left_out: false,
+            format: None,
+            largest_side: MAX_SIDE,
+            filter: None,
+        }
+    }
+}
+
+/// Report on a texture.
+#[derive(Clone, Debug, Serialize)]
+pub struct TextureReport {
+    /// The name of its file, or its number in the file of the mesh.
+    pub name: String,
+    /// Sizes and errors.
+    #[serde(flatten)]
+    pub report: Report,
+}
+
+/// The textures of a mesh that its faces use, for boards.
+#[derive(Default)]
+pub struct Textures {
+    /// For each texture of the file, in order, the number of the board's texture, from 1; 0 for none.
+    numbers: Vec<u8>,
+    /// For each face the repeats of the texture that its coordinates leave out; empty without textures.
+    bases: Vec<[f64; 2]>,
+    /// The textures in the board's memory layout.
+    pub encoded: Vec<Vec<u8>>,
+    /// Reports on the textures.
+    pub reports: Vec<TextureReport>,
+    /// Remarks for the user, at most [`MAX_REMARKS`].
+    pub remarks: Vec<String>,
+}
+
+impl Textures {
+    /// Converts the textures that faces use, and prepares their coordinates. A picture that cannot be used has a remark, and the faces
+    /// keep their colours.
+    ///
+    /// # Errors
+    /// The textures exceed [`MAX_BYTES`].
+    pub fn of(polygons: &Polygons, options: &TextureOptions) -> Result<Self, FormatError> {
+        let mut textures = Self::default();
+        if options.left_out || polygons.textures.is_empty() {
+            return Ok(textures);
+        }
+        textures.numbers = vec![0; polygons.textures.len()];
+        let mut is_used = vec![false; polygons.textures.len()];
+        let mut without = 0;
+        for face in &polygons.faces {
+            let Some(is_used) = place(face).and_then(|i| is_used.get_mut(i)) else {
+                continue;
+            };
+            if has_coordinates(polygons, face) {
+                *is_used = true;
+            } else {
+                without += 1;
+            }
+        }
+        if without > 0 {
+            textures.remark(format!(
+                "{without} faces have a texture and no texture coordinates: they have their colours"
+            ));
+        }
+        let mut last = None;
+        let mut bytes = 0;
+        let used = polygons.textures.iter().zip(is_used).enumerate();
+        for (i, (texture, _)) in used.filter(|(_, (_, is_used))| *is_used) {
+            match encode(texture, options, &mut last) {
+                Ok((encoded, report)) => {
+                    bytes += encoded.len();
+                    if bytes > MAX_BYTES as usize {
+                        return Err(FormatError::whole(
+                            format!("textures of at most {MAX_BYTES} bytes together"),
+                            "more: --texture-size and --palette make them smaller",
+                        ));
+                    }
+                    textures.encoded.push(encoded);
+                    textures.reports.push(TextureReport {
+                        name: texture.name.clone(),
+                        report,
+                    });
+                    textures.numbers[i] = textures.encoded.len() as u8;
+                }
+                Err(error) => textures.remark(format!(
+                    "texture {}: {error}: its faces have their colours",
+                    texture.name
+                )),
+            }
+        }
+        if !textures.encoded.is_empty() {
+            textures.bases = bases(polygons, &textures);
+            textures.remark_beyond(polygons);
+        }
+        Ok(textures)
+    }
+
+    /// The number of the board's texture of a face; 0 for none.
+    pub fn number(&self, polygons: &Polygons, face: &Face) -> u8 {
+        let number = place(face).and_then(|i| self.numbers.get(i)).copied();
+        number
+            .filter(|_| has_coordinates(polygons, face))
+            .unwrap_or(0)
+    }
+
+    /// The coordinates s and t of a corner of the face with this index, s16.16, rounded to nearest and saturated; 0 without coordinates.
+    pub fn coordinates(&self, polygons: &Polygons, face: usize, corner: Corner) -> [i32; 2] {
+        let Some(base) = self.bases.get(face) else {
+            return [0; 2];
+        };
+        let coordinates = polygons.coordinates.get(corner.coordinates as usize);
+        coordinates.map_or([0; 2], |coordinates| {
+            // The conversion saturates.
+            [0, 1].map(|axis| ((coordinates[axis] - base[axis]) * ONE).round() as i32)
+        })
+    }
+
+    /// A remark on coordinates that exceed s16.16.
+    fn remark_beyond(&mut self, polygons: &Polygons) {
+        let faces = polygons.faces.iter().enumerate();
+        let faces = faces.filter(|(_, face)| self.number(polygons, face) != 0);
+        let beyond = faces.filter(|&(number, face)| {
+            let corners = polygons.corners_of(face).iter();
+            let mut all = corners.flat_map(|&c| self.coordinates(polygons, number, c));
+            all.any(|c| c == i32::MIN || c == i32::MAX)
+        });
+        let count = beyond.count();
+        if count > 0 {
+            self.remark(format!(
+                "{count} faces have texture coordinates beyond 32768 repeats, which are limited to this"
+            ));
+        }
+    }
+
+    fn remark(&mut self, remark: String) {
+        if self.remarks.len() < MAX_REMARKS {
+            self.remarks.push(remark);
+        }
+    }
+}
+
+/// Index of a face's texture; `None` for a face without one.
+fn place(face: &Face) -> Option<usize> {
+    usize::from(face.texture).checked_sub(1)
+}
+
+fn has_coordinates(polygons: &Polygons, face: &Face) -> bool {
+    let mut corners = polygons.corners_of(face).iter();
+    corners.all(|corner| corner.coordinates != Corner::NO_COORDINATES)
+}
+
+/// Converts a texture. `last` is the picture that was decoded last, which several textures can show.
+fn encode(
+    texture: &Texture,
+    options: &TextureOptions,
+    last: &mut Option<(Arc<Vec<u8>>, Picture)>,
+) -> Result<(Vec<u8>, Report), PictureError> {
+    let sampler = Sampler {
+        filter: options.filter.unwrap_or(texture.sampler.filter),
+        ..texture.sampler
+    };
+    let converted = |picture: &Picture, format, cutoff| {
+        let options = Options {
+            format,
+            largest_side: options.largest_side,
+            sampler,
+            cutoff,
+        };
+        convert(picture, &options)
+    };
+    match &texture.content {
+        Content::Picture(file) => {
+            if !matches!(last, Some((known, _)) if Arc::ptr_eq(known, file)) {
+                *last = Some((file.clone(), Picture::decode(file)?));
+            }
+            let Some((_, picture)) = last else {
+                return Err(PictureError::new("a picture", "none"));
+            };
+            converted(picture, options.format.unwrap_or_default(), texture.cutoff)
+        }
+        Content::Board(bytes) => {
+            let board = texture::Texture::new_checked(bytes);
+            let board = board.map_err(|error| PictureError::new("a texture", error.to_string()))?;
+            let format = options.format.unwrap_or(board.format());
+            let is_small = (board.size_log2().iter()).all(|side| 1 << side <= options.largest_side);
+            if format == board.format() && is_small && sampler == board.sampler() {
+                return Ok((bytes.clone(), kept(&board)));
+            }
+            converted(&largest_level(&board), format, Some(HALF))
+        }
+    }
+}
+
+/// For each face with a texture the repeats that its coordinates leave out: the even number below the smallest coordinate of all faces
+/// with this texture that are connected by equal coordinates, so that they still share vertices. Two repeats are a period of a
+/// mirrored texture. A clamped one keeps its coordinates.
+fn bases(polygons: &Polygons, textures: &Textures) -> Vec<[f64; 2]> {
+    let mut entries: HashMap<(u8, [u64; 2]), u32> = HashMap::new();
+    let mut sets = Sets::default();
+    let mut least: Vec<[f64; 2]> = Vec::new();
+    let first_of: Vec<Option<u32>> = polygons
+        .faces
+        .iter()
+        .map(|face| {
+            if textures.number(polygons, face) == 0 {
+                return None;
+            }
+            let mut first = None;
+            for corner in polygons.corners_of(face) {
+                let coordinates = polygons.coordinates[corner.coordinates as usize];
+                // −0 becomes +0.
+                let key = (face.texture, coordinates.map(|c| (c + 0.0).to_bits()));
+                let entry = *entries.entry(key).or_insert_with(|| {
+                    least.push(coordinates);
+                    sets.add()
+                });
+                sets.join(entry, *first.get_or_insert(entry));
+            }
+            first
+        })
+        .collect();
+    for entry in 0..least.len() as u32 {
+        let of_entry = least[entry as usize];
+        let of_set = &mut least[sets.find(entry) as usize];
+        for (least, c) in of_set.iter_mut().zip(of_entry) {
+            *least = least.min(c);
+        }
+    }
+    let faces = polygons.faces.iter().zip(first_of);
+    faces
+        .map(|(face, first)| {
+            let texture = place(face).and_then(|i| polygons.textures.get(i));
+            let (Some(first), Some(texture)) = (first, texture) else {
+                return [0.0; 2];
+            };
+            let least = least[sets.find(first) as usize];
+            [0, 1].map(|axis| match texture.sampler.wrap[axis] {
+                Wrap::Clamp => 0.0,
+                Wrap::Repeat | Wrap::Mirror => 2.0 * (least[axis] / 2.0).floor(),
+            })
+        })
+        .collect()
+}
+
+/// Disjoint sets of numbers.
+#[derive(Default)]
+struct Sets(Vec<u32>);
+
+impl Sets {
+    /// Adds a set with the next number.
+    fn add(&mut self) -> u32 {
+        let number = self.0.len() as u32;
+        self.0.push(number);
+        number
+    }
+
+    /// The number that stands for a number's set.
+    fn find(&mut self, mut number: u32) -> u32 {
+        while self.0[number as usize] != number {
+            let above = self.0[self.0[number as usize] as usize];
+            self.0[number as usize] = above;
+            number = above;
+        }
+        number
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        // The lower number stays, so that the result does not depend on the order.
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Options, convert};
+    use super::*;
+    use crate::error::Location;
+    use crate::formats::glm;
+    use glint_core::colour::Rgb565;
+    use glint_core::mesh::{Attribute, Mesh};
+    use glint_core::records::TextureCoordinates;
+    use std::fmt::Write;
+
+    /// A picture of 8×8 as a PNG file.
+    fn png(opacity: u8) -> Arc<Vec<u8>> {
+        let texels = (0..64).map(|i| [4 * i, 255, 0, if i % 2 == 0 { opacity } else { 255 }]);
+        let picture = Picture {
+            size: [8, 8],
+            texels: texels.collect(),
+        };
+        Arc::new(picture.png().unwrap())
+    }
+
+    fn texture(file: &Arc<Vec<u8>>, wrap: Wrap) -> Texture {
+        Texture {
+            name: "'a.png'".into(),
+            content: Content::Picture(file.clone()),
+            sampler: Sampler {
+                wrap: [wrap; 2],
+                ..Sampler::default()
+            },
+            cutoff: Some(HALF),
+        }
+    }
+
+    /// A square of two triangles, with these coordinates and this texture.
+    fn square(coordinates: [[f64; 2]; 4], texture: Texture) -> Polygons {
+        let mut polygons = Polygons::default();
+        for point in [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] {
+            polygons.add_point(point, Location::Whole).unwrap();
+        }
+        for coordinates in coordinates {
+            polygons
+                .add_coordinates(coordinates, Location::Whole)
+                .unwrap();
+        }
+        let number = polygons.add_texture(texture).unwrap();
+        for corners in [[0, 1, 2], [0, 2, 3]] {
+            let corners = corners.map(|i| Corner {
+                coordinates: i,
+                ..Corner::at(i)
+            });
+            polygons.add_face(&corners, None, Location::Whole).unwrap();
+        }
+        for face in &mut polygons.faces {
+            face.texture = number;
+        }
+        polygons.finish().unwrap();
+        polygons
+    }
+
+    const UNIT: [[f64; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+
+    fn coordinates_of(mesh: &Mesh) -> Vec<[i32; 2]> {
+        let elements = mesh.attribute(Attribute::TextureCoordinates).unwrap();
+        let elements = elements.as_chunks().0.iter();
+        let elements = elements.map(TextureCoordinates::from_bytes);
+        elements.map(|element| [element.s, element.t]).collect()
+    }
+
+    #[test]
+    fn a_textured_square() {
+        let polygons = square(UNIT, texture(&png(0), Wrap::Repeat));
+        let (bytes, report) = convert(&polygons, Options::default()).unwrap();
+        let mesh = glm::check_file(&bytes).unwrap();
+        assert_eq!((report.vertices, report.triangles), (4, 2));
+        let one = 1 << 16;
+        let mut found = coordinates_of(&mesh);
+        found.sort_unstable();
+        assert_eq!(found, [[0, 0], [0, one], [one, 0], [one, one]]);
+        let chunk = mesh.chunks().next().unwrap();
+        assert!(
+            chunk
+                .triangles()
+                .all(|t| t.texture == 1 && t.colour == Rgb565::WHITE)
+        );
+        assert!(chunk.vertices().all(|v| v.colour == Rgb565::WHITE));
+        let [found] = &mesh.textures().collect::<Vec<_>>()[..] else {
+            panic!("one texture");
+        };
+        assert_eq!(found.colour(0, [0, 0]), None);
+        assert_eq!(
+            found.colour(0, [1, 0]),
+            Some(Rgb565::from_rgb888([4, 255, 0]))
+        );
+        let [stated] = &report.textures[..] else {
+            panic!("one report");
+        };
+        assert_eq!(
+            (stated.name.as_str(), stated.report.size),
+            ("'a.png'", [8, 8])
+        );
+        assert_eq!(report.bytes, bytes.len());
+    }
+
+    #[test]
+    fn without_textures_the_mesh_is_as_before() {
+        let file = png(0);
+        let left_out = Options {
+            textures: TextureOptions {
+                left_out: true,
+                ..TextureOptions::default()
+            },
+            ..Options::default()
+        };
+        let textured = square(UNIT, texture(&file, Wrap::Repeat));
+        let mut plain = textured.clone();
+        plain.faces.iter_mut().for_each(|face| face.texture = 0);
+        plain.textures.clear();
+        let expected = convert(&plain, Options::default()).unwrap().0;
+        assert!(convert(&textured, left_out).unwrap().0 == expected);
+        // A broken picture, and a corner without coordinates.
+        let broken = square(UNIT, texture(&Arc::new(file[..40].to_vec()), Wrap::Repeat));
+        let (bytes, report) = convert(&broken, Options::default()).unwrap();
+        assert!(bytes == expected);
+        let [remark] = &report.remarks[..] else {
+            panic!("one remark");
+        };
+        assert!(
+            remark.starts_with("texture 'a.png': expected a PNG file without damage, found "),
+            "{remark}"
+        );
+        let mut partly = textured.clone();
+        for corner in &mut partly.corners {
+            corner.coordinates = Corner::NO_COORDINATES;
+        }
+        let (bytes, report) = convert(&partly, Options::default()).unwrap();
+        assert!(bytes == expected);
+        assert_eq!(
+            report.remarks,
+            ["2 faces have a texture and no texture coordinates: they have their colours"]
+        );
+    }
+
+    #[test]
+    fn whole_repeats_are_left_out_where_they_repeat() {
+        let file = png(255);
+        let found = |offset: f64, wrap| {
+            let moved = UNIT.map(|coordinates| coordinates.map(|c| c / 4.0 + offset));
+            let polygons = square(moved, texture(&file, wrap));
+            let (bytes, report) = convert(&polygons, Options::default()).unwrap();
+            let mesh = glm::check(&bytes).unwrap();
+            assert_eq!(mesh.vertex_count(), 4);
+            let found = coordinates_of(&mesh);
+            let least = found.iter().flatten().min().copied();
+            (least.unwrap(), report.remarks)
+        };
+        let one = 1 << 16;
+        for wrap in [Wrap::Repeat, Wrap::Mirror] {
+            for (offset, least) in [(0.0, 0), (0.5, one / 2), (-0.25, 2 * one - one / 4)] {
+                assert_eq!(found(offset, wrap), (least, vec![]), "{offset}");
+            }
+            assert_eq!(found(1e9, wrap), (0, vec![]));
+            assert_eq!(found(1e9 + 1.0, wrap), (one, vec![]));
+        }
+        assert_eq!(found(-0.25, Wrap::Clamp), (-one / 4, vec![]));
+        let limited =
+            "2 faces have texture coordinates beyond 32768 repeats, which are limited to this";
+        assert_eq!(found(1e9, Wrap::Clamp), (i32::MAX, vec![limited.into()]));
+    }
+
+    #[test]
+    fn a_thousand_million_repeats_on_a_face_are_limited() {
+        for c in [1e9, 1e300, f64::MAX] {
+            let coordinates = [[-c, 0.0], [c, 0.0], [c, c], [0.0, c]];
+            let polygons = square(coordinates, texture(&png(255), Wrap::Repeat));
+            let (bytes, report) = convert(&polygons, Options::default()).unwrap();
+            assert!(coordinates_of(&glm::check(&bytes).unwrap()).contains(&[i32::MAX; 2]));
+            assert_eq!(report.remarks.len(), 1);
+        }
+    }
+
+    #[test]
+    fn vertices_are_split_where_coordinates_differ() {
+        let mut polygons = square(UNIT, texture(&png(255), Wrap::Repeat));
+        let seam = polygons
+            .add_coordinates([0.5, 0.5], Location::Whole)
+            .unwrap();
+        // A corner that both triangles have.
+        polygons.corners[0].coordinates = seam;
+        let (_, report) = convert(&polygons, Options::default()).unwrap();
+        assert_eq!(report.vertices, 5);
+        polygons.faces[0].texture = 0;
+        let (_, report) = convert(&polygons, Options::default()).unwrap();
+        // Vertices of the untextured triangle have another colour.
+        assert_eq!(report.vertices, 6);
+    }
+
+    #[test]
+    fn options_and_meshes_in_memory() {
+        let polygons = square(UNIT, texture(&png(0), Wrap::Mirror));
+        let (bytes, _) = convert(&polygons, Options::default()).unwrap();
+        let again = glm::parse(&bytes).unwrap();
+        let (kept, report) = convert(&again, Options::default()).unwrap();
+        assert!(kept == bytes);
+        assert_eq!(report.textures[0].name, "1");
+        let smaller = Options {
+            textures: TextureOptions {
+                format: Some(Format::Palette16),
+                filter: Some(Filter::Bilinear),
+                ..TextureOptions::default()
+            },
+            ..Options::default()
+        };
+        for polygons in [polygons, again] {
+            let (bytes, _) = convert(&polygons, smaller).unwrap();
+            let mesh = glm::check(&bytes).unwrap();
+            let texture = mesh.textures().next().unwrap();
+            assert_eq!(texture.format(), Format::Palette16);
+            assert_eq!(texture.sampler().filter, Filter::Bilinear);
+            assert_eq!(texture.sampler().wrap, [Wrap::Mirror; 2]);
+            assert_eq!(texture.colour(0, [0, 0]), None);
+            assert!(texture.colour(0, [1, 0]).is_some());
+        }
+    }
+
+    #[test]
+    fn only_used_textures_are_kept_and_their_bytes_are_limited() {
+        let large = Picture {
+            size: [1024, 1024],
+            texels: vec![[9; 4]; 1 << 20],
+        };
+        let mut polygons = square(UNIT, texture(&png(255), Wrap::Repeat));
+        let file = Arc::new(large.png().unwrap());
+        for _ in 0..12 {
+            polygons.add_texture(texture(&file, Wrap::Repeat)).unwrap();
+        }
+        let (_, report) = convert(&polygons, Options::default()).unwrap();
+        assert_eq!(report.textures.len(), 1);
+        for number in 2..=13 {
+            let corners: Vec<Corner> = polygons.corners[..3].to_vec();
+            polygons.add_face(&corners, None, Location::Whole).unwrap();
+            polygons.faces.last_mut().unwrap().texture = number;
+        }
+        let mut found = String::new();
+        write!(
+            found,
+            "{}",
+            convert(&polygons, Options::default()).unwrap_err()
+        )
+        .unwrap();
+        assert_eq!(
+            found,
+            "expected textures of at most 33554432 bytes together, found more: --texture-size and --palette make them smaller"
+        );
+    }
+}
