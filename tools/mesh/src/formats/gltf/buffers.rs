@@ -26,7 +26,7 @@ impl<'a> Buffers<'a> {
         for (index, buffer) in root.buffers.iter().enumerate() {
             let bytes = match &buffer.uri {
                 None => Cow::Borrowed(binary),
-                Some(uri) => Cow::Owned(load(uri, beside)?),
+                Some(uri) => Cow::Owned(load(uri, "a buffer", beside)?),
             };
             if bytes.len() < buffer.byte_length {
                 return Err(FormatError::whole(
@@ -65,6 +65,7 @@ impl<'a> Buffers<'a> {
             found if !dimensions.contains(&found) => {
                 return Err(refuse(format!("of {dimensions:?}"), format!("{found:?}")));
             }
+            Dimensions::Vec2 => 2,
             Dimensions::Vec3 => 3,
             Dimensions::Vec4 => 4,
             Dimensions::Scalar | Dimensions::Other => 1,
@@ -103,6 +104,13 @@ impl<'a> Buffers<'a> {
         };
         self.replace_sparse(&mut values, index, accessor)?;
         Ok(values)
+    }
+
+    /// The bytes of a view; `None` if it is not within its buffer.
+    pub fn view(&self, index: Index) -> Option<&[u8]> {
+        let view = self.root.buffer_views.get(index as usize)?;
+        let buffer = self.bytes.get(view.buffer as usize)?;
+        buffer.get(view.byte_offset..)?.get(..view.byte_length)
     }
 
     /// The bytes of `count` values of `size` bytes, from an offset in a view on, and the distance between values.
@@ -185,19 +193,22 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Reads a buffer by its URI: data within the file, or a file in the same folder.
-fn load(uri: &str, beside: Beside) -> Result<Vec<u8>, FormatError> {
-    let refuse = |expected: &str| FormatError::whole(expected, quote(uri.as_bytes()));
+/// Reads a buffer or, by `what`, another part by its URI: data within the file, or a file in the same folder.
+///
+/// # Errors
+/// The data are not in base64, or the file cannot be read.
+pub fn load(uri: &str, what: &str, beside: Beside) -> Result<Vec<u8>, FormatError> {
+    let refuse = |expected: String| FormatError::whole(expected, quote(uri.as_bytes()));
     match uri.strip_prefix("data:") {
         Some(data) => {
             let text = data.split_once(";base64,").map(|(_, text)| text);
             let bytes = text.and_then(|text| BASE64_STANDARD.decode(text).ok());
-            bytes.ok_or_else(|| refuse("data of a buffer in base64"))
+            bytes.ok_or_else(|| refuse(format!("data of {what} in base64")))
         }
         None => {
             let name = urlencoding::decode(uri).ok();
             let bytes = name.and_then(|name| beside(&name));
-            bytes.ok_or_else(|| refuse("the file of a buffer in the folder of the glTF"))
+            bytes.ok_or_else(|| refuse(format!("the file of {what} in the folder of the glTF")))
         }
     }
 }

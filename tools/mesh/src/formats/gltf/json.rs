@@ -1,8 +1,9 @@
 //! The parts of a glTF's JSON that Glint reads. Everything else is skipped unchecked, so that it cannot be the reason to reject a file.
+//! Textures of another form count as missing, since a mesh is also of use without them.
 
 use crate::error::FormatError;
 use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::{Deserializer, IgnoredAny};
 
 /// Index into a list of [`Root`].
 pub type Index = u32;
@@ -20,6 +21,22 @@ pub fn item<'a, T>(list: &'a [T], index: Index, name: &str) -> Result<&'a T, For
     })
 }
 
+/// Reads a value of the expected form; any other value counts as missing.
+fn if_valid<'de, D: Deserializer<'de>, T: Default + Deserialize<'de>>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Form<T> {
+        Valid(T),
+        Other(IgnoredAny),
+    }
+    Form::deserialize(deserializer).map(|form| match form {
+        Form::Valid(value) => value,
+        Form::Other(_) => T::default(),
+    })
+}
+
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Root {
@@ -28,11 +45,78 @@ pub struct Root {
     pub buffer_views: Vec<View>,
     pub buffers: Vec<Buffer>,
     pub extensions_required: Vec<String>,
+    #[serde(deserialize_with = "if_valid")]
+    pub images: Vec<Image>,
     pub materials: Vec<Material>,
     pub meshes: Vec<Mesh>,
     pub nodes: Vec<Node>,
+    #[serde(deserialize_with = "if_valid")]
+    pub samplers: Vec<Sampler>,
     pub scene: Option<Index>,
     pub scenes: Vec<Scene>,
+    #[serde(deserialize_with = "if_valid")]
+    pub textures: Vec<Texture>,
+}
+
+/// A picture: data or a file by its URI, or a part of a buffer.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Image {
+    pub buffer_view: Option<Index>,
+    pub uri: Option<String>,
+}
+
+/// How a texture is read, by numbers of OpenGL.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Sampler {
+    pub mag_filter: Option<u32>,
+    pub min_filter: Option<u32>,
+    pub wrap_s: Option<u32>,
+    pub wrap_t: Option<u32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Texture {
+    pub sampler: Option<Index>,
+    pub source: Option<Index>,
+}
+
+/// The use of a texture by a material.
+#[derive(Clone, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct TextureUse {
+    pub index: Index,
+    pub tex_coord: u32,
+    pub extensions: TextureExtensions,
+}
+
+#[derive(Clone, Default, Deserialize)]
+pub struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub transform: Option<Transform>,
+}
+
+/// Scale, then rotation, then offset of texture coordinates.
+#[derive(Clone, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Transform {
+    pub offset: [f32; 2],
+    pub rotation: f32,
+    pub scale: [f32; 2],
+    pub tex_coord: Option<u32>,
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self {
+            offset: [0.0; 2],
+            rotation: 0.0,
+            scale: [1.0; 2],
+            tex_coord: None,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -79,6 +163,7 @@ pub struct Accessor {
 #[serde(rename_all = "UPPERCASE")]
 pub enum Dimensions {
     Scalar,
+    Vec2,
     Vec3,
     Vec4,
     #[serde(other)]
@@ -132,6 +217,23 @@ pub struct Attributes {
     pub position: Option<Index>,
     pub normal: Option<Index>,
     pub color_0: Option<Index>,
+    pub texcoord_0: Option<Index>,
+    pub texcoord_1: Option<Index>,
+    pub texcoord_2: Option<Index>,
+    pub texcoord_3: Option<Index>,
+}
+
+impl Attributes {
+    /// The accessor of a set of texture coordinates.
+    pub fn coordinates(&self, set: u32) -> Option<Index> {
+        match set {
+            0 => self.texcoord_0,
+            1 => self.texcoord_1,
+            2 => self.texcoord_2,
+            3 => self.texcoord_3,
+            _ => None,
+        }
+    }
 }
 
 /// Use of a primitive's corners.
@@ -221,6 +323,7 @@ fn visible() -> bool {
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Material {
+    pub alpha_cutoff: Option<f32>,
     pub alpha_mode: Option<String>,
     pub double_sided: bool,
     pub emissive_factor: [f32; 3],
@@ -232,7 +335,8 @@ pub struct Material {
 #[serde(rename_all = "camelCase", default)]
 pub struct MetallicRoughness {
     pub base_color_factor: [f32; 4],
-    pub base_color_texture: Option<IgnoredAny>,
+    #[serde(deserialize_with = "if_valid")]
+    pub base_color_texture: Option<TextureUse>,
 }
 
 impl Default for MetallicRoughness {
@@ -254,7 +358,8 @@ pub struct MaterialExtensions {
 #[serde(rename_all = "camelCase", default)]
 pub struct SpecularGlossiness {
     pub diffuse_factor: [f32; 4],
-    pub diffuse_texture: Option<IgnoredAny>,
+    #[serde(deserialize_with = "if_valid")]
+    pub diffuse_texture: Option<TextureUse>,
 }
 
 impl Default for SpecularGlossiness {

@@ -6,12 +6,14 @@
 mod buffers;
 pub mod example;
 mod json;
+mod materials;
 
 use super::text::{BYTE_ORDER_MARK, finite};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use buffers::{Beside, Buffers, Values};
 use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root, item};
+use materials::Materials;
 use serde::Deserialize;
 
 /// Maximum number of bytes of JSON outside of strings. This bounds the memory, because three such bytes can become an object of some
@@ -27,8 +29,9 @@ const IDENTITY: Affine = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.
 
 /// Parses a glTF. The meshes of the default scene, or of the first scene if there is no default, are merged, each with the transforms
 /// of its nodes and instances (EXT_mesh_gpu_instancing), without hidden nodes (KHR_node_visibility). Colours come from materials, also
-/// of KHR_materials_pbrSpecularGlossiness, and vertices, converted from linear intensities to sRGB. Textures, skins, morph targets and
-/// animations are ignored with a remark. `beside` reads a file in the same folder.
+/// of KHR_materials_pbrSpecularGlossiness, and vertices, converted from linear intensities to sRGB. Textures are those of base colours,
+/// with their samplers, KHR_texture_transform, and cut-out; a texture that cannot be used has a remark. Skins, morph targets and animations
+/// are ignored with a remark. `beside` reads a file in the same folder.
 ///
 /// # Errors
 /// The first violation of the format in the parts that Glint reads, a required extension that can change the shape, or a buffer file that
@@ -45,10 +48,11 @@ pub fn parse(file: &[u8], beside: Beside) -> Result<Polygons, FormatError> {
     check_version(json)?;
     let root: Root = from_json(json)?;
     check_extensions(&root)?;
-    let buffers = Buffers::read(&root, binary, beside)?;
+    let buffers = Buffers::read(&root, binary, &mut *beside)?;
     let mut reader = Reader {
         root: &root,
         buffers: &buffers,
+        materials: Materials::new(&root, &buffers, beside),
         polygons: Polygons::default(),
         placed: 0,
     };
@@ -212,6 +216,7 @@ fn check_extensions(root: &Root) -> Result<(), FormatError> {
 struct Reader<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
+    materials: Materials<'a>,
     polygons: Polygons,
     /// Number of primitives added so far, once for each node and instance.
     placed: usize,
@@ -311,6 +316,7 @@ impl Reader<'_> {
         let Self {
             root,
             buffers,
+            materials,
             polygons,
             ..
         } = self;
@@ -344,6 +350,26 @@ impl Reader<'_> {
         let material = material.map(|index| item(&root.materials, index, "materials"));
         let material = material.transpose()?;
 
+        let texture = match material {
+            Some(material) => materials.texture(material, polygons)?,
+            None => None,
+        };
+        let coordinates = texture
+            .as_ref()
+            .and_then(|used| attributes.coordinates(used.set));
+        let coordinates = values(coordinates, &[Dimensions::Vec2])?;
+        let texture = match (texture, &coordinates) {
+            (Some(used), Some(_)) => Some(used),
+            (Some(used), None) => {
+                polygons.remark(format!(
+                    "no texture coordinates TEXCOORD_{} (up to 3 are read): surfaces have their base colours",
+                    used.set
+                ));
+                None
+            }
+            (None, _) => None,
+        };
+
         let base = base_colour(polygons, material, colours.is_some());
         let first_point = polygons.points.len() as u32;
         let first_normal = polygons.normals.len() as u32;
@@ -353,6 +379,14 @@ impl Reader<'_> {
             for i in 0..count {
                 let normal = apply(&turned, normals.vector(i));
                 polygons.add_normal(normal, Location::Whole)?;
+            }
+        }
+
+        let first_coordinates = polygons.coordinates.len() as u32;
+        if let (Some(used), Some(coordinates)) = (&texture, &coordinates) {
+            for i in 0..count {
+                let coordinates = used.transformed(coordinates.vector(i));
+                polygons.add_coordinates(coordinates, Location::Whole)?;
             }
         }
 
@@ -369,6 +403,10 @@ impl Reader<'_> {
                 normal: match normals {
                     Some(_) => first_normal + index as u32,
                     None => Corner::NO_NORMAL,
+                },
+                coordinates: match texture {
+                    Some(_) => first_coordinates + index as u32,
+                    None => Corner::NO_COORDINATES,
                 },
                 ..Corner::at(first_point + index as u32)
             })
@@ -392,6 +430,7 @@ impl Reader<'_> {
             polygons.add_face(&face, colour, Location::Whole)?;
         }
         for face in &mut polygons.faces[first_face..] {
+            face.texture = texture.as_ref().map_or(0, |used| used.texture);
             face.double_sided = material.is_some_and(|material| material.double_sided);
         }
         Ok(())
@@ -428,14 +467,10 @@ fn base_colour(
     let Some(material) = material else {
         return has_colours.then_some([1.0; 3]);
     };
-    let base = &material.pbr_metallic_roughness;
-    let (factor, texture) = match &material.extensions.specular_glossiness {
-        Some(diffuse) => (diffuse.diffuse_factor, diffuse.diffuse_texture),
-        None => (base.base_color_factor, base.base_color_texture),
+    let factor = match &material.extensions.specular_glossiness {
+        Some(diffuse) => diffuse.diffuse_factor,
+        None => material.pbr_metallic_roughness.base_color_factor,
     };
-    if texture.is_some() {
-        polygons.remark("textures are ignored: materials have their base colours");
-    }
     if material.alpha_mode.as_deref() == Some("BLEND") {
         polygons.remark("transparency is ignored: surfaces are opaque");
     }

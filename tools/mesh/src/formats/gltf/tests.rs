@@ -3,6 +3,10 @@
 
 use super::example::{TWO_MESHES, as_binary};
 use super::*;
+use crate::polygons::Content;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use glint_core::texture::{Filter, Wrap};
 
 fn read(text: &str) -> Result<Polygons, FormatError> {
     parse(text.as_bytes(), &mut |_| None)
@@ -188,7 +192,7 @@ fn what_is_ignored_is_remarked() {
         [
             "points and lines are ignored",
             "skins are ignored: meshes have their rest pose",
-            "textures are ignored: materials have their base colours",
+            "expected the file of an image in the folder of the glTF, found 'x.png': its surfaces have their base colours",
             "transparency is ignored: surfaces are opaque",
             "light from surfaces is ignored (emissiveFactor)",
         ]
@@ -224,6 +228,8 @@ fn faults_in_ignored_parts_are_ignored() {
         "\"textures\": [{}, {\"source\": 9}]",
         "\"images\": [{\"mimeType\": 1}]",
         "\"samplers\": 7",
+        "\"images\": [1]",
+        "\"textures\": [{\"source\": -1}]",
         "\"cameras\": [{}]",
         "\"skins\": [{}]",
         "\"animations\": [{\"channels\": [{\"target\": {\"path\": \"pointer\"}}]}]",
@@ -235,8 +241,10 @@ fn faults_in_ignored_parts_are_ignored() {
     }
     let limits = ", \"min\": [0, 0, 0], \"max\": [2, 2, 1]";
     assert!(is_unchanged(limits, ""));
-    let texture = "\"baseColorTexture\": {\"index\": 5}, \"baseColorFactor\"";
-    assert!(is_unchanged("\"baseColorFactor\"", texture));
+    for texture in ["{\"index\": 5}", "{\"index\": -5}", "7", "[]"] {
+        let texture = format!("\"baseColorTexture\": {texture}, \"baseColorFactor\"");
+        assert!(is_unchanged("\"baseColorFactor\"", &texture), "{texture}");
+    }
 }
 
 #[test]
@@ -330,4 +338,278 @@ fn double_sided_materials() {
         .map(|face| face.double_sided)
         .collect();
     assert_eq!(sides, [false, false, true, true]);
+}
+
+/// A square with two sets of texture coordinates: 32-bit numbers from 0 to 1 in steps of 1/2, and normalised bytes.
+struct Textured {
+    material: String,
+    textures: String,
+    images: String,
+    samplers: String,
+}
+
+impl Textured {
+    /// A square with the first texture, the first image and this material.
+    fn new(material: &str, image: &str) -> Self {
+        Self {
+            material: material.into(),
+            textures: "[{\"source\": 0}]".into(),
+            images: format!("[{image}]"),
+            samplers: "[]".into(),
+        }
+    }
+
+    fn json(&self) -> String {
+        let floats = [0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0]
+            .into_iter()
+            .chain([0.0, 1.0, 0.5, 1.0, 0.5, 0.0, 0.0, 0.0]);
+        let mut bytes: Vec<u8> = floats.flat_map(f32::to_le_bytes).collect();
+        bytes.extend([0, 255, 255, 255, 255, 0, 0, 51, 0, 1, 2, 0, 2, 3, 9, 9, 9]);
+        let data = BASE64_STANDARD.encode(&bytes);
+        let Self {
+            material,
+            textures,
+            images,
+            samplers,
+        } = self;
+        format!(
+            "{{\"asset\": {{\"version\": \"2.0\"}}, \"scenes\": [{{\"nodes\": [0]}}], \"nodes\": [{{\"mesh\": 0}}],
+            \"meshes\": [{{\"primitives\": [{{\"attributes\": {{\"POSITION\": 0, \"TEXCOORD_0\": 1, \"TEXCOORD_1\": 2}}, \"indices\": 3, \"material\": 0}}]}}],
+            \"materials\": [{material}], \"textures\": {textures}, \"images\": {images}, \"samplers\": {samplers},
+            \"buffers\": [{{\"byteLength\": {}, \"uri\": \"data:;base64,{data}\"}}],
+            \"bufferViews\": [{{\"buffer\": 0, \"byteLength\": 94}}, {{\"buffer\": 0, \"byteOffset\": 94, \"byteLength\": 3}}, {{\"buffer\": 0, \"byteOffset\": 94, \"byteLength\": 4}}],
+            \"accessors\": [{{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC3\"}},
+            {{\"bufferView\": 0, \"byteOffset\": 48, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC2\"}},
+            {{\"bufferView\": 0, \"byteOffset\": 80, \"componentType\": 5121, \"normalized\": true, \"count\": 4, \"type\": \"VEC2\"}},
+            {{\"bufferView\": 0, \"byteOffset\": 88, \"componentType\": 5121, \"count\": 6, \"type\": \"SCALAR\"}}]}}",
+            bytes.len()
+        )
+    }
+
+    fn read(&self) -> Polygons {
+        let read = parse(self.json().as_bytes(), &mut |name| {
+            (name == "a b.png").then(|| b"file".to_vec())
+        });
+        read.unwrap_or_else(|error| panic!("{error}: {}", self.json()))
+    }
+}
+
+/// A material with the first texture, and more members of the material and of the texture.
+fn material(more: &str, of_texture: &str) -> String {
+    format!(
+        "{{{more}\"pbrMetallicRoughness\": {{\"baseColorTexture\": {{\"index\": 0{of_texture}}}}}}}"
+    )
+}
+
+/// The pictures of a file's textures.
+fn pictures(polygons: &Polygons) -> Vec<&[u8]> {
+    let textures = polygons.textures.iter();
+    textures
+        .map(|texture| match &texture.content {
+            Content::Picture(bytes) => &bytes[..],
+            Content::Board(_) => panic!("a file has pictures"),
+        })
+        .collect()
+}
+
+#[test]
+fn textures_from_files_data_and_buffers() {
+    for (image, picture, name) in [
+        ("{\"uri\": \"a%20b.png\"}", &b"file"[..], "'a%20b.png'"),
+        // The contents decide the type.
+        (
+            "{\"uri\": \"data:text/plain;base64,AQID\", \"mimeType\": \"image/x\"}",
+            &[1, 2, 3],
+            "image 0",
+        ),
+        (
+            "{\"bufferView\": 1, \"mimeType\": \"image/jpeg\"}",
+            &[9; 3],
+            "image 0",
+        ),
+    ] {
+        let polygons = Textured::new(&material("", ""), image).read();
+        assert_eq!(pictures(&polygons), [picture]);
+        assert_eq!(polygons.textures[0].name, name);
+        assert_eq!(polygons.textures[0].cutoff, None);
+        assert!(polygons.faces.iter().all(|face| face.texture == 1));
+        assert!(polygons.remarks.is_empty());
+        let set = [[0.0, 1.0], [0.5, 1.0], [0.5, 0.0], [0.0, 0.0]];
+        assert_eq!(polygons.coordinates, set);
+        let corners = polygons.corners.iter().map(|corner| corner.coordinates);
+        assert_eq!(corners.collect::<Vec<_>>(), [0, 1, 2, 0, 2, 3]);
+    }
+}
+
+#[test]
+fn pictures_that_cannot_be_read_are_remarked() {
+    for (image, expected) in [
+        (
+            "{\"uri\": \"gone.png\"}",
+            "expected the file of an image in the folder of the glTF, found 'gone.png'",
+        ),
+        (
+            "{\"uri\": \"../a b.png\"}",
+            "expected the file of an image in the folder of the glTF, found '../a b.png'",
+        ),
+        (
+            "{\"uri\": \"data:image/png;base64,-\"}",
+            "expected data of an image in base64, found 'data:image/png;base64,-'",
+        ),
+        (
+            "{\"bufferView\": 2}",
+            "expected image 0 within a buffer, found a view 2 outside of it",
+        ),
+        (
+            "{\"bufferView\": 7}",
+            "expected image 0 within a buffer, found a view 7 outside of it",
+        ),
+        (
+            "{}",
+            "expected image 0 with a URI or a view of a buffer, found neither",
+        ),
+        ("", "expected an image below 0, found 0"),
+    ] {
+        let polygons = Textured::new(&material("", ""), image).read();
+        assert_eq!(
+            polygons.remarks,
+            [format!("{expected}: its surfaces have their base colours")]
+        );
+        assert!(polygons.textures.is_empty());
+        assert!(polygons.faces.iter().all(|face| face.texture == 0));
+    }
+    let mut other = Textured::new(&material("", ""), "{}");
+    other.textures = "[{\"extensions\": {\"KHR_texture_basisu\": {\"source\": 0}}}]".into();
+    let expected = "texture 0 has no PNG or JPEG file: its surfaces have their base colours";
+    assert_eq!(other.read().remarks, [expected]);
+    other.textures = "[]".into();
+    let expected = "expected a texture below 0, found 0: its surfaces have their base colours";
+    assert_eq!(other.read().remarks, [expected]);
+    let set = material("", ", \"texCoord\": 2");
+    let expected =
+        "no texture coordinates TEXCOORD_2 (up to 3 are read): surfaces have their base colours";
+    assert_eq!(
+        Textured::new(&set, "{\"uri\": \"a b.png\"}").read().remarks,
+        [expected]
+    );
+}
+
+#[test]
+fn samplers() {
+    let mut file = Textured::new(&material("", ""), "{\"uri\": \"a b.png\"}");
+    file.textures = "[{\"source\": 0, \"sampler\": 0}]".into();
+    for (sampler, wrap, filter) in [
+        ("{}", [Wrap::Repeat; 2], Filter::Bilinear),
+        (
+            "{\"wrapS\": 33071, \"wrapT\": 33648}",
+            [Wrap::Clamp, Wrap::Mirror],
+            Filter::Bilinear,
+        ),
+        (
+            "{\"wrapS\": 10497, \"wrapT\": 7}",
+            [Wrap::Repeat; 2],
+            Filter::Bilinear,
+        ),
+        (
+            "{\"magFilter\": 9728, \"minFilter\": 9987}",
+            [Wrap::Repeat; 2],
+            Filter::Nearest,
+        ),
+        (
+            "{\"magFilter\": 9729, \"minFilter\": 9728}",
+            [Wrap::Repeat; 2],
+            Filter::Bilinear,
+        ),
+        ("{\"minFilter\": 9984}", [Wrap::Repeat; 2], Filter::Nearest),
+        ("{\"minFilter\": 9987}", [Wrap::Repeat; 2], Filter::Bilinear),
+    ] {
+        file.samplers = format!("[{sampler}]");
+        let found = file.read().textures[0].sampler;
+        assert_eq!((found.wrap, found.filter), (wrap, filter), "{sampler}");
+    }
+    file.samplers = "[]".into();
+    assert_eq!(file.read().textures.len(), 1);
+}
+
+#[test]
+fn cut_out_by_the_mask() {
+    let image = "{\"uri\": \"a b.png\"}";
+    let cutoff = |more: &str| {
+        let factor = "\"pbrMetallicRoughness\": {";
+        let (before, opacity) = more.split_once(';').unwrap_or((more, ""));
+        let material = material(before, "").replace(factor, &format!("{factor}{opacity}"));
+        Textured::new(&material, image).read().textures[0].cutoff
+    };
+    assert_eq!(cutoff("\"alphaMode\": \"OPAQUE\", "), None);
+    assert_eq!(cutoff("\"alphaMode\": \"BLEND\", "), None);
+    let mask = "\"alphaMode\": \"MASK\", ";
+    assert_eq!(cutoff(mask), Some(0.5));
+    assert_eq!(
+        cutoff(&format!("\"alphaCutoff\": 0.25, {mask}")),
+        Some(0.25)
+    );
+    assert_eq!(
+        cutoff(&format!("{mask};\"baseColorFactor\": [1, 1, 1, 0.5], ")),
+        Some(1.0)
+    );
+    assert_eq!(
+        cutoff(&format!("{mask};\"baseColorFactor\": [1, 1, 1, 0], ")),
+        Some(f32::INFINITY)
+    );
+}
+
+#[test]
+fn transforms_of_textures() {
+    let image = "{\"uri\": \"a b.png\"}";
+    let read = |of_texture: &str| {
+        let polygons = Textured::new(&material("", of_texture), image).read();
+        let coordinates = polygons.coordinates.iter();
+        coordinates
+            .map(|c| c.map(|c| (1e6 * c).round() / 1e6))
+            .collect::<Vec<_>>()
+    };
+    let transformed = |transform: &str| {
+        read(&format!(
+            ", \"extensions\": {{\"KHR_texture_transform\": {{{transform}}}}}"
+        ))
+    };
+    let second = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.2]];
+    assert_eq!(read(", \"texCoord\": 1"), second);
+    assert_eq!(transformed("\"texCoord\": 1"), second);
+    assert_eq!(
+        transformed("\"offset\": [0.25, 2], \"scale\": [2, -1]"),
+        [[0.25, 1.0], [1.25, 1.0], [1.25, 2.0], [0.25, 2.0]]
+    );
+    // The example of the extension: the lower left quarter, turned clockwise by 90°.
+    assert_eq!(
+        transformed("\"offset\": [0, 1], \"rotation\": 1.57079632679, \"scale\": [0.5, 0.5]"),
+        [[0.5, 1.0], [0.5, 0.75], [0.0, 0.75], [0.0, 1.0]]
+    );
+}
+
+#[test]
+fn several_materials_share_pictures() {
+    let mut file = Textured::new("", "{\"uri\": \"a b.png\"}");
+    let mask = material("\"alphaMode\": \"MASK\", ", "");
+    file.material = [&material("", "")[..], &mask, &material("", "")].join(", ");
+    let more = |number: u32| {
+        format!(
+            "{{\"attributes\": {{\"POSITION\": 0, \"TEXCOORD_0\": 1}}, \"material\": {number}}}, "
+        )
+    };
+    let json = file.json().replace(
+        "\"primitives\": [",
+        &format!("\"primitives\": [{}{}", more(1), more(2)),
+    );
+    let mut reads = 0;
+    let polygons = parse(json.as_bytes(), &mut |_| {
+        reads += 1;
+        Some(vec![])
+    });
+    let polygons = polygons.unwrap();
+    assert_eq!(reads, 1);
+    let textures: Vec<u8> = polygons.faces.iter().map(|face| face.texture).collect();
+    assert_eq!(textures, [1, 2, 2, 2]);
+    let cutoffs: Vec<_> = polygons.textures.iter().map(|one| one.cutoff).collect();
+    assert_eq!(cutoffs, [Some(0.5), None]);
 }
