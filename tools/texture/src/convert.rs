@@ -5,9 +5,11 @@ use crate::levels::{Level, Texel, colour};
 use crate::options::{MAX_SIDE, MIN_SIDE, Options, format_name};
 use crate::palette::{Nearest, palette};
 use crate::picture::Picture;
+use crate::sheet::largest_level;
 use glint_core::colour::Rgb565;
-use glint_core::texture::{Format, Source, Texture, TextureHeader, encode};
+use glint_core::texture::{Format, Sampler, Source, Texture, TextureHeader, encode};
 use serde::Serialize;
+use std::fmt;
 
 /// Report of a conversion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,6 +35,27 @@ pub struct Report {
     pub error_max: f64,
     /// Remarks for the user, such as the sizes before and after resizing.
     pub remarks: Vec<String>,
+}
+
+impl fmt::Display for Report {
+    /// One line: size, format, bytes and errors, and the remarks.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [width, height] = self.size;
+        write!(f, "{width}×{height}, {}", self.format)?;
+        if self.cut_out {
+            write!(f, ", cut-out")?;
+        }
+        let plural = if self.levels == 1 { "" } else { "s" };
+        write!(f, ", {} level{plural}, {} bytes", self.levels, self.bytes)?;
+        write!(
+            f,
+            ", error {:.2} RMS and {:.1} at most (of 255)",
+            self.error_rms, self.error_max
+        )?;
+        self.remarks
+            .iter()
+            .try_for_each(|remark| write!(f, "; {remark}"))
+    }
 }
 
 /// Converts a picture to a texture with all mip levels: the sides become powers of two, and levels are averages in linear light.
@@ -129,8 +152,35 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
     Ok((bytes, report))
 }
 
+/// Converts a texture again, from its largest level; `format`: `None` keeps its own. A texture that is as the options state is kept, with
+/// all its levels.
+///
+/// # Errors
+/// Those of [`convert`].
+pub fn again(
+    texture: &Texture,
+    format: Option<Format>,
+    largest_side: u32,
+    sampler: Sampler,
+) -> Result<(Vec<u8>, Report), PictureError> {
+    let format = format.unwrap_or(texture.format());
+    let sides = texture.size_log2().map(|side| 1 << side);
+    let is_small = sides.iter().all(|&side: &u32| side <= largest_side);
+    if format == texture.format() && is_small && sampler == texture.sampler() {
+        return Ok((texture.bytes().to_vec(), kept(texture)));
+    }
+    let options = Options {
+        format,
+        largest_side,
+        sampler,
+        // Between the opacities of opaque and transparent texels.
+        cutoff: Some(0.5),
+    };
+    convert(&largest_level(texture), &options)
+}
+
 /// The report on a texture that is kept as it is.
-pub fn kept(texture: &Texture) -> Report {
+fn kept(texture: &Texture) -> Report {
     let header = texture.bytes().first_chunk().map(TextureHeader::from_bytes);
     let size = texture.size_log2().map(|side| 1 << side);
     Report {
@@ -256,7 +306,7 @@ fn errors(
 mod tests {
     use super::*;
     use crate::sheet::sheet;
-    use glint_core::texture::{Sampler, Wrap, checksum};
+    use glint_core::texture::{Wrap, checksum};
 
     fn picture(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
         let [width, height] = size;

@@ -9,10 +9,12 @@
 //! | [`palette`] | palettes for the colours of a picture |
 //! | [`sheet`] | the levels of a texture side by side, as a board shows them |
 //! | [`error`] | errors in image files |
+//! | [`example`] | example files for tests and fuzzing |
 #![forbid(unsafe_code)]
 
 pub mod convert;
 pub mod error;
+pub mod example;
 pub mod levels;
 pub mod options;
 pub mod palette;

@@ -123,6 +123,7 @@ fn refused(format: &str, error: &ImageError) -> PictureError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::example::repair_png;
     use image::codecs::jpeg::JpegEncoder;
 
     fn small() -> Picture {
@@ -141,18 +142,8 @@ mod tests {
         let mut file = small().png().unwrap();
         file[16..20].copy_from_slice(&size[0].to_be_bytes());
         file[20..24].copy_from_slice(&size[1].to_be_bytes());
-        let sum = crc(&file[12..29]);
-        file[29..33].copy_from_slice(&sum.to_be_bytes());
+        repair_png(&mut file);
         file
-    }
-
-    /// The CRC-32 of a PNG's chunk.
-    fn crc(bytes: &[u8]) -> u32 {
-        bytes.iter().fold(u32::MAX, |sum, &byte| {
-            (0..8).fold(sum ^ u32::from(byte), |sum, _| {
-                sum >> 1 ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 }
-            })
-        }) ^ u32::MAX
     }
 
     #[test]
@@ -220,8 +211,7 @@ mod tests {
         // 16 bits a channel: 512 MiB.
         let mut file = with_size([8192, 8192]);
         file[24] = 16;
-        let sum = crc(&file[12..29]);
-        file[29..33].copy_from_slice(&sum.to_be_bytes());
+        repair_png(&mut file);
         assert_eq!(
             error(&file),
             "expected a picture of at most 268435456 bytes, found 8192×8192, 536870912 bytes"

@@ -4,8 +4,9 @@ use super::common::bad_value;
 use super::messages::{print_json, say, warn};
 use super::output::{MESH, Output, STDOUT};
 use super::progress::spinner;
+use super::texture::TexelArguments;
 use clap::{Args, ValueEnum};
-use glint::convert::{self, Options, Report};
+use glint::convert::{self, Options, Report, TextureOptions};
 use glint::error::FormatError;
 use glint::formats::{Format, write};
 use glint::polygons::Polygons;
@@ -35,9 +36,10 @@ pub struct ModelArguments {
 /// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to multiples of 2^-14, and order its
 /// triangles for the engine.
 ///
-/// Reads OBJ (with vertex colours, and colours from the material file in the same folder), STL and PLY, ASCII or binary, glTF
-/// (without textures and skins), and GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded
-/// coordinates.
+/// Reads OBJ (with vertex colours, and colours and textures from the material file in the same folder), STL and PLY, ASCII or
+/// binary, glTF (with the textures of base colours, without skins), and GLM, the format that boards load. OBJ, STL and PLY are
+/// written with scaled, unrounded coordinates and without textures. Textures are PNG or JPEG files in the folder of the mesh or
+/// within it, or data of a glTF.
 #[derive(Args)]
 pub struct ConvertArguments {
     /// Mesh file to read; `-` is standard input, whose format is detected from its contents.
@@ -57,6 +59,11 @@ pub struct ConvertArguments {
     /// possible.
     #[arg(long)]
     fix_winding: bool,
+    /// Leave textures out: faces have the colours of their materials.
+    #[arg(long, conflicts_with_all = ["palette", "texture_size", "filter"])]
+    no_textures: bool,
+    #[command(flatten)]
+    texels: TexelArguments,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
@@ -121,7 +128,12 @@ impl ConvertArguments {
             keep_scale: self.keep_scale,
             keep_order: self.keep_order,
             fix_winding: self.fix_winding,
-            ..Options::default()
+            textures: TextureOptions {
+                left_out: self.no_textures,
+                format: self.texels.format(),
+                largest_side: self.texels.texture_size,
+                filter: self.texels.filter,
+            },
         };
         convert_to(
             polygons,
@@ -188,6 +200,9 @@ fn convert_to(
         };
     }
     convert::place(&mut polygons, options).map_err(in_input)?;
+    if !polygons.textures.is_empty() {
+        polygons.remark("textures are left out: only .glm files have them");
+    }
     let mut bytes = 0;
     out.write(|out| {
         let mut out = Counted {
@@ -255,6 +270,12 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         "rounding   {:.3e} at most, {:.3e} RMS ({:.3} and {:.3} units of 2^-14)",
         report.error_max, report.error_rms, report.error_max_lsb, report.error_rms_lsb
     ))?;
+    for texture in &report.textures {
+        say(format_args!(
+            "texture    {}: {}",
+            texture.name, texture.report
+        ))?;
+    }
     report
         .remarks
         .iter()

@@ -25,6 +25,7 @@ mod render;
 mod scene;
 mod subject;
 mod terminal;
+mod texture;
 mod wireframe;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -59,6 +60,7 @@ pub struct Arguments {
 enum Command {
     Model(convert::ModelArguments),
     Convert(convert::ConvertArguments),
+    Texture(texture::TextureArguments),
     Render(Box<render::RenderArguments>),
     Orbit(Box<orbit::OrbitArguments>),
     Upload(flash::UploadArguments),
@@ -94,6 +96,7 @@ impl Arguments {
         match self.command {
             Command::Model(arguments) => arguments.run(),
             Command::Convert(arguments) => arguments.run(),
+            Command::Texture(arguments) => arguments.run(),
             Command::Render(arguments) => arguments.run(),
             Command::Orbit(arguments) => arguments.run(),
             Command::Upload(arguments) => arguments.run(),

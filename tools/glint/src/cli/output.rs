@@ -23,6 +23,8 @@ pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
 pub const STATISTICS: &[&str] = &["json"];
 /// Extensions of a mesh file.
 pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];
+/// Extensions of a texture file, or of a picture of a texture.
+pub const TEXTURE: &[&str] = &["glt", "png"];
 /// Extensions of a program file of the wireframe simulator.
 pub const PROGRAM: &[&str] = &["wft", "wfb"];
 /// Extensions of a flash image file.

@@ -15,5 +15,6 @@ mod scene_options;
 mod scenes;
 mod settings;
 mod standard_input;
+mod textures;
 mod tolerance;
 mod wireframes;

@@ -1,6 +1,7 @@
 //! Output files are written completely or not at all, never over an input, and are checked before the work begins.
 
 use crate::common::{SQUARE, VIEW, all_refused, folder, glint, refused, succeed, words};
+use glint_texture::example::small_png;
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
@@ -94,6 +95,7 @@ fn an_input_is_never_an_output() {
     fs::write(folder.join("spheres.json"), "[[0,0,0,0.5]]").unwrap();
     fs::write(folder.join("log.csv"), LOG).unwrap();
     fs::write(folder.join("a.wft"), "end\n").unwrap();
+    fs::write(folder.join("t.png"), small_png()).unwrap();
     symlink("m.obj", folder.join("m.png")).unwrap();
     fs::hard_link(folder.join("log.csv"), folder.join("hard.csv")).unwrap();
     symlink("a.wft", folder.join("a.png")).unwrap();
@@ -107,6 +109,7 @@ fn an_input_is_never_an_output() {
             "hard.csv",
         ),
         ("convert m.obj m.obj", "m.obj", "m.obj"),
+        ("texture t.png t.png", "t.png", "t.png"),
         ("convert m.obj ./m.obj", "./m.obj", "m.obj"),
         ("render m.obj --up z --out m.png", "m.png", "m.obj"),
         ("render --object m.obj --out m.png", "m.png", "m.obj"),
@@ -196,7 +199,7 @@ fn a_file_with_contents_is_kept() {
     fs::write(folder.join("log.csv"), LOG).unwrap();
     fs::write(folder.join("a.wft"), "end\n").unwrap();
     fs::write(folder.join("empty.png"), "").unwrap();
-    let old = ["png", "glm", "csv", "wfb", "json", "gif"].map(|end| format!("old.{end}"));
+    let old = ["png", "glm", "csv", "wfb", "json", "gif", "glt"].map(|end| format!("old.{end}"));
     for name in &old {
         fs::write(folder.join(name), "mine").unwrap();
     }
@@ -205,6 +208,7 @@ fn a_file_with_contents_is_kept() {
         ("render cube --out /dev/null --stats old.json", "old.json"),
         ("orbit cube --out old.gif", "old.gif"),
         ("model cube old.glm", "old.glm"),
+        ("texture empty.png old.glt", "old.glt"),
         ("imu replay log.csv --out old.csv", "old.csv"),
         ("imu record old.csv", "old.csv"),
         ("gesture mask --out old.png", "old.png"),

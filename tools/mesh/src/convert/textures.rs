@@ -4,19 +4,16 @@ use crate::error::{FormatError, MAX_REMARKS};
 use crate::polygons::{Content, Corner, Face, Polygons, Texture};
 use glint_core::mesh::MAX_BYTES;
 use glint_core::texture::{self, Filter, Format, Sampler, Wrap};
-use glint_texture::convert::{Report, convert, kept};
+use glint_texture::convert::{Report, again, convert};
 use glint_texture::error::PictureError;
 use glint_texture::options::{MAX_SIDE, Options};
 use glint_texture::picture::Picture;
-use glint_texture::sheet::largest_level;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// One in s16.16.
 const ONE: f64 = 65536.0;
-/// Opacity between those of opaque and transparent texels of a board's texture.
-const HALF: f32 = 0.5;
 
 /// Options of the conversion of textures.
 #[derive(Clone, Copy, Debug)]
@@ -193,15 +190,6 @@ fn encode(
         filter: options.filter.unwrap_or(texture.sampler.filter),
         ..texture.sampler
     };
-    let converted = |picture: &Picture, format, cutoff| {
-        let options = Options {
-            format,
-            largest_side: options.largest_side,
-            sampler,
-            cutoff,
-        };
-        convert(picture, &options)
-    };
     match &texture.content {
         Content::Picture(file) => {
             if !matches!(last, Some((known, _)) if Arc::ptr_eq(known, file)) {
@@ -210,17 +198,18 @@ fn encode(
             let Some((_, picture)) = last else {
                 return Err(PictureError::new("a picture", "none"));
             };
-            converted(picture, options.format.unwrap_or_default(), texture.cutoff)
+            let options = Options {
+                format: options.format.unwrap_or_default(),
+                largest_side: options.largest_side,
+                sampler,
+                cutoff: texture.cutoff,
+            };
+            convert(picture, &options)
         }
         Content::Board(bytes) => {
             let board = texture::Texture::new_checked(bytes);
             let board = board.map_err(|error| PictureError::new("a texture", error.to_string()))?;
-            let format = options.format.unwrap_or(board.format());
-            let is_small = (board.size_log2().iter()).all(|side| 1 << side <= options.largest_side);
-            if format == board.format() && is_small && sampler == board.sampler() {
-                return Ok((bytes.clone(), kept(&board)));
-            }
-            converted(&largest_level(&board), format, Some(HALF))
+            again(&board, options.format, options.largest_side, sampler)
         }
     }
 }
@@ -334,7 +323,7 @@ mod tests {
                 wrap: [wrap; 2],
                 ..Sampler::default()
             },
-            cutoff: Some(HALF),
+            cutoff: Some(0.5),
         }
     }
 

@@ -161,10 +161,13 @@ pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
     move |name| {
         let folder = Path::new(".").join(path.parent()?).canonicalize().ok()?;
         let within = |name: &Path| {
-            let file = folder.join(name).canonicalize().ok()?;
+            let file = folder.join(name);
+            let parent = file.parent()?.canonicalize().ok()?;
+            let file = file.canonicalize().ok()?;
+            let is_within = parent.starts_with(&folder) && file.parent() == Some(&parent);
             // Reading a device or a pipe could block, or never end.
             let is_file = file.metadata().is_ok_and(|data| data.is_file());
-            (is_file && file.starts_with(&folder)).then_some(file)
+            (is_within && is_file).then_some(file)
         };
         let name = Path::new(name);
         let file = within(name).or_else(|| within(Path::new(name.file_name()?)))?;

@@ -1,0 +1,188 @@
+//! `glint texture`, and the options of textures.
+
+use super::common::{bad_value, named};
+use super::messages::{print_json, say};
+use super::output::{Output, STDOUT, TEXTURE};
+use clap::{Args, ValueEnum};
+use glint::error::FormatError;
+use glint::formats::read_file;
+use glint_core::texture::{self, Filter, Format, MAGIC, Sampler, Wrap, checksum};
+use glint_texture::convert::{self, Report};
+use glint_texture::error::PictureError;
+use glint_texture::options::{MAX_SIDE, MIN_SIDE, Options, filter_name, wrap_name};
+use glint_texture::picture::Picture;
+use glint_texture::sheet::sheet;
+use std::path::{Path, PathBuf};
+
+/// The texels of textures.
+#[derive(Args)]
+pub struct TexelArguments {
+    /// Texels: indices of a palette of 16 or 256 colours, or `none` for colours in RGB565 [default: none; a texture in a board's
+    /// memory layout keeps its own].
+    #[arg(long, value_name = "16|256|none", value_parser = named(Format::ALL, palette_name))]
+    palette: Option<Format>,
+    /// Largest side of a texture. The sides become the nearest powers of two up to this number.
+    #[arg(long, value_name = "N", default_value_t = MAX_SIDE, value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIDE)..=i64::from(MAX_SIDE)))]
+    pub texture_size: u32,
+    /// Colour between texels: that of the nearest one, or the average of four by their distances [default: as the file states;
+    /// without a statement, bilinear].
+    #[arg(long, value_name = "nearest|bilinear", value_parser = named(Filter::ALL, filter_name))]
+    pub filter: Option<Filter>,
+}
+
+impl TexelArguments {
+    /// The representation of the texels, if it is given.
+    pub fn format(&self) -> Option<Format> {
+        self.palette
+    }
+}
+
+/// The word of `--palette` for a representation of texels.
+fn palette_name(format: Format) -> &'static str {
+    match format {
+        Format::Rgb565 => "none",
+        Format::Palette256 => "256",
+        Format::Palette16 => "16",
+    }
+}
+
+/// Convert a picture to a texture: powers of two as sides, mip levels averaged in linear light, texels in RGB565 or of a palette.
+///
+/// Reads PNG and JPEG files, and textures in a board's memory layout. As .png it writes what a board shows: the mip levels side by
+/// side. The error that the report states is the difference to the picture after resizing, in steps of 1/255.
+#[derive(Args)]
+pub struct TextureArguments {
+    /// PNG, JPEG or .glt file to read; `-` is standard input. The contents decide the format.
+    input: PathBuf,
+    /// Output file; the extension selects the format: .glt or .png. `-` is standard output, in the format of --to.
+    out: PathBuf,
+    /// Format of the output [default: from the extension of its name].
+    #[arg(long, value_enum)]
+    to: Option<To>,
+    #[command(flatten)]
+    texels: TexelArguments,
+    /// Texels beyond the sides: the texture again, again and reversed, or the texels at the sides. A second word, after a comma, is
+    /// for the upper and lower sides [default: repeat; a .glt file keeps its own].
+    #[arg(long, value_name = "repeat|mirror|clamp", num_args = 1, value_delimiter = ',', value_parser = named(Wrap::ALL, wrap_name))]
+    wrap: Vec<Wrap>,
+    /// Opacity below which texels are transparent, 0 to 1; 0: none are.
+    #[arg(long, value_name = "0..1", default_value_t = 0.5)]
+    cutoff: f32,
+    /// Print the report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Output format of a texture.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum To {
+    /// A texture in a board's memory layout.
+    Glt,
+    /// A picture of the mip levels.
+    Png,
+}
+
+impl TextureArguments {
+    pub fn run(self) -> anyhow::Result<()> {
+        if !(0.0..=1.0).contains(&self.cutoff) {
+            let found = self.cutoff.to_string();
+            return Err(bad_value("--cutoff", "an opacity of 0 to 1", found).into());
+        }
+        if self.wrap.len() > 2 {
+            let found = self.wrap.len().to_string();
+            return Err(bad_value("--wrap", "one or two words", found).into());
+        }
+        let (out, to) = match self.to {
+            Some(To::Glt) => (Output::open(&self.out, &["glt"], [&self.input])?, To::Glt),
+            Some(To::Png) => (Output::open(&self.out, &["png"], [&self.input])?, To::Png),
+            None if self.out == Path::new(STDOUT) => {
+                return Err(bad_value("-", "--to with a format", "none").into());
+            }
+            None => {
+                let is_png = self
+                    .out
+                    .extension()
+                    .is_some_and(|end| end.eq_ignore_ascii_case("png"));
+                let to = if is_png { To::Png } else { To::Glt };
+                (Output::open(&self.out, TEXTURE, [&self.input])?, to)
+            }
+        };
+        let file = read_file(&self.input)?;
+        let (bytes, report) = self
+            .converted(&file)
+            .map_err(|error| error.in_path(&self.input))?;
+        let bytes = match to {
+            To::Glt => bytes,
+            To::Png => shown(&bytes).map_err(|error| error.in_path(&self.input))?,
+        };
+        out.write(|out| out.write_all(&bytes))?;
+        if self.json {
+            print_json(&report)
+        } else {
+            say(report)
+        }
+    }
+
+    fn converted(&self, file: &[u8]) -> Result<(Vec<u8>, Report), FormatError> {
+        let TexelArguments {
+            palette,
+            texture_size,
+            filter,
+        } = self.texels;
+        let sampler = |of_file: Sampler| Sampler {
+            wrap: match self.wrap[..] {
+                [] => of_file.wrap,
+                [both] => [both; 2],
+                [across, down, ..] => [across, down],
+            },
+            filter: filter.unwrap_or(of_file.filter),
+        };
+        if file.starts_with(&MAGIC) {
+            let texture = checked(file)?;
+            let sampler = sampler(texture.sampler());
+            let again = convert::again(&texture, palette, texture_size, sampler);
+            return again.map_err(of_picture);
+        }
+        let picture = Picture::decode(file).map_err(of_picture)?;
+        let options = Options {
+            format: palette.unwrap_or_default(),
+            largest_side: texture_size,
+            sampler: sampler(Sampler {
+                filter: Filter::Bilinear,
+                ..Sampler::default()
+            }),
+            cutoff: Some(self.cutoff),
+        };
+        convert::convert(&picture, &options).map_err(of_picture)
+    }
+}
+
+/// The texture of a .glt file.
+fn checked(file: &[u8]) -> Result<texture::Texture<'_>, FormatError> {
+    let texture = texture::Texture::new_checked(file)
+        .map_err(|error| FormatError::whole("a valid texture", error.to_string()))?;
+    let (length, needed) = (texture.bytes().len(), checksum(texture.bytes()));
+    let stated = texture::TextureHeader::CHECKSUM;
+    let stated = file.get(stated).and_then(|bytes| bytes.try_into().ok());
+    let stated = stated.map_or(0, u32::from_le_bytes);
+    if stated != needed {
+        let expected = format!("the CRC-32 {needed:08x} of the other bytes");
+        let found = format!("{stated:08x}: the file is damaged");
+        return Err(FormatError::whole(expected, found));
+    }
+    if file.len() != length {
+        let found = file.len().to_string();
+        return Err(FormatError::whole(format!("{length} bytes"), found));
+    }
+    Ok(texture)
+}
+
+/// The levels of a texture as a PNG file.
+fn shown(bytes: &[u8]) -> Result<Vec<u8>, FormatError> {
+    let texture = checked(bytes)?;
+    sheet(&texture).png().map_err(of_picture)
+}
+
+fn of_picture(error: PictureError) -> FormatError {
+    FormatError::whole(error.expected, error.found)
+}

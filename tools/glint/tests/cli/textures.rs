@@ -1,0 +1,190 @@
+//! `glint texture`, and textures of `glint convert`.
+
+use crate::common::{SQUARE, all_refused, files_refused, folder, glint, report, succeed};
+use glint_texture::example::{repair_png, small_png};
+use glint_texture::picture::Picture;
+use std::fs;
+use std::os::unix::fs::symlink;
+
+/// A square with a material that has a texture.
+const TEXTURED: &str = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+
+fn mtl(picture: &str) -> String {
+    format!("newmtl a\nKd 1 0 0\nmap_Kd {picture}\n")
+}
+
+#[test]
+fn a_picture_becomes_a_texture_and_a_picture_of_its_levels() {
+    let folder = folder("texture");
+    fs::write(folder.join("a.png"), small_png()).unwrap();
+    let text = succeed(&folder, "texture a.png a.glt");
+    assert_eq!(
+        text,
+        "8×8, rgb565, cut-out, 4 levels, 256 bytes, error 1.68 RMS and 4.0 at most (of 255)\n"
+    );
+    let report = report(&folder, "texture a.png b.png --palette 16 --texture-size 8");
+    assert_eq!(report["format"], "palette 16");
+    assert_eq!([&report["levels"], &report["bytes"]], [4, 192]);
+    let sheet = Picture::decode(&fs::read(folder.join("b.png")).unwrap()).unwrap();
+    assert_eq!(sheet.size, [15, 8]);
+    assert_eq!(sheet.texels[0][3], 0);
+    // A texture is kept, and reads differently by options.
+    succeed(&folder, "texture a.glt b.glt");
+    let read = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert!(read("a.glt") == read("b.glt"));
+    succeed(
+        &folder,
+        "texture a.glt b.glt --wrap clamp,mirror --filter nearest",
+    );
+    assert_eq!(read("b.glt")[16..19], [2, 1, 0]);
+    let piped = glint(&folder, "texture a.png - --to glt");
+    assert!(piped.status.success() && piped.stdout == read("a.glt"));
+    let text = succeed(&folder, "texture a.png c.glt --cutoff 0");
+    assert!(!text.contains("cut-out"), "{text}");
+}
+
+#[test]
+fn bad_pictures_and_options() {
+    let folder = folder("bad-pictures");
+    let png = small_png();
+    let with_size = |size: u32| {
+        let mut file = png.clone();
+        file[16..20].copy_from_slice(&size.to_be_bytes());
+        file[20..24].copy_from_slice(&size.to_be_bytes());
+        repair_png(&mut file);
+        file
+    };
+    let damaged = "expected a PNG file without damage, found…";
+    files_refused(
+        &folder,
+        ["texture FILE out.glt", "texture FILE out.png"],
+        &[
+            ("empty.png", vec![]),
+            ("text.jpg", b"a text".to_vec()),
+            ("cut.png", png[..60].to_vec()),
+            ("none.png", with_size(0)),
+            ("bomb.png", with_size(0x7fff_ffff)),
+            ("magic.glt", b"GLT1".to_vec()),
+            ("zeros.glt", [&b"GLT1"[..], &[0; 60]].concat()),
+        ],
+        &format!(
+            "
+            empty.png: expected a PNG or JPEG file, found an empty file
+            text.jpg: expected a PNG or JPEG file, found 'a text'
+            cut.png: {damaged}
+            none.png: {damaged}
+            bomb.png: expected a picture of at most 8192×8192, found a larger one
+            magic.glt: expected a valid texture, found texture byte 0: expected 32 bytes, found 4
+            zeros.glt: expected a valid texture, found texture byte 12: expected 3 to 10, the logarithm of a side, found 0
+            "
+        ),
+    );
+    fs::write(folder.join("a.png"), &png).unwrap();
+    succeed(&folder, "texture a.png a.glt");
+    let mut wrong = fs::read(folder.join("a.glt")).unwrap();
+    wrong[40] ^= 1;
+    fs::write(folder.join("wrong.glt"), &wrong).unwrap();
+    all_refused(
+        &folder,
+        "
+        texture a.png out.glt --cutoff 1.5
+            --cutoff: expected an opacity of 0 to 1, found 1.5
+        texture a.png out.glt --cutoff nan
+            --cutoff: expected an opacity of 0 to 1, found NaN
+        texture a.png out.glt --wrap clamp,clamp,clamp
+            --wrap: expected one or two words, found 3
+        texture a.png out.jpg
+            out.jpg: expected a name that ends in .glt, .png, found '.jpg'
+        texture a.png -
+            -: expected --to with a format, found none
+        texture gone.png out.glt
+            gone.png: expected a file to read, found…
+        texture wrong.glt out.glt
+            wrong.glt: expected the CRC-32…
+        ",
+    );
+    assert!(!folder.join("out.glt").exists());
+}
+
+#[test]
+fn textures_of_a_mesh() {
+    let folder = folder("textures");
+    fs::create_dir(folder.join("sub")).unwrap();
+    fs::write(folder.join("a.obj"), TEXTURED).unwrap();
+    fs::write(folder.join("a.mtl"), mtl("sub/a b.png")).unwrap();
+    fs::write(folder.join("sub/a b.png"), small_png()).unwrap();
+    let text = succeed(&folder, "convert a.obj a.glm");
+    assert!(
+        text.contains("texture    'sub/a b.png': 8×8, rgb565, cut-out, 4 levels, 256 bytes, error"),
+        "{text}"
+    );
+    // The mesh in memory keeps its texture.
+    let report = report(&folder, "convert a.glm b.glm --keep-scale --keep-order");
+    assert_eq!(report["textures"][0]["size"], serde_json::json!([8, 8]));
+    let read = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert!(read("a.glm") == read("b.glm"));
+    let text = succeed(
+        &folder,
+        "convert a.glm b.glm --palette 256 --filter nearest",
+    );
+    assert!(
+        text.contains("texture    1: 8×8, palette 256, cut-out"),
+        "{text}"
+    );
+    // Without the texture the mesh is that of the material's colour.
+    succeed(&folder, "convert a.obj plain.glm --no-textures");
+    fs::write(folder.join("a.mtl"), "newmtl a\nKd 1 0 0\n").unwrap();
+    succeed(&folder, "convert a.obj b.glm");
+    assert!(read("plain.glm") == read("b.glm"));
+    for out in ["b.obj", "b.stl", "b.ply"] {
+        let text = succeed(&folder, &format!("convert a.glm {out}"));
+        assert!(
+            text.contains("note: textures are left out: only .glm files have them"),
+            "{text}"
+        );
+    }
+    fs::write(folder.join("a.obj"), SQUARE).unwrap();
+    let text = succeed(&folder, "convert a.obj b.stl");
+    assert!(!text.contains("textures"), "{text}");
+}
+
+#[test]
+fn pictures_that_cannot_be_used_are_named() {
+    let folder = folder("unusable-pictures");
+    let outside = folder.join("outside.png");
+    fs::write(&outside, small_png()).unwrap();
+    let folder = folder.join("model");
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("a.obj"), TEXTURED).unwrap();
+    fs::write(folder.join("damaged.png"), &small_png()[..50]).unwrap();
+    symlink(&outside, folder.join("link.png")).unwrap();
+    symlink("/dev/zero", folder.join("device.png")).unwrap();
+    fs::create_dir(folder.join("folder.png")).unwrap();
+    for name in [
+        "gone.png",
+        "../outside.png",
+        outside.to_str().unwrap(),
+        "link.png",
+        "device.png",
+        "folder.png",
+        "/dev/zero",
+    ] {
+        fs::write(folder.join("a.mtl"), mtl(name)).unwrap();
+        let text = succeed(&folder, "convert a.obj a.glm");
+        let expected = "beside the mesh: its faces have their colours";
+        assert!(
+            text.contains("note       no image file '"),
+            "{name}: {text}"
+        );
+        assert!(text.contains(expected), "{name}: {text}");
+        assert!(!text.contains("texture  "), "{name}: {text}");
+    }
+    fs::write(folder.join("a.mtl"), mtl("damaged.png")).unwrap();
+    let text = succeed(&folder, "convert a.obj a.glm");
+    assert!(
+        text.contains(
+            "note       texture 'damaged.png': expected a PNG file without damage, found"
+        ),
+        "{text}"
+    );
+}
