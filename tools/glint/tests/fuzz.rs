@@ -39,6 +39,7 @@ tests! {
     ply: Ply,
     gltf: Gltf,
     glm: Glm,
+    texture: Texture,
     imu: Imu,
     replay: Replay,
     wireframe_text: WireframeText,

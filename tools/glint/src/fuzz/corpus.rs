@@ -6,15 +6,17 @@ use super::{firmware, host, transfer};
 use crate::convert::{self, Options};
 use crate::error::Location;
 use crate::formats::gltf::example::{TWO_MESHES, as_binary};
-use crate::formats::write;
+use crate::formats::{gltf, write};
 use crate::generate;
 use crate::image;
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::flash::CONTENTS;
+use glint_core::mesh::Mesh;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::orientation::{Sample, Units};
 use glint_core::wireframe::text::assemble;
 use glint_scene_file::{NAMES, SceneFile, built_in};
+use glint_texture::example;
 
 /// Returns the seeds of a target. No seed exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
@@ -31,6 +33,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Ply => texts(PLY).into_iter().chain(written(write::ply)).collect(),
         Target::Gltf => gltfs(),
         Target::Glm => meshes(),
+        Target::Texture => example::files().into_iter().chain(textures()).collect(),
         Target::Imu => texts(IMU).into_iter().chain([still_log()]).collect(),
         Target::Replay => images(),
         Target::WireframeText => texts(WIREFRAMES),
@@ -90,7 +93,42 @@ fn written(write: impl Fn(&Polygons, &mut Vec<u8>) -> std::io::Result<()>) -> Ve
 
 fn gltfs() -> Vec<Vec<u8>> {
     let binary = as_binary(TWO_MESHES).map(|(binary, _)| binary);
-    texts(&[TWO_MESHES]).into_iter().chain(binary).collect()
+    let textured = textured();
+    texts(&[TWO_MESHES, &textured])
+        .into_iter()
+        .chain(binary)
+        .collect()
+}
+
+/// The glTF with a texture on its first mesh.
+fn textured() -> String {
+    let texture = "\"alphaMode\": \"MASK\", \"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0, \"texCoord\": 0, \
+                   \"extensions\": {\"KHR_texture_transform\": {\"offset\": [0.5, 0], \"rotation\": 1, \"scale\": [2, 1]}}}, ";
+    let lists = "\"images\": [{\"uri\": \"a.png\"}], \"textures\": [{\"source\": 0, \"sampler\": 0}], \
+                 \"samplers\": [{\"wrapS\": 33071, \"wrapT\": 33648, \"magFilter\": 9728}], \"scene\": 0";
+    let coordinates =
+        "}, {\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC2\"}]\n}";
+    TWO_MESHES
+        .trim_end()
+        .replacen("\"pbrMetallicRoughness\": {", texture, 1)
+        .replacen("\"scene\": 0", lists, 1)
+        .replacen("\"NORMAL\": 1", "\"NORMAL\": 1, \"TEXCOORD_0\": 4", 1)
+        .replacen("}]\n}", coordinates, 1)
+}
+
+/// The mesh of the glTF with a texture.
+fn textured_mesh() -> Option<Vec<u8>> {
+    let polygons = gltf::parse(textured().as_bytes(), &mut |_| Some(example::small_png()));
+    let converted = convert::convert(&polygons.ok()?, Options::default());
+    converted.ok().map(|(mesh, _)| mesh)
+}
+
+/// Textures in a board's memory layout.
+fn textures() -> Vec<Vec<u8>> {
+    let mesh = textured_mesh();
+    let mesh = mesh.as_ref().and_then(|mesh| Mesh::new_checked(mesh).ok());
+    let textures = mesh.iter().flat_map(Mesh::textures);
+    textures.map(|texture| texture.bytes().to_vec()).collect()
 }
 
 fn meshes() -> Vec<Vec<u8>> {
@@ -98,6 +136,7 @@ fn meshes() -> Vec<Vec<u8>> {
         .iter()
         .filter_map(|polygons| convert::convert(polygons, Options::default()).ok())
         .map(|(mesh, _)| mesh)
+        .chain(textured_mesh())
         .collect()
 }
 
@@ -185,6 +224,7 @@ const CONSOLE: &[&str] = &[
 ];
 
 const OBJ: &[&str] = &[
+    "mtllib beside.mtl\nnewmtl a\nKd 1 0.5 0\nmap_Kd a.png\nnewmtl b\nmap_Kd -clamp on -s 1 2 3 b.png\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 -0.5\nvt 1e9 nan\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/-1 2/2\nf 1 2/1 3\n",
     "# all kinds of faces\nmtllib beside.mtl\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nvt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 1 0\ng side\ns 1\nusemtl red\nf 1/1/1 2/2/1 3//1 4\nf -1 -2 -3\nf 1 2 5\nusemtl green\nf 2//2 3//2 5//2\nl 1 2\np 1\n",
     "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 255 255 0\nv 0.2 0.5 0.0 1 1 1 1\nf 1 2 3 4 5\n",
     "v 0 0 0 1.0\nv 3 0 0\nv 3 3 0\\\n\nv 1 1 0\nv 0 3 0\nf 1 2 \\\n3 4 5\n",

@@ -2,7 +2,8 @@
 
 /// Keywords of the JSON, and the type of the binary chunk.
 pub const WORDS: &str = "mode mesh children count byteOffset byteStride byteLength indices bufferView 5121 5123 5125 5126 VEC3 sparse \
-                         uri BIN\0 extensions EXT_mesh_gpu_instancing TRANSLATION ROTATION SCALE VEC4 values doubleSided";
+                         uri BIN\0 extensions EXT_mesh_gpu_instancing TRANSLATION ROTATION SCALE VEC4 values doubleSided \
+                         TEXCOORD_0 VEC2 textures images samplers source KHR_texture_transform";
 
 /// Corrects the lengths in the header of a binary glTF file and in its two chunks.
 pub fn repair(input: &mut [u8]) {

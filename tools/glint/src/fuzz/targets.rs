@@ -14,9 +14,14 @@ use glint_core::mesh;
 use glint_core::orientation::Units;
 use glint_core::orientation::log as image;
 use glint_core::picture::Size;
+use glint_core::texture::{self, Format, Texture};
 use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{GUARD, Instruction, Key, Motion, Projection, WORD_BYTES};
 use glint_scene_file::SceneFile;
+use glint_texture::convert::again;
+use glint_texture::example;
+use glint_texture::picture::Picture;
+use glint_texture::sheet::sheet;
 
 /// A parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -35,6 +40,8 @@ pub enum Target {
     Gltf,
     /// Meshes in a board's memory layout.
     Glm,
+    /// Pictures for textures, and textures in a board's memory layout.
+    Texture,
     /// Logs of a gyroscope and an accelerometer, as CSV text.
     Imu,
     /// Logs of a gyroscope and an accelerometer, in the binary format that boards replay.
@@ -57,7 +64,9 @@ impl Target {
     /// Keywords of the target's format that the mutator inserts.
     pub fn words(self) -> Vec<&'static str> {
         let words = match self {
-            Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => return Vec::new(),
+            Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords | Self::Texture => {
+                return Vec::new();
+            }
             Self::Flash => "scene field menger:4 torus lamp start \n",
             Self::Console | Self::Firmware => {
                 "help view camera field box: spheres: union: stereo load size on off depth json 0x 1e5 \r \x1b["
@@ -67,7 +76,9 @@ impl Target {
             Self::Scene => {
                 "= true\n [budget]\n \" [ ] field menger:4 light steer scenes up material object \n"
             }
-            Self::Obj => "v vn vt f l curv usemtl mtllib newmtl Kd d Tr Ke # \\\n 1//1 1/1/1",
+            Self::Obj => {
+                "v vn vt f l curv usemtl mtllib newmtl Kd map_Kd -clamp a.png d Tr Ke # \\\n 1//1 1/1/1 1/2"
+            }
             Self::Stl => "solid facet normal outer loop vertex endloop endfacet endsolid COLOR=",
             Self::Gltf => super::gltf::WORDS,
             Self::Host => host::WORDS,
@@ -116,6 +127,7 @@ impl Target {
                 }
             }
             Self::Flash => flash::repair(input),
+            Self::Texture => example::repair_png(input),
             Self::Console
             | Self::Firmware
             | Self::Obj
@@ -132,9 +144,9 @@ impl Target {
             Self::Upload => transfer::run(input),
             Self::Host => host::run(input),
             Self::Console => run_console(input),
-            // An OBJ or glTF file also serves as each additional file that it names.
-            Self::Obj => run_mesh(obj::parse(input, &mut |_| Some(input.to_vec()))),
-            Self::Gltf => run_mesh(gltf::parse(input, &mut |_| Some(input.to_vec()))),
+            Self::Obj => run_mesh(obj::parse(input, &mut |name| Some(beside(name, input)))),
+            Self::Gltf => run_mesh(gltf::parse(input, &mut |name| Some(beside(name, input)))),
+            Self::Texture => run_texture(input),
             Self::Stl => run_mesh(stl::parse(input)),
             Self::Ply => run_mesh(ply::parse(input)),
             Self::Glm => glm::parse(input).is_ok_and(|polygons| {
@@ -152,6 +164,50 @@ impl Target {
             Self::Scene => run_scene(input),
             Self::Flash => flash::run(input),
             Self::Firmware => firmware::run(input),
+        }
+    }
+}
+
+/// An additional file that an OBJ or glTF file names: a picture by its extension, or the file itself.
+fn beside(name: &str, input: &[u8]) -> Vec<u8> {
+    if name.ends_with(".png") {
+        example::small_png()
+    } else {
+        input.to_vec()
+    }
+}
+
+/// Converts a picture or a texture with options that depend on the input, and checks that the texture is valid.
+fn run_texture(input: &[u8]) -> bool {
+    let format = Format::ALL[input.len() % Format::ALL.len()];
+    let converted = if input.starts_with(&texture::MAGIC) {
+        let Ok(texture) = Texture::new_checked(input) else {
+            return false;
+        };
+        again(&texture, Some(format), 16, texture.sampler())
+    } else {
+        let options = glint_texture::options::Options {
+            format,
+            largest_side: 16,
+            cutoff: input.len().is_multiple_of(2).then_some(0.5),
+            ..glint_texture::options::Options::default()
+        };
+        Picture::decode(input)
+            .and_then(|picture| glint_texture::convert::convert(&picture, &options))
+    };
+    match converted {
+        Ok((bytes, report)) => {
+            let texture = Texture::new_checked(&bytes);
+            assert!(
+                texture.is_ok_and(|texture| !sheet(&texture).texels.is_empty()),
+                "a conversion gives a valid texture"
+            );
+            assert!(report.error_rms <= report.error_max && report.error_max <= 255.0);
+            true
+        }
+        Err(error) => {
+            assert!(!error.to_string().contains('\n'));
+            false
         }
     }
 }
