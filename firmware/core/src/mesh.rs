@@ -11,6 +11,7 @@ use core::fmt;
 use core::ops::Range;
 
 pub use crate::colour::Rgb565;
+use crate::feature::TEXTURE;
 pub use crate::records::{Attribute, ChunkHeader, MeshHeader, Triangle, Vertex};
 use crate::records::{TEXTURES, WORD};
 use crate::texture::{Texture, TextureError};
@@ -120,7 +121,9 @@ impl<'a> Mesh<'a> {
         for _ in 0..header.chunks {
             let (offset, chunk) = walk.chunk()?;
             chunk.check(offset, header.radius)?;
-            largest_texture = largest_texture.max(chunk.largest_texture(offset));
+            if TEXTURE.is_built {
+                largest_texture = largest_texture.max(chunk.largest_texture(offset));
+            }
             seen_vertices += chunk.vertices.len() as u32;
             seen_triangles += chunk.triangles.len() as u32;
         }
@@ -141,7 +144,12 @@ impl<'a> Mesh<'a> {
         };
         expect(walk.offset, count, found, holds)?;
         let textures_offset = walk.offset + expected;
-        let texture_count = check_textures(textures, textures_offset)?;
+        // A build that draws no textures does not read them.
+        let texture_count = if TEXTURE.is_built {
+            check_textures(textures, textures_offset)?
+        } else {
+            u32::MAX
+        };
         let (number, offset) = largest_texture;
         expect(
             offset,

@@ -5,6 +5,7 @@
 //! triangles at an edge get the same vertex.
 
 use glint_core::camera::Projection;
+use glint_core::feature::TEXTURE;
 use heapless::Vec;
 
 use crate::triangle::mesh_setup::MeshSetup;
@@ -151,10 +152,10 @@ impl Plane {
             coordinates: [0, 1].map(|i: usize| {
                 let [a, b] = [a, b].map(|vertex| i64::from(vertex.coordinates[i]));
                 // Most triangles have no texture, and a portion takes divisions.
-                if a == b {
-                    a as i32
-                } else {
+                if TEXTURE.is_built && a != b {
                     between(a, b) as i32
+                } else {
+                    a as i32
                 }
             }),
         }

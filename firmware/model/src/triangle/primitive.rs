@@ -2,6 +2,7 @@
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
+use glint_core::feature::TEXTURE;
 use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 use glint_core::texture::Texture;
@@ -201,17 +202,19 @@ impl<'a> Placed<'a> {
             colour: lit(colour, shares),
             lit: light.map(|light| order.map(|i| light_of(light[i]))),
             projection: frame.projection,
-            texture: texture.map(|(texture, coordinates)| PlacedTexture {
-                texture: *texture,
-                coordinates: order.map(|i| coordinates[i]),
-                light: flat_light(colour, shares),
-            }),
+            texture: texture
+                .filter(|_| TEXTURE.is_built)
+                .map(|(texture, coordinates)| PlacedTexture {
+                    texture: *texture,
+                    coordinates: order.map(|i| coordinates[i]),
+                    light: flat_light(colour, shares),
+                }),
         })
     }
 
     /// Computes the planes of the texture's coordinates, if the triangle has a texture; `setup` is its setup.
     pub fn textured(&self, setup: &Setup) -> Option<Textured<'a>> {
-        let placed = self.texture.as_ref()?;
+        let placed = self.texture.as_ref().filter(|_| TEXTURE.is_built)?;
         let is_linear = self.projection == Projection::Orthographic;
         Some(Textured::new(
             placed.texture,

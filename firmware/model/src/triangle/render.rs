@@ -383,6 +383,9 @@ impl<'a> Renderer<'a, '_> {
 
     /// The texture of a triangle, with the coordinates of its vertices, for the chunk whose first vertex has this number in the mesh.
     fn texture(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
+        if !TEXTURE.is_built {
+            return None;
+        }
         self.textures.as_ref()?.of(first, triangle)
     }
 
@@ -439,11 +442,7 @@ impl<'a> Renderer<'a, '_> {
             clipped,
         };
         let setup = placed.setup();
-        let textured = if TEXTURE.is_built {
-            placed.textured(&setup)
-        } else {
-            None
-        };
+        let textured = placed.textured(&setup);
         (self.emit)(&triangle, &setup, textured.as_ref());
         true
     }
