@@ -89,7 +89,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
             format!("only degenerate ones ({degenerate})"),
         ));
     }
-    let textures = Textures::of(polygons, &options.textures)?;
+    let textures = Textures::of(polygons, &options.textures);
     let Indexed {
         vertices,
         coordinates,

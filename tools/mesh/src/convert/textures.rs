@@ -1,12 +1,12 @@
 //! The textures of a mesh for boards, and the texture coordinates of its faces.
 
-use crate::error::{FormatError, MAX_REMARKS};
+use crate::error::MAX_REMARKS;
 use crate::polygons::{Content, Corner, Face, Polygons, Texture};
 use glint_core::mesh::MAX_BYTES;
 use glint_core::texture::{self, Filter, Format, Sampler, Wrap};
 use glint_texture::convert::{Report, again, convert};
 use glint_texture::error::PictureError;
-use glint_texture::options::{MAX_SIDE, Options};
+use glint_texture::options::{MAX_SIDE, MIN_SIDE, Options};
 use glint_texture::picture::Picture;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -14,6 +14,11 @@ use std::sync::Arc;
 
 /// One in s16.16.
 const ONE: f64 = 65536.0;
+
+/// Usual number of bytes of a triangle with its share of the vertices and their texture coordinates.
+const TRIANGLE_BYTES: usize = 40;
+/// Bytes that textures have in a mesh of any number of triangles: 255 textures of the smallest size fit.
+const LEAST_ROOM: usize = 1 << 20;
 
 /// Options of the conversion of textures.
 #[derive(Clone, Copy, Debug)]
@@ -66,16 +71,12 @@ pub struct Textures {
 
 impl Textures {
     /// Converts the textures that faces use, and prepares their coordinates. A picture that cannot be used has a remark, and the faces
-    /// keep their colours.
-    ///
-    /// # Errors
-    /// The textures exceed [`MAX_BYTES`].
-    pub fn of(polygons: &Polygons, options: &TextureOptions) -> Result<Self, FormatError> {
+    /// keep their colours. Textures that do not fit a mesh's memory become smaller, with a remark.
+    pub fn of(polygons: &Polygons, options: &TextureOptions) -> Self {
         let mut textures = Self::default();
         if options.left_out || polygons.textures.is_empty() {
-            return Ok(textures);
+            return textures;
         }
-        textures.numbers = vec![0; polygons.textures.len()];
         let mut is_used = vec![false; polygons.textures.len()];
         let mut without = 0;
         for face in &polygons.faces {
@@ -93,37 +94,65 @@ impl Textures {
                 "{without} faces have a texture and no texture coordinates: they have their colours"
             ));
         }
-        let mut last = None;
-        let mut bytes = 0;
-        let used = polygons.textures.iter().zip(is_used).enumerate();
-        for (i, (texture, _)) in used.filter(|(_, (_, is_used))| *is_used) {
-            match encode(texture, options, &mut last) {
-                Ok((encoded, report)) => {
-                    bytes += encoded.len();
-                    if bytes > MAX_BYTES as usize {
-                        return Err(FormatError::whole(
-                            format!("textures of at most {MAX_BYTES} bytes together"),
-                            "more: --texture-size and --palette make them smaller",
-                        ));
-                    }
-                    textures.encoded.push(encoded);
-                    textures.reports.push(TextureReport {
-                        name: texture.name.clone(),
-                        report,
-                    });
-                    textures.numbers[i] = textures.encoded.len() as u8;
-                }
-                Err(error) => textures.remark(format!(
-                    "texture {}: {error}: its faces have their colours",
-                    texture.name
-                )),
-            }
+        let room = (MAX_BYTES as usize).saturating_sub(TRIANGLE_BYTES * polygons.triangle_count());
+        let room = room.max(LEAST_ROOM);
+        let mut smaller = *options;
+        while !textures.convert(polygons, &is_used, room, &smaller)
+            && smaller.largest_side > MIN_SIDE
+        {
+            let half = smaller.largest_side.next_power_of_two() / 2;
+            smaller.largest_side = half.max(MIN_SIDE);
+        }
+        if smaller.largest_side < options.largest_side {
+            textures.remark(format!(
+                "textures have at most {} texels a side, so that they fit a mesh of {MAX_BYTES} bytes",
+                smaller.largest_side
+            ));
         }
         if !textures.encoded.is_empty() {
             textures.bases = bases(polygons, &textures);
             textures.remark_beyond(polygons);
         }
-        Ok(textures)
+        textures
+    }
+
+    /// Converts the textures that are used, and returns whether they fit `room` bytes.
+    fn convert(
+        &mut self,
+        polygons: &Polygons,
+        is_used: &[bool],
+        room: usize,
+        options: &TextureOptions,
+    ) -> bool {
+        self.numbers = vec![0; polygons.textures.len()];
+        self.encoded.clear();
+        self.reports.clear();
+        let mut remarks = Vec::new();
+        let mut last = None;
+        let mut bytes = 0;
+        let used = polygons.textures.iter().zip(is_used).enumerate();
+        for (i, (texture, _)) in used.filter(|(_, (_, is_used))| **is_used) {
+            match encode(texture, options, &mut last) {
+                Ok((encoded, report)) => {
+                    bytes += encoded.len();
+                    if bytes > room {
+                        return false;
+                    }
+                    self.encoded.push(encoded);
+                    self.reports.push(TextureReport {
+                        name: texture.name.clone(),
+                        report,
+                    });
+                    self.numbers[i] = self.encoded.len() as u8;
+                }
+                Err(error) => remarks.push(format!(
+                    "texture {}: {error}: its faces have their colours",
+                    texture.name
+                )),
+            }
+        }
+        remarks.into_iter().for_each(|remark| self.remark(remark));
+        true
     }
 
     /// The number of the board's texture of a face; 0 for none.
@@ -303,7 +332,6 @@ mod tests {
     use glint_core::colour::Rgb565;
     use glint_core::mesh::{Attribute, Mesh};
     use glint_core::records::TextureCoordinates;
-    use std::fmt::Write;
 
     /// A picture of 8×8 as a PNG file.
     fn png(opacity: u8) -> Arc<Vec<u8>> {
@@ -536,16 +564,13 @@ mod tests {
             polygons.add_face(&corners, None, Location::Whole).unwrap();
             polygons.faces.last_mut().unwrap().texture = number;
         }
-        let mut found = String::new();
-        write!(
-            found,
-            "{}",
-            convert(&polygons, Options::default()).unwrap_err()
-        )
-        .unwrap();
+        let (bytes, report) = convert(&polygons, Options::default()).unwrap();
+        assert!(bytes.len() < MAX_BYTES as usize);
+        let sizes: Vec<[u32; 2]> = report.textures.iter().map(|one| one.report.size).collect();
+        assert_eq!((sizes.len(), sizes[0], sizes[12]), (13, [8; 2], [512; 2]));
         assert_eq!(
-            found,
-            "expected textures of at most 33554432 bytes together, found more: --texture-size and --palette make them smaller"
+            report.remarks,
+            ["textures have at most 512 texels a side, so that they fit a mesh of 33554432 bytes"]
         );
     }
 }
