@@ -125,10 +125,13 @@ module walker #(
             .best(best[k]), .beside_fails(beside_fails[k])
         );
 
-        // The change of E' beside the group for a move by one row down and one group to the worse side.
+        // The changes of E' for a move by one row down, in the group and beside it: by one group more to the worse side. An idle walker makes
+        // no such move, so these registers load valid triangles only: their enable has half of the loads of an enable for all constants.
         always_ff @(posedge clk) begin
-            if (out_ready && leave)
+            if (out_ready && leave && in_valid) begin
+                step_y[k]      <= in_triangle.step_y[k];
                 beside_step[k] <= 25'(signed'(in_triangle.step_y[k])) - {2'd0, in_triangle.slope[k], 3'd0};
+            end
         end
 
         assign out_group.best[k] = best[k][32:0];
@@ -172,7 +175,6 @@ module walker #(
             if (leave) begin
                 active      <= in_valid;
                 slope       <= in_triangle.slope;
-                step_y      <= in_triangle.step_y;
                 rises       <= in_triangle.rises;
                 falls       <= in_triangle.falls;
                 group_left  <= in_triangle.group_left;
