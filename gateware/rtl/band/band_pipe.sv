@@ -61,8 +61,10 @@ module band_pipe #(
     pixels_t    pixels, comparing;
     logic       issued_valid, issue;
     logic [2:0] occupied;
-    // Thermometer code of the clocks that the issued group still has to wait. Only a valid group waits.
+    // Thermometer code of the clocks that the issued group still has to wait. Only a valid group waits. `codes_held` equals bit 0, for the
+    // depth codes alone; it depends on itself, because synthesis would otherwise merge both.
     logic [2:0] hold;
+    (* keep *) logic codes_held;
 
     assign held        = hold[0];
     assign issue       = issued_valid && !held;
@@ -84,12 +86,14 @@ module band_pipe #(
             else if (conflict_0) hold <= 3'b011;
             else if (conflict_1) hold <= 3'b001;
         end
+        codes_held <= group_valid && open && !codes_held ? conflict_issued || conflict_0 || conflict_1 : hold[1];
         // The registers also load their inputs if no group is valid, so that their enable depends only on the register `hold`.
         if (!held) begin
             issued_valid <= group_valid && open;
             issued       <= {group_row, group_mask};
-            pixels       <= {group_halves, group_codes, group_colours};
+            {pixels.halves, pixels.colours} <= {group_halves, group_colours};
         end
+        if (!codes_held) pixels.codes <= group_codes;
 
         reading_0 <= issued;
         if (!issue) reading_0.mask <= '0;
@@ -100,6 +104,7 @@ module band_pipe #(
         if (rst) begin
             issued_valid   <= 1'b0;
             hold           <= '0;
+            codes_held     <= 1'b0;
             occupied       <= '0;
             reading_0.mask <= '0;
             reading_1.mask <= '0;
