@@ -14,7 +14,7 @@
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
-// word per clock unless spans or memory are slower; the first word is output 7 clocks after the first span is taken.
+// word per clock unless spans or memory are slower; the first word is output 6 clocks after the first span is taken.
 //
 // Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A FIFO entry is reserved before
 // a row is read, so `out_ready` may stay low for any time.
@@ -28,7 +28,7 @@ module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
     // Depth of the word FIFO, a power of two: the largest number of words that are requested and not yet taken. If words are taken at
-    // once, an entry is free again 7 clocks after the request of its row.
+    // once, an entry is free again 6 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
     parameter bit          STEREO       = 1'b0
 ) (
@@ -179,13 +179,8 @@ module band_flush #(
         if (STEREO) begin : composed
             logic [7:0] left, right;
             assign {right, left} = colours[16*lane +: 16];
-            always_comb begin
-                case (composing)
-                    2'd0:    seen = {right, left};
-                    2'd1:    seen = {left[7:3], left < right ? left[7:2] : right[7:2], right[7:3]};
-                    default: seen = {left[7:3], right[7:2], right[7:3]};
-                endcase
-            end
+            assign seen = composing == 2'd0 ? {right, left}
+                        : {left[7:3], composing[0] && left < right ? left[7:2] : right[7:2], right[7:3]};
         end else begin : plain
             assign seen = colours[16*lane +: 16];
         end
@@ -199,15 +194,11 @@ module band_flush #(
 
     always_ff @(posedge clk) begin
         word_valid <= asked_2 && !rst;
-        case (part_2)
-            COLOUR:     word <= colour_word;
-            DEPTH_LEFT: word <= depth_left_word;
-            default:    word <= depth_right_word;
-        endcase
+        word <= part_2 == COLOUR ? colour_word : part_2 == DEPTH_LEFT ? depth_left_word : depth_right_word;
     end
 
     // A FIFO entry is reserved for each requested word, so `word_ready` is high whenever a word arrives.
-    fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
+    fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS), .DIRECT(1'b1)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),
         .out_valid, .out_ready, .out_data({out_addr, out_data})
