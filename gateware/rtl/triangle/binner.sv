@@ -81,23 +81,20 @@ module binner #(
     typedef enum logic [2:0] {CLEAR, IDLE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // For each list: its length, the first three entries of its incomplete last word, and its address. The addresses are computed
-    // incrementally while the lists are emptied.
-    (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
-    (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
+    // For each list: whether it is full and its length; the first three entries of its incomplete last word, each in a memory of its own; and
+    // its address. The addresses are computed incrementally while the lists are emptied.
+    (* ram_style = "distributed" *) logic [COUNT_BITS:0]     lengths [0:BANDS-1];
     (* ram_style = "distributed" *) logic [ADDRESS_BITS-1:0] addresses [0:BANDS-1];
     logic [BAND_BITS-1:0]    band;
     logic [COUNT_BITS-1:0]   length, stored, room;
-    logic [3*COUNT_BITS-1:0] list_end, stored_end;
+    logic [2:0][31:0]        list_end;
     logic [ADDRESS_BITS-1:0] list_word, next_address, address_step;
     logic                    store, word_ends, end_written;
 
     logic [128*DESCRIPTOR_WORDS-1:0] words;
     logic [WORD_BITS-1:0]    word;
-    logic [127:0]            word_data;
     logic [9:0]              first_row;
-    logic [ADDRESS_BITS-1:0] descriptor_word;
-    logic [95:0]             gathered;
+    logic [ADDRESS_BITS-1:0] descriptor_word; // counted from `descriptor_base`
     logic                    free, list_full, descriptors_full, exceptions_full;
 
     if (SMOOTH) begin : light
@@ -108,25 +105,7 @@ module binner #(
         wire _unused = &{1'b0, in_planes};
     end
 
-    if (LINES) begin : lines
-        logic [$bits(in_piece)-1:0] piece;
-
-        assign piece     = in_piece;
-        assign first_row = in_line ? in_piece.row : in_descriptor.top;
-
-        // The unused words of a piece repeat lower bits of the piece, so that the multiplexer of a word has few inputs.
-        always_comb begin
-            word_data = in_line ? piece[127:0] : words[128 * word +: 128];
-            if (in_line && word[1]) word_data[127:64] = {in_piece.colour, records_pkg::PIECE_MARK, 8'd0, piece[165:128]};
-        end
-
-        wire _unused = &{1'b0, piece};
-    end else begin : triangles_alone
-        assign word_data = words[128 * word +: 128];
-        assign first_row = in_descriptor.top;
-
-        wire _unused = &{1'b0, in_line, in_piece};
-    end
+    assign first_row = LINES && in_line ? in_piece.row : in_descriptor.top;
 
     assign idle            = state == IDLE;
     assign done            = state == DONE;
@@ -137,13 +116,12 @@ module binner #(
     assign store     = state == CLEAR || state == ENTRY && (free || !word_ends) && !list_full;
     assign stored    = state == CLEAR ? '0 : length + 1'b1;
 
-    always_comb begin
-        stored_end = list_end;
-        case (length[1:0])
-            2'd0:    stored_end[0            +: COUNT_BITS] = descriptors;
-            2'd1:    stored_end[COUNT_BITS   +: COUNT_BITS] = descriptors;
-            default: stored_end[2*COUNT_BITS +: COUNT_BITS] = descriptors;
-        endcase
+    for (genvar i = 0; i < 3; i++) begin : ends
+        (* ram_style = "distributed" *) logic [COUNT_BITS-1:0] entries [0:BANDS-1];
+
+        always_ff @(posedge clk) if (store && length[1:0] == 2'(i)) entries[band] <= descriptors;
+
+        always_ff @(posedge clk) list_end[i] <= 32'(entries[band]);
     end
 
     // Computes the band of a row in two clocks. `row_band` is the band of the descriptor's first row while `top_comes[2]` is high, and of
@@ -184,22 +162,12 @@ module binner #(
         row_band   <= size == 2'd0 ? BAND_BITS'(small_band) : by_171[9 +: BAND_BITS];
     end
 
-    // Values read for `band` are valid one clock after `band`. `room` is the number of entries of a full list, a power of
-    // two.
-    logic [127:0] list_data;
-
-    assign list_data = {32'(descriptors), 32'(list_end[2*COUNT_BITS +: COUNT_BITS]), 32'(list_end[COUNT_BITS +: COUNT_BITS]),
-                        32'(list_end[0 +: COUNT_BITS])};
-
+    // What the memories hold of the list of `band` is valid one clock after `band`. `room` is the number of entries of a full list, a power
+    // of two.
     always_ff @(posedge clk) begin
-        if (store) begin
-            lengths[band] <= stored;
-            ends[band]    <= stored_end;
-        end
+        if (store) lengths[band] <= {(stored & room) != '0, stored};
         if (state == CLEAR) addresses[band] <= next_address;
-        length    <= lengths[band];
-        list_full <= (lengths[band] & room) != '0;
-        list_end  <= ends[band];
+        {list_full, length} <= lengths[band];
         list_word <= addresses[band];
 
         room         <= COUNT_BITS'(4) << list_shift;
@@ -208,6 +176,66 @@ module binner #(
 
         descriptors_full <= descriptors == descriptor_limit;
         exceptions_full  <= exceptions == exception_limit;
+    end
+
+    // The next word: a word of a descriptor or of a piece, the last entries of a list, or one entry for all lanes, of which the strobe selects
+    // one. Encoded selections, in trees, because synthesis makes wider logic of other conditions and of `case`.
+    logic [127:0] next_data, ends_word, descriptor_or_ends;
+    logic [31:0]  entry;
+    logic         takes_list;
+
+    assign takes_list = state == ENTRY || length[1:0] != '0 && !end_written;
+    assign entry      = state == IDLE ? exception_number : 32'(length);
+    assign ends_word  = {32'(descriptors), list_end};
+
+    if (SMOOTH) begin : six_words
+        assign descriptor_or_ends = state == WORD ? words[128 * word +: 128] : ends_word;
+    end else begin : three_words
+        logic [1:0] selection;
+
+        assign selection          = state == WORD ? word : '1;
+        assign descriptor_or_ends = selection[1] ? selection[0] ? ends_word : words[256 +: 128]
+                                                 : selection[0] ? words[128 +: 128] : words[0 +: 128];
+    end
+
+    if (LINES) begin : lines
+        logic [$bits(in_piece)-1:0] piece;
+        logic [1:0]                 selection;
+
+        assign piece = in_piece;
+
+        always_comb begin
+            if (state == WORD) selection = in_line ? {1'b0, word[1]} : 2'd3;
+            else               selection = state != IDLE && takes_list ? 2'd3 : 2'd2;
+        end
+
+        // The low half of the second word of a piece is not used.
+        assign next_data = selection[1] ? selection[0] ? descriptor_or_ends : {4{entry}}
+                         : selection[0] ? {in_piece.colour, records_pkg::PIECE_MARK, 8'd0, piece[165:128], piece[63:0]} : piece[127:0];
+
+        wire _unused = &{1'b0, piece};
+    end else begin : triangles_alone
+        assign next_data = state == IDLE || state != WORD && !takes_list ? {4{entry}} : descriptor_or_ends;
+
+        wire _unused = &{1'b0, in_line, in_piece};
+    end
+
+    // The address of the next word, with one adder for all kinds of words.
+    logic [ADDRESS_BITS-1:0] base, offset;
+
+    always_comb begin
+        case (state)
+            WORD:    {base, offset} = {descriptor_base, descriptor_word};
+            IDLE:    {base, offset} = {exception_base, ADDRESS_BITS'(exceptions >> 2)};
+            default: {base, offset} = takes_list ? {list_word, ADDRESS_BITS'(length >> 2)} : {list_base, ADDRESS_BITS'(band >> 2)};
+        endcase
+    end
+
+    // Address and data load in every clock in which they may, with or without a word, so that their enables have short paths. The address
+    // rests in LOOK: no enable drives both.
+    always_ff @(posedge clk) begin
+        if (free) write_data <= next_data;
+        if (free && state != LOOK) write_addr <= base + offset;
     end
 
     always_ff @(posedge clk) begin
@@ -228,8 +256,6 @@ module binner #(
                         exceptions   <= exceptions + COUNT_BITS'(!exceptions_full);
                         full         <= full || exceptions_full;
                         write_valid  <= !exceptions_full;
-                        write_addr   <= exception_base + ADDRESS_BITS'(exceptions >> 2);
-                        write_data   <= {4{exception_number}};
                         write_strobe <= entry_strobe(exceptions[1:0]);
                         write_descriptor <= 1'b0;
                     end
@@ -244,8 +270,6 @@ module binner #(
                 state    <= IDLE;
             end else if (free) begin
                 write_valid     <= 1'b1;
-                write_addr      <= descriptor_word;
-                write_data      <= word_data;
                 write_strobe    <= '1;
                 write_descriptor <= 1'b1;
                 descriptor_word <= descriptor_word + 1'b1;
@@ -260,8 +284,6 @@ module binner #(
             ENTRY: if (free || !word_ends) begin
                 if (word_ends) begin
                     write_valid  <= !list_full;
-                    write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
-                    write_data   <= list_data;
                     write_strobe <= '1;
                     write_descriptor <= 1'b0;
                 end
@@ -279,22 +301,15 @@ module binner #(
             end
             LENGTHS_WORD: if (free && length[1:0] != '0 && !end_written) begin
                 write_valid  <= 1'b1;
-                write_addr   <= list_word + ADDRESS_BITS'(length >> 2);
-                write_data   <= list_data;
                 write_strobe <= '1;
                 write_descriptor <= 1'b0;
                 end_written  <= 1'b1;
             end else if (free) begin
-                gathered <= {32'(length), gathered[95:32]};
-                band     <= band + 1'b1;
-                state    <= band == '1 ? DONE : LENGTHS;
-                if (band[1:0] == '1) begin
-                    write_valid  <= 1'b1;
-                    write_addr   <= list_base + ADDRESS_BITS'(band >> 2);
-                    write_data   <= {32'(length), gathered};
-                    write_strobe <= '1;
-                    write_descriptor <= 1'b0;
-                end
+                write_valid  <= 1'b1;
+                write_strobe <= entry_strobe(band[1:0]);
+                write_descriptor <= 1'b0;
+                band         <= band + 1'b1;
+                state        <= band == '1 ? DONE : LENGTHS;
             end
             default: if (!finish) state <= IDLE;
         endcase
@@ -305,7 +320,7 @@ module binner #(
             band            <= '0;
             descriptors     <= '0;
             exceptions      <= '0;
-            descriptor_word <= descriptor_base;
+            descriptor_word <= '0;
             full            <= 1'b0;
             write_valid     <= 1'b0;
             in_ready        <= 1'b0;

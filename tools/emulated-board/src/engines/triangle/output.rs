@@ -184,8 +184,8 @@ impl Output {
             written += (to / 4 - from / 4 + u32::from(to % 4 > 0)) as usize;
         }
         put(lists, 0, Some(self.counts.lengths()));
-        // A word contains four lengths. Each exception is written in a separate word.
-        written += self.counts.lengths().len() / 4 + self.exceptions.numbers.len() - listed;
+        // Each length and each exception is written in a separate word.
+        written += self.counts.lengths().len() + self.exceptions.numbers.len() - listed;
         for (place, number) in self.exceptions.numbers.iter().enumerate().skip(listed) {
             put(exceptions, place, Some(&[*number]));
         }
