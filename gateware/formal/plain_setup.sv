@@ -162,6 +162,7 @@ endmodule
 
 module setup_start (
     input  wire         clk,
+    input  wire         next_is_odd,
     input  wire  [3:0]  count,
     input  wire  [39:0] gx,
     input  wire  [39:0] gy,

@@ -4,10 +4,10 @@
 //
 // One multiplier computes nine products: three for N·l, one for each share, and one for each channel of the colour. The module
 // `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The inputs
-// must hold during a beat. The colour arrives one beat after the normal, and the lit colour is valid from clock 9 of that beat on. For two
+// must hold during a beat. The colour arrives one beat after the normal, and the lit colour is valid from clock 10 of that beat on. For two
 // consecutive triangles:
 //
-//   count      0 … 2     3 … 5              6 … 8
+//   count      0 … 2     3 … 5              7 … 9
 //   factors    N·l       colour·share       light·intensity
 //              second    first              second
 
@@ -25,11 +25,11 @@ module flat_shade (
     input  wire  [15:0]      colour,       // of the previous triangle
     output logic [15:0]      lit
 );
-    logic signed [24:0] a;
-    logic signed [17:0] b;
+    logic signed [24:0] a, chosen_a;
+    logic signed [17:0] b, chosen_b;
     logic signed [43:0] addend, c, p;
     logic signed [16:0] component, towards;
-    // A queue of shares, red first; in clocks 6 to 8 its head is the intensity.
+    // A queue of shares, red first; in clocks 7 to 9 its head is the intensity.
     logic        [8:0]  head, second, third, intensity, share;
 
     always_comb begin
@@ -41,27 +41,27 @@ module flat_shade (
         towards = (component ^ {17{front}}) + 17'(front);
 
         unique case (count)
-            4'd0:    a = row_light[0];
-            4'd1:    a = row_light[1];
-            4'd2:    a = row_light[2];
-            4'd3:    a = {20'b0, colour[15:11]};
-            4'd4:    a = {19'b0, colour[10:5]};
-            4'd5:    a = {20'b0, colour[4:0]};
-            4'd6:    a = {16'b0, light_colour[0]};
-            4'd7:    a = {16'b0, light_colour[1]};
-            default: a = {16'b0, light_colour[2]};
+            4'd0:    chosen_a = row_light[0];
+            4'd1:    chosen_a = row_light[1];
+            4'd2:    chosen_a = row_light[2];
+            4'd3:    chosen_a = {20'b0, colour[15:11]};
+            4'd4:    chosen_a = {19'b0, colour[10:5]};
+            4'd5:    chosen_a = {20'b0, colour[4:0]};
+            4'd7:    chosen_a = {16'b0, light_colour[0]};
+            4'd8:    chosen_a = {16'b0, light_colour[1]};
+            default: chosen_a = {16'b0, light_colour[2]};
         endcase
-        b = count < 4'd3 ? 18'(towards) : {9'b0, head};
+        chosen_b = count < 4'd3 ? 18'(towards) : {9'b0, head};
 
-        // The addend is selected two clocks after the factors of its product.
+        // The addend is selected three clocks after the factors of its product.
         unique case (count)
-            4'd2:             addend = 44'd1 << 28;
-            4'd5, 4'd6, 4'd7: addend = 44'd1 << 7;
-            4'd8:             addend = {27'b0, ambient[0], 8'h80};
-            4'd9:             addend = {27'b0, ambient[1], 8'h80};
+            4'd3:             addend = 44'd1 << 28;
+            4'd6, 4'd7, 4'd8: addend = 44'd1 << 7;
+            4'd10:            addend = {27'b0, ambient[0], 8'h80};
+            4'd0:             addend = {27'b0, ambient[1], 8'h80};
             default:          addend = {27'b0, ambient[2], 8'h80};
         endcase
-        c = count == 4'd3 || count == 4'd4 ? p : addend;
+        c = count == 4'd4 || count == 4'd5 ? p : addend;
 
         // The intensity is 0 if the sum is negative, 1 if the sum is at least 1, otherwise the fraction of the sum.
         intensity = p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
@@ -69,14 +69,17 @@ module flat_shade (
     end
 
     always_ff @(posedge clk) begin
-        if (count == 4'd5) begin
+        // Registers before those of the multiplier, so that these need not be near what they are chosen from.
+        if (enable) {a, b} <= {chosen_a, chosen_b};
+
+        if (count == 4'd6) begin
             head <= intensity;
-        end else if (enable && (count == 4'd0 || count == 4'd3 || count == 4'd4 || count == 4'd9 || count == 4'd10)) begin
+        end else if (count <= 4'd4) begin
             {head, second, third} <= {second, third, share};
         end
-        if (count == 4'd6) lit[15:11] <= p[12:8];
-        if (count == 4'd7) lit[10:5]  <= p[13:8];
-        if (count == 4'd8) lit[4:0]   <= p[12:8];
+        if (count == 4'd7) lit[15:11] <= p[12:8];
+        if (count == 4'd8) lit[10:5]  <= p[13:8];
+        if (count == 4'd9) lit[4:0]   <= p[12:8];
     end
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);

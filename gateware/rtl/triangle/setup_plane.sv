@@ -45,7 +45,7 @@ module setup_plane (
     end
 
     setup_gradient gradient (.clk, .count, .nx(nx_3), .ny(ny_3), .y, .lead, .twice_gx, .twice_gy);
-    setup_start at_start (.clk, .count(count_4), .gx, .gy, .px, .py, .value, .start);
+    setup_start at_start (.clk, .next_is_odd(count[0]), .count(count_4), .gx, .gy, .px, .py, .value, .start);
 endmodule
 
 `default_nettype wire

@@ -4,12 +4,14 @@
 //
 // Each gradient needs three products, for which it is split into parts of 17, 17 and 6 bits from the low end; bits 8 to 39 of the products'
 // sum are exact. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11
-// clocks or more). The inputs must hold during a beat; the result is valid from clock 9 on.
+// clocks or more), and `next_is_odd`, the lowest bit of `count` in the next clock. The inputs must hold during a beat, px and py also in the
+// clock before; the result is valid from clock 9 on.
 
 `default_nettype none
 
 module setup_start (
     input  wire         clk,
+    input  wire         next_is_odd,
     input  wire  [3:0]  count,
     input  wire  [39:0] gx,
     input  wire  [39:0] gy,
@@ -28,7 +30,6 @@ module setup_start (
     // The factors follow from count = 2·piece + term, where `term` is 0 for Gx and 1 for Gy. The addend `c` is selected two clocks after
     // the factors of its product.
     always_comb begin
-        a        = 25'($signed(count[0] ? py : px));
         gradient = count[0] ? gy : gx;
         unique case (count[2:1])
             2'd0:    b = {1'b0, gradient[16:0]};
@@ -39,6 +40,9 @@ module setup_start (
     end
 
     always_ff @(posedge clk) begin
+        // This factor is selected one clock ahead, so that the register at the multiplier has no multiplexer before it.
+        a <= 25'($signed(next_is_odd ? py : px));
+
         // The sums are valid in clocks 4, 6 and 8. The last sum holds afterwards, even while clock 10 is repeated.
         if (!count[0] && count != 4'd10) begin
             high   <= p[16:0];
