@@ -385,7 +385,7 @@ MUTATIONS = {
     ],
     "memory_crossbar": [
         _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),
-        _crossbar("Array(allowed)[turn]", "allowed[0]", "as_it_came"),
+        _crossbar("_select(turn, allowed)", "allowed[0]", "as_it_came"),
         # Fault: a port requests a second bank before the first bank has completed its commands.
         _crossbar("~level[0] & ~Array(owned", "~Array(owned", "in_order"),
         _crossbar("Mux(stays, ~level[-1],", "Mux(stays, 1,", "room_in_queue"),

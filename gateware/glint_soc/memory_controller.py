@@ -3,13 +3,13 @@
 from litedram.common import LiteDRAMInterface, burst_lengths
 from litedram.core.controller import ControllerSettings
 from litedram.core.multiplexer import Multiplexer
-from litedram.dfii import DFIInjector
 from litedram.phy import dfi
 from litex.gen import LiteXModule
 from migen import log2_int
 
 from .memory_bank import MemoryBank
 from .memory_crossbar import MemoryCrossbar
+from .memory_injector import MemoryInjector
 from .memory_refresh import MemoryRefresher
 
 
@@ -47,10 +47,10 @@ class MemoryController(LiteXModule):
         if phy.settings.nranks != 1:
             raise ValueError(f"{phy.settings.nranks} ranks of memory: expected 1")
         geometry = module.geom_settings
-        self.dfii = DFIInjector(geometry.addressbits, geometry.bankbits, 1, phy.settings.dfi_databits, phy.settings.nphases)
+        self.dfii = MemoryInjector(geometry.addressbits, geometry.bankbits, phy.settings.dfi_databits, phy.settings.nphases)
         self.controller = _Controller(phy, module, clk_freq,
                                       ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=8))
-        self.crossbar = MemoryCrossbar(self.controller.interface)
+        self.crossbar = MemoryCrossbar(self.controller.interface, self.dfii)
         self.comb += [
             self.dfii.master.connect(phy.dfi),
             self.controller.dfi.connect(self.dfii.slave),

@@ -10,6 +10,14 @@ from migen.genlib import roundrobin
 from .delay import delayed
 
 
+def _select(index, values):
+    """Returns the value of the number `index`, by a tree of multiplexers: synthesis makes more of a selection with many cases."""
+    half = 2 ** (len(values) - 1).bit_length() // 2
+    if len(values) == 1:
+        return values[0]
+    return Mux(index[half.bit_length() - 1], _select(index, values[half:]), _select(index, values[:half]))
+
+
 class MemoryCrossbar(LiteDRAMCrossbar):
     """Replaces LiteDRAM's crossbar, whose ports it offers (`get_port`).
 
@@ -27,7 +35,13 @@ class MemoryCrossbar(LiteDRAMCrossbar):
     for it, as in LiteDRAM. A bank executes its commands in the order in which they were taken from the ports.
 
     Latency: none from a port to the queue, one clock for a port that asks anew. `cmd.ready` follows from `cmd.addr` and registers.
+
+    `injector`, if there is one, has words that are written in place of those of the ports while its `injects` is high.
     """
+
+    def __init__(self, controller, injector=None):
+        LiteDRAMCrossbar.__init__(self, controller)
+        self.injector = injector
 
     def do_finalize(self):
         controller, ports = self.controller, self.masters
@@ -90,11 +104,11 @@ class MemoryCrossbar(LiteDRAMCrossbar):
             arbiter.request.eq(Cat(*(may & ~(valid & (bank == other)) for may, other in zip(allowed, wanted)))),
             arbiter.ce.eq(1),
             turn.eq(arbiter.grant),
-            valid.eq(Array(allowed)[turn]),
-            bank.eq(Array(wanted)[turn]),
+            valid.eq(_select(turn, allowed)),
+            bank.eq(_select(turn, wanted)),
             passed.eq(Mux(valid, 1 << bank, 0)),
-            is_write.eq(Array(port.cmd.we for port in ports)[turn]),
-            address.eq(Array(port.get_row_column_address(self.bank_bits, self.rca_bits, column_bits) for port in ports)[turn]),
+            is_write.eq(_select(turn, [port.cmd.we for port in ports])),
+            address.eq(_select(turn, [port.get_row_column_address(self.bank_bits, self.rca_bits, column_bits) for port in ports])),
         ]
         self.sync += owned.eq((owned & ~reduce(or_, released)) | passed)
         for number, machine in enumerate(banks):
@@ -111,7 +125,13 @@ class MemoryCrossbar(LiteDRAMCrossbar):
                 writers.append(port)
         # Memory ignores data and strobes outside of writes, so any port's may be selected then.
         writer = delayed(self, writer, self.write_latency)
+        words, strobes = ([getattr(port.wdata, name) for port in writers] for name in ("data", "we"))
+        if self.injector:
+            words, strobes = [*words, self.injector.words], [*strobes, Replicate(1, len(controller.wdata_we))]
+            writer = Mux(self.injector.injects, len(writers), writer)
+        chosen = Signal(max=max(len(words), 2))
         self.comb += [
-            controller.wdata.eq(Array(port.wdata.data for port in writers)[writer]),
-            controller.wdata_we.eq(Array(port.wdata.we for port in writers)[writer]),
+            chosen.eq(writer),
+            controller.wdata.eq(_select(chosen, words)),
+            controller.wdata_we.eq(_select(chosen, strobes)),
         ]
