@@ -39,7 +39,7 @@ class Parameter(CSRStorage):
 def without_reading(storage):
     """Returns a register in place of the `CSRStorage` of a LiteX core: with the same content at the same address, but it reads
     as 0."""
-    register = Parameter(storage.size, name=storage.name, description=f"{storage.description}.")
+    register = Parameter(storage.size, name=storage.name, description=f"{storage.description.removesuffix('.')}.")
     register.storage, register.re = storage.storage, storage.re
     if hasattr(storage, "fields"):
         register.fields = storage.fields

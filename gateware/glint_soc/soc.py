@@ -93,6 +93,9 @@ class GlintSoC(SoCCore):
             uart_name=uart_name, uart_baudrate=115200,
             timer_uptime=True,
         )
+        # Software does not read back these registers.
+        for name in ("_load", "_reload"):
+            setattr(self.timer0, name, without_reading(getattr(self.timer0, name)))
         # The BIOS's banner would take 60 ms on the serial line, and its build time would make every build different.
         self.add_config("BIOS_NO_PROMPT")
         # The interrupt handler of the BIOS drops bytes that do not fit its buffer. With polling, unread bytes stay in the UART

@@ -560,7 +560,7 @@ pub mod timer0 {
             Self { _private: () }
         }
 
-        /// `load`, 32 bits: Load value when Timer is (re-)enabled. In One-Shot mode, the value written to this register specifies the Timer's duration in clock cycles.
+        /// `load`, 32 bits: Load value when Timer is (re-)enabled. In One-Shot mode, the value written to this register specifies the Timer's duration in clock cycles. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn load(&self) -> Register<u32, ReadWrite> {
@@ -568,7 +568,7 @@ pub mod timer0 {
             unsafe { Register::at(0xf000_1800) }
         }
 
-        /// `reload`, 32 bits: Reload value when Timer reaches `0`. In Periodic mode, the value written to this register specify the Timer's period in clock cycles.
+        /// `reload`, 32 bits: Reload value when Timer reaches `0`. In Periodic mode, the value written to this register specify the Timer's period in clock cycles. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn reload(&self) -> Register<u32, ReadWrite> {

@@ -69,8 +69,6 @@ impl Timer {
 impl Device for Timer {
     fn read(&mut self, offset: u32, now: u64) -> u32 {
         match offset {
-            offset::LOAD => self.load,
-            offset::RELOAD => self.reload,
             offset::EN => self.enabled.into(),
             offset::UPDATE_VALUE => self.latches[0],
             offset::VALUE => self.value,
