@@ -5,6 +5,7 @@ from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import ClockSignal, Instance, Record, ResetSignal, Signal
 
+from .counters import Counters
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"SCAN", "big")
@@ -67,12 +68,14 @@ class Scanout(LiteXModule):
         self._frame_count = CSRStatus(32, name="frame_count", description="Vertical blankings since reset, modulo 2^32.")
         self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that came too late from memory, "
             "modulo 2^32. The previous line is shown again, or black in the first line.")
-        self._cycles_busy = CSRStatus(32, name="cycles_busy", description="Clock cycles of line fetches, modulo 2^32.")
-        self._cycles_stalled = CSRStatus(32, name="cycles_stalled", description="Clock cycles in which memory refused "
-            "a command, modulo 2^32.")
-        self._items_in = CSRStatus(32, name="items_in", description="Words of 16 bytes read from memory, modulo 2^32.")
-        self._items_out = CSRStatus(32, name="items_out", description="Source lines fetched, modulo 2^32.")
-        self.counters = ["frame_count", "underflow_count", "cycles_busy", "cycles_stalled", "items_in", "items_out"]
+        # A reset clears the two counters above, but not these.
+        self.growing = Counters(self, {
+            "cycles_busy": "Clock cycles of line fetches.",
+            "cycles_stalled": "Clock cycles in which memory refused a command.",
+            "items_in": "Words of 16 bytes read from memory.",
+            "items_out": "Source lines fetched.",
+        })
+        self.counters = ["frame_count", "underflow_count", *self.growing.registers]
 
         # # #
 
@@ -87,6 +90,7 @@ class Scanout(LiteXModule):
             port.cmd.we.eq(0),
             port.cmd.addr.eq(cmd_addr),
             port.rdata.ready.eq(1),
+            self.growing.events["cycles_busy"].eq(fetching),
         ]
         self.specials += Instance("scanout", name="scanout_core",
             p_ADDRESS_BITS    = _WORD_ADDRESS_BITS,
@@ -106,10 +110,9 @@ class Scanout(LiteXModule):
             o_vblank          = self.ev.vblank.trigger,
             o_frames          = self._frame_count.status,
             o_underflows      = self._underflow_count.status,
-            o_cycles_busy     = self._cycles_busy.status,
-            o_cycles_stalled  = self._cycles_stalled.status,
-            o_items_in        = self._items_in.status,
-            o_items_out       = self._items_out.status,
+            o_stalled         = self.growing.events["cycles_stalled"],
+            o_word_came       = self.growing.events["items_in"],
+            o_line_ended      = self.growing.events["items_out"],
             o_cmd_valid       = port.cmd.valid,
             i_cmd_ready       = port.cmd.ready,
             o_cmd_addr        = cmd_addr,

@@ -47,10 +47,10 @@ module scanout #(
     // Free-running counters.
     output logic [31:0]             frames,
     output logic [31:0]             underflows,
-    output logic [31:0]             cycles_busy,
-    output logic [31:0]             cycles_stalled,
-    output logic [31:0]             items_in,   // memory words
-    output logic [31:0]             items_out,  // source lines
+    // Events, one clock late: memory refused a command, a word of a line came, a source line is complete.
+    output logic                    stalled,
+    output logic                    word_came,
+    output logic                    line_ended,
     // Memory: LiteDRAM native read port, 128 bits.
     output logic                    cmd_valid,
     input  wire                     cmd_ready,
@@ -100,7 +100,7 @@ module scanout #(
     // ---- Frame parameters and counters, clocked by sys_clk ------------------------------------------------------
 
     logic [1:0] shift, shift_asked;
-    logic       scale_known, underflow_seen, stalled, stored;
+    logic       scale_known, underflow_seen;
 
     always_comb begin
         scale_known = 1'b1;
@@ -126,16 +126,13 @@ module scanout #(
         end
         if (sys_underflow) underflow_seen <= 1'b1;
 
-        // Registers precede the counters, because memory's signals end long paths in LiteDRAM.
-        stalled <= cmd_valid && !cmd_ready;
-        stored  <= store;
+        // Events are registers, because memory's signals end long paths in LiteDRAM.
+        stalled    <= cmd_valid && !cmd_ready;
+        word_came  <= store;
+        line_ended <= sys_fetch_done && enabled;
 
-        frames         <= frames         + 32'(sys_vblank);
-        underflows     <= underflows     + 32'(sys_underflow);
-        cycles_busy    <= cycles_busy    + 32'(fetching);
-        cycles_stalled <= cycles_stalled + 32'(stalled);
-        items_in       <= items_in       + 32'(stored);
-        items_out      <= items_out      + 32'(sys_fetch_done && enabled);
+        frames     <= frames     + 32'(sys_vblank);
+        underflows <= underflows + 32'(sys_underflow);
 
         if (sys_rst) begin
             enabled        <= 1'b0;
@@ -144,13 +141,10 @@ module scanout #(
             error          <= 2'd0;
             underflow_seen <= 1'b0;
             stalled        <= 1'b0;
-            stored         <= 1'b0;
+            word_came      <= 1'b0;
+            line_ended     <= 1'b0;
             frames         <= '0;
             underflows     <= '0;
-            cycles_busy    <= '0;
-            cycles_stalled <= '0;
-            items_in       <= '0;
-            items_out      <= '0;
         end
     end
 

@@ -9,11 +9,10 @@ use crate::monitor::Monitor;
 use crate::raster::{Clocks, Raster};
 use crate::settings::{Settings, error};
 
-/// Expected values of the module's free-running counters.
+/// What the bench expects the module to count.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counted {
     vblanks: u32,
-    busy: u32,
     stalled: u32,
     words: u32,
 }
@@ -27,19 +26,19 @@ struct Ports {
     fetching: Port,
     vblank: Port,
     underflows: Port,
-    registers: [Port; 8],
+    line_ended: Port,
+    registers: [Port; 7],
 }
 
 impl Ports {
     /// Names of the outputs compared in every cycle of `sys_clk`.
-    const REGISTERS: [&str; 8] = [
+    const REGISTERS: [&str; 7] = [
         "enabled",
         "scale_current",
         "frame_current",
         "frames",
-        "cycles_busy",
-        "cycles_stalled",
-        "items_in",
+        "stalled",
+        "word_came",
         "error",
     ];
 
@@ -53,6 +52,7 @@ impl Ports {
             fetching: module.port("fetching"),
             vblank: module.port("vblank"),
             underflows: module.port("underflows"),
+            line_ended: module.port("line_ended"),
             registers: Self::REGISTERS.map(|name| module.port(name)),
         }
     }
@@ -82,8 +82,11 @@ pub struct Bench {
     fetched_from: Settings,
     was_fetching: bool,
     counted: Counted,
-    /// Counter values of the previous clock: the counters of memory's signals lag by a clock.
     counted_before: Counted,
+    /// Source lines that the module has reported as complete.
+    pub lines: u64,
+    /// Words that the module has reported.
+    pub words: u64,
     expected_error: u64,
     late_before: u64,
     /// Time of the last pixel of the picture; `None` once the module has reported the following vertical blanking.
@@ -118,6 +121,8 @@ impl Bench {
             was_fetching: false,
             counted: Counted::default(),
             counted_before: Counted::default(),
+            lines: 0,
+            words: 0,
             expected_error: error::NONE,
             late_before: 0,
             active_end: None,
@@ -269,7 +274,6 @@ impl Bench {
         );
         self.counted_before = self.counted;
         self.counted.stalled += u32::from(stalled);
-        self.counted.busy += u32::from(fetching);
         self.counted.words += u32::from(self.memory.delivers(&self.module));
         if self.module.is_high(self.ports.vblank) {
             self.at_vblank();
@@ -314,6 +318,8 @@ impl Bench {
             return;
         }
         self.check_registers();
+        self.lines += self.module.value(self.ports.line_ended);
+        self.words += u64::from(self.counted.words - self.counted_before.words);
         if let Some(software) = self.software {
             software(&mut self.random, &mut self.asked);
         }
@@ -323,16 +329,19 @@ impl Bench {
     }
 
     fn check_registers(&self) {
-        let Counted { vblanks, busy, .. } = self.counted;
-        let Counted { stalled, words, .. } = self.counted_before;
+        let Counted {
+            vblanks,
+            stalled,
+            words,
+        } = self.counted;
+        let before = self.counted_before;
         let expected = [
             self.in_force.enable.into(),
             self.in_force.scale,
             self.in_force.base,
             vblanks.into(),
-            busy.into(),
-            stalled.into(),
-            words.into(),
+            (stalled - before.stalled).into(),
+            (words - before.words).into(),
             self.expected_error,
         ];
         for (i, expected) in expected.into_iter().enumerate() {

@@ -37,9 +37,8 @@ fn all_scales_are_pixel_exact(clocks: Clocks) {
     bench.run_to_vblank();
     assert_eq!((bench.monitor.late, bench.monitor.frames), (0, 3));
     // The source lines and the memory words of three frames, each read once.
-    assert_eq!(bench.module.read("items_out"), 180 + 360 + 720);
-    let words = 180 * 40 + 360 * 80 + 720 * 160;
-    assert_eq!(bench.module.read("items_in"), words);
+    assert_eq!(bench.lines, 180 + 360 + 720);
+    assert_eq!(bench.words, 180 * 40 + 360 * 80 + 720 * 160);
 }
 
 #[test]
