@@ -60,8 +60,8 @@ impl fmt::Display for Report {
 
 /// Converts a picture to a texture with all mip levels: the sides become powers of two, and levels are averages in linear light.
 ///
-/// With a cutoff, texels are transparent where their opacity, averaged over the picture's texels, is below the cutoff. The value that
-/// marks them is one that no opaque texel has.
+/// With a cutoff, texels are transparent where their opacity, averaged over the picture's texels, is below the cutoff. Smaller levels have
+/// the same share of opaque texels, as far as possible. The value that marks transparent texels is one that no opaque texel has.
 ///
 /// # Errors
 /// The picture has no texel, or the largest side of the options is outside of [`MIN_SIDE`] to [`MAX_SIDE`].
@@ -101,12 +101,7 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
     while let Some(next) = levels.last().and_then(Level::next) {
         levels.push(next);
     }
-    let cutoff = cutoff.unwrap_or(0.0);
-    let opaque = |level: &Level| {
-        let texels = level.texels.iter();
-        texels.map(|&texel| opaque(texel, cutoff)).collect()
-    };
-    let texels: Vec<Vec<Option<[u8; 3]>>> = levels.iter().map(opaque).collect();
+    let texels = opaque(&levels, cutoff.unwrap_or(0.0));
     let count = texels.iter().flatten().flatten().count();
     let cut_out = count < texels.iter().map(Vec::len).sum::<usize>();
     if count == 0 {
@@ -207,10 +202,51 @@ fn side_log2(side: u32, largest: u32) -> u8 {
     nearest.min(largest.ilog2()) as u8
 }
 
-/// The colour of an opaque texel, rounded; `None` for a transparent one.
-fn opaque(texel: Texel, cutoff: f32) -> Option<[u8; 3]> {
-    let [.., opacity] = texel;
-    (opacity > 0.0 && opacity >= cutoff).then(|| colour(texel).map(|value| value.round() as u8))
+/// The colours of the opaque texels of all levels, rounded; `None` for transparent texels.
+///
+/// A fence of thin bars would vanish in small levels, whose texels have the average opacity of bars and gaps. Therefore each level has the
+/// share of opaque texels of the largest level: those with the most opacity, and of equal ones some in an even pattern.
+fn opaque(levels: &[Level], cutoff: f32) -> Vec<Vec<Option<[u8; 3]>>> {
+    let rounded = |texel: Texel| colour(texel).map(|value| value.round() as u8);
+    let is_opaque = |texel: &Texel| texel[3] > 0.0 && texel[3] >= cutoff;
+    let Some(largest) = levels.first() else {
+        return Vec::new();
+    };
+    let texels = largest.texels.iter();
+    let of_largest: Vec<_> = texels
+        .map(|texel| is_opaque(texel).then(|| rounded(*texel)))
+        .collect();
+    let opaque = of_largest.iter().flatten().count();
+    let of_level = |level: &Level| {
+        let count = level.texels.len();
+        // The product exceeds 32 bits.
+        let [part, all, whole] = [opaque, count, of_largest.len()].map(|count| count as u64);
+        let aim = ((part * all + whole / 2) / whole) as usize;
+        let mut by_opacity: Vec<usize> = (0..count).filter(|&i| level.texels[i][3] > 0.0).collect();
+        let order = |i: usize| even_order(i % level.size[0], i / level.size[0]);
+        if aim < by_opacity.len() {
+            by_opacity.sort_unstable_by(|&a, &b| {
+                let opacity = |i: usize| level.texels[i][3];
+                let opacities = opacity(b).total_cmp(&opacity(a));
+                opacities.then_with(|| order(a).cmp(&order(b)))
+            });
+        }
+        let mut texels = vec![None; count];
+        for &i in by_opacity.iter().take(aim) {
+            texels[i] = Some(rounded(level.texels[i]));
+        }
+        texels
+    };
+    let smaller: Vec<_> = levels.iter().skip(1).map(of_level).collect();
+    std::iter::once(of_largest).chain(smaller).collect()
+}
+
+/// Order of places in which the first ones of any number are evenly distributed (Bayer's matrix).
+fn even_order(x: usize, y: usize) -> u32 {
+    (0..MAX_SIDE.ilog2()).fold(0, |order, bit| {
+        let [x, y] = [x, y].map(|c| (c >> bit) as u32 & 1);
+        order << 2 | (x ^ y) << 1 | y
+    })
 }
 
 /// The values of the texels of all levels.
@@ -460,6 +496,38 @@ mod tests {
             assert_eq!(report.remarks, ["each texel is transparent"]);
             assert_eq!((report.error_rms, report.error_max), (0.0, 0.0));
         }
+    }
+
+    #[test]
+    fn smaller_levels_keep_the_share_of_opaque_texels() {
+        // Thin bars in one direction, dots, and texels with the same opacity.
+        let bars = |x: u32, _: u32| x.is_multiple_of(5);
+        let dots = |x: u32, y: u32| (x * x + 3 * y * y + x * y) % 7 < 2;
+        let options = Options {
+            cutoff: Some(0.5),
+            ..Options::default()
+        };
+        let shares = |picture: &Picture| -> Vec<f64> {
+            let (bytes, _) = convert(picture, &options).unwrap();
+            let texture = Texture::new_checked(&bytes).unwrap();
+            let share = |level| {
+                let [width, height] = texture.level_log2(level).map(|side| 1 << side);
+                let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+                let opaque = places.filter(|&place| texture.colour(level, place).is_some());
+                opaque.count() as f64 / f64::from(width * height)
+            };
+            (0..texture.levels()).map(share).collect()
+        };
+        for is_opaque in [&bars as &dyn Fn(u32, u32) -> bool, &dots] {
+            let opacity = |x, y| if is_opaque(x, y) { 255 } else { 0 };
+            let found = shares(&picture([64, 64], |x, y| [9, 9, 9, opacity(x, y)]));
+            for (level, share) in found.iter().enumerate() {
+                let texels = f64::from(1 << (12 - 2 * level));
+                assert!((share - found[0]).abs() <= 0.5 / texels, "{found:?}");
+            }
+        }
+        assert_eq!(shares(&picture([8, 8], |_, _| [9, 9, 9, 100])), [0.0; 4]);
+        assert_eq!(shares(&picture([8, 8], |_, _| [9, 9, 9, 200])), [1.0; 4]);
     }
 
     #[test]
