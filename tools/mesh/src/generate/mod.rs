@@ -3,6 +3,7 @@
 mod builder;
 mod cube;
 mod gear;
+mod globe;
 mod icosphere;
 mod scan;
 mod sponge;
@@ -13,7 +14,7 @@ use crate::error::FormatError;
 use crate::polygons::Polygons;
 
 /// Names of the generators, for messages and help.
-pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, \
+pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe (with a texture), \
     scan:N (frequency, 1 to 64) or sponge:N (0 to 4)";
 
 /// Whether a name is the name of a generator, not of a file.
@@ -21,7 +22,7 @@ pub fn is_name(name: &str) -> bool {
     let stem = name.split(':').next().unwrap_or_default();
     matches!(
         stem,
-        "cube" | "icosphere" | "torus-knot" | "gear" | "teapot" | "sponge" | "scan"
+        "cube" | "icosphere" | "torus-knot" | "gear" | "teapot" | "globe" | "sponge" | "scan"
     )
 }
 
@@ -46,6 +47,7 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         ("torus-knot", None) => torus_knot::torus_knot(),
         ("gear", None) => gear::gear(),
         ("teapot", None) => teapot::teapot(),
+        ("globe", None) => globe::globe(),
         ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
         ("scan", Some(frequency @ 1..=64)) => scan::scan(frequency),
         _ => Err(refuse()),
@@ -61,13 +63,14 @@ mod tests {
     use crate::triangulate::{self, cross, dot};
     use std::collections::HashMap;
 
-    pub const ALL: [&str; 9] = [
+    pub const ALL: [&str; 10] = [
         "cube",
         "icosphere:1",
         "icosphere:8",
         "torus-knot",
         "gear",
         "teapot",
+        "globe",
         "sponge:0",
         "sponge:2",
         "scan:8",
