@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Limit for the size of all pictures of a page together, in bytes.
-const MOST: u64 = 500_000;
+const MOST: u64 = 550_000;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
