@@ -149,17 +149,24 @@ impl Plane {
             light: a
                 .light
                 .zip_with(b.light, |a, b| between(a.into(), b.into()) as u16),
-            coordinates: [0, 1].map(|i: usize| {
-                let [a, b] = [a, b].map(|vertex| i64::from(vertex.coordinates[i]));
-                // Most triangles have no texture, and a portion takes divisions.
-                if TEXTURE.is_built && a != b {
-                    between(a, b) as i32
-                } else {
-                    a as i32
-                }
-            }),
+            coordinates: if TEXTURE.is_built && a.coordinates != b.coordinates {
+                between_coordinates(a.coordinates, b.coordinates, part, whole)
+            } else {
+                a.coordinates
+            },
         }
     }
+}
+
+/// The coordinates of a texture at an intersection, as the other values of [`Plane::intersection`].
+///
+/// Not inlined, so that triangles without textures do not load this code into the instruction cache.
+#[inline(never)]
+fn between_coordinates(a: [i32; 2], b: [i32; 2], part: u64, whole: u64) -> [i32; 2] {
+    [0, 1].map(|i: usize| {
+        let (a, b) = (i64::from(a[i]), i64::from(b[i]));
+        (a + portion(b - a, part, whole)) as i32
+    })
 }
 
 /// The homogeneous coordinate that divides X and Y, 37 fraction bits.

@@ -3,7 +3,7 @@
 use glint_core::mesh::{Mesh, Rgb565};
 
 use crate::triangle::mesh_setup::MeshSetup;
-use crate::triangle::primitive::{Interpolated, Options, Placed, clip_fan, lit_corners};
+use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners};
 use crate::triangle::setup::Setup;
 
 /// Clips the gateware's exceptions, given by their `numbers` in the mesh. Emits setup and colour of every part inside the volume, and
@@ -45,11 +45,8 @@ pub fn clip_exceptions(
             &mut |corners| {
                 let light = lit_corners(options.shading, corners);
                 let vertices = corners.map(|corner| &corner.place);
-                let interpolated = Interpolated {
-                    light: light.as_ref(),
-                    texture: None,
-                };
-                if let Some(placed) = Placed::new(frame, options, &triangle, vertices, interpolated)
+                if let Some(placed) =
+                    Placed::new(frame, options, &triangle, vertices, light.as_ref())
                 {
                     emit(&placed.setup(), placed.colour);
                     any = true;

@@ -2,7 +2,6 @@
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::TEXTURE;
 use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 use glint_core::texture::Texture;
@@ -84,7 +83,7 @@ impl Default for Options<'_> {
 }
 
 /// A triangle on the screen that reaches the walker, the stage that finds its pixels.
-pub struct Placed<'a> {
+pub struct Placed {
     /// Vertices in clockwise order, and the visible side.
     pub oriented: Oriented,
     /// Bounds of the covered pixels.
@@ -95,42 +94,20 @@ pub struct Placed<'a> {
     pub lit: Option<[Lit; 3]>,
     /// The projection, which determines whether light is linear on the screen.
     pub projection: Projection,
-    /// The texture, which `colour` then does not contain.
-    pub texture: Option<PlacedTexture<'a>>,
 }
 
-/// The texture of a triangle on the screen.
-pub struct PlacedTexture<'a> {
-    /// The texture.
-    texture: Texture<'a>,
-    /// Coordinates s and t of the vertices, in their order on the screen.
-    coordinates: [[i32; 2]; 3],
-    /// Light of the triangle under flat shading.
-    light: [u8; 3],
-}
-
-/// What is interpolated between the vertices of a triangle besides the depth, by the order of its vertices in the mesh.
-#[derive(Clone, Copy, Default)]
-pub struct Interpolated<'a, 'b> {
-    /// Light, under smooth shading.
-    pub light: Option<&'b [Light; 3]>,
-    /// The texture and its coordinates s and t, s16.16.
-    pub texture: Option<&'b (Texture<'a>, [[i32; 2]; 3])>,
-}
-
-impl<'a> Placed<'a> {
+impl Placed {
     /// Prepares a triangle; `None` for a culled back face, and for a triangle without bounds ([`Bounds::new`]).
     pub fn new(
         frame: &MeshSetup,
         options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        interpolated: Interpolated<'a, '_>,
+        light: Option<&[Light; 3]>,
     ) -> Option<Self> {
-        let Interpolated { light, texture } = interpolated;
-        let is_plain = options.light.is_none() && options.colour.is_none() && texture.is_none();
+        let is_plain = options.light.is_none() && options.colour.is_none();
         if frame.is_placed || options.winding == Winding::Screen || !is_plain {
-            return Self::optional(frame, options, triangle, vertices, interpolated);
+            return Self::optional(frame, options, triangle, vertices, light);
         }
         let oriented = Oriented::new(vertices.map(|v| *v))?;
         let facing = oriented.facing;
@@ -145,12 +122,11 @@ impl<'a> Placed<'a> {
             colour: lit(triangle.colour, [intensity; 3]),
             lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
             projection: frame.projection,
-            texture: None,
         })
     }
 
-    /// Prepares a triangle that is part of an object, has a replaced colour or a texture, is lit by another light than white light at the
-    /// camera, or has its visible side determined by [`Winding::Screen`]; with [`Winding::Screen`] it is never culled.
+    /// Prepares a triangle that is part of an object, has a replaced colour, is lit by another light than white light at the camera, or
+    /// has its visible side determined by [`Winding::Screen`]; with [`Winding::Screen`] it is never culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]
@@ -159,7 +135,7 @@ impl<'a> Placed<'a> {
         options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        Interpolated { light, texture }: Interpolated<'a, '_>,
+        light: Option<&[Light; 3]>,
     ) -> Option<Self> {
         let vertices = vertices.map(|v| *v);
         let normal = options.turned(triangle.normal);
@@ -192,38 +168,16 @@ impl<'a> Placed<'a> {
                 light.to(facing)
             }
         };
-        let (colour, shares) = (
-            options.colour.unwrap_or(triangle.colour),
-            options.shares(intensity),
-        );
         Some(Self {
             oriented,
             bounds,
-            colour: lit(colour, shares),
+            colour: lit(
+                options.colour.unwrap_or(triangle.colour),
+                options.shares(intensity),
+            ),
             lit: light.map(|light| order.map(|i| light_of(light[i]))),
             projection: frame.projection,
-            texture: texture
-                .filter(|_| TEXTURE.is_built)
-                .map(|(texture, coordinates)| PlacedTexture {
-                    texture: *texture,
-                    coordinates: order.map(|i| coordinates[i]),
-                    light: flat_light(colour, shares),
-                }),
         })
-    }
-
-    /// Computes the planes of the texture's coordinates, if the triangle has a texture; `setup` is its setup.
-    pub fn textured(&self, setup: &Setup) -> Option<Textured<'a>> {
-        let placed = self.texture.as_ref().filter(|_| TEXTURE.is_built)?;
-        let is_linear = self.projection == Projection::Orthographic;
-        Some(Textured::new(
-            placed.texture,
-            &self.oriented,
-            setup,
-            &placed.coordinates,
-            placed.light,
-            is_linear,
-        ))
     }
 
     /// Computes the edge functions and planes of the triangle.
@@ -236,6 +190,40 @@ impl<'a> Placed<'a> {
             }
         }
     }
+}
+
+/// The texture of a placed triangle: `texture` has the coordinates s and t, s16.16, of the triangle's `vertices`, and `setup` is the setup of
+/// `placed`.
+///
+/// Not inlined, so that triangles without textures do not load this code into the instruction cache.
+#[inline(never)]
+pub fn textured<'a>(
+    frame: &MeshSetup,
+    options: &Options,
+    triangle: &Triangle,
+    vertices: [&ScreenVertex; 3],
+    (texture, coordinates): &(Texture<'a>, [[i32; 2]; 3]),
+    placed: &Placed,
+    setup: &Setup,
+) -> Textured<'a> {
+    let vertices = vertices.map(|v| *v);
+    let order = match options.winding {
+        Winding::Screen => Oriented::screen_order(&vertices),
+        Winding::Mesh => {
+            Oriented::new(vertices).map_or([0, 1, 2], |new| new.facing.order([0, 1, 2]))
+        }
+    };
+    let normal = options.turned(triangle.normal);
+    let intensity = intensity(normal, &frame.light, placed.oriented.facing);
+    let colour = options.colour.unwrap_or(triangle.colour);
+    Textured::new(
+        *texture,
+        &placed.oriented,
+        setup,
+        &order.map(|i| coordinates[i]),
+        flat_light(colour, options.shares(intensity)),
+        placed.projection == Projection::Orthographic,
+    )
 }
 
 /// The light of a triangle's vertices.

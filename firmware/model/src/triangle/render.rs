@@ -13,11 +13,11 @@ use crate::triangle::clip::contains;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{
-    Corner, Interpolated, Options, Placed, clip_fan, lit_corners, vertex_light,
+    Corner, Options, Placed, clip_fan, lit_corners, textured, vertex_light,
 };
 use crate::triangle::raster;
 use crate::triangle::setup::Setup;
-use crate::triangle::shade::Lit;
+use crate::triangle::shade::{Light, Lit};
 use crate::triangle::textured::{MeshTextures, Textured};
 use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
 use crate::triangle::volume::Volume;
@@ -193,8 +193,9 @@ pub fn draw_parts<'a>(
     })
 }
 
-/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each triangle, its setup, and its texture if it has one. `part` returns a part by
-/// its number, and `None` after the last part; it is called twice for a part with triangles to clip. The pixel counts in the result are 0.
+/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each triangle, its setup, and its texture if it has
+/// one. `part` returns a part by its number, and `None` after the last part; it is called twice for a part with triangles to clip. The
+/// pixel counts in the result are 0.
 ///
 /// Unclipped triangles come first, by part and index, then clipped triangles, by part and index: the order in which the gateware draws
 /// them.
@@ -335,11 +336,14 @@ impl<'a> Renderer<'a, '_> {
                             )),
                         };
                         let texture = self.texture(first, &triangle);
-                        let interpolated = Interpolated {
-                            light: light.as_ref(),
-                            texture: texture.as_ref(),
-                        };
-                        let drawn = self.draw(index, &triangle, vertices, interpolated, false);
+                        let drawn = self.draw(
+                            index,
+                            false,
+                            &triangle,
+                            vertices,
+                            light.as_ref(),
+                            texture.as_ref(),
+                        );
                         self.stats.drawn += u32::from(drawn);
                     }
                     Path::Exception => self.stats.clipped += 1,
@@ -402,19 +406,23 @@ impl<'a> Renderer<'a, '_> {
     /// vertex in the mesh.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk, first: usize) -> bool {
         let (frame, options) = (self.frame, self.options);
+        let mut any = false;
         let texture = self.texture(first, triangle);
         let coordinates = texture.map_or([[0; 2]; 3], |(_, coordinates)| coordinates);
-        let mut any = false;
         let mut draw = |corners: [&Corner; 3]| {
             let light = lit_corners(options.shading, corners);
-            let texture =
-                texture.map(|(texture, _)| (texture, corners.map(|corner| corner.coordinates)));
-            let interpolated = Interpolated {
-                light: light.as_ref(),
-                texture: texture.as_ref(),
-            };
-            let places = corners.map(|c| &c.place);
-            any |= self.draw(index, triangle, places, interpolated, true);
+            let places = corners.map(|corner| &corner.place);
+            let texture = texture
+                .as_ref()
+                .map(|(texture, _)| (*texture, corners.map(|corner| corner.coordinates)));
+            any |= self.draw(
+                index,
+                true,
+                triangle,
+                places,
+                light.as_ref(),
+                texture.as_ref(),
+            );
         };
         clip_fan(&frame, &options, triangle, chunk, &coordinates, &mut draw);
         any
@@ -424,25 +432,29 @@ impl<'a> Renderer<'a, '_> {
     fn draw(
         &mut self,
         index: u32,
+        is_clipped: bool,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
-        interpolated: Interpolated,
-        clipped: bool,
+        light: Option<&[Light; 3]>,
+        texture: Option<&(Texture<'a>, [[i32; 2]; 3])>,
     ) -> bool {
-        let placed = Placed::new(&self.frame, &self.options, triangle, vertices, interpolated);
-        let Some(placed) = placed else {
+        let Some(placed) = Placed::new(&self.frame, &self.options, triangle, vertices, light)
+        else {
             return false;
         };
+        let setup = placed.setup();
+        let textured = texture.filter(|_| TEXTURE.is_built).map(|texture| {
+            let (frame, options) = (&self.frame, &self.options);
+            textured(frame, options, triangle, vertices, texture, &placed, &setup)
+        });
         let triangle = DrawnTriangle {
             index,
             vertices: placed.oriented.vertices,
             facing: placed.oriented.facing,
             colour: placed.colour,
             lit: placed.lit,
-            clipped,
+            clipped: is_clipped,
         };
-        let setup = placed.setup();
-        let textured = placed.textured(&setup);
         (self.emit)(&triangle, &setup, textured.as_ref());
         true
     }

@@ -7,7 +7,7 @@ use glint_model::line::Segment;
 use glint_model::triangle::shade::Light;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::triangle::vertex_cache::{SLOTS, VertexCache};
-use glint_model::triangle::{Interpolated, Path, Placed, light_of};
+use glint_model::triangle::{Path, Placed, light_of};
 use glint_model::{Options, Projected};
 use litex_pac::triangle::{Counters, Error, Geometry, offset};
 
@@ -153,11 +153,7 @@ impl GeometryUnit {
                     Path::Unseen => results.unseen += 1,
                     Path::Exception => exceptions.put(results.triangles),
                     Path::Regular(places) => {
-                        let interpolated = Interpolated {
-                            light: light.as_ref(),
-                            texture: None,
-                        };
-                        match Placed::new(frame, &options, &triangle, places, interpolated) {
+                        match Placed::new(frame, &options, &triangle, places, light.as_ref()) {
                             Some(placed) => {
                                 lists.put(&placed.setup(), placed.colour);
                                 time.drawn += 1;
