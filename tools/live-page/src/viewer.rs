@@ -59,13 +59,13 @@ impl Sent {
             mesh = next(&file);
             name = file.name;
         }
-        let mut beside: HashMap<String, Vec<u8>> = files
+        let beside: HashMap<String, Vec<u8>> = files
             .map(|file| {
                 let data = next(&file);
                 (file.name, data)
             })
             .collect();
-        let mut beside = |name: &str| beside.remove(Path::new(name).file_name()?.to_str()?);
+        let mut beside = |name: &str| beside.get(Path::new(name).file_name()?.to_str()?).cloned();
         let model = model::of_file(&name, mesh, Options::default(), &mut beside)?;
         let inside_out = model.inside_out().map(str::to_owned);
         Ok(Upload {

@@ -236,7 +236,7 @@ pub fn set_up_parts<'a>(
         let mut renderer = Renderer {
             frame,
             options,
-            textures: MeshTextures::new(&mesh, &options),
+            textures: MeshTextures::new(&mesh, options.textures),
             emit,
             stats,
         };
@@ -261,7 +261,7 @@ pub fn set_up_parts<'a>(
         let mut renderer = Renderer {
             frame,
             options,
-            textures: MeshTextures::new(&mesh, &options),
+            textures: MeshTextures::new(&mesh, options.textures),
             emit,
             stats,
         };

@@ -6,7 +6,6 @@ use glint_core::mesh::{Attribute, Mesh, Triangle};
 use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Texture, Wrap};
 
-use crate::triangle::primitive::Options;
 use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
 use crate::triangle::shade::HALF_CODE;
 
@@ -42,9 +41,9 @@ pub struct MeshTextures<'a> {
 }
 
 impl<'a> MeshTextures<'a> {
-    /// The textures of a mesh; `None` if it has none, no coordinates, or if the options leave them out.
-    pub fn new(mesh: &Mesh<'a>, options: &Options) -> Option<Self> {
-        if !(TEXTURE.is_built && options.textures && mesh.has_textures()) {
+    /// The textures of a mesh; `None` if it has none, no coordinates, or if they are not drawn.
+    pub fn new(mesh: &Mesh<'a>, is_drawn: bool) -> Option<Self> {
+        if !(TEXTURE.is_built && is_drawn && mesh.has_textures()) {
             return None;
         }
         let coordinates = mesh.attribute(Attribute::TextureCoordinates)?;
