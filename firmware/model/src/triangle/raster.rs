@@ -66,7 +66,7 @@ fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> C
     draw_with(setup, Smooth::new(setup, light), target)
 }
 
-/// Draws a triangle with a texture. Not inlined, for the reason given at [`draw_smooth`].
+/// Draws a triangle with a texture. Not inlined, so that other triangles do not load this code into the instruction cache.
 #[inline(never)]
 pub fn draw_textured(setup: &Setup, textured: &Textured, target: &mut FrameBuffer) -> Coverage {
     draw_with(setup, Textures::new(setup, textured), target)
