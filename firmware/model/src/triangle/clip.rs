@@ -5,7 +5,6 @@
 //! triangles at an edge get the same vertex.
 
 use glint_core::camera::Projection;
-use glint_core::feature::TEXTURE;
 use heapless::Vec;
 
 use crate::triangle::mesh_setup::MeshSetup;
@@ -17,19 +16,69 @@ use crate::triangle::volume::Volume;
 /// 9, but rounding may make a polygon concave.)
 pub const MAX_VERTICES: usize = 28;
 
-/// A triangle after clipping: a polygon.
-#[derive(Clone, Debug, Default)]
-pub struct Polygon {
-    vertices: Vec<CameraVertex, MAX_VERTICES>,
+/// A vertex of a triangle that is clipped. The code for triangles without textures interpolates no coordinates.
+pub trait Cut: Copy {
+    /// Its place and light.
+    fn vertex(&self) -> &CameraVertex;
+    /// The vertex at `part`/`whole` of the way to another one; `vertex` is its place and light.
+    fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self;
 }
 
-impl Polygon {
+impl Cut for CameraVertex {
+    fn vertex(&self) -> &CameraVertex {
+        self
+    }
+    fn towards(&self, _: &Self, vertex: CameraVertex, _: u64, _: u64) -> Self {
+        vertex
+    }
+}
+
+/// A vertex of a triangle with a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TexturedVertex {
+    /// Its place and light.
+    pub vertex: CameraVertex,
+    /// Coordinates s and t of the texture, s16.16.
+    pub coordinates: [i32; 2],
+}
+
+impl Cut for TexturedVertex {
+    fn vertex(&self) -> &CameraVertex {
+        &self.vertex
+    }
+    fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self {
+        let coordinates = [0, 1].map(|i: usize| {
+            let [a, b] = [self, other].map(|corner| i64::from(corner.coordinates[i]));
+            (a + portion(b - a, part, whole)) as i32
+        });
+        Self {
+            vertex,
+            coordinates,
+        }
+    }
+}
+
+/// A triangle after clipping: a polygon.
+#[derive(Clone, Debug)]
+pub struct Polygon<C = CameraVertex> {
+    vertices: Vec<C, MAX_VERTICES>,
+}
+
+impl<C> Default for Polygon<C> {
+    fn default() -> Self {
+        Self {
+            vertices: Vec::new(),
+        }
+    }
+}
+
+impl<C: Cut> Polygon<C> {
     /// The vertices in order; fewer than three if no part of the triangle is inside the volume.
-    pub fn vertices(&self) -> &[CameraVertex] {
+    pub fn vertices(&self) -> &[C] {
         &self.vertices
     }
 
-    fn push(&mut self, vertex: CameraVertex) {
+    fn push(&mut self, vertex: C) {
         // Clipping never makes more vertices than fit.
         let _ = self.vertices.push(vertex);
     }
@@ -95,21 +144,21 @@ impl Plane {
     }
 
     /// Writes the part of `polygon` inside the plane to `left`. Returns false, and writes nothing, if the whole polygon is inside.
-    fn cut(self, frame: &MeshSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
+    fn cut<C: Cut>(self, frame: &MeshSetup, polygon: &Polygon<C>, left: &mut Polygon<C>) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
             return false;
         };
         if vertices
             .iter()
-            .all(|vertex| self.distance(frame, vertex) >= 0)
+            .all(|corner| self.distance(frame, corner.vertex()) >= 0)
         {
             return false;
         }
         left.vertices.clear();
-        let mut from_distance = self.distance(frame, from);
+        let mut from_distance = self.distance(frame, from.vertex());
         for to in vertices {
-            let to_distance = self.distance(frame, to);
+            let to_distance = self.distance(frame, to.vertex());
             match (from_distance >= 0, to_distance >= 0) {
                 (true, true) => left.push(*to),
                 (true, false) => {
@@ -126,19 +175,13 @@ impl Plane {
         true
     }
 
-    /// The intersection of the plane with the edge from the vertex `a` inside, at distance `da`, to the vertex `b`
+    /// The intersection of the plane with the edge from the vertex `from` inside, at distance `da`, to the vertex `to`
     /// outside, at distance `db`.
-    fn intersection(
-        self,
-        frame: &MeshSetup,
-        a: &CameraVertex,
-        da: i64,
-        b: &CameraVertex,
-        db: i64,
-    ) -> CameraVertex {
+    fn intersection<C: Cut>(self, frame: &MeshSetup, from: &C, da: i64, to: &C, db: i64) -> C {
         let (part, whole) = (da.unsigned_abs(), da.abs_diff(db));
+        let (a, b) = (from.vertex(), to.vertex());
         let between = |a: i64, b: i64| a + portion(b - a, part, whole);
-        CameraVertex {
+        let vertex = CameraVertex {
             x: between(a.x, b.x),
             y: between(a.y, b.y),
             z: match (self, frame.volume) {
@@ -149,24 +192,9 @@ impl Plane {
             light: a
                 .light
                 .zip_with(b.light, |a, b| between(a.into(), b.into()) as u16),
-            coordinates: if TEXTURE.is_built && a.coordinates != b.coordinates {
-                between_coordinates(a.coordinates, b.coordinates, part, whole)
-            } else {
-                a.coordinates
-            },
-        }
+        };
+        from.towards(to, vertex, part, whole)
     }
-}
-
-/// The coordinates of a texture at an intersection, as the other values of [`Plane::intersection`].
-///
-/// Not inlined, so that triangles without textures do not load this code into the instruction cache.
-#[inline(never)]
-fn between_coordinates(a: [i32; 2], b: [i32; 2], part: u64, whole: u64) -> [i32; 2] {
-    [0, 1].map(|i: usize| {
-        let (a, b) = (i64::from(a[i]), i64::from(b[i]));
-        (a + portion(b - a, part, whole)) as i32
-    })
 }
 
 /// The homogeneous coordinate that divides X and Y, 37 fraction bits.
@@ -187,9 +215,10 @@ fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
 /// triangle from the picture, so the test is also valid for vertices behind the eye.
 ///
 /// This fast test replaces the clipping of such a triangle, which would cover no pixel.
-pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
+pub fn off_picture<C: Cut>(frame: &MeshSetup, triangle: &[C; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
-        let places = triangle.each_ref().map(|v| {
+        let places = triangle.each_ref().map(|corner| {
+            let v = corner.vertex();
             (
                 half_pixels(frame, x(v)),
                 i64::from(size) * divisor(frame, v),
@@ -201,7 +230,7 @@ pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
 }
 
 /// Clips a triangle to the volume of the frame, starting with its first vertex.
-pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
+pub fn clip<C: Cut>(frame: &MeshSetup, triangle: [C; 3]) -> Polygon<C> {
     let (mut polygon, mut left) = (Polygon::default(), Polygon::default());
     triangle.into_iter().for_each(|vertex| polygon.push(vertex));
     for plane in planes(frame.volume) {

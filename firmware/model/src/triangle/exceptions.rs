@@ -36,23 +36,14 @@ pub fn clip_exceptions(
             continue;
         };
         let mut any = false;
-        clip_fan(
-            frame,
-            options,
-            &triangle,
-            chunk,
-            &[[0; 2]; 3],
-            &mut |corners| {
-                let light = lit_corners(options.shading, corners);
-                let vertices = corners.map(|corner| &corner.place);
-                if let Some(placed) =
-                    Placed::new(frame, options, &triangle, vertices, light.as_ref())
-                {
-                    emit(&placed.setup(), placed.colour);
-                    any = true;
-                }
-            },
-        );
+        clip_fan(frame, options, &triangle, chunk, &mut |corners| {
+            let light = lit_corners(options.shading, corners);
+            let vertices = corners.map(|corner| &corner.place);
+            if let Some(placed) = Placed::new(frame, options, &triangle, vertices, light.as_ref()) {
+                emit(&placed.setup(), placed.colour);
+                any = true;
+            }
+        });
         drawn += u32::from(any);
     }
     drawn

@@ -6,7 +6,7 @@ use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 use glint_core::texture::Texture;
 
-use crate::triangle::clip::{clip, off_picture};
+use crate::triangle::clip::{Cut, TexturedVertex, clip, off_picture};
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_light::MeshLight;
 use crate::triangle::mesh_setup::MeshSetup;
@@ -283,30 +283,74 @@ pub struct Corner {
     pub place: ScreenVertex,
     /// Light of the vertex under smooth shading; black under flat shading.
     pub light: Light,
-    /// Coordinates s and t of its texture, s16.16; 0 without a texture.
-    pub coordinates: [i32; 2],
 }
+
+impl Corner {
+    fn new(frame: &MeshSetup, vertex: &CameraVertex) -> Self {
+        Self {
+            place: snap(frame, vertex),
+            light: vertex.light,
+        }
+    }
+}
+
+/// A vertex of a clipped triangle with a texture: the vertex, and the coordinates s and t, s16.16.
+pub type TexturedCorner = (Corner, [i32; 2]);
 
 /// The light of three vertices of a clipped triangle; `None` under flat shading.
 pub fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]> {
     (shading == Shading::Smooth).then(|| corners.map(|corner| corner.light))
 }
 
-/// Clips a triangle, whose vertices have these coordinates of its texture, and emits the remaining polygon as a fan.
+/// Clips a triangle and emits the remaining polygon as a fan.
 pub fn clip_fan(
     frame: &MeshSetup,
     options: &Options,
     triangle: &Triangle,
     chunk: &Chunk,
-    coordinates: &[[i32; 2]; 3],
     emit: &mut dyn FnMut([&Corner; 3]),
 ) {
-    let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| chunk.vertex(usize::from(i))) else {
+    if let Some((_, vertices)) = fan_vertices(frame, options, triangle, chunk) {
+        fan(frame, vertices, |vertex| Corner::new(frame, vertex), emit);
+    }
+}
+
+/// Clips a triangle as [`clip_fan`] does, with the coordinates of a texture at its vertices.
+///
+/// Not inlined, so that triangles without textures do not load this code into the instruction cache.
+#[inline(never)]
+pub fn clip_textured_fan(
+    frame: &MeshSetup,
+    options: &Options,
+    triangle: &Triangle,
+    chunk: &Chunk,
+    coordinates: &[[i32; 2]; 3],
+    emit: &mut dyn FnMut([&TexturedCorner; 3]),
+) {
+    let Some((order, vertices)) = fan_vertices(frame, options, triangle, chunk) else {
         return;
     };
-    // The fan starts at the vertex whose position is the first in lexicographic order, so that a cyclic shift of the triangle's indices has
-    // no effect.
-    let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
+    let vertices = [0, 1, 2].map(|i: usize| TexturedVertex {
+        vertex: vertices[i],
+        coordinates: coordinates[order[i]],
+    });
+    let corner = |corner: &TexturedVertex| (Corner::new(frame, &corner.vertex), corner.coordinates);
+    fan(frame, vertices, corner, emit);
+}
+
+/// The vertices of a triangle in the order of its fan, each with its number in the triangle.
+///
+/// The fan starts at the vertex whose position is the first in lexicographic order, so that a cyclic shift of the triangle's indices has
+/// no effect.
+fn fan_vertices(
+    frame: &MeshSetup,
+    options: &Options,
+    triangle: &Triangle,
+    chunk: &Chunk,
+) -> Option<([usize; 3], [CameraVertex; 3])> {
+    let [a, b, c] = triangle.indices.map(|i| chunk.vertex(usize::from(i)));
+    let vertices = [a?, b?, c?];
+    let [p, q, r] = vertices.each_ref().map(|vertex| vertex.position);
     let mut order = if p <= q && p <= r {
         [0, 1, 2]
     } else if q <= r {
@@ -314,30 +358,34 @@ pub fn clip_fan(
     } else {
         [2, 0, 1]
     };
-    let vertices = [a, b, c];
     if options.winding == Winding::Screen
         && vertices[order[2]].position < vertices[order[1]].position
     {
         // The vertex order in the mesh has no effect on the result.
         order.swap(1, 2);
     }
-    let corners = order.map(|i: usize| CameraVertex {
+    let vertices = order.map(|i| CameraVertex {
         light: match options.shading {
             Shading::Flat => Light::default(),
             Shading::Smooth => light_of(frame, options, &vertices[i]),
         },
-        coordinates: coordinates[i],
         ..transform(frame, vertices[i].position)
     });
-    if off_picture(frame, &corners) {
+    Some((order, vertices))
+}
+
+/// Clips a triangle and emits the remaining polygon as a fan of the results of `corner`.
+fn fan<C: Cut, R>(
+    frame: &MeshSetup,
+    vertices: [C; 3],
+    corner: impl Fn(&C) -> R,
+    emit: &mut dyn FnMut([&R; 3]),
+) {
+    if off_picture(frame, &vertices) {
         return;
     }
-    let polygon = clip(frame, corners);
-    let mut left = polygon.vertices().iter().map(|vertex| Corner {
-        place: snap(frame, vertex),
-        light: vertex.light,
-        coordinates: vertex.coordinates,
-    });
+    let polygon = clip(frame, vertices);
+    let mut left = polygon.vertices().iter().map(corner);
     let (Some(first), Some(mut last)) = (left.next(), left.next()) else {
         return;
     };

@@ -13,7 +13,8 @@ use crate::triangle::clip::contains;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{
-    Corner, Options, Placed, clip_fan, lit_corners, textured, vertex_light,
+    Options, Placed, TexturedCorner, clip_fan, clip_textured_fan, lit_corners, textured,
+    vertex_light,
 };
 use crate::triangle::raster;
 use crate::triangle::setup::Setup;
@@ -407,24 +408,28 @@ impl<'a> Renderer<'a, '_> {
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk, first: usize) -> bool {
         let (frame, options) = (self.frame, self.options);
         let mut any = false;
-        let texture = self.texture(first, triangle);
-        let coordinates = texture.map_or([[0; 2]; 3], |(_, coordinates)| coordinates);
-        let mut draw = |corners: [&Corner; 3]| {
+        if let Some((texture, coordinates)) = self.texture(first, triangle) {
+            let mut draw = |corners: [&TexturedCorner; 3]| {
+                let light = lit_corners(options.shading, corners.map(|(corner, _)| corner));
+                let places = corners.map(|(corner, _)| &corner.place);
+                let texture = (texture, corners.map(|(_, coordinates)| *coordinates));
+                any |= self.draw(
+                    index,
+                    true,
+                    triangle,
+                    places,
+                    light.as_ref(),
+                    Some(&texture),
+                );
+            };
+            clip_textured_fan(&frame, &options, triangle, chunk, &coordinates, &mut draw);
+            return any;
+        }
+        clip_fan(&frame, &options, triangle, chunk, &mut |corners| {
             let light = lit_corners(options.shading, corners);
             let places = corners.map(|corner| &corner.place);
-            let texture = texture
-                .as_ref()
-                .map(|(texture, _)| (*texture, corners.map(|corner| corner.coordinates)));
-            any |= self.draw(
-                index,
-                true,
-                triangle,
-                places,
-                light.as_ref(),
-                texture.as_ref(),
-            );
-        };
-        clip_fan(&frame, &options, triangle, chunk, &coordinates, &mut draw);
+            any |= self.draw(index, true, triangle, places, light.as_ref(), None);
+        });
         any
     }
 

@@ -28,8 +28,6 @@ pub struct CameraVertex {
     pub z: i64,
     /// Light of the vertex under smooth shading, otherwise black.
     pub light: Light,
-    /// Coordinates s and t of the texture, s16.16; 0 without a texture.
-    pub coordinates: [i32; 2],
 }
 
 /// A vertex on the screen.
@@ -87,7 +85,6 @@ pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
         y: dot(&frame.v) + ty,
         z: dot(&frame.n) + tz,
         light: Light::default(),
-        coordinates: [0; 2],
     }
 }
 
