@@ -75,7 +75,7 @@ enum Page {
         #[arg(long, conflicts_with = "quick")]
         earlier: bool,
     },
-    /// Textures: errors of positions with fewer divisions, and misses of caches for texels
+    /// Textures: errors of positions with fewer divisions, misses of caches for texels, errors of filters and formats
     Textures,
     /// Matrices, normals and projection with several word lengths: errors and cycles; drift of the wireframe simulator's rotation
     Geometry {
@@ -246,6 +246,8 @@ fn main() -> Result<()> {
         Page::Textures => {
             to.write("textures-runs", &textures::runs::measure())?;
             to.write("textures-cache", &textures::cache::measure())?;
+            to.write("textures-filters", &textures::filters::measure())?;
+            to.write("textures-formats", &textures::filters::measure_formats())?;
         }
         Page::Geometry { cycles } => {
             let cycles = cycles.measure("geometry")?;

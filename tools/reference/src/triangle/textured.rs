@@ -6,9 +6,9 @@ use glint_core::colour::Rgb565;
 use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, Vertex, encode_with};
 use glint_core::picture::Size;
 use glint_core::records::TextureCoordinates;
-use glint_core::texture::{Filter, Sampler, Source, encode};
+use glint_core::texture::{Source, encode};
 use glint_model::triangle::setup::{Edge, Plane, Setup};
-use glint_model::triangle::textured::Textured;
+use glint_model::triangle::textured::{Textured, flat_light};
 use glint_model::{Frame, Projected, Subject};
 use glint_vectors::Camera;
 use glint_vectors::math::{cross, normalised, subtract};
@@ -75,6 +75,28 @@ impl Drawn<'_> {
 
     /// The exact position of a pixel in the texture, in texels of level 0: the quotient of its accumulators.
     pub fn exact(&self, pixel: &Pixel) -> [f64; 2] {
+        self.exact_at(pixel, [0.0; 2])
+    }
+
+    /// The exact position of a point beside the middle of a pixel in this row, at a distance of `offset` pixels to the right and down; `None`
+    /// if the triangle does not cover it.
+    pub fn exact_beside(&self, pixel: &Pixel, row: i32, offset: [f64; 2]) -> Option<[f64; 2]> {
+        let setup = &self.setup;
+        let right = f64::from(pixel.column - setup.start_column) + offset[0];
+        let down = f64::from(row - setup.bounds.top) + offset[1];
+        let is_inside = setup.edges.iter().all(|edge| {
+            let steps = right * f64::from(edge.step_x) + down * f64::from(edge.step_y);
+            edge.start as f64 + steps >= 0.0
+        });
+        is_inside.then(|| self.exact_at(pixel, offset))
+    }
+
+    fn exact_at(&self, pixel: &Pixel, offset: [f64; 2]) -> [f64; 2] {
+        let beside = |value: f64, plane: &Plane| {
+            let [x, y] = [plane.step_x, plane.step_y].map(|step| f64::from(step as i32));
+            value + x * offset[0] + y * offset[1]
+        };
+        let depth = beside(f64::from(pixel.depth), &self.setup.depth);
         [0, 1].map(|i: usize| {
             let axis = &self.textured.axes[i];
             let side = f64::from(1 << self.textured.texture.size_log2()[i]);
@@ -85,7 +107,7 @@ impl Drawn<'_> {
             } else {
                 value
             };
-            value / f64::from(pixel.depth) * f64::from(1 << axis.range_log2) * side
+            beside(value, &axis.plane) / depth * f64::from(1 << axis.range_log2) * side
         })
     }
 
@@ -96,11 +118,11 @@ impl Drawn<'_> {
 }
 
 impl Scene {
-    /// Calls `visit` with each row of each triangle and its covered pixels, band after band, as the engine draws them.
+    /// Calls `visit` with each triangle, the number of each of its rows and the covered pixels, band after band, as the engine draws them.
     ///
     /// # Panics
     /// If the model refuses the frame.
-    pub fn rows(&self, visit: &mut dyn FnMut(&Drawn, &[Pixel])) {
+    pub fn rows(&self, visit: &mut dyn FnMut(&Drawn, i32, &[Pixel])) {
         let mesh = Mesh::new_checked(&self.mesh).expect("a good mesh");
         let frame = Frame::new(Subject::mesh(mesh), self.camera.rounded(), self.size);
         let constants = frame.constants().expect("a good frame");
@@ -116,6 +138,8 @@ impl Scene {
                     setup: *setup,
                     textured: Textured {
                         texture,
+                        // Full light, which leaves the texels as they are.
+                        light: flat_light(Rgb565::WHITE, [256; 3]),
                         ..*textured
                     },
                 });
@@ -126,30 +150,30 @@ impl Scene {
             for triangle in &drawn {
                 let bounds = triangle.setup.bounds;
                 for row in bounds.top.max(top)..bounds.bottom.min(top + lines) {
-                    visit(triangle, &triangle.row(row));
+                    visit(triangle, row, &triangle.row(row));
                 }
             }
         }
     }
 }
 
-/// All scenes, with a texture of 1024×1024 texels and all mip levels, or only the first one.
-#[must_use]
-pub fn scenes(has_levels: bool) -> Vec<Scene> {
-    let texture = |size_log2: [u8; 2]| {
+/// Black textures of any size, by the base-2 logarithms of their sides, with all mip levels or only the first one.
+pub fn blank(has_levels: bool) -> impl Fn([u8; 2]) -> Vec<u8> {
+    move |size_log2| {
         let [width, height] = size_log2;
         let last = if has_levels { width.max(height) } else { 0 };
         encode(&Source {
             size_log2,
-            sampler: Sampler {
-                filter: Filter::Nearest,
-                ..Sampler::default()
-            },
             levels: vec![Vec::new(); usize::from(last) + 1],
             ..Source::default()
         })
         .expect("a good texture")
-    };
+    }
+}
+
+/// All scenes; `texture` makes their textures, of 1024×1024 texels and for the globe of 512×256.
+#[must_use]
+pub fn scenes(texture: &dyn Fn([u8; 2]) -> Vec<u8>) -> Vec<Scene> {
     let square = glint_vectors::meshes::textured_square(texture([10, 10]), 0.5);
     let floor = |name, size| Scene {
         name,

@@ -3,7 +3,7 @@
 use glint_core::texture::Format;
 use serde::{Deserialize, Serialize};
 
-use crate::triangle::textured::{Scene, scenes};
+use crate::triangle::textured::{Scene, blank, scenes};
 
 /// Misses of a cache in a scene: a line of `textures-cache.csv`.
 #[derive(Serialize, Deserialize)]
@@ -84,7 +84,7 @@ impl Cache {
 pub fn measure() -> Vec<Row> {
     let mut rows = Vec::new();
     for has_levels in [true, false] {
-        for scene in scenes(has_levels) {
+        for scene in scenes(&blank(has_levels)) {
             for (name, format) in [
                 ("RGB565", Format::Rgb565),
                 ("16 colours", Format::Palette16),
@@ -102,7 +102,7 @@ fn measure_scene(scene: &Scene, has_levels: bool, name: &str, format: Format) ->
     let mut different = std::collections::HashSet::new();
     let mut pixels = 0;
     let [width, height] = format.block_log2();
-    scene.rows(&mut |drawn, row| {
+    scene.rows(&mut |drawn, _, row| {
         pixels += row.len() as u64;
         let texture = &drawn.textured.texture;
         let (sides, wrap) = (texture.size_log2(), texture.sampler().wrap);

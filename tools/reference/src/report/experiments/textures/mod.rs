@@ -1,4 +1,5 @@
-//! Experiments on textures: positions of pixels, and the cache for texels.
+//! Experiments on textures: positions of pixels, the cache for texels, filters and formats.
 
 pub mod cache;
+pub mod filters;
 pub mod runs;

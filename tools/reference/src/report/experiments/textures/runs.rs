@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::errors::Errors;
-use crate::triangle::textured::{Drawn, Pixel, Scene, scenes};
+use crate::triangle::textured::{Drawn, Pixel, Scene, blank, scenes};
 
 /// Errors of a form in a scene: a line of `textures-runs.csv`. Errors are in texels of the mip level that is read.
 #[derive(Serialize, Deserialize)]
@@ -47,7 +47,10 @@ const FORMS: [(&str, Form, f64); 6] = [
 /// Measures all forms in all scenes.
 #[must_use]
 pub fn measure() -> Vec<Row> {
-    scenes(true).iter().flat_map(measure_scene).collect()
+    scenes(&blank(true))
+        .iter()
+        .flat_map(measure_scene)
+        .collect()
 }
 
 /// Measures all forms in a scene.
@@ -55,7 +58,7 @@ pub fn measure() -> Vec<Row> {
 pub fn measure_scene(scene: &Scene) -> Vec<Row> {
     let mut errors = [Errors::default(); FORMS.len()];
     let mut pixels = 0;
-    scene.rows(&mut |drawn, row| {
+    scene.rows(&mut |drawn, _, row| {
         pixels += row.len() as u64;
         let mut level = 0;
         for (i, pixel) in row.iter().enumerate() {
