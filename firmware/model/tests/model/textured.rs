@@ -300,3 +300,56 @@ fn bilinear_colours_are_between_their_texels() {
         assert_eq!(i64::from(left), expected, "{wrap:?}");
     }
 }
+
+/// Any coordinates, accumulators and places give a colour without a panic, for textures of any size and kind.
+#[test]
+fn anything_has_a_colour() {
+    let mut random = Random(11);
+    let any = |random: &mut Random| (random.bits() >> random.integer(32, 63)) as u32;
+    for round in 0..2000 {
+        let size_log2 = [(); 2].map(|()| random.integer(3, 6) as u8);
+        let [width, height] = size_log2.map(|side| 1_usize << side);
+        let bytes = encode(&Source {
+            format: Format::ALL[round % 3],
+            size_log2,
+            sampler: Sampler {
+                wrap: [Wrap::ALL[round / 3 % 3], Wrap::ALL[round / 9 % 3]],
+                filter: Filter::ALL[round / 27 % 2],
+            },
+            levels: vec![vec![7; width * height]],
+            ..Source::default()
+        });
+        let bytes = bytes.unwrap();
+        let texture = Texture::new_checked(&bytes).unwrap();
+        let Some(triangle) = Oriented::new(random_triangle(&mut random)) else {
+            continue;
+        };
+        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+            continue;
+        };
+        let coordinates = [(); 3].map(|()| {
+            [(); 2].map(|()| match random.integer(0, 3) {
+                0 => i32::MIN,
+                1 => i32::MAX,
+                _ => random.bits() as i32,
+            })
+        });
+        let setup = Setup::new(&triangle, bounds);
+        let is_linear = random.coin();
+        let textured = Textured::new(
+            texture,
+            &triangle,
+            &setup,
+            &coordinates,
+            [255; 3],
+            is_linear,
+        );
+        for _ in 0..20 {
+            let (depth, values) = (any(&mut random), [(); 2].map(|()| any(&mut random)));
+            let level = textured.level(&setup, depth, values);
+            assert_eq!(level, 0);
+            let light = random.coin().then(|| [(); 3].map(|()| any(&mut random)));
+            assert!(textured.colour(depth, values, level, light).is_some());
+        }
+    }
+}
