@@ -41,7 +41,7 @@ mod state;
 mod window;
 
 pub use endpoint::{Endpoint, Role};
-pub use format::{CRC_32, Digest, MAX_LENGTH, Manifest, crc32};
+pub use format::{CRC_32, Digest, MAX_LENGTH, Manifest, crc_32_without, crc32};
 pub use frame::{MAX_FRAME, reset};
 pub use receiver::{Receiver, Receiving};
 pub use sender::{Sender, Sending};

@@ -344,15 +344,8 @@ mod tests {
     use crate::sheet::sheet;
     use glint_core::texture::{Wrap, checksum};
 
-    fn picture(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
-        let [width, height] = size;
-        let rows = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        let texels = rows.map(|[x, y]| texel(x, y)).collect();
-        Picture { size, texels }
-    }
-
     fn ramp(size: [u32; 2]) -> Picture {
-        picture(size, |x, y| {
+        Picture::drawn(size, |x, y| {
             [(4 * x) as u8, (4 * y) as u8, (x ^ y) as u8, 255]
         })
     }
@@ -456,7 +449,7 @@ mod tests {
     fn cut_out_in_each_format() {
         // Opaque, just opaque, just transparent, and transparent columns.
         let opacity = |x: u32| [255, 128, 127, 0][x as usize % 4];
-        let holes = picture([16, 16], |x, y| {
+        let holes = Picture::drawn([16, 16], |x, y| {
             [(16 * x) as u8, (16 * y) as u8, 0, opacity(x)]
         });
         for format in Format::ALL {
@@ -485,7 +478,7 @@ mod tests {
             };
             assert!(!convert(&holes, &zero).unwrap().1.cut_out);
         }
-        let clear = picture([8, 8], |_, _| [1, 2, 3, 0]);
+        let clear = Picture::drawn([8, 8], |_, _| [1, 2, 3, 0]);
         for format in Format::ALL {
             let options = Options {
                 format,
@@ -520,14 +513,20 @@ mod tests {
         };
         for is_opaque in [&bars as &dyn Fn(u32, u32) -> bool, &dots] {
             let opacity = |x, y| if is_opaque(x, y) { 255 } else { 0 };
-            let found = shares(&picture([64, 64], |x, y| [9, 9, 9, opacity(x, y)]));
+            let found = shares(&Picture::drawn([64, 64], |x, y| [9, 9, 9, opacity(x, y)]));
             for (level, share) in found.iter().enumerate() {
                 let texels = f64::from(1 << (12 - 2 * level));
                 assert!((share - found[0]).abs() <= 0.5 / texels, "{found:?}");
             }
         }
-        assert_eq!(shares(&picture([8, 8], |_, _| [9, 9, 9, 100])), [0.0; 4]);
-        assert_eq!(shares(&picture([8, 8], |_, _| [9, 9, 9, 200])), [1.0; 4]);
+        assert_eq!(
+            shares(&Picture::drawn([8, 8], |_, _| [9, 9, 9, 100])),
+            [0.0; 4]
+        );
+        assert_eq!(
+            shares(&Picture::drawn([8, 8], |_, _| [9, 9, 9, 200])),
+            [1.0; 4]
+        );
     }
 
     #[test]
@@ -567,7 +566,7 @@ mod tests {
             },
             ..Options::default()
         };
-        let red = picture([16, 8], |_, _| [255, 0, 0, 255]);
+        let red = Picture::drawn([16, 8], |_, _| [255, 0, 0, 255]);
         let (bytes, _) = convert(&red, &options).unwrap();
         let texture = Texture::new_checked(&bytes).unwrap();
         assert_eq!(texture.sampler(), options.sampler);

@@ -32,6 +32,11 @@ static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     })
 });
 
+/// The intensity of an sRGB value, 0 to 1.
+pub fn linear(value: u8) -> f32 {
+    LINEAR[usize::from(value)]
+}
+
 /// The sRGB value of an intensity, 0 to 255, not rounded.
 pub fn srgb(linear: f32) -> f32 {
     let linear = linear.clamp(0.0, 1.0);
@@ -152,13 +157,6 @@ fn spread(from: usize, to: usize, wrap: Wrap) -> Vec<Vec<(usize, f32)>> {
 mod tests {
     use super::*;
 
-    fn picture(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
-        let [width, height] = size;
-        let rows = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        let texels = rows.map(|[x, y]| texel(x, y)).collect();
-        Picture { size, texels }
-    }
-
     fn rounded(level: &Level) -> Vec<[u8; 3]> {
         let texels = level.texels.iter();
         texels
@@ -168,7 +166,7 @@ mod tests {
 
     #[test]
     fn every_value_survives_the_way_through_linear_light() {
-        let all = picture([256, 1], |x, _| [x as u8, 0, 255 - x as u8, 255]);
+        let all = Picture::drawn([256, 1], |x, _| [x as u8, 0, 255 - x as u8, 255]);
         let level = Level::resized(&all, all.size, [Wrap::Repeat; 2], false);
         let colours = rounded(&level);
         assert!((0..=255).all(|x| colours[usize::from(x)] == [x, 0, 255 - x]));
@@ -200,7 +198,7 @@ mod tests {
 
     #[test]
     fn averages_are_of_light() {
-        let stripes = picture(
+        let stripes = Picture::drawn(
             [16, 8],
             |x, _| if x % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] },
         );
@@ -214,7 +212,7 @@ mod tests {
 
     #[test]
     fn levels_end_at_one_texel() {
-        let white = picture([8, 64], |_, _| [255; 4]);
+        let white = Picture::drawn([8, 64], |_, _| [255; 4]);
         let mut level = Level::resized(&white, [8, 64], [Wrap::Repeat; 2], false);
         let mut sizes = vec![level.size];
         while let Some(next) = level.next() {
@@ -227,7 +225,7 @@ mod tests {
 
     #[test]
     fn transparent_texels_have_no_influence_on_colours() {
-        let holes = picture([8, 8], |x, _| {
+        let holes = Picture::drawn([8, 8], |x, _| {
             if x % 2 == 0 {
                 [255, 0, 0, 255]
             } else {
@@ -242,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_side_that_grows_keeps_the_seam_of_repeat() {
-        let two = picture(
+        let two = Picture::drawn(
             [2, 1],
             |x, _| if x == 0 { [0, 0, 0, 255] } else { [255; 4] },
         );

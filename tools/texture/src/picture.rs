@@ -26,6 +26,14 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// A picture whose texels `texel` computes from their columns and rows.
+    pub fn drawn(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
+        let [width, height] = size;
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let texels = places.map(|[x, y]| texel(x, y)).collect();
+        Self { size, texels }
+    }
+
     /// Decodes a PNG or JPEG file. The contents decide the format. Of an animation this is the first picture.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Textures in memory (docs/formats/texture.md): a header, a palette, and mip levels in the order of the engine's cache.
+//! Textures in memory (docs/formats/texture.md): a header, a palette, and mip levels in blocks.
 //!
 //! [`Texture::new_checked`] checks the bytes of a texture once, and returns a view whose accessors do not fail.
 
@@ -11,7 +11,7 @@ use core::ops::RangeInclusive;
 use crate::colour::Rgb565;
 pub use crate::records::TextureHeader;
 use crate::records::WORD;
-use crate::wire::CRC_32;
+use crate::wire::crc_32_without;
 #[cfg(feature = "alloc")]
 pub use encode::{Source, encode};
 
@@ -21,7 +21,7 @@ pub const MAGIC: [u8; 4] = *b"GLT1";
 pub const SIDES_LOG2: RangeInclusive<u8> = 3..=10;
 /// Largest number of mip levels.
 pub const MAX_LEVELS: usize = *SIDES_LOG2.end() as usize + 1;
-/// Bytes of a block, the unit that the engine's cache loads.
+/// Bytes of a block, the unit for a cache of texels.
 pub const BLOCK_BYTES: usize = 2 * WORD;
 
 /// The representation of a texel.
@@ -302,7 +302,7 @@ impl<'a> Texture<'a> {
 }
 
 /// The position of a texel's lowest bit in its block. The texels of even columns and even rows come first, in the first 32 bits of each
-/// word, then those of odd columns and even rows, then odd rows: four neighbours are in four memories of the engine.
+/// word, then those of odd columns and even rows, then odd rows: four neighbours are in different quarters.
 fn texel_bit(format: Format, [x, y]: [u32; 2]) -> usize {
     let [width, height] = format.block_log2();
     let [x, y] = [x & ((1 << width) - 1), y & ((1 << height) - 1)];
@@ -324,12 +324,7 @@ const fn texel(format: Format, bits: u16, bit: usize) -> u16 {
 
 /// The checksum of a texture: the CRC-32 of all bytes except the checksum's own bytes.
 pub fn checksum(texture: &[u8]) -> u32 {
-    let place = TextureHeader::CHECKSUM;
-    let (before, rest) = texture.split_at(place.start.min(texture.len()));
-    let mut digest = CRC_32.digest();
-    digest.update(before);
-    digest.update(rest.get(place.len()..).unwrap_or_default());
-    digest.finalize()
+    crc_32_without(texture, TextureHeader::CHECKSUM)
 }
 
 fn expect(offset: usize, expected: Expected, found: u32, holds: bool) -> Result<(), TextureError> {

@@ -1,7 +1,7 @@
 //! The checksum of a mesh in a file.
 
 use super::MeshHeader;
-use crate::wire::CRC_32;
+use crate::wire::crc_32_without;
 
 /// Reads the checksum in the header of a mesh; `None` for bytes shorter than a header.
 pub fn stated_checksum(mesh: &[u8]) -> Option<u32> {
@@ -10,12 +10,7 @@ pub fn stated_checksum(mesh: &[u8]) -> Option<u32> {
 
 /// Computes the checksum of a mesh: the CRC-32 of all bytes except the checksum's own bytes.
 pub fn checksum(mesh: &[u8]) -> u32 {
-    let place = MeshHeader::CHECKSUM;
-    let (before, rest) = mesh.split_at(place.start.min(mesh.len()));
-    let mut digest = CRC_32.digest();
-    digest.update(before);
-    digest.update(rest.get(place.len()..).unwrap_or_default());
-    digest.finalize()
+    crc_32_without(mesh, MeshHeader::CHECKSUM)
 }
 
 /// Sets the checksum in the header of a mesh. Bytes shorter than a header stay unchanged.

@@ -1,5 +1,7 @@
 //! Blocks and the manifest of a transfer.
 
+use core::ops::Range;
+
 /// Number of bytes in a block, the unit of acknowledgement.
 pub const BLOCK: u32 = 16;
 /// Maximum number of blocks in a data frame.
@@ -20,6 +22,15 @@ pub type Digest = crc::Digest<'static, u32>;
 /// Computes the CRC-32 (IEEE 802.3, as in zlib) of all bytes of a transfer.
 pub fn crc32(data: &[u8]) -> u32 {
     CRC_32.checksum(data)
+}
+
+/// Computes the CRC-32 of all bytes of a file except those of its own checksum, at `place`.
+pub fn crc_32_without(data: &[u8], place: Range<usize>) -> u32 {
+    let (before, rest) = data.split_at(place.start.min(data.len()));
+    let mut digest = CRC_32.digest();
+    digest.update(before);
+    digest.update(rest.get(place.len()..).unwrap_or_default());
+    digest.finalize()
 }
 
 /// Length and CRC-32 of a transfer.

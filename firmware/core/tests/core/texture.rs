@@ -1,4 +1,4 @@
-//! Textures in memory: encoding, reading, and what is refused.
+//! Tests of textures in memory: encoding, decoding and error messages.
 
 use glint_core::colour::Rgb565;
 use glint_core::records::TextureHeader;
@@ -6,7 +6,7 @@ use glint_core::texture::{
     BLOCK_BYTES, Filter, Format, Sampler, Source, Texture, Wrap, checksum, encode,
 };
 
-/// A source in which every texel of every level has a value of its own, as far as the format has so many.
+/// A source whose texels differ, as far as the format has enough values.
 fn source(format: Format, size_log2: [u8; 2], levels: u8) -> Source {
     let size = |level: u8| size_log2.map(|side| 1_usize << side.saturating_sub(level));
     Source {
@@ -61,7 +61,7 @@ fn texels_are_read_as_they_were_encoded() {
     }
 }
 
-/// The four neighbours of a bilinear texel are in four different quarters of words, so that four memories deliver them in one clock.
+/// The four neighbours that bilinear filtering averages are in different quarters of words, for four memories that are read at once.
 #[test]
 fn neighbours_are_in_different_quarters() {
     for format in Format::ALL {

@@ -19,7 +19,7 @@ const fn inverses() -> [u32; 1024] {
 }
 
 /// Bits per channel: red, green and blue.
-const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
+pub const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 
 /// The colour of a pixel, from the light accumulators of its channels, and from `depth`, its depth accumulator plus
 /// half a code.

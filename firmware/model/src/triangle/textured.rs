@@ -6,6 +6,7 @@ use glint_core::mesh::{Attribute, Mesh, Triangle};
 use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Texture, Wrap};
 
+use crate::triangle::quotient::CHANNEL_BITS;
 use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
 use crate::triangle::shade::HALF_CODE;
 
@@ -17,8 +18,6 @@ const SHARE_BITS: u32 = 17;
 const PLACE_BITS: u32 = 8;
 /// Bits of a weight of bilinear filtering.
 const WEIGHT_BITS: u32 = 4;
-/// Bits of the channels of a colour: red, green and blue.
-const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 
 /// A triangle with a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -107,7 +107,7 @@ fn map(statement: &[u8]) -> (Option<Map>, bool) {
     let mut is_ignored = false;
     loop {
         let (option, after) = first_word(rest);
-        // At least and at most so many words follow an option; those beyond the least are numbers.
+        // The least and the largest number of words after an option. Words after the least number belong to it if they are numbers.
         let (least, most) = match option {
             b"-clamp" | b"-cc" | b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-texres"
             | b"-boost" | b"-bm" => (1, 1),

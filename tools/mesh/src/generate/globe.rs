@@ -98,19 +98,14 @@ pub fn globe() -> Result<Polygons, FormatError> {
 /// The map: the longitude goes to the right, the north pole is above.
 fn map() -> Picture {
     let [width, height] = MAP;
-    let texel = |x: u32, y: u32| {
+    Picture::drawn(MAP, |x, y| {
         let t = (f64::from(y) + 0.5) / f64::from(height);
         let point = direction([(f64::from(x) + 0.5) / f64::from(width), t]);
         let height = height_at(point);
         let edge = 1.0 - (2.0 * t - 1.0).abs() + 0.2 * height;
         let [r, g, b] = if edge < ICE { SNOW } else { colour_at(height) };
         [r, g, b, 255]
-    };
-    let rows = (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y)));
-    Picture {
-        size: MAP,
-        texels: rows.collect(),
-    }
+    })
 }
 
 /// The colour of the ground at a height.

@@ -7,6 +7,7 @@ use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, Vertex, encode_with};
 use glint_core::picture::Size;
 use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Source, encode};
+use glint_model::triangle::descriptor::GROUP;
 use glint_model::triangle::setup::{Edge, Plane, Setup};
 use glint_model::triangle::textured::{Textured, flat_light};
 use glint_model::{Frame, Projected, Subject};
@@ -111,9 +112,16 @@ impl Drawn<'_> {
         })
     }
 
-    /// The mip level of a pixel.
-    pub fn level(&self, pixel: &Pixel) -> u32 {
-        self.textured.level(&self.setup, pixel.depth, pixel.values)
+    /// The mip level of each pixel of a row: that of the first covered pixel of its group.
+    pub fn levels(&self, row: &[Pixel]) -> Vec<u32> {
+        let mut level = 0;
+        let levels = row.iter().enumerate().map(|(i, pixel)| {
+            if i == 0 || pixel.column % GROUP == 0 {
+                level = (self.textured).level(&self.setup, pixel.depth, pixel.values);
+            }
+            level
+        });
+        levels.collect()
     }
 }
 

@@ -106,12 +106,8 @@ fn measure_scene(scene: &Scene, has_levels: bool, name: &str, format: Format) ->
         pixels += row.len() as u64;
         let texture = &drawn.textured.texture;
         let (sides, wrap) = (texture.size_log2(), texture.sampler().wrap);
-        let mut level = 0;
         let mut last = None;
-        for (i, pixel) in row.iter().enumerate() {
-            if i == 0 || pixel.column % 8 == 0 {
-                level = drawn.level(pixel);
-            }
+        for (pixel, level) in row.iter().zip(drawn.levels(row)) {
             let places = drawn.textured.places(pixel.depth, pixel.values);
             let level_sides = texture.level_log2(level);
             let [x, y] = [0, 1].map(|axis: usize| {

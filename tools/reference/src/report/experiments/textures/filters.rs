@@ -2,7 +2,7 @@
 
 use glint_core::texture::{Filter, Format, Sampler, Texture};
 use glint_texture::convert::convert;
-use glint_texture::levels::srgb;
+use glint_texture::levels::{linear, srgb};
 use glint_texture::options::{Options, filter_name, format_name};
 use glint_texture::picture::Picture;
 use serde::{Deserialize, Serialize};
@@ -98,17 +98,13 @@ fn measure_scene(scene: &Scene, filter: Filter) -> Vec<Row> {
             return;
         }
         let last = drawn.textured.texture.levels() as i32 - 1;
-        let mut chosen = 0;
-        for (i, pixel) in row.iter().enumerate() {
-            if i == 0 || pixel.column % 8 == 0 {
-                chosen = drawn.level(pixel) as i32;
-            }
+        for (pixel, chosen) in row.iter().zip(drawn.levels(row)) {
             let Some(exact) = average(drawn, number, pixel) else {
                 continue;
             };
             pixels += 1;
             for ((_, difference), errors) in LEVELS.iter().zip(&mut errors) {
-                let level = difference.map_or(0, |by| (chosen + by).clamp(0, last));
+                let level = difference.map_or(0, |by| (chosen as i32 + by).clamp(0, last));
                 let textured = &drawn.textured;
                 let colour = textured.colour(pixel.depth, pixel.values, level as u32, None);
                 let colour = colour.unwrap_or_default().to_rgb888();
@@ -150,43 +146,27 @@ fn average(drawn: &Drawn, row: i32, pixel: &Pixel) -> Option<[f64; 3]> {
         let place = [0, 1].map(|i: usize| wrap[i].place(place[i].floor() as i32, sides[i]));
         let colour = texture.colour(0, place).unwrap_or_default().to_rgb888();
         for (sum, channel) in sums.iter_mut().zip(colour) {
-            *sum += linear(channel);
+            *sum += f64::from(linear(channel));
         }
     }
     let samples = (SAMPLES * SAMPLES) as f64;
     Some(sums.map(|sum| f64::from(srgb((sum / samples) as f32))))
 }
 
-/// The intensity of an sRGB value, 0 to 1.
-fn linear(value: u8) -> f64 {
-    let x = f64::from(value) / 255.0;
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        ((x + 0.055) / 1.055).powf(2.4)
-    }
-}
-
 /// A picture of tiles of 16 texels in random colours, with dark joints of two texels and some noise.
-fn tiles([width, height]: [u32; 2]) -> Picture {
+fn tiles(size: [u32; 2]) -> Picture {
     let random = |x: u32, y: u32| {
         let mut key = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B);
         key = (key ^ key >> 15).wrapping_mul(0x2C1B_3C6D);
         (key ^ key >> 12).to_le_bytes()
     };
-    let texel = |x: u32, y: u32| {
+    Picture::drawn(size, |x, y| {
         let [r, g, b, _] = random(x / 16, y / 16);
         let [noise, ..] = random(x + 7777, y);
         let is_joint = x % 16 < 2 || y % 16 < 2;
         let channel = |c: u8| if is_joint { 40 } else { 70 + c / 2 + noise / 8 };
         [channel(r), channel(g), channel(b), 255]
-    };
-    Picture {
-        size: [width, height],
-        texels: (0..height)
-            .flat_map(|y| (0..width).map(move |x| texel(x, y)))
-            .collect(),
-    }
+    })
 }
 
 /// Measures the formats of textures for pictures.

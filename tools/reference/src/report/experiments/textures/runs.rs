@@ -60,11 +60,7 @@ pub fn measure_scene(scene: &Scene) -> Vec<Row> {
     let mut pixels = 0;
     scene.rows(&mut |drawn, _, row| {
         pixels += row.len() as u64;
-        let mut level = 0;
-        for (i, pixel) in row.iter().enumerate() {
-            if i == 0 || pixel.column % 8 == 0 {
-                level = drawn.level(pixel);
-            }
+        for (i, (pixel, level)) in row.iter().zip(drawn.levels(row)).enumerate() {
             let exact = drawn.exact(pixel);
             for ((_, form, _), errors) in FORMS.iter().zip(&mut errors) {
                 let found = form.position(drawn, row, i);
