@@ -1,5 +1,7 @@
 //! Textures on triangles (docs/formats/texture.md, "On a triangle"): the planes of the coordinates, and the colour of a pixel.
 
+use core::ops::RangeInclusive;
+
 use glint_core::colour::Rgb565;
 use glint_core::feature::TEXTURE;
 use glint_core::mesh::{Attribute, Mesh, Triangle};
@@ -14,6 +16,10 @@ use crate::triangle::shade::HALF_CODE;
 const COORDINATE_BITS: u32 = 16;
 /// Fraction bits of a share σ of the range of a coordinate, u0.17.
 const SHARE_BITS: u32 = 17;
+/// Largest base-2 logarithm of the range of a coordinate on a triangle.
+const MAX_RANGE_LOG2: u32 = 15;
+/// A clamped coordinate on a triangle is relative to one of these, in periods of two repeats.
+const CLAMPED_PERIODS: RangeInclusive<i64> = -8..=1;
 /// Fraction bits of a position in texels.
 const PLACE_BITS: u32 = 8;
 /// Bits of a weight of bilinear filtering.
@@ -73,12 +79,13 @@ impl<'a> MeshTextures<'a> {
 /// A coordinate of a texture on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Axis {
-    /// The plane of σ times the depth, or times a constant in orthographic projection. The coordinate is `base` + σ·2^`range_log2`.
+    /// The plane of σ times the depth, or times a constant in orthographic projection. The coordinate is
+    /// 2·`periods` + σ·2^`range_log2`.
     pub plane: Plane,
-    /// Base-2 logarithm of the range of the coordinate, in repeats of the texture; 0 to 17.
+    /// Base-2 logarithm of the range of the coordinate, in repeats of the texture; 0 to 15.
     pub range_log2: u32,
-    /// An even number of repeats, which only clamping needs.
-    pub base: i32,
+    /// A number of periods of two repeats, −8 to 1, which only clamping needs.
+    pub periods: i32,
 }
 
 impl<'a> Textured<'a> {
@@ -100,8 +107,17 @@ impl<'a> Textured<'a> {
         } else {
             triangle.vertices.map(|vertex| vertex.w)
         };
-        let axis =
-            |number: usize| Axis::new(triangle, setup, coordinates.map(|c| c[number]), weights);
+        let wrap = texture.sampler().wrap;
+        let axis = |number: usize| {
+            let is_clamped = wrap[number] == Wrap::Clamp;
+            Axis::new(
+                triangle,
+                setup,
+                coordinates.map(|c| c[number]),
+                weights,
+                is_clamped,
+            )
+        };
         Self {
             texture,
             axes: [axis(0), axis(1)],
@@ -143,7 +159,9 @@ impl<'a> Textured<'a> {
             let bits = axis.range_log2 + sides[i] + PLACE_BITS;
             let place = inverse.share(values[i], bits);
             match wrap[i] {
-                Wrap::Clamp => place as i64 + (i64::from(axis.base) << (sides[i] + PLACE_BITS)),
+                Wrap::Clamp => {
+                    place as i64 + (i64::from(axis.periods) << (sides[i] + PLACE_BITS + 1))
+                }
                 // Modulo 2^24 texels.
                 Wrap::Repeat | Wrap::Mirror => (place as u32).into(),
             }
@@ -154,41 +172,60 @@ impl<'a> Textured<'a> {
     /// coordinates and the two directions on the screen, within an eighth.
     pub fn level(&self, setup: &Setup, depth: u32, values: [u32; 2]) -> u32 {
         let last = self.texture.levels() - 1;
-        if last == 0 {
-            return 0;
-        }
-        let depth = self.weight.unwrap_or(depth);
-        let inverse = Inverse::of(depth);
+        let inverse = Inverse::of(self.weight.unwrap_or(depth));
         let depth_steps = match self.weight {
             None => [setup.depth.step_x, setup.depth.step_y],
             Some(_) => [0; 2],
         };
         let sides = self.texture.size_log2();
-        let mut most = 0;
-        for (i, axis) in self.axes.iter().enumerate() {
-            let share = inverse.share(values[i], SHARE_BITS) as i64;
-            let steps = [axis.plane.step_x, axis.plane.step_y];
-            for (step, depth_step) in steps.into_iter().zip(depth_steps) {
-                let [step, depth_step] = [step, depth_step].map(|step| i64::from(step as i32));
-                let change = step - ((share * depth_step) >> SHARE_BITS);
-                most = most.max(change.unsigned_abs() << (axis.range_log2 + sides[i]));
-            }
-        }
-        level_of(most, depth.into()).min(last)
+        let most = [0, 1].map(|i: usize| {
+            let axis = &self.axes[i];
+            let share = inverse.share(values[i], SHARE_BITS) as i64 & ((1 << SHARE_BITS) - 1);
+            let change = |step: u32, depth_step: u32| {
+                // In units of 2^8 of the accumulators, rounded down, so that one product of a DSP block suffices.
+                let [step, depth_step] = [step, depth_step].map(|step| i64::from(step as i32 >> 8));
+                let change = (step << SHARE_BITS) - (share + 1) * depth_step;
+                // The bits of a magnitude; that of a negative number is one less.
+                (if change < 0 { !change } else { change }) as u64 >> CHANGE_CUT
+            };
+            let [across, down] = depth_steps;
+            let most = change(axis.plane.step_x, across).max(change(axis.plane.step_y, down));
+            let lead = most.max(1).ilog2();
+            let unit = 8 + CHANGE_CUT - SHARE_BITS;
+            // The leading bit, counted in texels times the depth, and three bits below it.
+            ((lead + unit + axis.range_log2 + sides[i]) << 3) + ((most << 3 >> lead) as u32 & 7)
+        });
+        level_of(most[0].max(most[1]), &inverse).min(last)
     }
 }
 
 impl Axis {
-    fn new(triangle: &Oriented, setup: &Setup, coordinates: [i32; 3], weights: [u32; 3]) -> Self {
+    fn new(
+        triangle: &Oriented,
+        setup: &Setup,
+        coordinates: [i32; 3],
+        weights: [u32; 3],
+        is_clamped: bool,
+    ) -> Self {
         let [a, b, c] = coordinates.map(i64::from);
         // Two repeats are a period of a mirrored texture.
-        let period = 2 << COORDINATE_BITS;
-        let base = a.min(b).min(c) & -period;
-        let [a, b, c] = [a, b, c].map(|coordinate| (coordinate - base) as u64);
+        let periods = a.min(b).min(c) >> (COORDINATE_BITS + 1);
+        let periods = if is_clamped {
+            periods.clamp(*CLAMPED_PERIODS.start(), *CLAMPED_PERIODS.end())
+        } else {
+            periods
+        };
+        let base = periods << (COORDINATE_BITS + 1);
         // As light, a share is at most 63/64, so that an accumulator just below 0 is known by its highest bits.
+        let most_of = |range_log2: u32| 63_u64 << (COORDINATE_BITS + range_log2) >> 6;
+        let [a, b, c] = [a, b, c].map(|coordinate| {
+            u64::try_from(coordinate - base)
+                .unwrap_or(0)
+                .min(most_of(MAX_RANGE_LOG2))
+        });
         let most = a.max(b).max(c);
         let mut range_log2 = 0;
-        while most << 6 > 63 << (COORDINATE_BITS + range_log2) {
+        while most > most_of(range_log2) {
             range_log2 += 1;
         }
         let weighted = |coordinate: u64, weight: u32| {
@@ -205,15 +242,18 @@ impl Axis {
                 setup.start(),
             ),
             range_log2,
-            base: (base >> COORDINATE_BITS) as i32,
+            periods: if is_clamped { periods as i32 } else { 0 },
         }
     }
 }
 
-/// `INVERSES[i]` is 2^20/(1 + i/512) to nearest, u0.20, for i up to 512.
+/// Bits that are cut from a change of [`Textured::level`], so that its leading bit is one of 30.
+const CHANGE_CUT: u32 = 13;
+
+/// `INVERSES[i]` is 2^20/(1 + i/512) to nearest, u0.20, for i up to 512; the first one is so much less that an inverse is below 1.
 const INVERSES: [u32; 513] = {
-    let mut table = [0; 513];
-    let mut i = 0;
+    let mut table = [(1 << 20) - 3; 513];
+    let mut i = 1;
     while i < table.len() {
         let d = 512 + i as u32;
         table[i] = ((1 << 30) + d) / (2 * d);
@@ -228,6 +268,8 @@ struct Inverse {
     mantissa: u32,
     /// Number of zeros above the depth's highest one, at most 11.
     zeros: u32,
+    /// The three bits of the depth below its highest one.
+    top: u32,
 }
 
 impl Inverse {
@@ -242,8 +284,9 @@ impl Inverse {
         let [from, to] = [i, i + 1].map(|i| INVERSES.get(i).copied().unwrap_or(0));
         let inverse = from - (((from - to) * part + (1 << 8)) >> 9);
         Self {
-            mantissa: ((inverse + 2) >> 2).min((1 << 18) - 1),
+            mantissa: (inverse + 2) >> 2,
             zeros,
+            top: normalised >> 28 & 7,
         }
     }
 
@@ -262,14 +305,11 @@ impl Inverse {
     }
 }
 
-/// The smallest level l with `most`/`depth` ≤ 1.5·2^l, of both numbers truncated to four bits; 0 for a negative one.
-fn level_of(most: u64, depth: u64) -> u32 {
-    let parts = |number: u64| {
-        let lead = number.max(1).ilog2();
-        // Three bits below the leading one.
-        (lead as i32, (number << 3 >> lead) as u32)
-    };
-    let ((lead, most), (depth_lead, depth)) = (parts(most), parts(depth));
+/// The smallest level l with most/depth ≤ 1.5·2^l, of both numbers truncated to four bits; 0 for a negative one. `most` is the position of
+/// its leading bit and, as the lowest bits, the three bits below it.
+fn level_of(most: u32, inverse: &Inverse) -> u32 {
+    let (lead, most, depth) = ((most >> 3) as i32, 8 + (most & 7), 8 + inverse.top);
+    let depth_lead = 31 - inverse.zeros as i32;
     let more = if 2 * most > 3 * depth {
         1
     } else if 4 * most > 3 * depth {
