@@ -166,10 +166,19 @@ DESCRIPTOR = Record("descriptor", "Triangle after the setup, three words of 16 b
     Field("colour", 16, "colour, RGB565, after shading"),
 ), rtl="descriptor_t", bytes=False)
 
-PLANES = Record("planes", "Planes of light of a triangle, in the three words behind its descriptor.", (
+PLANES = Record("planes", "Planes of light of a triangle, in three words behind its descriptor and its texture.", (
     Field("light", PLANE.bits, "of red, green and blue", count=3, record=PLANE),
     Field("smooth", 1, "1: smooth; 0: flat, in the colour of the descriptor"),
 ), rtl="planes_t", bytes=False)
+
+TEXTURE_PLANES = Record("texture_planes", "Texture of a triangle, in the two words behind its descriptor.", (
+    Field("planes", PLANE.bits, "of s and t", count=2, record=PLANE),
+    Field("light", 8, "of red, green and blue under flat shading, u0.8", count=3),
+    Field("range", 4, "base-2 logarithms of the ranges of s and t, in repeats", count=2),
+    Field("periods", 4, "what clamped coordinates s and t are relative to, s4, in units of two repeats", count=2),
+    Field("texture", 8, "number of its texture in the frame's table, from 1; 0: none"),
+    Field("linear", 1, "1: orthographic projection"),
+), rtl="texture_planes_t", bytes=False)
 
 PIECE = Record("piece", "Piece of a line.", (
     Field("x_major", 1, "1: a pixel in each column, otherwise in each row"),
@@ -216,11 +225,14 @@ FIRMWARE_HEADER = Record("FirmwareHeader", "Header of the firmware in a flash im
     Field("checksum", 32, "CRC-32 of the program"),
 ))
 
-RECORDS = (HEADER, CHUNK, VERTEX, TRIANGLE, *ATTRIBUTES, TEXTURE, SEGMENT_END, STEPS, DESCRIPTOR, PLANE, PLANES, PIECE, STORED_PIECE,
+RECORDS = (HEADER, CHUNK, VERTEX, TRIANGLE, *ATTRIBUTES, TEXTURE, SEGMENT_END, STEPS, DESCRIPTOR, PLANE, PLANES, TEXTURE_PLANES, PIECE, STORED_PIECE,
            FLASH_HEADER, FLASH_ENTRY, FIRMWARE_HEADER)
 
-DESCRIPTOR_BYTES = {"flat": DESCRIPTOR.size, "smooth": 2 * DESCRIPTOR.size}
-"""Size of a triangle's descriptor in bytes, without and with smooth shading."""
+LIGHT_BYTES = -(-PLANES.bits // 128) * 16
+"""Bytes of the planes of light behind a descriptor."""
+
+TEXTURE_BYTES = -(-TEXTURE_PLANES.bits // 128) * 16
+"""Bytes of the texture behind a descriptor."""
 
 PIECE_MARK = 3
 

@@ -49,8 +49,8 @@ class GlintSoC(SoCCore):
     `blocks` names the optional blocks of this build. Line engine and raymarcher draw through the triangle engine. Without the block
     `triangle`, the parts of the engine that draw triangles are left out: with `line`, the parts for lines and all registers remain; with
     `raymarch` alone, the raster pass, the band buffer and all registers. `build_id` is the checksum of the register map of the full build
-    (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `geometry` its geometry pass, which a build
-    without lines may lack, and `depths` the memory of depths, which a build without triangles may lack. `fields` are the build options of
+    (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `texture` textures, `geometry` its geometry
+    pass, which a build without lines may lack, and `depths` the memory of depths, which a build without triangles may lack. `fields` are the build options of
     the raymarcher. `mode` is the video mode, which also limits the picture sizes.
     """
 
@@ -60,13 +60,15 @@ class GlintSoC(SoCCore):
     default_blocks = possible_blocks
     """The default optional blocks of a build."""
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, geometry=True, depths=True, fields=None,
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, texture=False, geometry=True, depths=True, fields=None,
                  sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720):
         unknown = set(blocks) - self.possible_blocks
         if unknown:
             raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
         if "line" in blocks and not geometry:
             raise ValueError("no geometry pass: expected a build without the block 'line', whose lines need it")
+        if texture and "triangle" not in blocks:
+            raise ValueError("textures: expected a build with the block 'triangle', whose meshes have them")
         if "triangle" in blocks and not depths:
             raise ValueError("no depths: expected a build without the block 'triangle', whose meshes need them")
         if sys_clk_freq % CLOCK_UNIT:
@@ -76,6 +78,7 @@ class GlintSoC(SoCCore):
         self.blocks = frozenset({*blocks, "triangle"} if {"line", "raymarch"} & set(blocks) else blocks)
         self.mode = mode
         self.smooth = smooth
+        self.texture = texture
         self.geometry = geometry
         self.depths = depths
         self.fields = fields or Fields()
@@ -185,7 +188,7 @@ class GlintSoC(SoCCore):
             lists = [self._port("write", main_ram, has_geometry) for _ in range(2)]
             frame = [self._port("write", main_ram) for _ in range(2)]
             self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
-                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks, self.draws_lines,
+                                           self.draws_triangles, self.smooth, self.texture, "raymarch" in self.blocks, self.draws_lines,
                                            has_geometry, self.depths)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)

@@ -13,7 +13,7 @@ from .clock_control import ClockControl
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
 from .parameters import Parameter, PassParameters
-from .records import DESCRIPTOR_BYTES
+from .records import DESCRIPTOR, LIGHT_BYTES, TEXTURE_BYTES
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
@@ -47,14 +47,14 @@ class TriangleEngine(LiteXModule):
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
-    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the
+    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `texture` textures, `fields` the
     input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws lines and fields only, and does not use
     the port of the vertices; without both triangles and lines it uses the last two writers only. The registers are the same. Then `depths`
     may be left out too: the memory of the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from
     the firmware's lists, and does not use the ports of mesh, vertices, descriptors and lists.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False,
+    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, fields=False, lines=False,
                  has_geometry=True, depths=True):
         has_geometry = has_geometry and (triangles or lines)
         memory_bits = log2_int(main_ram.size // 16)
@@ -69,8 +69,7 @@ class TriangleEngine(LiteXModule):
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("sizes", size=3, offset=0, reset=sizes, description="Bit k: `size` k is supported."),
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
-                     f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, "
-                     f"{DESCRIPTOR_BYTES['flat']} without."),
+                     f"vertices. A descriptor has {LIGHT_BYTES} bytes more than {DESCRIPTOR.size} with smooth shading."),
             CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes without `lines`, and raster "
                      "passes of their lists. With neither triangles nor lines a raster pass draws the raymarcher's field alone."),
             CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`, and raster passes of their "
@@ -80,6 +79,8 @@ class TriangleEngine(LiteXModule):
             CSRField("geometry", offset=7, reset=int(has_geometry), description="Geometry passes. Without them a raster pass draws lists that "
                      "the CPU has written."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
+            CSRField("textures", offset=14, reset=int(texture), description="Textures: a descriptor has "
+                     f"{TEXTURE_BYTES} bytes more with them. Geometry passes write descriptors without a texture."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
@@ -122,7 +123,7 @@ class TriangleEngine(LiteXModule):
         self._geometry_descriptors = Parameter(32, name="geometry_descriptors", description=f"{address} the descriptors, "
                                                 "written by the pass.")
         self._descriptor_limit = Parameter(_COUNT_BITS, name="descriptor_limit", description="Most descriptors, "
-                                             f"{DESCRIPTOR_BYTES['flat']} or {DESCRIPTOR_BYTES['smooth']} bytes each, see `caps`.")
+                                             "whose size follows from `caps`.")
         self._geometry_lists = Parameter(32, name="geometry_lists", description=f"{address} the band lists, written by the pass.")
         self._list_shift = Parameter(5, name="list_shift", description="Entries of a band list: at most 4 << list_shift, "
             "in both passes.")
@@ -161,7 +162,7 @@ class TriangleEngine(LiteXModule):
                      "slot."),
             CSRField("whole", offset=7, description="Write all of the frame buffer. Required for the first frame of a buffer, "
                      "after a cancelled frame, after a change of size or `clear`, and after writes by the CPU."),
-        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold "
+        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures` must hold "
             "while it runs.")
         self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
         self._depth = Parameter(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
@@ -175,6 +176,9 @@ class TriangleEngine(LiteXModule):
             ]:
                 setattr(self, f"_{name}_{k}", register)
                 sets.setdefault(name, []).append(register)
+
+        self._textures = Parameter(32, name="textures", description=f"{address} the table of the textures' addresses. No effect without "
+                                   "`textures` in `caps`.")
 
         # Registers with the results of the last geometry pass.
         results = {
@@ -231,7 +235,7 @@ class TriangleEngine(LiteXModule):
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
              self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient,
              self._colour],
-            [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values())])
+            [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()), self._textures])
         # A raymarcher copies its parameters when the raster pass starts; the pass waits until both have copied theirs.
         self.raster_load, self.field_loading = Signal(), Signal()
         # A refused request does not change the parameters of the running pass.
@@ -278,6 +282,7 @@ class TriangleEngine(LiteXModule):
             "clear": self._clear.storage,
             "list_shift": self.parameters.copies[1][self._list_shift],
             **{name: [register.storage for register in registers] for name, registers in sets.items()},
+            "textures": self._textures.storage,
         })
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
@@ -313,6 +318,7 @@ class TriangleEngine(LiteXModule):
             p_SIZES            = sizes,
             p_TRIANGLES        = int(triangles),
             p_SMOOTH           = int(smooth),
+            p_TEXTURE          = int(texture),
             p_LINES            = int(lines),
             p_GEOMETRY         = int(has_geometry),
             i_clk              = ClockSignal("sys"),
@@ -341,6 +347,7 @@ class TriangleEngine(LiteXModule):
         self.specials += Instance("triangle_engine", name="triangle_engine",
             p_TRIANGLES       = int(triangles),
             p_SMOOTH          = int(smooth),
+            p_TEXTURE         = int(texture),
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
             p_GEOMETRY        = int(has_geometry),

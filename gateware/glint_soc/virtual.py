@@ -97,10 +97,10 @@ class CRG(LiteXModule):
 class PinSoC(GlintSoC):
     """SoC on the pins of `Platform`, without a memory."""
 
-    def __init__(self, build_id, blocks, smooth=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
         GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth,
-                          geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
+                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
 
     def add_memory(self, phy):
         """Adds the memory behind `phy`, which is that of the Urbana, the blocks that access it, and the video pins."""

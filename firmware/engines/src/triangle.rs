@@ -4,6 +4,7 @@ use glint_core::camera::Projection;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
 use glint_hal::triangle::{self, DepthScale, GeometryStart, Lists, Prepared, TriangleEngine};
+use glint_model::triangle::descriptor::Layout;
 use glint_model::{MeshLight, MeshSetup, Shading};
 
 /// A geometry pass of a mesh.
@@ -62,13 +63,12 @@ impl MeshPass<'_> {
     }
 }
 
-/// The best shading of an engine.
+/// The layout of an engine's descriptors.
 #[must_use]
-pub fn shading(engine: &TriangleEngine) -> Shading {
-    if engine.shades_smoothly() {
-        Shading::Smooth
-    } else {
-        Shading::Flat
+pub fn layout(engine: &TriangleEngine) -> Layout {
+    Layout {
+        is_textured: engine.draws_textures(),
+        is_smooth: engine.shades_smoothly(),
     }
 }
 

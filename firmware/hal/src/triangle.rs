@@ -150,8 +150,17 @@ pub struct Raster {
     pub clear: u16,
     /// The capacity of a band list is 4 << `list_shift` entries; the next geometry pass must have an equal [`Lists::list_shift`].
     pub list_shift: u8,
+    /// What the pass draws.
+    pub input: Input,
+}
+
+/// What a raster pass draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Input {
     /// The sets of descriptors and band lists, drawn in this order in each band.
     pub sets: [Option<Set>; 2],
+    /// Address of the table of the textures' addresses, if the descriptors name textures.
+    pub textures: Option<u32>,
 }
 
 /// Counts of the last geometry pass, and of the earlier passes whose output it continued.
@@ -218,7 +227,13 @@ impl TriangleEngine {
         self.registers.caps().read().depths()
     }
 
-    /// Whether this gateware supports smooth shading, which doubles the length of descriptors.
+    /// Whether this gateware draws textures, which makes descriptors longer.
+    #[must_use]
+    pub fn draws_textures(&self) -> bool {
+        self.registers.caps().read().textures()
+    }
+
+    /// Whether this gateware supports smooth shading, which makes descriptors longer.
     #[must_use]
     pub fn shades_smoothly(&self) -> bool {
         self.registers.caps().read().gouraud()
@@ -321,7 +336,7 @@ impl TriangleEngine {
         registers.depth().write(pass.depth.unwrap_or(0));
         registers.clear().write(pass.clear);
         registers.list_shift().write(pass.list_shift);
-        let [first, second] = pass.sets;
+        let [first, second] = pass.input.sets;
         if let Some(set) = first {
             registers.lists_0().write(set.lists);
             registers.descriptors_0().write(set.descriptors);
@@ -331,6 +346,9 @@ impl TriangleEngine {
             registers.lists_1().write(set.lists);
             registers.descriptors_1().write(set.descriptors);
             registers.count_1().write(set.count);
+        }
+        if let Some(table) = pass.input.textures {
+            registers.textures().write(table);
         }
         compiler_fence(Ordering::SeqCst);
         registers.raster().write(

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x935c_fb8b;
+pub const BUILD_ID: u32 = 0x11e3_a0ec;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3215,7 +3215,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5000) }
         }
 
-        /// `caps`, 14 bits: Capabilities of this build.
+        /// `caps`, 15 bits: Capabilities of this build.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3295,7 +3295,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5028) }
         }
 
-        /// `descriptor_limit`, 20 bits: Most descriptors, 48 or 96 bytes each, see `caps`. Reads as 0.
+        /// `descriptor_limit`, 20 bits: Most descriptors, whose size follows from `caps`. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn descriptor_limit(&self) -> Register<u32, ReadWrite> {
@@ -3487,7 +3487,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5088) }
         }
 
-        /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold while it runs. Reads as 0.
+        /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures` must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -3567,12 +3567,20 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50b0) }
         }
 
+        /// `textures`, 32 bits: Byte address, a multiple of 16, of the table of the textures' addresses. No effect without `textures` in `caps`. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn textures(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_50b4) }
+        }
+
         /// `triangles`, 32 bits: Triangles of the mesh.
         #[inline]
         #[must_use]
         pub const fn triangles(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50b4) }
+            unsafe { Register::at(0xf000_50b8) }
         }
 
         /// `unseen`, 32 bits: Triangles behind the near plane or beyond one side of the picture.
@@ -3580,7 +3588,7 @@ pub mod triangle {
         #[must_use]
         pub const fn unseen(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50b8) }
+            unsafe { Register::at(0xf000_50bc) }
         }
 
         /// `culled`, 32 bits: Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds, and tiny ones that cover no pixel.
@@ -3588,7 +3596,7 @@ pub mod triangle {
         #[must_use]
         pub const fn culled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50bc) }
+            unsafe { Register::at(0xf000_50c0) }
         }
 
         /// `descriptor_count`, 32 bits: Descriptors written, with `append` including those of earlier passes.
@@ -3596,7 +3604,7 @@ pub mod triangle {
         #[must_use]
         pub const fn descriptor_count(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50c0) }
+            unsafe { Register::at(0xf000_50c4) }
         }
 
         /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` including those of earlier passes.
@@ -3604,7 +3612,7 @@ pub mod triangle {
         #[must_use]
         pub const fn exception_count(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50c4) }
+            unsafe { Register::at(0xf000_50c8) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles of both passes, modulo 2^32.
@@ -3612,7 +3620,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50c8) }
+            unsafe { Register::at(0xf000_50cc) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which memory refused a command, modulo 2^32.
@@ -3620,7 +3628,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50cc) }
+            unsafe { Register::at(0xf000_50d0) }
         }
 
         /// `stalled_reads`, 32 bits: Clock cycles in which memory refused a read, modulo 2^32.
@@ -3628,7 +3636,7 @@ pub mod triangle {
         #[must_use]
         pub const fn stalled_reads(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d0) }
+            unsafe { Register::at(0xf000_50d4) }
         }
 
         /// `stalled_lists`, 32 bits: Clock cycles in which memory refused a write of the geometry pass, modulo 2^32.
@@ -3636,7 +3644,7 @@ pub mod triangle {
         #[must_use]
         pub const fn stalled_lists(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d4) }
+            unsafe { Register::at(0xf000_50d8) }
         }
 
         /// `stalled_frame`, 32 bits: Clock cycles in which memory refused a write of the raster pass, modulo 2^32.
@@ -3644,7 +3652,7 @@ pub mod triangle {
         #[must_use]
         pub const fn stalled_frame(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d8) }
+            unsafe { Register::at(0xf000_50dc) }
         }
 
         /// `items_in`, 32 bits: Words of 16 bytes read from memory, modulo 2^32.
@@ -3652,7 +3660,7 @@ pub mod triangle {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50dc) }
+            unsafe { Register::at(0xf000_50e0) }
         }
 
         /// `items_out`, 32 bits: Words of 16 bytes written to memory, modulo 2^32.
@@ -3660,7 +3668,7 @@ pub mod triangle {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e0) }
+            unsafe { Register::at(0xf000_50e4) }
         }
 
         /// `cycles_geometry`, 32 bits: Clock cycles of geometry passes, modulo 2^32.
@@ -3668,7 +3676,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_geometry(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e4) }
+            unsafe { Register::at(0xf000_50e8) }
         }
 
         /// `vertices`, 32 bits: Vertices transformed, modulo 2^32.
@@ -3676,7 +3684,7 @@ pub mod triangle {
         #[must_use]
         pub const fn vertices(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e8) }
+            unsafe { Register::at(0xf000_50ec) }
         }
 
         /// `cycles_raster`, 32 bits: Clock cycles of raster passes, modulo 2^32.
@@ -3684,7 +3692,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_raster(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50ec) }
+            unsafe { Register::at(0xf000_50f0) }
         }
 
         /// `cycles_walking`, 32 bits: Clock cycles in which the walker was at a group of pixels, modulo 2^32.
@@ -3692,7 +3700,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_walking(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f0) }
+            unsafe { Register::at(0xf000_50f4) }
         }
 
         /// `cycles_empty`, 32 bits: Clock cycles in which the walker was at a group without a covered pixel, modulo 2^32.
@@ -3700,7 +3708,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_empty(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f4) }
+            unsafe { Register::at(0xf000_50f8) }
         }
 
         /// `groups`, 32 bits: Groups of eight pixels with a covered pixel, modulo 2^32.
@@ -3708,7 +3716,7 @@ pub mod triangle {
         #[must_use]
         pub const fn groups(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f8) }
+            unsafe { Register::at(0xf000_50fc) }
         }
 
         /// `pixels_covered`, 32 bits: Pixels covered, for each triangle, modulo 2^32.
@@ -3716,7 +3724,7 @@ pub mod triangle {
         #[must_use]
         pub const fn pixels_covered(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50fc) }
+            unsafe { Register::at(0xf000_5100) }
         }
 
         /// `pixels_drawn`, 32 bits: Pixels that passed the depth test, modulo 2^32.
@@ -3724,7 +3732,7 @@ pub mod triangle {
         #[must_use]
         pub const fn pixels_drawn(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5100) }
+            unsafe { Register::at(0xf000_5104) }
         }
 
         /// `cycles_held`, 32 bits: Clock cycles in which a group waited for an earlier group of the same pixels, modulo 2^32.
@@ -3732,7 +3740,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_held(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5104) }
+            unsafe { Register::at(0xf000_5108) }
         }
 
         /// `cycles_memory`, 32 bits: Clock cycles in which the flush of a band waited for memory, modulo 2^32.
@@ -3740,7 +3748,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_memory(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5108) }
+            unsafe { Register::at(0xf000_510c) }
         }
 
         /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the previous band, modulo 2^32.
@@ -3748,7 +3756,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_510c) }
+            unsafe { Register::at(0xf000_5110) }
         }
 
         /// `light_0`, 25 bits: Row of the light, x, s2.23, two's complement. Reads as 0.
@@ -3756,7 +3764,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5110) }
+            unsafe { Register::at(0xf000_5114) }
         }
 
         /// `light_1`, 25 bits: Row of the light, y, s2.23, two's complement. Reads as 0.
@@ -3764,7 +3772,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5114) }
+            unsafe { Register::at(0xf000_5118) }
         }
 
         /// `light_2`, 25 bits: Row of the light, z, s2.23, two's complement. Reads as 0.
@@ -3772,7 +3780,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5118) }
+            unsafe { Register::at(0xf000_511c) }
         }
 
         /// `light_colour`, 27 bits: Colour of the light, u1.8 of each channel, at most 1: red in bits 0 to 8, green, blue. Reads as 0.
@@ -3780,7 +3788,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_colour(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_511c) }
+            unsafe { Register::at(0xf000_5120) }
         }
 
         /// `ambient`, 27 bits: Ambient light, in the format of `light_colour`. It must be 0 with `smooth` and without `cull`. Reads as 0.
@@ -3788,7 +3796,7 @@ pub mod triangle {
         #[must_use]
         pub const fn ambient(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5120) }
+            unsafe { Register::at(0xf000_5124) }
         }
 
         /// `colour`, 16 bits: Colour instead of those of the mesh, with `recolour` in `geometry`, RGB565. Reads as 0.
@@ -3796,7 +3804,7 @@ pub mod triangle {
         #[must_use]
         pub const fn colour(&self) -> Register<u16, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5124) }
+            unsafe { Register::at(0xf000_5128) }
         }
     }
 
@@ -3892,64 +3900,66 @@ pub mod triangle {
         pub const DESCRIPTORS_1: u32 = 0xac;
         /// `count_1`.
         pub const COUNT_1: u32 = 0xb0;
+        /// `textures`.
+        pub const TEXTURES: u32 = 0xb4;
         /// `triangles`.
-        pub const TRIANGLES: u32 = 0xb4;
+        pub const TRIANGLES: u32 = 0xb8;
         /// `unseen`.
-        pub const UNSEEN: u32 = 0xb8;
+        pub const UNSEEN: u32 = 0xbc;
         /// `culled`.
-        pub const CULLED: u32 = 0xbc;
+        pub const CULLED: u32 = 0xc0;
         /// `descriptor_count`.
-        pub const DESCRIPTOR_COUNT: u32 = 0xc0;
+        pub const DESCRIPTOR_COUNT: u32 = 0xc4;
         /// `exception_count`.
-        pub const EXCEPTION_COUNT: u32 = 0xc4;
+        pub const EXCEPTION_COUNT: u32 = 0xc8;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0xc8;
+        pub const CYCLES_BUSY: u32 = 0xcc;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0xcc;
+        pub const CYCLES_STALLED: u32 = 0xd0;
         /// `stalled_reads`.
-        pub const STALLED_READS: u32 = 0xd0;
+        pub const STALLED_READS: u32 = 0xd4;
         /// `stalled_lists`.
-        pub const STALLED_LISTS: u32 = 0xd4;
+        pub const STALLED_LISTS: u32 = 0xd8;
         /// `stalled_frame`.
-        pub const STALLED_FRAME: u32 = 0xd8;
+        pub const STALLED_FRAME: u32 = 0xdc;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0xdc;
+        pub const ITEMS_IN: u32 = 0xe0;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0xe0;
+        pub const ITEMS_OUT: u32 = 0xe4;
         /// `cycles_geometry`.
-        pub const CYCLES_GEOMETRY: u32 = 0xe4;
+        pub const CYCLES_GEOMETRY: u32 = 0xe8;
         /// `vertices`.
-        pub const VERTICES: u32 = 0xe8;
+        pub const VERTICES: u32 = 0xec;
         /// `cycles_raster`.
-        pub const CYCLES_RASTER: u32 = 0xec;
+        pub const CYCLES_RASTER: u32 = 0xf0;
         /// `cycles_walking`.
-        pub const CYCLES_WALKING: u32 = 0xf0;
+        pub const CYCLES_WALKING: u32 = 0xf4;
         /// `cycles_empty`.
-        pub const CYCLES_EMPTY: u32 = 0xf4;
+        pub const CYCLES_EMPTY: u32 = 0xf8;
         /// `groups`.
-        pub const GROUPS: u32 = 0xf8;
+        pub const GROUPS: u32 = 0xfc;
         /// `pixels_covered`.
-        pub const PIXELS_COVERED: u32 = 0xfc;
+        pub const PIXELS_COVERED: u32 = 0x100;
         /// `pixels_drawn`.
-        pub const PIXELS_DRAWN: u32 = 0x100;
+        pub const PIXELS_DRAWN: u32 = 0x104;
         /// `cycles_held`.
-        pub const CYCLES_HELD: u32 = 0x104;
+        pub const CYCLES_HELD: u32 = 0x108;
         /// `cycles_memory`.
-        pub const CYCLES_MEMORY: u32 = 0x108;
+        pub const CYCLES_MEMORY: u32 = 0x10c;
         /// `cycles_flush`.
-        pub const CYCLES_FLUSH: u32 = 0x10c;
+        pub const CYCLES_FLUSH: u32 = 0x110;
         /// `light_0`.
-        pub const LIGHT_0: u32 = 0x110;
+        pub const LIGHT_0: u32 = 0x114;
         /// `light_1`.
-        pub const LIGHT_1: u32 = 0x114;
+        pub const LIGHT_1: u32 = 0x118;
         /// `light_2`.
-        pub const LIGHT_2: u32 = 0x118;
+        pub const LIGHT_2: u32 = 0x11c;
         /// `light_colour`.
-        pub const LIGHT_COLOUR: u32 = 0x11c;
+        pub const LIGHT_COLOUR: u32 = 0x120;
         /// `ambient`.
-        pub const AMBIENT: u32 = 0x120;
+        pub const AMBIENT: u32 = 0x124;
         /// `colour`.
-        pub const COLOUR: u32 = 0x124;
+        pub const COLOUR: u32 = 0x128;
     }
 
     /// A value of `caps`.
@@ -3981,7 +3991,7 @@ pub mod triangle {
             Self(self.0 & !0x7 | value as u32 & 0x7)
         }
 
-        /// `gouraud`, bit 3: Smooth shading: colours interpolated between vertices. A descriptor has 96 bytes with smooth shading, 48 without.
+        /// `gouraud`, bit 3: Smooth shading: colours interpolated between vertices. A descriptor has 48 bytes more than 48 with smooth shading.
         #[inline]
         #[must_use]
         pub const fn gouraud(self) -> bool {
@@ -4063,6 +4073,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_count_bits(self, value: u8) -> Self {
             Self(self.0 & !(0x3f << 8) | (value as u32 & 0x3f) << 8)
+        }
+
+        /// `textures`, bit 14: Textures: a descriptor has 32 bytes more with them. Geometry passes write descriptors without a texture.
+        #[inline]
+        #[must_use]
+        pub const fn textures(self) -> bool {
+            (self.0 >> 14) & 1 != 0
+        }
+
+        /// This value with another `textures`.
+        #[inline]
+        #[must_use]
+        pub const fn with_textures(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
     }
 

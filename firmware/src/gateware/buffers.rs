@@ -2,18 +2,19 @@
 
 use core::mem;
 
-use glint_core::colour::Shading;
+use glint_core::feature::TEXTURE;
 use glint_core::picture::Size;
+use glint_core::texture::Texture;
 use glint_hal::triangle::{Lists, Set};
 use glint_model::line::Segment;
-use glint_model::triangle::descriptor::{self, ListCounts, list_shift};
+use glint_model::triangle::descriptor::{Layout, ListCounts, list_shift};
 use glint_model::{Stats, WireframeStats};
 
 /// Capacity of the memory of one frame. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
 pub struct Capacity {
-    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without smooth shading in a
-    /// set. A descriptor with smooth shading is twice as long, so half as many fit.
+    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without optional parts in a set. Of
+    /// longer descriptors fewer fit.
     descriptors: usize,
     /// Number of 32-bit words of a set of band lists, including the table of their lengths.
     list_words: usize,
@@ -33,7 +34,7 @@ impl Capacity {
 
     /// Number of 32-bit words for the descriptors of a set.
     const fn descriptor_words(self) -> usize {
-        self.descriptors * descriptor::words(Shading::Flat)
+        self.descriptors * Layout::FLAT.words()
     }
 }
 
@@ -55,6 +56,8 @@ pub struct Buffers {
     pub sets: [Option<Set>; 2],
     /// Counts of triangles of the geometry passes and the clipper.
     pub stats: Stats,
+    /// The textures that the descriptors name.
+    pub textures: TextureTable,
     /// The list shift of both passes for each size of a picture, in the order of [`Size::ALL`].
     list_shifts: [u8; Size::ALL.len()],
 }
@@ -76,6 +79,11 @@ impl Buffers {
             clipped_counts: ListCounts::EMPTY,
             sets: [None; 2],
             stats: Stats::default(),
+            textures: TextureTable::new(piece(if TEXTURE.is_built {
+                TextureTable::WORDS
+            } else {
+                0
+            })?),
             list_shifts: Size::ALL.map(|size| list_shift(size.width(), room.list_words) as u8),
         })
     }
@@ -93,6 +101,7 @@ impl Buffers {
     /// Removes the sets and counts of the previous frame.
     pub fn clear(&mut self) {
         (self.sets, self.stats) = ([None; 2], Stats::default());
+        self.textures.clear();
     }
 
     /// The list shift of both passes for a picture of this size.
@@ -100,16 +109,16 @@ impl Buffers {
         self.list_shifts[size as usize]
     }
 
-    /// Number of descriptors that fit a set, on gateware whose best shading is `capability`.
-    pub const fn descriptor_limit(&self, capability: Shading) -> u32 {
-        (self.descriptors.len() / descriptor::words(capability)) as u32
+    /// Number of descriptors of this layout that fit a set.
+    pub const fn descriptor_limit(&self, layout: Layout) -> u32 {
+        (self.descriptors.len() / layout.words()) as u32
     }
 
-    /// The memory for the output of geometry passes, for a picture of this size, on gateware whose best shading is `capability`.
-    pub fn lists(&self, capability: Shading, size: Size) -> Lists {
+    /// The memory for the output of geometry passes, for a picture of this size and descriptors of this layout.
+    pub fn lists(&self, layout: Layout, size: Size) -> Lists {
         Lists {
             descriptors: address(self.descriptors),
-            descriptor_limit: self.descriptor_limit(capability),
+            descriptor_limit: self.descriptor_limit(layout),
             lists: address(self.lists),
             list_shift: self.list_shift(size),
             exceptions: address(self.exceptions),
@@ -118,11 +127,11 @@ impl Buffers {
     }
 
     /// The memory for the output of the geometry pass of a mesh's edges, which are drawn after its faces.
-    pub fn edge_lists(&self, capability: Shading, size: Size) -> Lists {
+    pub fn edge_lists(&self, layout: Layout, size: Size) -> Lists {
         Lists {
             descriptors: address(self.clipped_descriptors),
             lists: address(self.clipped_lists),
-            ..self.lists(capability, size)
+            ..self.lists(layout, size)
         }
     }
 
@@ -142,6 +151,48 @@ impl Buffers {
             count,
             lists: address(self.clipped_lists),
         }
+    }
+}
+
+/// The table of the addresses of a frame's textures (docs/formats/texture.md, "Textures of a frame"). Entry 0 is not used.
+pub struct TextureTable {
+    addresses: &'static mut [u32],
+    /// Number of the last texture.
+    count: usize,
+}
+
+impl TextureTable {
+    /// Number of 32-bit words of a table: a descriptor names a texture by a byte.
+    const WORDS: usize = 1 << 8;
+
+    const fn new(addresses: &'static mut [u32]) -> Self {
+        Self {
+            addresses,
+            count: 0,
+        }
+    }
+
+    const fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// The number of a texture, which the table takes if it is new; `None` if the table is full.
+    pub fn number(&mut self, texture: &Texture) -> Option<u8> {
+        let address = address(texture.bytes());
+        let known = self.addresses.get(1..=self.count).unwrap_or_default();
+        // Successive triangles mostly have the same texture.
+        if let Some(place) = known.iter().rposition(|&known| known == address) {
+            return u8::try_from(place + 1).ok();
+        }
+        let next = self.count + 1;
+        *self.addresses.get_mut(next)? = address;
+        self.count = next;
+        u8::try_from(next).ok()
+    }
+
+    /// The address of the table for the engine; `None` without textures.
+    pub fn address(&self) -> Option<u32> {
+        (self.count > 0).then(|| address(self.addresses))
     }
 }
 

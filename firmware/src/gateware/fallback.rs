@@ -15,7 +15,7 @@ pub enum Fallback {
     Field(Missing),
     /// This gateware is built without smooth shading.
     NoSmoothShading,
-    /// The triangle engine draws no textures.
+    /// This gateware is built without textures.
     NoTextures,
     /// This gateware is built without a depth buffer.
     NoDepths,
@@ -37,6 +37,7 @@ impl Fallback {
     const fn build(&self) -> Option<&'static str> {
         match self {
             Self::NoSmoothShading => Some("--smooth"),
+            Self::NoTextures => Some("--texture"),
             Self::Field(_) => Some("--fields all"),
             Self::NoRaymarcher => Some("--blocks scanout triangle raymarch"),
             Self::NoLineEngine => Some("--blocks scanout triangle line"),
@@ -45,11 +46,7 @@ impl Fallback {
             }
             Self::NoDepths => Some("without --no-depths"),
             Self::Descriptors(Unsupported::Geometry) => Some("without --no-geometry"),
-            Self::Triangle(_)
-            | Self::NoTextures
-            | Self::Eye
-            | Self::Orthographic
-            | Self::Descriptors(_) => None,
+            Self::Triangle(_) | Self::Eye | Self::Orthographic | Self::Descriptors(_) => None,
         }
     }
 
@@ -100,7 +97,7 @@ impl fmt::Display for Fallback {
                 f.write_str("triangle engine: this gateware has no smooth shading")?;
             }
             Self::NoTextures => f.write_str(
-                "triangle engine: it draws no textures; `textures off` draws the mesh without them, fast",
+                "triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast",
             )?,
             Self::NoDepths => f.write_str("triangle engine: this gateware has no depths")?,
             Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,
@@ -130,6 +127,8 @@ pub enum Unsupported {
     Volume,
     /// Winding by the position on the screen.
     Winding,
+    /// Textures.
+    Textures,
     /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
     /// Transformed normals of an object, if no memory is free for a copy of its mesh. Objects are numbered from 1.
@@ -146,6 +145,7 @@ impl fmt::Display for Unsupported {
             Self::Geometry => f.write_str("none in this gateware"),
             Self::Volume => f.write_str("no clipping to the view volume"),
             Self::Winding => f.write_str("no winding by the screen"),
+            Self::Textures => f.write_str("no textures"),
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
             Self::Normals { object } => write!(
                 f,

@@ -12,7 +12,7 @@ use glint_core::feature::{CPU, MESH};
 use glint_engines::triangle::MeshPass;
 use glint_hal::triangle::{Counts, EngineError, Error, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
-use glint_model::triangle::descriptor::{ListCounts, ListWriter};
+use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
 use glint_model::triangle::textured::Textured;
 use glint_model::{
@@ -51,8 +51,8 @@ pub struct Job<'a> {
 
 /// The state of the geometry passes.
 pub struct GeometryPasses {
-    /// Best shading of the engine.
-    shading: Shading,
+    /// Layout of the descriptors.
+    layout: Layout,
     /// Whether the engine has geometry passes.
     has_geometry: bool,
     /// Number of the mesh whose pass was started last.
@@ -69,10 +69,10 @@ pub struct GeometryPasses {
 }
 
 impl GeometryPasses {
-    /// Geometry passes of an engine whose best shading is `shading`.
-    pub fn new(shading: Shading, has_geometry: bool) -> Self {
+    /// Geometry passes of an engine whose descriptors have this layout.
+    pub fn new(layout: Layout, has_geometry: bool) -> Self {
         Self {
-            shading,
+            layout,
             has_geometry,
             number: 0,
             triangles: 0,
@@ -126,7 +126,7 @@ impl GeometryPasses {
             cull: subject.cull,
             shading: subject.shading,
             colour,
-            lists: (number == 0).then(|| job.buffers.lists(self.shading, job.frame.size)),
+            lists: (number == 0).then(|| job.buffers.lists(self.layout, job.frame.size)),
         };
         self.prepared = Some(pass.prepare(job.engine));
         Ok(())
@@ -222,9 +222,9 @@ impl GeometryPasses {
             &mut buffers.clipped_counts,
             setup.width,
             list_shift,
-            self.shading,
+            self.layout,
         );
-        let mut put = |setup: &_, colour| writer.put(setup, colour);
+        let mut put = |setup: &_, colour| writer.put(setup, colour, None);
         self.drawn_clipped +=
             clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
         let count = writer
@@ -270,7 +270,7 @@ impl GeometryPasses {
             &mut whole,
             width,
             list_shift,
-            self.shading,
+            self.layout,
         );
         let mut clipped = ListWriter::new(
             buffers.clipped_descriptors,
@@ -278,11 +278,12 @@ impl GeometryPasses {
             &mut buffers.clipped_counts,
             width,
             list_shift,
-            self.shading,
+            self.layout,
         );
         let scratch = cpu.scratch.vertices(frame.scratch_vertices());
         let joins = joins_clipped(frame);
-        let mut put = |triangle: &DrawnTriangle, setup: &Setup, _: Option<&Textured>| {
+        let (textures, mut is_full) = (&mut buffers.textures, false);
+        let mut put = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
             if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
                 (cpu.progress)();
             }
@@ -291,10 +292,18 @@ impl GeometryPasses {
             } else {
                 &mut whole
             };
-            writer.put(setup, triangle.colour);
+            let textured = textured.and_then(|textured| {
+                let number = textures.number(&textured.texture);
+                is_full |= number.is_none();
+                Some((textured, number?))
+            });
+            writer.put(setup, triangle.colour, textured);
         };
         let stats = frame.set_up_meshes(constants, scratch, &mut put)?;
         let full = |_| EngineError::from(Error::Full);
+        if is_full {
+            return Err(EngineError::from(Error::Full).into());
+        }
         let whole = whole.finish().map_err(full)?;
         let clipped = clipped.finish().map_err(full)?;
         buffers.sets = [
@@ -319,6 +328,8 @@ fn unsupported(frame: &Frame) -> Option<Unsupported> {
             Some(Unsupported::Volume)
         } else if subject.winding != Winding::Mesh {
             Some(Unsupported::Winding)
+        } else if subject.has_textures() {
+            Some(Unsupported::Textures)
         } else {
             let is_lit = sees_dark_sides && frame.mesh_lighting().ambient != [0; 3];
             is_lit.then_some(Unsupported::DarkSides)

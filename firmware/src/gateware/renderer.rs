@@ -8,11 +8,12 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, WIREFRAME};
 use glint_core::picture::Size;
 use glint_engines::raymarch::{ray_counts, set_field, tables};
-use glint_engines::triangle::{shading, size_code};
+use glint_engines::triangle::{layout, size_code};
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
-use glint_hal::triangle::{Counters, EngineError, Error, Prepared, Raster, Set, TriangleEngine};
+use glint_hal::triangle::{Counters, EngineError, Error, Input, Prepared, Raster, TriangleEngine};
 use glint_model::edges::EdgeStats;
+use glint_model::triangle::descriptor::Layout;
 use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeStats};
 use litex_pac::cpu;
 
@@ -58,7 +59,8 @@ pub struct GatewareRenderer {
     raymarcher: Option<Raymarcher>,
     draws_triangles: bool,
     draws_lines: bool,
-    shading: Shading,
+    /// Layout of the descriptors of this gateware.
+    layout: Layout,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
     buffers: [Buffers; 2],
     /// The projected part of a wireframe.
@@ -103,11 +105,11 @@ impl GatewareRenderer {
         frequency: Frequency,
     ) -> Option<Self> {
         let capacity = Capacity::of(memory.len())?;
-        let (shading, has_geometry) = (shading(&engine), engine.has_geometry());
+        let (layout, has_geometry) = (layout(&engine), engine.has_geometry());
         Some(Self {
             draws_triangles: engine.draws_triangles(),
             draws_lines: engine.draws_lines(),
-            shading,
+            layout,
             engine,
             raymarcher,
             buffers: [
@@ -120,7 +122,7 @@ impl GatewareRenderer {
             drawn: [None; 2],
             stage: Stage::Idle,
             constants: Default::default(),
-            geometry: GeometryPasses::new(shading, has_geometry),
+            geometry: GeometryPasses::new(layout, has_geometry),
             watchdog: Watchdog::new(frequency),
             waited: 0,
             start: Start::default(),
@@ -132,7 +134,7 @@ impl GatewareRenderer {
     /// Largest number of triangles of a mesh: twice the descriptors of a frame, because a closed mesh hides half of its triangles.
     pub fn most_triangles(&self) -> u32 {
         let [buffers, _] = &self.buffers;
-        2 * buffers.descriptor_limit(self.shading)
+        2 * buffers.descriptor_limit(self.layout)
     }
 
     /// The subjects that the gateware draws, as a list for the console. The CPU draws all other subjects.
@@ -288,7 +290,7 @@ impl GatewareRenderer {
     ) -> Result<(), Fallback> {
         self.stage = next.map_err(|error| self.cancel(output, error))?;
         if self.stage == Stage::Raster {
-            self.start_raster(frame, output, self.sets(0));
+            self.start_raster(frame, output, self.input(0));
         } else {
             self.pass_start = cpu::cycles_low();
         }
@@ -423,10 +425,10 @@ impl GatewareRenderer {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());
             }
-            if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
+            if mesh.shading == Shading::Smooth && !self.layout.is_smooth {
                 return Err(Fallback::NoSmoothShading);
             }
-            if mesh.has_textures() {
+            if mesh.has_textures() && !self.layout.is_textured {
                 return Err(Fallback::NoTextures);
             }
             if mesh.shading == Shading::Smooth
@@ -458,7 +460,7 @@ impl GatewareRenderer {
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(tables(&field.palette)))
     }
 
-    fn start_raster(&mut self, frame: &Frame, output: &mut Output, sets: [Option<Set>; 2]) {
+    fn start_raster(&mut self, frame: &Frame, output: &mut Output, input: Input) {
         let slot = self.slot(output.colour);
         let drawn = &mut self.drawn[usize::from(slot)];
         let this = Some((frame.size, frame.clear));
@@ -470,7 +472,7 @@ impl GatewareRenderer {
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
             list_shift: self.buffers[0].list_shift(frame.size),
-            sets,
+            input,
         };
         *drawn = this;
         // SAFETY: the lists belong to this renderer and stay until the end of the pass; the caller lends the memory of
@@ -496,9 +498,13 @@ impl GatewareRenderer {
         error
     }
 
-    /// The sets of lists in `self.buffers[place]`.
-    fn sets(&self, place: usize) -> [Option<Set>; 2] {
-        self.buffers[place].sets
+    /// The lists and textures in `self.buffers[place]`.
+    fn input(&self, place: usize) -> Input {
+        let buffers = &self.buffers[place];
+        Input {
+            sets: buffers.sets,
+            textures: buffers.textures.address(),
+        }
     }
 
     fn slot(&self, colour: &[u16]) -> bool {

@@ -73,11 +73,21 @@ package records_pkg;
         logic [31:0] start;
     } plane_t;
 
-    // Planes of light of a triangle, in the three words behind its descriptor.
+    // Planes of light of a triangle, in three words behind its descriptor and its texture.
     typedef struct packed {
         logic smooth;
         logic [2:0][95:0] light;
     } planes_t;
+
+    // Texture of a triangle, in the two words behind its descriptor.
+    typedef struct packed {
+        logic linear;
+        logic [7:0] texture;
+        logic [1:0][3:0] periods;
+        logic [1:0][3:0] range;
+        logic [2:0][7:0] light;
+        logic [1:0][95:0] planes;
+    } texture_planes_t;
 
     // Piece of a line.
     typedef struct packed {

@@ -23,13 +23,16 @@
 // until the output is free, and the next triangle waits at the input. At least two clocks pass between two triangles at the output. A
 // triangle without a row in the band is taken and dropped. `in_y0`, the band's first row, and `in_odd`, the parity of the band's number,
 // arrive with the triangle; bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must
-// hold while triangles are inside. With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
+// hold while triangles are inside. With SMOOTH or TEXTURE, the planes of light and of texture coordinates pass through plane_entry, each with
+// its own multiplier.
 
 `default_nettype none
 
 module band_entry #(
     parameter bit SMOOTH = 1'b0,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
+    parameter bit TEXTURE = 1'b0,
+    localparam int unsigned CHANNELS    = triangle_pkg::channels(SMOOTH, TEXTURE),
+    localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire                            clk,
     input  wire                            rst,
@@ -214,19 +217,22 @@ module band_entry #(
         if (ending[3]) late.depth <= sum[31:0];
     end
 
-    if (SMOOTH) begin : light
-        logic smooth, held_smooth, give;
+    if (CHANNELS > 0) begin : planes
+        localparam int unsigned CONSTANT_BITS = PLANES_BITS - 96 * CHANNELS;
+
+        logic [CONSTANT_BITS-1:0] constants, held_constants;
+        logic                     give;
 
         // The held planes are sent LIGHT_LATER clocks after the held triangle has moved.
         delay #(.WIDTH(1), .CLOCKS(raster_pkg::LIGHT_LATER)) give_delay (.clk, .enable(1'b1), .in(moved), .out(give));
 
         always_ff @(posedge clk) begin
-            if (in_ready)     smooth <= in_planes[288];
-            if (pass == LAST) held_smooth <= smooth;
-            if (give)         out_planes[288] <= held_smooth;
+            if (in_ready)     constants <= in_planes[96 * CHANNELS +: CONSTANT_BITS];
+            if (pass == LAST) held_constants <= constants;
+            if (give)         out_planes[96 * CHANNELS +: CONSTANT_BITS] <= held_constants;
         end
 
-        for (genvar k = 0; k < 3; k++) begin : channels
+        for (genvar k = 0; k < CHANNELS; k++) begin : channels
             plane_entry plane (
                 .clk, .take(in_ready), .pass, .advance, .offset, .hold(pass == LAST), .begins(ending[1]), .result(ending[3]), .give,
                 .in_plane(in_planes[96 * k +: 96]), .out_plane(out_planes[96 * k +: 96])

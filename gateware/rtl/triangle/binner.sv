@@ -2,7 +2,7 @@
 // touches, and the numbers of exceptions to a separate list.
 //
 // Layout in words of 16 bytes; entries are u32 (docs/formats/triangle.md, "Descriptors and band lists"):
-//   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
+//   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 3 more, with TEXTURE 2 more
 //   lists         list_base                            16 words: the lengths of 64 lists
 //                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries per word
 //   exceptions    exception_base                       4 entries per word
@@ -30,8 +30,9 @@ module binner #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter bit          SMOOTH       = 1'b0,
+    parameter bit          TEXTURE      = 1'b0,
     parameter bit          LINES        = 1'b0,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
+    localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -70,7 +71,7 @@ module binner #(
 );
     localparam int unsigned BANDS       = 64;
     localparam int unsigned BAND_BITS   = $clog2(BANDS);
-    localparam int unsigned DESCRIPTOR_WORDS = 3 << SMOOTH;
+    localparam int unsigned DESCRIPTOR_WORDS = triangle_pkg::descriptor_words(SMOOTH, TEXTURE);
     localparam int unsigned WORD_BITS        = $clog2(DESCRIPTOR_WORDS);
 
     // Returns the byte strobe that writes only the entry in lane `lane` of a word.
@@ -97,7 +98,12 @@ module binner #(
     logic [ADDRESS_BITS-1:0] descriptor_word; // counted from `descriptor_base`
     logic                    free, list_full, descriptors_full, exceptions_full;
 
-    if (SMOOTH) begin : light
+    if (SMOOTH && TEXTURE) begin : light_and_texture
+        assign words = {95'd0, in_planes[480], in_planes[287:0], 15'd0, in_planes[481 +: triangle_pkg::TEXTURE_BITS], in_planes[479:288],
+                        in_descriptor};
+    end else if (TEXTURE) begin : texture
+        assign words = {15'd0, in_planes, in_descriptor};
+    end else if (SMOOTH) begin : light
         assign words = {95'd0, in_planes, in_descriptor};
     end else begin : flat
         assign words = in_descriptor;
@@ -188,7 +194,7 @@ module binner #(
     assign entry      = state == IDLE ? exception_number : 32'(length);
     assign ends_word  = {32'(descriptors), list_end};
 
-    if (SMOOTH) begin : six_words
+    if (DESCRIPTOR_WORDS > 3) begin : more_words
         assign descriptor_or_ends = state == WORD ? words[128 * word +: 128] : ends_word;
     end else begin : three_words
         logic [1:0] selection;

@@ -13,7 +13,7 @@
 // the descriptor is read from its line, so no multiplexer follows the block RAM. An item without a descriptor (`in_end`) passes in order.
 //
 // Latency: 8 clocks for a hit, 11 clocks plus the latency of memory for a miss. Throughput one hit per 4 clocks, or one miss per 5
-// clocks, 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. If `forget` is high for one clock, all lines are
+// clocks, 7 with TEXTURE, 8 with SMOOTH, 10 with both. Descriptors must not change in memory while `forget` is low. If `forget` is high for one clock, all lines are
 // invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while the cache holds no
 // item: each item from the input has left at the output.
 //
@@ -26,9 +26,10 @@ module descriptor_cache #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter int unsigned LINE_BITS    = 8,
-    // A descriptor has three words of 16 bytes, or with SMOOTH six, because the planes of light follow it.
+    // A descriptor has three words of 16 bytes; with TEXTURE two words for the texture follow it, with SMOOTH three for the planes of light.
     parameter bit          SMOOTH       = 1'b0,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
+    parameter bit          TEXTURE      = 1'b0,
+    localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -53,7 +54,7 @@ module descriptor_cache #(
     output records_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
-    localparam int unsigned WORDS     = 3 << SMOOTH;
+    localparam int unsigned WORDS     = triangle_pkg::descriptor_words(SMOOTH, TEXTURE);
     localparam int unsigned WORD_BITS = $clog2(WORDS + 1);
     localparam int unsigned MARKS     = 16;
     // A tag consists of the set, the high bits of the number, and a valid bit.
@@ -89,7 +90,11 @@ module descriptor_cache #(
             set_base <= in_set ? base[ADDRESS_BITS +: ADDRESS_BITS] : base[0 +: ADDRESS_BITS];
         end
         hit      <= found == tag;
-        place    <= (ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1)) << SMOOTH;
+        case (WORDS)
+            5:       place <= ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 2);
+            8:       place <= ADDRESS_BITS'(number) << 3;
+            default: place <= (ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1)) << SMOOTH;
+        endcase
         found    <= latched;
         read_out <= looked && !passes;
         compared <= read_out && !passes;
@@ -218,13 +223,18 @@ module descriptor_cache #(
 
     assign out_descriptor = descriptor[383:0];
 
-    if (SMOOTH) begin : light
-        assign out_planes = descriptor[384 +: PLANES_BITS];
+    localparam int unsigned LIGHT = TEXTURE ? 640 : 384;
 
-        wire _unused = &{1'b0, descriptor[767:673]};
+    if (SMOOTH && TEXTURE) begin : light_and_texture
+        assign out_planes = {descriptor[576 +: triangle_pkg::TEXTURE_BITS], descriptor[LIGHT + 288], descriptor[384 +: 192],
+                             descriptor[LIGHT +: 288]};
+    end else if (SMOOTH || TEXTURE) begin : light_or_texture
+        assign out_planes = descriptor[384 +: PLANES_BITS];
     end else begin : flat
         assign out_planes = '0;
     end
+
+    wire _unused = &{1'b0, descriptor};
 endmodule
 
 `default_nettype wire

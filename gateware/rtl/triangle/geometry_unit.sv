@@ -35,6 +35,7 @@
 module geometry_unit #(
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
+    parameter  bit          TEXTURE      = 1'b0,
     parameter  bit          LINES        = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
@@ -172,7 +173,7 @@ module geometry_unit #(
                                    exception_ready;
     logic [31:0]                   exception_number;
     records_pkg::descriptor_t      descriptor;
-    logic [(SMOOTH ? 289 : 1)-1:0] planes;
+    logic [triangle_pkg::planes_bits(SMOOTH, TEXTURE)-1:0] planes;
 
     // Arrays of the block `triangles`, in which Yosys does not accept them.
     logic [2:0][VERTEX_BITS-1:0] cached;
@@ -249,6 +250,8 @@ module geometry_unit #(
             .exception_valid, .exception_ready, .exception_number
         );
 
+        logic [(SMOOTH ? 289 : 1)-1:0] light_planes;
+
         setup #(.SMOOTH(SMOOTH)) setup (
             .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .mirror(flags.mirror), .row_light(view.row_light),
             .light_colour(parameters.light_colour), .ambient(parameters.ambient),
@@ -257,9 +260,16 @@ module geometry_unit #(
             .in_colour(flags.recolour ? parameters.colour : regular_side[15:0]), .in_normal(regular_side[63:16]),
             .in_light(regular_light),
             .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
-            .out_planes(planes)
+            .out_planes(light_planes)
         );
         /* verilator lint_on PINCONNECTEMPTY */
+
+        // The planes of texture coordinates come from the firmware alone.
+        if (TEXTURE) begin : no_texture
+            assign planes = $bits(planes)'(light_planes);
+        end else begin : light_alone
+            assign planes = light_planes;
+        end
     end else begin : lines_alone
         assign {fetch_valid, fetch_ready, unseen, culled, descriptor_valid, exception_valid} = '0;
         assign {exception_number, descriptor, planes, results.triangles} = '0;
@@ -280,7 +290,7 @@ module geometry_unit #(
     assign descriptor_ready = binner_ready && !in_lines;
     assign piece_ready      = binner_ready && in_lines;
 
-    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .LINES(LINES)) binner (
+    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .LINES(LINES)) binner (
         .clk, .rst(rst || restart), .restart(clear && !(flags.append && has_lists)), .finish(state == FINISH),
         .done(lists_done), .idle(lists_idle), .full,
         .size(flags.size), .descriptor_base(parameters.descriptors[4 +: ADDRESS_BITS]),

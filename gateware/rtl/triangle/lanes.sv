@@ -144,7 +144,7 @@ module lanes (
         {out_line, out_column, out_colour} <= {line_4, column_4, colour_4};
     end
 
-    wire _unused = &{1'b0, stride[5:0], line_times_5[8]};
+    wire _unused = &{1'b0, stride[5:0], line_times_5[8], in_late.depth_step_y};
 endmodule
 
 `default_nettype wire

@@ -7,7 +7,7 @@
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
 // Each of the three parts reads ahead until its FIFO is full, even past the ends of lists and bands: the lengths of up to 16 bands, up to 8
-// jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). Reading ahead hides the latency of memory.
+// jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH, 6 with TEXTURE, 4 with both). Reading ahead hides the latency of memory.
 // Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput as in descriptor_cache; a list
 // takes at least 4 clocks.
 //
@@ -24,7 +24,8 @@ module list_reader #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter bit          SMOOTH       = 1'b0,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
+    parameter bit          TEXTURE      = 1'b0,
+    localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -208,7 +209,7 @@ module list_reader #(
         if (rst || start) list_error <= 1'b0;
     end
 
-    descriptor_cache #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) descriptors (
+    descriptor_cache #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) descriptors (
         .clk, .rst, .forget, .base(descriptor_base),
         .in_valid(item_valid), .in_ready(item_ready), .in_end(item_end), .in_set(item_set), .in_number(number[COUNT_BITS-1:0]),
         .ask_valid(ask_valid[2]), .ask_ready(ask_ready[2]), .ask_addr(ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS]),

@@ -48,6 +48,7 @@ package raster_pkg;
         logic [5:0]  line;
         logic [31:0] depth;
         logic [31:0] depth_step_x;
+        logic [31:0] depth_step_y;
         logic [15:0] colour;
     } late_t;
 

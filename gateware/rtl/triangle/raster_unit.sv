@@ -20,6 +20,8 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
+// With TEXTURE, triangles may have textures, whose table is `parameters.textures` (docs/formats/texture.md, "Textures of a frame").
+//
 // Without TRIANGLES, triangle_raster is not built, and a descriptor that is no piece of a line counts as damaged. With neither TRIANGLES
 // nor LINES, list_reader is not built either: frames have fields only, `flags.first` and `flags.second` must be low, and the unit reads no
 // memory.
@@ -29,7 +31,7 @@
 // address, of the picture's size or of the clear colour, or after a write by the CPU). `depth` implies `whole`. All words are also written
 // if the slot holds no complete frame: after reset, and after a cancelled frame.
 //
-// Memory: three clients of a read_port, and two native write ports, one for the words in even banks of the DDR3 memory and one
+// Memory: four clients of a read_port, the last one with TEXTURE alone, and two native write ports, one for the words in even banks of the DDR3 memory and one
 // for the words in odd banks. 128 successive words of a frame lie in one bank, and the following words in the next bank. A port only
 // switches to another bank when the previous bank is idle, a dozen clocks later. With two ports, one port writes while the other port waits
 // for its bank.
@@ -39,6 +41,7 @@
 module raster_unit #(
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
+    parameter  bit          TEXTURE      = 1'b0,
     parameter  bit          FIELDS       = 1'b0,
     parameter  bit          LINES        = 1'b0,
     parameter  bit          DEPTHS       = 1'b1,
@@ -61,12 +64,12 @@ module raster_unit #(
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
     // Memory.
-    output logic [2:0]                ask_valid,
-    input  wire  [2:0]                ask_ready,
-    output logic [3*ADDRESS_BITS-1:0] ask_addr,
-    input  wire  [2:0]                data_valid,
-    output logic [2:0]                data_ready,
-    input  wire  [3*128-1:0]          data,
+    output logic [3:0]                ask_valid,
+    input  wire  [3:0]                ask_ready,
+    output logic [4*ADDRESS_BITS-1:0] ask_addr,
+    input  wire  [3:0]                data_valid,
+    output logic [3:0]                data_ready,
+    input  wire  [4*128-1:0]          data,
     output triangle_registers_pkg::write_request_t even_write_request,
     input  wire triangle_registers_pkg::write_answer_t even_write_answer,
     output triangle_registers_pkg::write_request_t odd_write_request,
@@ -179,7 +182,7 @@ module raster_unit #(
     if (TRIANGLES || LINES) begin : descriptors
         logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
         records_pkg::descriptor_t descriptor;
-        logic [(SMOOTH ? 289 : 1)-1:0] planes;
+        logic [triangle_pkg::planes_bits(SMOOTH, TEXTURE)-1:0] planes;
 
         // The first row and the parity of the band whose triangles are read, which is the current band or the next band.
         logic [9:0] read_row;
@@ -211,23 +214,26 @@ module raster_unit #(
             end
         end
 
-        list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) list_reader (
+        list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) list_reader (
             .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band,
             .present({flags.second, flags.first}),
             .list_base({parameters.lists[1][4 +: ADDRESS_BITS], parameters.lists[0][4 +: ADDRESS_BITS]}),
             .descriptor_base({parameters.descriptors[1][4 +: ADDRESS_BITS], parameters.descriptors[0][4 +: ADDRESS_BITS]}),
             .counts(parameters.count), .list_shift(parameters.list_shift),
             .list_error(list_damaged),
-            .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
+            .ask_valid(ask_valid[2:0]), .ask_ready(ask_ready[2:0]), .ask_addr(ask_addr[3*ADDRESS_BITS-1:0]),
+            .data_valid(data_valid[2:0]), .data_ready(data_ready[2:0]), .data(data[3*128-1:0]),
             .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor),
             .out_planes(planes)
         );
 
         if (TRIANGLES) begin : triangles
-            triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
+            triangle_raster #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) triangle_raster (
                 .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
                 .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
-                .triangle_planes(planes),
+                .triangle_planes(planes), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
+                .ask_valid(ask_valid[3]), .ask_ready(ask_ready[3]), .ask_addr(ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS]),
+                .data_valid(data_valid[3]), .data_ready(data_ready[3]), .data(data[3*128 +: 128]),
                 .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
                 .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
             );
@@ -237,7 +243,9 @@ module raster_unit #(
             assign walk_events    = '0;
             assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
 
-            wire _unused = &{1'b0, triangle_valid, descriptor, planes, drawn_ready};
+            assign {ask_valid[3], ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS], data_ready[3]} = '0;
+
+            wire _unused = &{1'b0, triangle_valid, descriptor, planes, drawn_ready, ask_ready[3], data_valid[3], data[3*128 +: 128]};
         end
 
         if (LINES) begin : lines

@@ -28,6 +28,7 @@ module triangle_control #(
     parameter  logic [31:0] BASE         = 32'h4000_0000,
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
+    parameter  bit          TEXTURE      = 1'b0,
     parameter  bit          LINES        = 1'b0,
     parameter  bit          GEOMETRY     = TRIANGLES || LINES,
     parameter  int unsigned MEMORY_BITS  = triangle_registers_pkg::ADDRESS_BITS,
@@ -134,7 +135,11 @@ module triangle_control #(
             4'd8:    count = raster.count[0];
             default: count = raster.count[1];
         endcase
-        descriptor_words = (WORD_BITS'(count) + (WORD_BITS'(count) << 1)) << SMOOTH;
+        case (triangle_pkg::descriptor_words(SMOOTH, TEXTURE))
+            5:       descriptor_words = WORD_BITS'(count) + (WORD_BITS'(count) << 2);
+            8:       descriptor_words = WORD_BITS'(count) << 3;
+            default: descriptor_words = (WORD_BITS'(count) + (WORD_BITS'(count) << 1)) << SMOOTH;
+        endcase
         case (region)
             4'd0:    begin first = geometry.mesh;          words = mesh_words; end
             4'd1:    begin first = geometry.descriptors;   words = descriptor_words; end

@@ -16,6 +16,8 @@
 // interpolated with perspective correction, which takes a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then
 // have twice the words.
 //
+// TEXTURE builds textures: descriptors have two more words, and a fourth client reads textures.
+//
 // LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //
 // FIELDS builds the link to a raymarcher.
@@ -31,6 +33,7 @@
 module triangle_engine #(
     parameter bit TRIANGLES = 1'b1,
     parameter bit SMOOTH    = 1'b0,
+    parameter bit TEXTURE   = 1'b0,
     parameter bit FIELDS    = 1'b0,
     parameter bit LINES     = 1'b0,
     parameter bit GEOMETRY  = TRIANGLES || LINES,
@@ -71,7 +74,9 @@ module triangle_engine #(
     input  wire triangle_registers_pkg::write_answer_t frame_odd_write_answer
 );
     localparam int unsigned ADDRESS_BITS   = triangle_registers_pkg::ADDRESS_BITS;
-    localparam int unsigned RASTER_CLIENTS = 3;
+    localparam int unsigned RASTER_CLIENTS = 4;
+    // The client that reads textures is built with TEXTURE alone.
+    localparam int unsigned BUILT_CLIENTS  = TEXTURE ? 4 : 3;
     localparam int unsigned CLIENTS        = 2 + RASTER_CLIENTS;
 
     logic [CLIENTS-1:0]              ask_valid, ask_ready, data_valid, data_ready;
@@ -100,7 +105,7 @@ module triangle_engine #(
             .rdata_valid(mesh_read_answer.rdata_valid), .rdata(mesh_read_answer.rdata)
         );
 
-        geometry_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .LINES(LINES)) geometry_unit (
+        geometry_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .LINES(LINES)) geometry_unit (
             .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
             .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
             .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
@@ -137,10 +142,11 @@ module triangle_engine #(
 
     if (TRIANGLES || LINES) begin : descriptors
         // The FIFOs of list words and of descriptor words are in block RAM, which is less scarce in the FPGA than LUTs.
-        read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
+        read_port #(.CLIENTS(BUILT_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(BUILT_CLIENTS'(4'b1110))) raster_read (
             .clk, .rst, .drop, .idle(ports_idle[2]),
-            .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
-            .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
+            .ask_valid(ask_valid[2 +: BUILT_CLIENTS]), .ask_ready(ask_ready[2 +: BUILT_CLIENTS]),
+            .ask_addr(ask_addr[2*ADDRESS_BITS +: BUILT_CLIENTS*ADDRESS_BITS]), .data_valid(data_valid[2 +: BUILT_CLIENTS]),
+            .data_ready(data_ready[2 +: BUILT_CLIENTS]), .data(data[2*128 +: BUILT_CLIENTS*128]),
             .cmd_valid(raster_read_request.cmd_valid), .cmd_ready(raster_read_answer.cmd_ready), .cmd_addr(raster_read_request.cmd_addr),
             .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
         );
@@ -151,12 +157,17 @@ module triangle_engine #(
         wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[4:2], ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS], data_ready[4:2]};
     end
 
-    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS), .LINES(LINES), .DEPTHS(DEPTHS)) raster_unit (
+    if (!TEXTURE || !TRIANGLES && !LINES) begin : no_textures
+        assign {ask_ready[5], data_valid[5], data[6*128-1:5*128]} = '0;
+        wire _unused = &{1'b0, ask_valid[5], ask_addr[6*ADDRESS_BITS-1:5*ADDRESS_BITS], data_ready[5]};
+    end
+
+    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .FIELDS(FIELDS), .LINES(LINES), .DEPTHS(DEPTHS)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
         .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster),
         .field_source, .field_sink,
-        .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
-        .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
+        .ask_valid(ask_valid[5:2]), .ask_ready(ask_ready[5:2]), .ask_addr(ask_addr[6*ADDRESS_BITS-1:2*ADDRESS_BITS]),
+        .data_valid(data_valid[5:2]), .data_ready(data_ready[5:2]), .data(data[6*128-1:2*128]),
         .even_write_request(frame_even_write_request), .even_write_answer(frame_even_write_answer),
         .odd_write_request(frame_odd_write_request), .odd_write_answer(frame_odd_write_answer),
         .events(raster_events)

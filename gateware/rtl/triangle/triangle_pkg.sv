@@ -27,6 +27,26 @@ package triangle_pkg;
         logic [13:0] green;
         logic [12:0] blue;
     } light_t;
+
+    // The planes of a triangle besides the depth, from the lowest bits: those of light with SMOOTH, those of texture coordinates with
+    // TEXTURE, then what does not change on the triangle: whether it is smooth, and the rest of a records_pkg::texture_planes_t. Without
+    // any of them there is one bit, 0.
+    localparam int unsigned TEXTURE_BITS = 49;
+
+    // Returns the number of planes.
+    function automatic int unsigned channels(input bit smooth, input bit texture);
+        channels = (smooth ? 3 : 0) + (texture ? 2 : 0);
+    endfunction
+
+    // Returns the number of bits of planes and constants.
+    function automatic int unsigned planes_bits(input bit smooth, input bit texture);
+        planes_bits = smooth || texture ? 96 * channels(smooth, texture) + (smooth ? 1 : 0) + (texture ? TEXTURE_BITS : 0) : 1;
+    endfunction
+
+    // Returns the number of 128-bit words of a descriptor in memory.
+    function automatic int unsigned descriptor_words(input bit smooth, input bit texture);
+        descriptor_words = 3 + (smooth ? 3 : 0) + (texture ? 2 : 0);
+    endfunction
 endpackage
 
 `default_nettype wire

@@ -8,7 +8,8 @@
 //                                      └────────────── room ────────────┘
 //
 // With SMOOTH, a triangle arrives with the planes of its three colour channels, and `smooth_shader` replaces `pipeline_fifo`.
-// `smooth_shader` takes one clock for each pixel of a group of a smooth triangle.
+// `smooth_shader` takes one clock for each pixel of a group of a smooth triangle. With TEXTURE, a triangle arrives with the planes of its
+// texture coordinates, and `texture_shader` replaces `pipeline_fifo`; it reads textures from memory.
 //
 // A group is {line = y - y0, where y0 is the first row of the band, column = x / 8, row address in the band buffer = line * stride +
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
@@ -26,8 +27,9 @@
 
 module triangle_raster #(
     parameter bit SMOOTH = 1'b0,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
-    localparam int unsigned VALUES_BITS = SMOOTH ? 193 : 1
+    parameter bit TEXTURE = 1'b0,
+    localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
+    localparam int unsigned PLANES_BITS  = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire                            clk,
     input  wire                            rst,
@@ -43,6 +45,15 @@ module triangle_raster #(
     input  wire                            triangle_odd,
     input  wire records_pkg::descriptor_t triangle_descriptor,
     input  wire  [PLANES_BITS-1:0]         triangle_planes,
+    // Textures: their table, and the client of a read_port that reads them. `forget` as in texture_shader.
+    input  wire                            forget,
+    input  wire  [ADDRESS_BITS-1:0]        texture_table,
+    output logic                           ask_valid,
+    input  wire                            ask_ready,
+    output logic [ADDRESS_BITS-1:0]        ask_addr,
+    input  wire                            data_valid,
+    output logic                           data_ready,
+    input  wire  [127:0]                   data,
     // Groups.
     output logic                           group_valid,
     input  wire                            group_ready,
@@ -62,7 +73,7 @@ module triangle_raster #(
     logic                   walking, walked_valid, room;
     raster_pkg::candidate_t walked;
     raster_pkg::late_t      walked_late;
-    logic [VALUES_BITS-1:0] walked_light;
+    logic [PLANES_BITS-1:0] walked_planes;
 
     assign waits = placed_odd != odd;
     assign idle  = !holds[odd] && walker_idle && lanes_idle && fifo_idle;
@@ -80,7 +91,7 @@ module triangle_raster #(
         events.cycles_empty   = counts_empty;
     end
 
-    band_entry #(.SMOOTH(SMOOTH)) band_entry (
+    band_entry #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) band_entry (
         .clk, .rst, .rows, .holds,
         .in_valid(triangle_valid), .in_ready(triangle_ready), .in_y0(triangle_y0), .in_odd(triangle_odd),
         .in_descriptor(triangle_descriptor), .in_planes(triangle_planes),
@@ -88,11 +99,11 @@ module triangle_raster #(
         .out_late(placed_late), .out_planes(placed_planes)
     );
 
-    walker #(.SMOOTH(SMOOTH)) walker (
+    walker #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) walker (
         .clk, .rst, .idle(walker_idle), .walking,
         .in_valid(placed_valid && !waits), .in_ready(placed_ready), .in_triangle(placed),
         .in_late(placed_late), .in_planes(placed_planes), .out_valid(walked_valid), .out_ready(room), .out_group(walked),
-        .out_late(walked_late), .out_light(walked_light)
+        .out_late(walked_late), .out_planes(walked_planes)
     );
 
     typedef struct packed {
@@ -118,6 +129,28 @@ module triangle_raster #(
         .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour)
     );
 
+    logic [7:0] group_opaque;
+
+    if (TEXTURE) begin : textured
+        records_pkg::plane_t found_depth;
+
+        delay #(.WIDTH(96), .CLOCKS(FLIGHT - 1)) depth_delay (
+            .clk, .enable(1'b1), .in({walked_late.depth_step_y, walked_late.depth_step_x, walked_late.depth}), .out(found_depth)
+        );
+
+        texture_shader #(.ADDRESS_BITS(ADDRESS_BITS), .GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT)) texture_shader (
+            .clk, .rst, .forget, .table_base(texture_table), .idle(fifo_idle), .room,
+            .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_colour(found_colour),
+            .in_texture(walked_planes), .in_depth(found_depth),
+            .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
+            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_mask(group_opaque), .out_colours(group_colours)
+        );
+    end else begin : plain
+        assign {ask_valid, ask_addr, data_ready} = '0;
+
+        wire _unused = &{1'b0, forget, texture_table, ask_ready, data_valid, data, walked_late.depth_step_y};
+    end
+
     if (SMOOTH) begin : light
         // The depth of a group is delayed until its mask is valid. The light is valid in the same clock (LIGHT_LATER).
         logic [63:0] found_depth;
@@ -128,13 +161,16 @@ module triangle_raster #(
 
         smooth_shader #(.GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT)) smooth_shader (
             .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_group(found), .in_mask(found.mask),
-            .in_colour(found_colour), .in_smooth(walked_light[192]),
+            .in_colour(found_colour), .in_smooth(walked_planes[288]),
             .in_depth(found_depth[31:0]), .in_depth_step_x(found_depth[63:32]),
-            .in_light({walked_light[128 +: 32], walked_light[64 +: 32], walked_light[0 +: 32]}),
-            .in_light_step_x({walked_light[160 +: 32], walked_light[96 +: 32], walked_light[32 +: 32]}),
+            .in_light({walked_planes[192 +: 32], walked_planes[96 +: 32], walked_planes[0 +: 32]}),
+            .in_light_step_x({walked_planes[224 +: 32], walked_planes[128 +: 32], walked_planes[32 +: 32]}),
             .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_colours(group_colours)
         );
-    end else begin : flat
+        assign group_opaque = group.mask;
+
+        wire _unused = &{1'b0, walked_planes};
+    end else if (!TEXTURE) begin : flat
         logic [15:0] colour;
 
         pipeline_fifo #(.WIDTH(GROUP_BITS + 16), .DEPTH(16), .FLIGHT(FLIGHT), .DIRECT(1'b1)) pipeline_fifo (
@@ -143,14 +179,15 @@ module triangle_raster #(
         );
 
         assign group_colours = {8{colour}};
+        assign group_opaque  = group.mask;
 
-        wire _unused = &{1'b0, walked_light};
+        wire _unused = &{1'b0, walked_planes};
     end
 
     assign group_row     = group.row;
     assign group_line    = group.line;
     assign group_column  = group.column;
-    assign group_mask    = group.mask;
+    assign group_mask    = group_opaque;
     assign group_codes   = group.codes;
 endmodule
 

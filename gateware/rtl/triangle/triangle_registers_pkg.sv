@@ -83,6 +83,7 @@ package triangle_registers_pkg;
         logic [1:0][31:0] lists;
         logic [1:0][31:0] descriptors;
         logic [1:0][19:0] count;
+        logic [31:0] textures;
     } raster_t;
 
     // Results of the geometry pass.

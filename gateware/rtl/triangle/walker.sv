@@ -41,8 +41,9 @@
 
 module walker #(
     parameter bit SMOOTH = 1'b0,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
-    localparam int unsigned VALUES_BITS = SMOOTH ? 193 : 1
+    parameter bit TEXTURE = 1'b0,
+    localparam int unsigned CHANNELS    = triangle_pkg::channels(SMOOTH, TEXTURE),
+    localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire                           clk,
     input  wire                           rst,
@@ -57,9 +58,8 @@ module walker #(
     input  wire                           out_ready,
     output raster_pkg::candidate_t        out_group,
     output raster_pkg::late_t             out_late,     // a clock after `out_group`
-    // Light of the group, 1 + LIGHT_LATER clocks after `out_late`: {smooth, blue, green, red}; each channel is {step_x,
-    // accumulator in lane 0}.
-    output logic [VALUES_BITS-1:0]        out_light
+    // The planes at the group, 1 + LIGHT_LATER clocks after `out_late`: in the format of `in_planes`, with the accumulators in lane 0.
+    output logic [PLANES_BITS-1:0]        out_planes
 );
     // Constants of the current triangle.
     logic [2:0][19:0] slope;
@@ -203,7 +203,6 @@ module walker #(
     // The move of the previous clock, which is applied to depth, line and colour in this clock.
     raster_pkg::move_t late_move;
     logic              late_keep, late_resume, late_advance;
-    logic [31:0]       depth_step_y;
 
     always_ff @(posedge clk) begin
         {late_keep, late_resume, late_advance} <= {keep, resume, out_ready};
@@ -215,19 +214,21 @@ module walker #(
         if (late_advance && late_move == raster_pkg::LOAD) begin
             out_late.line         <= in_late.line;
             out_late.depth_step_x <= in_late.depth_step_x;
-            depth_step_y          <= in_late.depth_step_y;
+            out_late.depth_step_y <= in_late.depth_step_y;
             out_late.colour       <= in_late.colour;
         end
     end
 
     stepper depth_stepper (
         .clk, .advance(late_advance), .keep(late_keep), .resume(late_resume), .move(late_move), .load_value(in_late.depth),
-        .step_x(out_late.depth_step_x), .step_y(depth_step_y), .current(out_late.depth)
+        .step_x(out_late.depth_step_x), .step_y(out_late.depth_step_y), .current(out_late.depth)
     );
 
-    // An earlier move, which is applied to the light in this clock. The delay of the controls takes fewer flip-flops than a delay of the
-    // light.
-    if (SMOOTH) begin : light
+    // An earlier move, which is applied to the planes of light and texture in this clock. The delay of the controls takes fewer flip-flops
+    // than a delay of the planes.
+    if (CHANNELS > 0) begin : channels_built
+        localparam int unsigned CONSTANT_BITS = PLANES_BITS - 96 * CHANNELS;
+
         raster_pkg::move_t      early_move, light_move;
         logic                   early_keep, early_resume, early_advance, light_keep, light_resume, light_advance;
         logic [PLANES_BITS-1:0] planes;
@@ -241,23 +242,23 @@ module walker #(
             {light_keep, light_resume, light_advance} <= {early_keep, early_resume, early_advance};
             light_move <= early_move;
             if (early_advance && early_move == raster_pkg::LOAD) planes <= in_planes;
-            out_light[192] <= planes[288];
+            out_planes[96 * CHANNELS +: CONSTANT_BITS] <= planes[96 * CHANNELS +: CONSTANT_BITS];
         end
 
-        for (genvar k = 0; k < 3; k++) begin : channels
+        for (genvar k = 0; k < CHANNELS; k++) begin : channels
             records_pkg::plane_t plane;
 
             assign plane = planes[96 * k +: 96];
 
             stepper light_stepper (
                 .clk, .advance(light_advance), .keep(light_keep), .resume(light_resume), .move(light_move),
-                .load_value(plane.start), .step_x(plane.step_x), .step_y(plane.step_y), .current(out_light[64 * k +: 32])
+                .load_value(plane.start), .step_x(plane.step_x), .step_y(plane.step_y), .current(out_planes[96 * k +: 32])
             );
 
-            always_ff @(posedge clk) out_light[64 * k + 32 +: 32] <= plane.step_x;
+            always_ff @(posedge clk) out_planes[96 * k + 32 +: 64] <= {plane.step_y, plane.step_x};
         end
     end else begin : flat
-        assign out_light = '0;
+        assign out_planes = '0;
 
         wire _unused = &{1'b0, in_planes};
     end

@@ -14,7 +14,7 @@ use glint_core::stereo::Stereo;
 use glint_engines::raymarch::{Missing, ray_counts, set_field};
 use glint_engines::triangle::size_code;
 use glint_hal::raymarch::Raymarcher;
-use glint_hal::triangle::{EngineError, Raster, TriangleEngine as Driver};
+use glint_hal::triangle::{EngineError, Input, Raster, TriangleEngine as Driver};
 use glint_model::{FieldSubject, Frame, Subject};
 use glint_vectors::picture::CLEAR;
 use glint_vectors::{Camera, Picture};
@@ -110,7 +110,7 @@ impl Bench {
             depth: Some(DEPTH),
             clear: CLEAR,
             list_shift: 8,
-            sets: [None; 2],
+            input: Input::default(),
         };
         // SAFETY: the bench owns the memory, and waits for the end of the pass.
         unsafe { self.engine.start_raster(&pass) };

@@ -2,7 +2,7 @@
 
 use glint_core::colour::Rgb565;
 use glint_model::Shading;
-use glint_model::triangle::descriptor::Descriptor;
+use glint_model::triangle::descriptor::{Descriptor, Layout};
 use glint_model::triangle::setup::Setup;
 
 use crate::{Bits, Pipe, Port};
@@ -61,8 +61,8 @@ impl Rasterizer {
             pipe.module.set(port, u64::from(value));
         }
         for (setup, colour) in triangles {
-            let descriptor = Descriptor::new(setup, colour);
-            let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
+            let descriptor = Descriptor::new(setup, colour, None);
+            let [first, _, planes] = descriptor.words(Layout::SMOOTH);
             let item = [first, planes].map(Bits::from_words);
             pipe.source.push(item.to_vec());
         }

@@ -65,11 +65,14 @@ impl Board {
 pub struct Options {
     /// Build exactly what these scenes need, with the SPI flash from which a board starts: names of built-in scenes, scene files, or
     /// `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "no_geometry", "no_depths", "fields", "lanes"])]
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_geometry", "no_depths", "fields", "lanes"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
     smooth: bool,
+    /// Build the triangle engine with textures
+    #[arg(long)]
+    texture: bool,
     /// Leave out the geometry pass of the triangle engine: the soft core makes the descriptors of meshes
     #[arg(long)]
     no_geometry: bool,
@@ -126,6 +129,9 @@ impl Options {
         }
         if self.smooth {
             arguments.push("--smooth".to_owned());
+        }
+        if self.texture {
+            arguments.push("--texture".to_owned());
         }
         if self.no_geometry {
             arguments.push("--no-geometry".to_owned());

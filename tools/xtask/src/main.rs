@@ -47,7 +47,7 @@ enum Task {
         #[command(flatten)]
         options: gateware::Options,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["scene", "smooth", "no_depths", "fields", "lanes", "clock", "blocks"])]
+        #[arg(long, conflicts_with_all = ["scene", "smooth", "texture", "no_depths", "fields", "lanes", "clock", "blocks"])]
         waveforms: bool,
     },
     /// Generate what follows from the gateware's descriptions: register access crate, register map, packages of the RTL, records

@@ -451,7 +451,7 @@ pub mod plane {
     pub const STEP_Y: Bits = Bits::new(64, 32, 32);
 }
 
-/// Planes of light of a triangle, in the three words behind its descriptor.
+/// Planes of light of a triangle, in three words behind its descriptor and its texture.
 pub mod planes {
     use super::Bits;
 
@@ -465,6 +465,30 @@ pub mod planes {
     pub const LIGHT_STEP_Y: Bits = Bits::new(64, 32, 96);
     /// 1: smooth; 0: flat, in the colour of the descriptor.
     pub const SMOOTH: Bits = Bits::new(288, 1, 1);
+}
+
+/// Texture of a triangle, in the two words behind its descriptor.
+pub mod texture_planes {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 241;
+    /// Accumulator at the start of the triangle, 18.14, modulo 2^32, of s and t.
+    pub const PLANES_START: Bits = Bits::new(0, 32, 96);
+    /// Its increment for one pixel to the right, of s and t.
+    pub const PLANES_STEP_X: Bits = Bits::new(32, 32, 96);
+    /// Its increment for one pixel down, of s and t.
+    pub const PLANES_STEP_Y: Bits = Bits::new(64, 32, 96);
+    /// Of red, green and blue under flat shading, u0.8.
+    pub const LIGHT: Bits = Bits::new(192, 8, 8);
+    /// Base-2 logarithms of the ranges of s and t, in repeats.
+    pub const RANGE: Bits = Bits::new(216, 4, 4);
+    /// What clamped coordinates s and t are relative to, s4, in units of two repeats.
+    pub const PERIODS: Bits = Bits::new(224, 4, 4);
+    /// Number of its texture in the frame's table, from 1; 0: none.
+    pub const TEXTURE: Bits = Bits::new(232, 8, 8);
+    /// 1: orthographic projection.
+    pub const LINEAR: Bits = Bits::new(240, 1, 1);
 }
 
 /// Piece of a line.

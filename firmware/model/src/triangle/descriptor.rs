@@ -5,36 +5,86 @@ mod contents;
 use core::ops::RangeInclusive;
 
 use glint_core::bits::Bits;
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::Rgb565;
 use glint_core::constants::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
 use glint_core::picture::Size;
-use glint_core::records::{PIECE_MARK, descriptor, piece as piece_fields, planes, stored_piece};
+use glint_core::records::{
+    PIECE_MARK, descriptor, piece as piece_fields, planes, stored_piece, texture_planes,
+};
 
 use crate::line::Piece;
 use crate::triangle::setup::{Plane, Setup};
+use crate::triangle::textured::Textured;
 
-pub use contents::Contents;
+pub use contents::{Contents, OfTexture};
 
 /// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = constants::GROUP as i32;
 
-/// A triangle after its setup, or a piece of a line, packed into words of 32 bits. The words for smooth shading, with the planes
-/// of light, come last: gateware without smooth shading reads only the words before them.
+/// A triangle after its setup, or a piece of a line, packed into words of 32 bits: those of a flat triangle without a texture, the words of
+/// the texture, and the planes of light. Gateware reads those of its [`Layout`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
-    words: [u32; SMOOTH_WORDS],
+    words: [u32; WORDS],
 }
 
-/// Number of 32-bit words of a descriptor for gateware without smooth shading.
+/// Number of 32-bit words of a flat triangle without a texture.
 const FLAT_WORDS: usize = descriptor::BITS / 32;
-/// Number of 32-bit words of a descriptor for gateware with smooth shading.
-const SMOOTH_WORDS: usize = 2 * FLAT_WORDS;
+/// Number of 32-bit words of a texture, whole words of 16 bytes.
+const TEXTURE_WORDS: usize = texture_planes::BITS.div_ceil(128) * 4;
+/// Number of 32-bit words of the planes of light, whole words of 16 bytes.
+const LIGHT_WORDS: usize = planes::BITS.div_ceil(128) * 4;
+const WORDS: usize = FLAT_WORDS + TEXTURE_WORDS + LIGHT_WORDS;
 
-/// Number of 32-bit words of a descriptor, a multiple of four, for gateware whose best shading is `capability`.
-pub const fn words(capability: Shading) -> usize {
-    match capability {
-        Shading::Flat => FLAT_WORDS,
-        Shading::Smooth => SMOOTH_WORDS,
+/// The optional parts of the descriptors that a gateware reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// The texture.
+    pub is_textured: bool,
+    /// The planes of light, for smooth shading.
+    pub is_smooth: bool,
+}
+
+impl Layout {
+    /// The layout without optional parts.
+    pub const FLAT: Self = Self::new(false, false);
+    /// The layout with the planes of light.
+    pub const SMOOTH: Self = Self::new(false, true);
+    /// The layout with the texture.
+    pub const TEXTURED: Self = Self::new(true, false);
+    /// The layout with all parts.
+    pub const WHOLE: Self = Self::new(true, true);
+    /// All layouts.
+    pub const ALL: [Self; 4] = [Self::FLAT, Self::SMOOTH, Self::TEXTURED, Self::WHOLE];
+
+    const fn new(is_textured: bool, is_smooth: bool) -> Self {
+        Self {
+            is_textured,
+            is_smooth,
+        }
+    }
+
+    /// Number of 32-bit words of a descriptor, a multiple of four.
+    pub const fn words(self) -> usize {
+        let texture = if self.is_textured { TEXTURE_WORDS } else { 0 };
+        let light = if self.is_smooth { LIGHT_WORDS } else { 0 };
+        FLAT_WORDS + texture + light
+    }
+
+    /// Length and place in a [`Descriptor`] of each part, which is empty if gateware does not read it.
+    fn parts(self) -> [core::ops::Range<usize>; 3] {
+        let texture = FLAT_WORDS..FLAT_WORDS + TEXTURE_WORDS;
+        let light = texture.end..WORDS;
+        let empty = 0..0;
+        [
+            0..FLAT_WORDS,
+            if self.is_textured {
+                texture
+            } else {
+                empty.clone()
+            },
+            if self.is_smooth { light } else { empty },
+        ]
     }
 }
 
@@ -54,9 +104,21 @@ const fn light(channel: usize) -> PlaneFields {
 }
 const SMOOTH: Bits = in_planes(planes::SMOOTH);
 
-/// A field of the light planes, which follow the descriptor.
+/// A field of the light planes, which follow the texture.
 const fn in_planes(field: Bits) -> Bits {
+    field.from(32 * (FLAT_WORDS + TEXTURE_WORDS))
+}
+
+/// A field of the texture, which follows the descriptor.
+const fn in_texture(field: Bits) -> Bits {
     field.from(descriptor::BITS)
+}
+const fn coordinate(axis: usize) -> PlaneFields {
+    [
+        in_texture(texture_planes::PLANES_START).element(axis),
+        in_texture(texture_planes::PLANES_STEP_X).element(axis),
+        in_texture(texture_planes::PLANES_STEP_Y).element(axis),
+    ]
 }
 
 /// Number of leading words of a piece that are stored at [`stored_piece::LOW`]; the remaining words are stored at [`stored_piece::HIGH`].
@@ -65,13 +127,14 @@ const LOW_WORDS: usize = 4;
 const HALF_A_CODE: i64 = 1 << 13;
 
 impl Descriptor {
-    /// Packs a triangle; `colour` is its colour under flat shading.
-    pub fn new(setup: &Setup, colour: Rgb565) -> Self {
+    /// Packs a triangle; `colour` is its colour under flat shading without a texture, and `texture` its texture with the number in the
+    /// frame's table of textures.
+    pub fn new(setup: &Setup, colour: Rgb565, texture: Option<(&Textured, u8)>) -> Self {
         let bounds = setup.bounds;
         // The bounds are in the picture and so not negative: unsigned divisions suffice.
         let group_start = setup.start_column / GROUP;
         let back = setup.start_column - GROUP * group_start;
-        let mut words = [0; SMOOTH_WORDS];
+        let mut words = [0; WORDS];
         for (k, edge) in setup.edges.iter().enumerate() {
             let start = edge.start - i64::from(back) * i64::from(edge.step_x);
             descriptor::START.element(k).put(&mut words, start);
@@ -94,6 +157,9 @@ impl Descriptor {
                 put_plane(&mut words, light(channel), plane, back);
             }
             SMOOTH.put(&mut words, 1);
+        }
+        if let Some((textured, number)) = texture {
+            put_texture(&mut words, textured, number, back);
         }
         Self { words }
     }
@@ -124,7 +190,7 @@ impl Descriptor {
         ] {
             field.put(&mut fields, value);
         }
-        let mut words = [0; SMOOTH_WORDS];
+        let mut words = [0; WORDS];
         for (at, count) in [
             (stored_piece::REPEATS, LOW_WORDS),
             (stored_piece::LOW, LOW_WORDS),
@@ -142,10 +208,32 @@ impl Descriptor {
         Self { words }
     }
 
-    /// The words read by gateware whose best shading is `capability`, lowest word first.
-    pub fn words(&self, capability: Shading) -> &[u32] {
-        self.words.get(..words(capability)).unwrap_or_default()
+    /// The words that gateware with this layout reads, lowest word first, in their parts.
+    pub fn words(&self, layout: Layout) -> [&[u32]; 3] {
+        layout
+            .parts()
+            .map(|part| self.words.get(part).unwrap_or_default())
     }
+}
+
+/// Writes the texture of a triangle.
+///
+/// Not inlined, because few triangles have one.
+#[inline(never)]
+fn put_texture(words: &mut [u32], textured: &Textured, number: u8, back: i32) {
+    for (axis, of_axis) in textured.axes.iter().enumerate() {
+        put_plane(words, coordinate(axis), &of_axis.plane, back);
+        let range = in_texture(texture_planes::RANGE).element(axis);
+        range.put(words, of_axis.range_log2.into());
+        let periods = in_texture(texture_planes::PERIODS).element(axis);
+        periods.put(words, of_axis.periods.into());
+    }
+    for (channel, light) in textured.light.into_iter().enumerate() {
+        let field = in_texture(texture_planes::LIGHT).element(channel);
+        field.put(words, light.into());
+    }
+    in_texture(texture_planes::TEXTURE).put(words, number.into());
+    in_texture(texture_planes::LINEAR).put(words, textured.weight.is_some().into());
 }
 
 /// Writes a plane with its start moved `back` columns to the left.
@@ -238,7 +326,7 @@ pub struct ListWriter<'a> {
     counts: &'a mut ListCounts,
     band_rows: u32,
     list_shift: u32,
-    capability: Shading,
+    layout: Layout,
 }
 
 /// Error: the memory for descriptors or for a list is full.
@@ -247,14 +335,14 @@ pub struct Full;
 
 impl<'a> ListWriter<'a> {
     /// Continues a set of descriptors and band lists in two regions of memory, of which `counts` descriptors and entries are already
-    /// written, for a picture of this width and gateware whose best shading is `capability`. A list holds up to 4 << `list_shift` entries.
+    /// written, for a picture of this width and gateware with this layout. A list holds up to 4 << `list_shift` entries.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],
         counts: &'a mut ListCounts,
         width: u32,
         list_shift: u32,
-        capability: Shading,
+        layout: Layout,
     ) -> Self {
         Self {
             descriptors,
@@ -262,16 +350,16 @@ impl<'a> ListWriter<'a> {
             counts,
             band_rows: band_rows(width),
             list_shift,
-            capability,
+            layout,
         }
     }
 
-    /// Appends a triangle to the lists of all bands within its bounds; `colour` is its colour under flat shading.
-    pub fn put(&mut self, setup: &Setup, colour: Rgb565) {
+    /// Appends a triangle to the lists of all bands within its bounds; `colour` and `texture` as for [`Descriptor::new`].
+    pub fn put(&mut self, setup: &Setup, colour: Rgb565, texture: Option<(&Textured, u8)>) {
         // The bounds are in the picture and not empty.
         let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
         let bands = top / self.band_rows..=(bottom - 1) / self.band_rows;
-        self.append(&Descriptor::new(setup, colour), bands);
+        self.append(&Descriptor::new(setup, colour, texture), bands);
     }
 
     /// Appends a piece of a line to the list of its band.
@@ -283,14 +371,21 @@ impl<'a> ListWriter<'a> {
 
     #[inline(always)]
     fn append(&mut self, descriptor: &Descriptor, bands: RangeInclusive<u32>) {
-        let words = descriptor.words(self.capability);
+        let words = self.layout.words();
         let counts = &mut *self.counts;
-        let at = counts.descriptors as usize * words.len();
-        let Some(to) = self.descriptors.get_mut(at..at + words.len()) else {
+        let at = counts.descriptors as usize * words;
+        let Some(mut to) = self.descriptors.get_mut(at..at + words) else {
             counts.is_full = true;
             return;
         };
-        to.copy_from_slice(words);
+        for part in descriptor.words(self.layout) {
+            // The parts are as long as the descriptor.
+            let Some((first, rest)) = to.split_at_mut_checked(part.len()) else {
+                break;
+            };
+            first.copy_from_slice(part);
+            to = rest;
+        }
         let shift = self.list_shift;
         for band in bands {
             let Some(length) = counts.lengths.get_mut(band as usize) else {

@@ -38,10 +38,15 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
 pub fn draw_groups(
     setup: &Setup,
     colour: Rgb565,
+    textured: Option<&Textured>,
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
 ) -> Coverage {
     let row = setup.bounds.top;
+    if let Some(textured) = textured {
+        let brush = Textures::new(setup, textured);
+        return draw_with(setup, Grouped { brush, row, visit }, target);
+    }
     match &setup.light {
         None => draw_with(
             setup,

@@ -4,7 +4,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::line::{Segment, band_bounds};
-use glint_model::triangle::descriptor::{Contents, Descriptor};
+use glint_model::triangle::descriptor::{Contents, Descriptor, Layout};
 use glint_model::triangle::raster::{draw, draw_groups};
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::textured::Textured;
@@ -21,9 +21,9 @@ fn in_bands(descriptors: &[Vec<u32>], size: Size, target: &mut FrameBuffer) -> [
     for band in 0..size.bands() {
         let band = band_bounds(size, band);
         for words in descriptors {
-            let descriptor = Descriptor::from_words(words.iter().copied());
+            let descriptor = Descriptor::from_words(words.iter().copied(), Layout::SMOOTH);
             let [covered, drawn] = match descriptor.contents(size.width()) {
-                Contents::Triangle(setup, colour) => {
+                Contents::Triangle(setup, colour, _) => {
                     let rows = setup.in_rows(band.top..band.bottom);
                     let coverage = rows.map(|setup| draw(&setup, colour, target));
                     let coverage = coverage.unwrap_or_default();
@@ -57,9 +57,9 @@ fn triangles_keep_their_pixels() {
             let colour = Rgb565((descriptors.len() as u16).wrapping_mul(0x1357));
             let coverage = draw(&setup, colour, &mut expected.target());
             counts = [counts[0] + coverage.covered, counts[1] + coverage.drawn];
-            let words = Descriptor::new(&setup, colour)
-                .words(Shading::Flat)
-                .to_vec();
+            let words = Descriptor::new(&setup, colour, None)
+                .words(Layout::FLAT)
+                .concat();
             descriptors.push(words);
         }
         assert_eq!(in_bands(&descriptors, size, &mut found.target()), counts);
@@ -89,8 +89,8 @@ fn smooth_triangles_keep_their_pixels() {
     let mut descriptors = vec![];
     let mut put = |triangle: &glint_model::DrawnTriangle, setup: &_, _: Option<&Textured>| {
         draw(setup, triangle.colour, &mut expected.target());
-        let descriptor = Descriptor::new(setup, triangle.colour);
-        descriptors.push(descriptor.words(Shading::Smooth).to_vec());
+        let descriptor = Descriptor::new(setup, triangle.colour, None);
+        descriptors.push(descriptor.words(Layout::SMOOTH).concat());
     };
     frame
         .set_up_meshes(&constants, &mut scratch, &mut put)
@@ -118,7 +118,7 @@ fn lines_keep_their_pixels() {
             assert_eq!(pieces, segment.pieces(size).collect::<Vec<_>>());
             descriptors.extend(pieces.iter().map(|piece| {
                 let descriptor = Descriptor::of_piece(piece);
-                descriptor.words(Shading::Flat).to_vec()
+                descriptor.words(Layout::FLAT).concat()
             }));
         }
         assert_eq!(in_bands(&descriptors, size, &mut found.target()), counts);
@@ -140,7 +140,7 @@ fn every_covered_group_is_visited() {
         let visit = &mut |row, [first, last]: [i32; 2]| {
             found.extend((first..=last).map(|group| (row, group)));
         };
-        draw_groups(&setup, Rgb565::WHITE, &mut picture.target(), visit);
+        draw_groups(&setup, Rgb565::WHITE, None, &mut picture.target(), visit);
         let covered = picture.coverage();
         let groups = (0..).zip(covered.chunks(8));
         let expected: Vec<(i32, i32)> = groups
@@ -182,8 +182,8 @@ fn random_descriptors_stay_in_their_band() {
             bottom: 90,
         };
         let mut picture = Picture::blank(SIZES[0]);
-        match Descriptor::from_words(words).contents(320) {
-            Contents::Triangle(setup, colour) => {
+        match Descriptor::from_words(words, Layout::WHOLE).contents(320) {
+            Contents::Triangle(setup, colour, _) => {
                 kinds[0] += 1;
                 if let Some(setup) = setup.in_rows(band.top..band.bottom) {
                     draw(&setup, colour, &mut picture.target());

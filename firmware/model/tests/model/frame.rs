@@ -2,13 +2,13 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::Rgb565;
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_model::triangle::descriptor::{
-    Descriptor, Full, LENGTHS, ListCounts, ListWriter, band_rows, list_shift, list_word, words,
+    Descriptor, Full, LENGTHS, Layout, ListCounts, ListWriter, band_rows, list_shift, list_word,
 };
 use glint_model::{
     FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Projected, RenderError, Subject,
@@ -102,11 +102,11 @@ fn lists_name_the_triangles_of_their_bands() {
     const DESCRIPTORS: usize = 64;
     let mut random = Random(7);
     for size in Size::ALL {
-        for capability in Shading::ALL {
+        for layout in Layout::ALL {
             let shift = list_shift(size.width(), 1 << 20);
             let bands = size.height() / band_rows(size.width());
             let list_words = 4 * list_word(bands, shift) as usize;
-            let mut descriptors = vec![0; DESCRIPTORS * words(capability)];
+            let mut descriptors = vec![0; DESCRIPTORS * layout.words()];
             let mut lists = vec![0; list_words];
             let mut counts = ListCounts::EMPTY;
             let mut put = vec![];
@@ -118,14 +118,14 @@ fn lists_name_the_triangles_of_their_bands() {
                     &mut counts,
                     size.width(),
                     shift,
-                    capability,
+                    layout,
                 );
                 while put.len() < end {
                     let triangle = glint_vectors::triangles::random_triangle(&mut random);
                     let Some((_, setup)) = set_up(triangle, (size.width(), size.height())) else {
                         continue;
                     };
-                    writer.put(&setup, Rgb565::WHITE);
+                    writer.put(&setup, Rgb565::WHITE, None);
                     put.push(setup);
                 }
                 assert_eq!(writer.finish(), Ok(end as u32));
@@ -147,9 +147,11 @@ fn lists_name_the_triangles_of_their_bands() {
                     .iter()
                     .all(|&length| length == 0)
             );
-            for (setup, found) in put.iter().zip(descriptors.chunks(words(capability))) {
+            for (setup, found) in put.iter().zip(descriptors.chunks(layout.words())) {
                 assert_eq!(
-                    Descriptor::new(setup, Rgb565::WHITE).words(capability),
+                    Descriptor::new(setup, Rgb565::WHITE, None)
+                        .words(layout)
+                        .concat(),
                     found
                 );
             }
@@ -167,10 +169,10 @@ fn lists_without_room_are_refused() {
         }
     };
     for (descriptor_words, list_words, expected) in [
-        (words(Shading::Flat), 1 << 20, Ok(1)),
-        (words(Shading::Flat) - 1, 1 << 20, Err(Full)),
-        (words(Shading::Flat), LENGTHS, Err(Full)),
-        (words(Shading::Flat), LENGTHS - 1, Err(Full)),
+        (Layout::FLAT.words(), 1 << 20, Ok(1)),
+        (Layout::FLAT.words() - 1, 1 << 20, Err(Full)),
+        (Layout::FLAT.words(), LENGTHS, Err(Full)),
+        (Layout::FLAT.words(), LENGTHS - 1, Err(Full)),
     ] {
         let (mut descriptors, mut lists) = (vec![0; descriptor_words], vec![0; list_words]);
         let mut counts = ListCounts::EMPTY;
@@ -180,9 +182,9 @@ fn lists_without_room_are_refused() {
             &mut counts,
             320,
             15,
-            Shading::Flat,
+            Layout::FLAT,
         );
-        writer.put(&setup, Rgb565::WHITE);
+        writer.put(&setup, Rgb565::WHITE, None);
         assert_eq!(writer.finish(), expected);
     }
 }

@@ -55,7 +55,7 @@ impl GatewareRenderer {
         let segments = buffers.segments();
         let count = 1 + self.projected.stats.lines as usize;
         let segments = segments.get(..count).unwrap_or(segments);
-        let lists = buffers.lists(self.shading, size);
+        let lists = buffers.lists(self.layout, size);
         self.engine.prepare_lines(segments, size_code(size), &lists)
     }
 
@@ -105,7 +105,7 @@ impl GatewareRenderer {
         let segments = other.segments();
         let count = 1 + self.edges.drawn as usize;
         let segments = segments.get(..count).unwrap_or(segments);
-        let lists = drawn.edge_lists(self.shading, size);
+        let lists = drawn.edge_lists(self.layout, size);
         let prepared = self.engine.prepare_lines(segments, size_code(size), &lists);
         self.start_pass(prepared);
     }

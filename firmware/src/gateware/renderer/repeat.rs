@@ -1,6 +1,6 @@
 //! Benchmark: one frame drawn repeatedly, back to back.
 
-use glint_hal::triangle::{PassResult, TriangleEngine};
+use glint_hal::triangle::{Input, PassResult, TriangleEngine};
 use glint_model::{Frame, Subject, WireframeSubject};
 use litex_pac::cpu;
 
@@ -79,7 +79,7 @@ impl GatewareRenderer {
             if frame.subject.field_part().is_some() {
                 self.set_field(now, false)?;
             }
-            self.start_raster(frame, output, self.sets(now));
+            self.start_raster(frame, output, self.input(now));
             (now, next) = (next, now);
         }
         Ok(self.rendered(frame, now))
@@ -112,7 +112,7 @@ impl GatewareRenderer {
         self.start_measurement(frame);
         for _ in 0..count {
             self.set_field(0, has_tables)?;
-            self.start_raster(frame, output, [None; 2]);
+            self.start_raster(frame, output, Input::default());
             self.update_constants(frame, 0)?;
             has_tables = self.has_tables(0);
             self.wait(TriangleEngine::raster, output)?;
@@ -143,7 +143,7 @@ impl GatewareRenderer {
             self.start_edges(frame.size);
             self.wait(TriangleEngine::geometry, output)?;
             self.take_lines(frame, 0);
-            self.start_raster(frame, output, self.sets(0));
+            self.start_raster(frame, output, self.input(0));
             self.wait(TriangleEngine::raster, output)?;
         }
         Ok(self.rendered(frame, 0))
@@ -171,7 +171,7 @@ impl GatewareRenderer {
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
             }
-            self.start_raster(frame, output, self.sets(now));
+            self.start_raster(frame, output, self.input(now));
             (now, next) = (next, now);
         }
         if count > 0 {

@@ -18,6 +18,7 @@ use litex_pac::triangle::{
 };
 
 use glint_core::colour::Shading;
+use glint_model::triangle::descriptor::Layout;
 
 use crate::engines::parameters::Parameters;
 use crate::engines::pass::{Growth, Pass, add};
@@ -85,8 +86,8 @@ fn growth(counters: &Counters) -> Growth<COUNTERS> {
 
 /// The triangle engine.
 pub struct TriangleEngine {
-    /// The best shading of the engine.
-    capability: Shading,
+    /// The optional parts of descriptors of this build.
+    layout: Layout,
     parameters: Parameters,
     events: Events,
     geometry: Side,
@@ -111,11 +112,11 @@ impl Default for TriangleEngine {
 }
 
 impl TriangleEngine {
-    /// The engine with smooth shading, after a reset.
+    /// The engine with smooth shading and textures, after a reset.
     #[must_use]
     pub fn new() -> Self {
         Self {
-            capability: Shading::Smooth,
+            layout: Layout::WHOLE,
             parameters: Parameters::new(),
             events: Events::default(),
             geometry: Side::new(EvPending::default().with_geometry(true)),
@@ -131,14 +132,19 @@ impl TriangleEngine {
     }
 
     /// Sets the best shading of the engine, which must be idle.
-    pub const fn set_shading(&mut self, capability: Shading) {
-        self.capability = capability;
+    pub const fn set_shading(&mut self, best: Shading) {
+        self.layout.is_smooth = matches!(best, Shading::Smooth);
+    }
+
+    /// Sets whether the engine, which must be idle, draws textures.
+    pub const fn set_textures(&mut self, is_textured: bool) {
+        self.layout.is_textured = is_textured;
     }
 
     /// Resets the engine.
     pub fn reset(&mut self) {
         *self = Self {
-            capability: self.capability,
+            layout: self.layout,
             ..Self::new()
         };
     }
@@ -158,7 +164,7 @@ impl TriangleEngine {
         }
         let work = self
             .geometry_unit
-            .run(flags, &self.parameters, self.capability, ram);
+            .run(flags, &self.parameters, self.layout, ram);
         let start = now.max(self.ready);
         self.geometry.begin(start, work, |counters, cycles| {
             counters.cycles_geometry = cycles;
@@ -175,7 +181,7 @@ impl TriangleEngine {
         let (parameters, raymarcher) = (&self.parameters, &mut self.raymarcher);
         let work = self
             .raster_unit
-            .run(flags, parameters, self.capability, raymarcher, start, ram);
+            .run(flags, parameters, self.layout, raymarcher, start, ram);
         self.raster.begin(start, work, |counters, cycles| {
             counters.cycles_raster = cycles;
         });
@@ -256,7 +262,8 @@ impl Device for TriangleEngine {
                 .with_sizes(0b111)
                 .with_triangles(true)
                 .with_lines(true)
-                .with_gouraud(self.capability == Shading::Smooth)
+                .with_gouraud(self.layout.is_smooth)
+                .with_textures(self.layout.is_textured)
                 .with_depths(true)
                 .with_geometry(true)
                 .with_count_bits(COUNT_BITS as u8)

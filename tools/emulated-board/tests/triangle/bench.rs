@@ -6,7 +6,7 @@ use glint_core::colour::Shading;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
 use glint_model::triangle::PreparedMesh;
-use glint_model::triangle::descriptor::{ListCounts, ListWriter, list_word, words};
+use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter, list_word};
 use glint_model::triangle::setup::Setup;
 use glint_model::{MeshLight, MeshSetup, Options, clip_exceptions};
 use glint_vectors::Picture;
@@ -31,10 +31,10 @@ const HEADER: u32 = 32;
 pub const UNTOUCHED: u16 = 0x7777;
 
 /// Best shading of the engine.
-pub const CAPABILITY: Shading = Shading::Smooth;
+pub const LAYOUT: Layout = Layout::WHOLE;
 
 /// Size of a descriptor in bytes.
-pub const DESCRIPTOR_BYTES: usize = 4 * words(CAPABILITY);
+pub const DESCRIPTOR_BYTES: usize = 4 * LAYOUT.words();
 
 /// Kind of a pass.
 #[derive(Clone, Copy)]
@@ -234,7 +234,7 @@ impl Bench {
         if clipped.is_empty() {
             return 0;
         }
-        let mut descriptors = vec![0; words(CAPABILITY) * clipped.len()];
+        let mut descriptors = vec![0; LAYOUT.words() * clipped.len()];
         let mut lists = vec![0; 4 * list_word(size.bands(), LIST_SHIFT) as usize];
         let mut counts = ListCounts::EMPTY;
         let mut writer = ListWriter::new(
@@ -243,10 +243,10 @@ impl Bench {
             &mut counts,
             size.width(),
             LIST_SHIFT,
-            CAPABILITY,
+            LAYOUT,
         );
         for (setup, colour) in clipped {
-            writer.put(setup, *colour);
+            writer.put(setup, *colour, None);
         }
         let count = writer.finish().expect("room");
         for (place, words) in [(DESCRIPTORS[1], descriptors), (LISTS[1], lists)] {

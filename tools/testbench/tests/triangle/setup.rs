@@ -3,7 +3,7 @@
 mod frame;
 
 use glint_core::colour::Rgb565;
-use glint_model::triangle::descriptor::Descriptor;
+use glint_model::triangle::descriptor::{self, Descriptor};
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::{Light, Lit, intensity, lit};
 use glint_model::{SIZES, ScreenVertex, Shading};
@@ -108,9 +108,10 @@ fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
             Setup::smooth(&oriented, bounds, &lit)
         }
     };
-    let descriptor = Descriptor::new(&setup, colour);
-    let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
-    Some([first, planes].map(Bits::from_words))
+    let [first, _, planes] = Descriptor::new(&setup, colour, None)
+        .words(descriptor::Layout::SMOOTH)
+        .map(Bits::from_words);
+    Some([first, planes])
 }
 
 struct Bench {

@@ -4,29 +4,63 @@ use core::ops::Range;
 
 use glint_core::bits::Bits;
 use glint_core::colour::Rgb565;
-use glint_core::records::{PIECE_MARK, descriptor, piece, stored_piece};
+use glint_core::records::{PIECE_MARK, descriptor, piece, stored_piece, texture_planes};
 
-use super::{DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, PlaneFields, SMOOTH, light};
+use super::{
+    DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, Layout, PlaneFields, SMOOTH, coordinate,
+    in_texture, light,
+};
 use crate::line::{Line, Piece};
-use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
+use crate::triangle::setup::{Bounds, Edge, Plane, Setup, WEIGHT};
+use crate::triangle::shade::HALF_CODE;
+use crate::triangle::textured::Axis;
 
 /// Primitive that a descriptor in memory represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
-    /// A triangle, with its colour under flat shading. The left and right bounds are rounded to groups.
-    Triangle(Setup, Rgb565),
+    /// A triangle, with its colour under flat shading, and its texture if it has one. The left and right bounds are rounded to groups.
+    Triangle(Setup, Rgb565, Option<OfTexture>),
     /// A piece of a line.
     Piece(Piece),
     /// A damaged triangle, whose groups are not in the picture; it is not drawn.
     Stray,
 }
 
+/// The texture of a triangle: the fields of a [`Textured`](crate::triangle::textured::Textured), with its number in the frame's table
+/// in place of the texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OfTexture {
+    /// The number, from 1.
+    pub number: u8,
+    /// The planes of the coordinates s and t.
+    pub axes: [Axis; 2],
+    /// Light under flat shading.
+    pub light: [u8; 3],
+    /// The weight of the coordinates in orthographic projection.
+    pub weight: Option<u32>,
+}
+
+impl OfTexture {
+    /// The same texture of the part of its triangle that begins `rows` rows below.
+    pub fn moved(&self, rows: i32) -> Self {
+        let axes = self.axes.map(|axis| Axis {
+            plane: axis.plane.moved_down(rows),
+            ..axis
+        });
+        Self { axes, ..*self }
+    }
+}
+
 impl Descriptor {
-    /// The descriptor with these words in memory; missing words are 0.
-    pub fn from_words(words: impl IntoIterator<Item = u32>) -> Self {
+    /// The descriptor with these words in memory, for gateware with this layout; missing words are 0.
+    pub fn from_words(words: impl IntoIterator<Item = u32>, layout: Layout) -> Self {
         let mut descriptor = Self::default();
-        for (to, word) in descriptor.words.iter_mut().zip(words) {
-            *to = word;
+        let mut words = words.into_iter();
+        for part in layout.parts() {
+            let to = descriptor.words.get_mut(part).unwrap_or_default();
+            to.iter_mut()
+                .zip(&mut words)
+                .for_each(|(to, word)| *to = word);
         }
         descriptor
     }
@@ -76,7 +110,26 @@ impl Descriptor {
                 edge.start.abs() + columns * across + rows.abs() * down < 1 << 31
             }),
         };
-        Contents::Triangle(setup, colour)
+        Contents::Triangle(setup, colour, self.texture())
+    }
+
+    fn texture(&self) -> Option<OfTexture> {
+        let words = &self.words;
+        let number = in_texture(texture_planes::TEXTURE).get(words) as u8;
+        let axis = |axis: usize| Axis {
+            plane: self.plane(coordinate(axis)),
+            range_log2: in_texture(texture_planes::RANGE).element(axis).get(words) as u32,
+            periods: (in_texture(texture_planes::PERIODS).element(axis)).signed(words) as i32,
+        };
+        (number != 0).then(|| OfTexture {
+            number,
+            axes: [axis(0), axis(1)],
+            light: [0, 1, 2].map(|channel| {
+                (in_texture(texture_planes::LIGHT).element(channel)).get(words) as u8
+            }),
+            weight: (in_texture(texture_planes::LINEAR).get(words) != 0)
+                .then_some((WEIGHT + HALF_CODE) << 8),
+        })
     }
 
     fn line(&self) -> Line {
@@ -117,18 +170,22 @@ impl Descriptor {
     }
 }
 
+impl Plane {
+    fn moved_down(self, rows: i32) -> Self {
+        let start = self
+            .start
+            .wrapping_add(self.step_y.wrapping_mul(rows as u32));
+        Self { start, ..self }
+    }
+}
+
 impl Setup {
     /// The part of the triangle in these rows of the picture; `None` if it covers none of these rows.
     pub fn in_rows(&self, rows: Range<i32>) -> Option<Self> {
         let Bounds { top, bottom, .. } = self.bounds;
         let (first, end) = (top.max(rows.start), bottom.min(rows.end));
         let below = first - top;
-        let moved = |plane: Plane| Plane {
-            start: plane
-                .start
-                .wrapping_add(plane.step_y.wrapping_mul(below as u32)),
-            ..plane
-        };
+        let moved = |plane: Plane| plane.moved_down(below);
         (first < end).then(|| Self {
             bounds: Bounds {
                 top: first,

@@ -4,6 +4,7 @@ use glint_core::colour::Shading;
 use glint_core::mesh::{Triangle, Vertex};
 use glint_core::picture::Size;
 use glint_model::line::Segment;
+use glint_model::triangle::descriptor::Layout;
 use glint_model::triangle::shade::Light;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::triangle::vertex_cache::{SLOTS, VertexCache};
@@ -59,11 +60,11 @@ impl GeometryUnit {
         &mut self,
         flags: Geometry,
         parameters: &Parameters,
-        capability: Shading,
+        layout: Layout,
         ram: &mut MainMemory,
     ) -> Result<Work, Error> {
         let size = picture_size(flags.size()).ok_or(Error::Size)?;
-        let room = OutputLimits::new(parameters, size, capability);
+        let room = OutputLimits::new(parameters, size, layout);
         let mesh = parameters.word(offset::MESH);
         let words = parameters.word(offset::MESH_BYTES) / WORD;
         let mut regions = Regions::default();
@@ -80,7 +81,7 @@ impl GeometryUnit {
         let time = if flags.lines() {
             self.draw_lines(&mut walk, size, ram)
         } else {
-            let flags = flags.with_smooth(flags.smooth() && capability == Shading::Smooth);
+            let flags = flags.with_smooth(flags.smooth() && layout.is_smooth);
             let setup = Setup::new(flags, parameters, size);
             self.draw_mesh(&mut walk, &setup, size, ram)
         };
@@ -155,7 +156,7 @@ impl GeometryUnit {
                     Path::Regular(places) => {
                         match Placed::new(frame, &options, &triangle, places, light.as_ref()) {
                             Some(placed) => {
-                                lists.put(&placed.setup(), placed.colour);
+                                lists.put(&placed.setup(), placed.colour, None);
                                 time.drawn += 1;
                             }
                             None => results.culled += 1,

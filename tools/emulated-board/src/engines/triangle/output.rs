@@ -2,9 +2,8 @@
 
 use std::mem;
 
-use glint_core::colour::Shading;
 use glint_core::picture::Size;
-use glint_model::triangle::descriptor::{ListCounts, ListWriter, list_word, words};
+use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter, list_word};
 use litex_pac::triangle::offset;
 
 use super::region::{COUNT_BITS, Regions, list_words};
@@ -21,13 +20,13 @@ pub struct OutputLimits {
     /// Number of 16-byte words of the table of lengths and all lists.
     list_words: u64,
     exception_limit: u32,
-    /// The best shading of the engine, which determines the size of a descriptor.
-    capability: Shading,
+    /// The layout of a descriptor.
+    layout: Layout,
 }
 
 impl OutputLimits {
-    /// Reads the parameters of a pass of an engine with this best shading.
-    pub fn new(parameters: &Parameters, size: Size, capability: Shading) -> Self {
+    /// Reads the parameters of a pass of an engine whose descriptors have this layout.
+    pub fn new(parameters: &Parameters, size: Size, layout: Layout) -> Self {
         let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
         let count = |register| parameters.unsigned(register, COUNT_BITS);
         Self {
@@ -41,13 +40,13 @@ impl OutputLimits {
             list_shift,
             list_words: list_words(size, list_shift),
             exception_limit: count(offset::EXCEPTION_LIMIT),
-            capability,
+            layout,
         }
     }
 
     /// Number of 32-bit words of a descriptor.
     const fn descriptor_size(&self) -> usize {
-        words(self.capability)
+        self.layout.words()
     }
 
     pub fn check(&self, regions: &mut Regions) {
@@ -98,7 +97,7 @@ impl Output {
                 list_shift: 0,
                 list_words: 0,
                 exception_limit: 0,
-                capability: Shading::Flat,
+                layout: Layout::FLAT,
             },
             descriptors: Vec::new(),
             lists: Vec::new(),
@@ -135,7 +134,7 @@ impl Output {
             &mut self.counts,
             size.width(),
             self.room.list_shift,
-            self.room.capability,
+            self.room.layout,
         );
         (lists, &mut self.exceptions)
     }

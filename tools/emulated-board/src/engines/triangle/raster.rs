@@ -1,12 +1,15 @@
 //! The raster pass: draws the descriptors of the band lists in memory into a frame in memory.
 
-use glint_core::colour::Shading;
 use glint_core::picture::Size;
+use glint_core::texture::{Filter, Texture};
 use glint_model::FrameBuffer;
 use glint_model::line::band_bounds;
-use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, list_word, words};
+use glint_model::triangle::descriptor::{
+    Contents, Descriptor, GROUP, LENGTHS, Layout, OfTexture, list_word,
+};
 use glint_model::triangle::raster::draw_groups;
 use glint_model::triangle::setup::Bounds;
+use glint_model::triangle::textured::Textured;
 use litex_pac::triangle::{Counters, Error, Raster, offset};
 
 use super::region::{COUNT_BITS, Regions, WORD, entry, list_words, picture_size, record};
@@ -73,12 +76,12 @@ impl RasterUnit {
         &mut self,
         flags: Raster,
         parameters: &Parameters,
-        capability: Shading,
+        layout: Layout,
         raymarcher: &mut Raymarcher,
         now: u64,
         ram: &mut MainMemory,
     ) -> Result<Work, Error> {
-        let descriptor_words = words(capability) as u32 / 4;
+        let descriptor_words = layout.words() as u32 / 4;
         let size = picture_size(flags.size()).ok_or(Error::Size)?;
         let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
         let frame = parameters.word(offset::FRAME);
@@ -118,7 +121,8 @@ impl RasterUnit {
         let clear = parameters.unsigned(offset::CLEAR, 16) as u16;
         let slot = usize::from(flags.slot());
         let is_whole = flags.whole() || flags.depth() || !self.known[slot];
-        let mut drawing = self.begin(size, clear);
+        let table = parameters.word(offset::TEXTURES) / WORD;
+        let mut drawing = self.begin(size, clear, layout, table);
         for band in 0..size.bands() {
             for set in sets.iter().flatten() {
                 drawing.draw_list(set, band, list_shift, ram);
@@ -156,7 +160,7 @@ impl RasterUnit {
         })
     }
 
-    fn begin(&mut self, size: Size, clear: u16) -> Drawing<'_> {
+    fn begin(&mut self, size: Size, clear: u16, layout: Layout, textures: u32) -> Drawing<'_> {
         let [width, height] = size.pixels();
         let pixels = size.pixel_count();
         // The buffers have the size of the largest picture.
@@ -173,6 +177,8 @@ impl RasterUnit {
                 colour,
                 depth,
             },
+            layout,
+            textures,
             extents: &mut self.now,
             counts: Counts::default(),
             time: RasterTime::default(),
@@ -240,6 +246,9 @@ struct Counts {
 /// A frame that is being drawn.
 struct Drawing<'a> {
     size: Size,
+    layout: Layout,
+    /// Address of the table of textures, in 16-byte words.
+    textures: u32,
     target: FrameBuffer<'a>,
     extents: &'a mut [Extent],
     counts: Counts,
@@ -273,17 +282,27 @@ impl Drawing<'_> {
             });
             // The engine keeps a descriptor for the bands after its first band, so its words are read once.
             self.draw(
-                &Descriptor::from_words(words),
+                &Descriptor::from_words(words, self.layout),
                 set.descriptor_words,
                 &bounds,
+                ram,
             );
         }
     }
 
     /// Draws the part of a triangle or a line that lies in a band.
-    fn draw(&mut self, descriptor: &Descriptor, descriptor_words: u32, band: &Bounds) {
+    fn draw(
+        &mut self,
+        descriptor: &Descriptor,
+        descriptor_words: u32,
+        band: &Bounds,
+        ram: &MainMemory,
+    ) {
         let Self {
-            target, extents, ..
+            target,
+            extents,
+            textures,
+            ..
         } = self;
         let mut groups = 0;
         let mut visit = |row: i32, columns: Extent| {
@@ -294,18 +313,28 @@ impl Drawing<'_> {
         };
         let mut colours = 0;
         let [covered, drawn] = match descriptor.contents(target.width) {
-            Contents::Triangle(setup, colour) => {
+            Contents::Triangle(setup, colour, texture) => {
                 let Some(part) = setup.in_rows(band.top..band.bottom) else {
                     return;
                 };
                 if part.bounds.top == setup.bounds.top {
                     self.counts.read += u64::from(descriptor_words);
                 }
-                let coverage = draw_groups(&part, colour, target, &mut visit);
-                if part.light.is_some() {
+                let below = part.bounds.top - setup.bounds.top;
+                let textured = texture.and_then(|texture| {
+                    let texture = read_texture(ram, *textures, &texture.moved(below))?;
+                    self.counts.read += 2;
+                    Some(texture)
+                });
+                let coverage = draw_groups(&part, colour, textured.as_ref(), target, &mut visit);
+                colours = match textured {
                     // With smooth shading a pixel takes a cycle.
-                    colours = coverage.covered;
-                }
+                    _ if part.light.is_some() => coverage.covered,
+                    Some(textured) => {
+                        coverage.covered / quad_pixels(textured.texture.sampler().filter)
+                    }
+                    None => 0,
+                };
                 [coverage.covered, coverage.drawn]
             }
             Contents::Piece(piece) => {
@@ -353,6 +382,27 @@ impl Drawing<'_> {
         };
         self.time.end_band(self.size, words);
     }
+}
+
+/// Number of pixels with a texture that the engine draws in a cycle.
+const fn quad_pixels(filter: Filter) -> u32 {
+    match filter {
+        Filter::Nearest => 4,
+        Filter::Bilinear => 2,
+    }
+}
+
+/// Reads a texture of the frame's table, which is at an address in 16-byte words; `None` if it is none.
+fn read_texture<'a>(ram: &'a MainMemory, table: u32, of: &OfTexture) -> Option<Textured<'a>> {
+    let place = entry(ram, table, of.number.into());
+    let length = u32::from_le_bytes(ram.array(place.wrapping_add(4))?);
+    let texture = Texture::new_checked(ram.bytes(place, length as usize)?).ok()?;
+    Some(Textured {
+        texture,
+        axes: of.axes,
+        light: of.light,
+        weight: of.weight,
+    })
 }
 
 const _: () = assert!(Size::W1280.bands() as usize <= LENGTHS);

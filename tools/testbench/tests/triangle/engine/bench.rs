@@ -2,7 +2,8 @@
 
 use glint_core::camera::Projection;
 use glint_core::mesh::Mesh;
-use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
+use glint_model::triangle::descriptor::{Descriptor, Layout, band_rows, list_word};
+use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::vertex_cache;
 use glint_model::{MeshLight, MeshSetup, Options, Shading};
 use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort};
@@ -31,17 +32,14 @@ fn bytes(word: u32) -> u64 {
     u64::from(word) * 16
 }
 
-/// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading supported
-/// by the engine's build.
-fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
-    let rows = band_rows(expected.size.0);
+/// Writes the second set of lists and descriptors to memory, as the firmware does, for a build whose descriptors have this layout.
+fn write_set(memory: &mut Memory, width: u32, triangles: &[(Descriptor, Bounds)], layout: Layout) {
+    let rows = band_rows(width);
     let mut lists = vec![Vec::new(); 64];
-    for (number, (setup, colour)) in (0_u32..).zip(&expected.clipped) {
-        let descriptor = Descriptor::new(setup, *colour);
-        let words = descriptor.words(ability);
+    for (number, (descriptor, bounds)) in (0_u32..).zip(triangles) {
+        let words = descriptor.words(layout).concat();
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         memory.write(DESCRIPTORS[1] + bytes.len() as u32 / 16 * number, &bytes);
-        let bounds = setup.bounds;
         for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
             lists[band as usize].extend(number.to_le_bytes());
         }
@@ -60,7 +58,7 @@ fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
 pub struct Bench {
     pub module: Module,
     counters: Counters,
-    ability: Shading,
+    layout: Layout,
     pub memory: Memory,
     pub reads: [ReadPort; 3],
     writes: [WritePort; 4],
@@ -84,40 +82,45 @@ pub struct Clocks {
 impl Bench {
     /// Creates a bench with the module for flat shading; each memory port stalls in the share `stalls` of the clocks.
     pub fn new(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine", Shading::Flat, seed, stalls)
+        Self::of("triangle_engine", Layout::FLAT, seed, stalls)
     }
 
     /// Creates a bench as [`new`](Self::new) does, with the module for flat and smooth shading.
     pub fn smooth(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_smooth", Shading::Smooth, seed, stalls)
+        Self::of("triangle_engine_smooth", Layout::SMOOTH, seed, stalls)
+    }
+
+    /// Creates a bench as [`new`](Self::new) does, with the module for triangles with textures.
+    pub fn textured(seed: u32, stalls: f64) -> Self {
+        Self::of("triangle_engine_texture", Layout::TEXTURED, seed, stalls)
     }
 
     /// Creates a bench as [`new`](Self::new) does, with the module for triangles and lines.
     pub fn lines(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_lines", Shading::Flat, seed, stalls)
+        Self::of("triangle_engine_lines", Layout::FLAT, seed, stalls)
     }
 
     /// Creates a bench as [`new`](Self::new) does, with the module for lines without triangles and without the depth buffer.
     pub fn lines_alone(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_lines_alone", Shading::Flat, seed, stalls)
+        Self::of("triangle_engine_lines_alone", Layout::FLAT, seed, stalls)
     }
 
     /// Creates a bench as [`new`](Self::new) does, with the module for triangles without the geometry pass.
     pub fn no_geometry(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_no_geometry", Shading::Flat, seed, stalls)
+        Self::of("triangle_engine_no_geometry", Layout::FLAT, seed, stalls)
     }
 
     /// Creates a bench as [`new`](Self::new) does, with the module for fields without triangles.
     pub fn fields_alone(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_fields_alone", Shading::Flat, seed, stalls)
+        Self::of("triangle_engine_fields_alone", Layout::FLAT, seed, stalls)
     }
 
     /// As [`fields_alone`](Self::fields_alone), without the depth buffer.
     pub fn no_depths(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_no_depths", Shading::Flat, seed, stalls)
+        Self::of("triangle_engine_no_depths", Layout::FLAT, seed, stalls)
     }
 
-    fn of(name: &str, ability: Shading, seed: u32, stalls: f64) -> Self {
+    fn of(name: &str, layout: Layout, seed: u32, stalls: f64) -> Self {
         let module = Module::new(name, seed);
         let seed = u64::from(seed);
         Self {
@@ -128,7 +131,7 @@ impl Bench {
                 .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),
             counters: Counters::new(&module, "events"),
             module,
-            ability,
+            layout,
             with_depth: true,
             slot: 0,
             left: [None; 2],
@@ -226,7 +229,7 @@ impl Bench {
             ("geometry.descriptors", bytes(DESCRIPTORS[0])),
             (
                 "geometry.descriptor_limit",
-                (LIMIT * 12 / words(self.ability) as u32).into(),
+                (LIMIT * 12 / self.layout.words() as u32).into(),
             ),
             ("geometry.lists", bytes(LISTS[0])),
             ("geometry.list_shift", LIST_SHIFT.into()),
@@ -323,7 +326,10 @@ impl Bench {
     /// Draws a frame from the lists of geometry passes that took `geometry` clocks, and compares it with the expected frame.
     pub fn draw_lists(&mut self, name: &str, expected: &Expected, geometry: u64) -> Clocks {
         self.configure_raster(expected);
-        write_clipped(&mut self.memory, expected, self.ability);
+        let clipped: Vec<_> = (expected.clipped.iter())
+            .map(|(setup, colour)| (Descriptor::new(setup, *colour, None), setup.bounds))
+            .collect();
+        write_set(&mut self.memory, expected.size.0, &clipped, self.layout);
         let counts = [
             self.read("results.descriptor_count"),
             expected.clipped.len() as u64,
