@@ -1,3 +1,4 @@
 //! Compares the modules of the texture unit with the model.
 
+mod filter;
 mod loader;
