@@ -119,7 +119,7 @@ TEXTURE = Record("TextureHeader", "Header of a texture.", (
     Field("cut_out", 8, "1: texels with the value of `key` are transparent"),
     Field("key", 16, "value of a transparent texel: a colour or an index"),
     _reserved(16, count=5),
-))
+), rtl="texture_header_t")
 
 ATTRIBUTES = (
     Record("TextureCoordinates", "Texture coordinates of a vertex.", (

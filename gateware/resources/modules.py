@@ -71,6 +71,8 @@ MODULES = [
     # A sensor's clock counts as stopped after 2^6 clocks.
     Module(top="gesture_engine",
            variants={"gesture_engine_hasty": {"MOMENTS": 1, "TIMEOUT_BITS": 6}}, measured=("gesture_engine",)),
+    Module(top="texture_filter"),
+    Module(top="texture_loader"),
     Module(top="line_setup"),
     Module(top="line_raster"),
     *(Module(top=f"field_{flat.name}", measured=(f"field_{flat.name}",)) for flat in FLAT_FIELDS if flat.marches),

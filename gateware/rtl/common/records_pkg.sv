@@ -33,6 +33,22 @@ package records_pkg;
         logic [2:0][15:0] indices;
     } triangle_t;
 
+    // Header of a texture.
+    typedef struct packed {
+        logic [4:0][15:0] reserved_176;
+        logic [15:0] key;
+        logic [7:0] cut_out;
+        logic [7:0] filter;
+        logic [1:0][7:0] wrap;
+        logic [7:0] format;
+        logic [7:0] levels;
+        logic [7:0] height_log2;
+        logic [7:0] width_log2;
+        logic [31:0] checksum;
+        logic [31:0] length;
+        logic [3:0][7:0] magic;
+    } texture_header_t;
+
     // End point of a segment.
     typedef struct packed {
         logic [15:0] reserved_112;

@@ -347,17 +347,23 @@ pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]
             // A transparent neighbour has no colour of its own.
             let texels = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]]
                 .map(|place| at(place).unwrap_or(nearest));
-            Some([0, 1, 2].map(|channel: usize| {
-                let [a, b, c, d] = texels.map(|texel| u32::from(texel[channel]));
-                let between = |a: u32, b: u32, weight: u32| a * (16 - weight) + b * weight;
-                let [across, down] = weights;
-                let sum = between(between(a, b, across), between(c, d, across), down);
-                let bits = CHANNEL_BITS[channel];
-                // With 8 fraction bits, of which 8 − bits stay.
-                ((sum + (1 << (bits - 1))) >> bits) as u8
-            }))
+            Some(average(texels, weights))
         }
     }
+}
+
+/// The average of four neighbours, given by their channels: (u, v), (u + 1, v), (u, v + 1), (u + 1, v + 1). `weights` are those of u + 1
+/// and v + 1, u0.4. The result has the integer part of each channel, and fraction bits up to 8.
+pub fn average(neighbours: [[u8; 3]; 4], weights: [u32; 2]) -> [u8; 3] {
+    [0, 1, 2].map(|channel: usize| {
+        let [a, b, c, d] = neighbours.map(|texel| u32::from(texel[channel]));
+        let between = |a: u32, b: u32, weight: u32| a * (16 - weight) + b * weight;
+        let [across, down] = weights;
+        let sum = between(between(a, b, across), between(c, d, across), down);
+        let bits = CHANNEL_BITS[channel];
+        // With 8 fraction bits, of which 8 − bits stay.
+        ((sum + (1 << (bits - 1))) >> bits) as u8
+    })
 }
 
 /// A colour of [`sample`] times the light of each channel, to nearest. The light is u0.8, at most 31/32 of 2^8 for red and blue and 63/64

@@ -1,3 +1,5 @@
 //! Compares the modules of the texture unit with the model.
 
+mod filter;
+mod loader;
 mod place;

@@ -1,0 +1,319 @@
+//! Compares the texture filter with the model: averages of neighbours, and their light.
+
+use std::collections::VecDeque;
+
+use glint_core::colour::Rgb565;
+use glint_model::triangle::textured::{average, lit};
+use glint_testbench::{Bits, Module, Port};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// Clocks from a step to its light, and to its colours, as in `texture_pkg`.
+const LIGHT: usize = 6;
+const LATENCY: usize = 9;
+/// Full light of each channel.
+const FULL: [u8; 3] = [248, 252, 248];
+
+/// A pixel of a step: what is filtered, and its light.
+#[derive(Clone, Copy, Debug)]
+enum Texels {
+    Nearest([u16; 4]),
+    /// Of two pixels, in the lanes 0 and 1, or 2 and 3.
+    Bilinear {
+        upper: bool,
+        neighbours: [[u16; 4]; 2],
+        weights: [[u8; 2]; 2],
+    },
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    texels: Texels,
+    /// Lanes of the step that are covered; at least one.
+    mask: u8,
+    half: bool,
+    last: bool,
+    opaque: u8,
+    lights: [[u8; 3]; 4],
+}
+
+impl Step {
+    fn is_bilinear(&self) -> bool {
+        matches!(self.texels, Texels::Bilinear { .. })
+    }
+
+    /// The colour of each covered lane.
+    fn colours(&self) -> [Option<u16>; 4] {
+        [0, 1, 2, 3].map(|lane: usize| {
+            let texel = match self.texels {
+                Texels::Nearest(texels) => {
+                    let [r, g, b] = Rgb565(texels[lane]).channels();
+                    [r << 3, g << 2, b << 3]
+                }
+                Texels::Bilinear {
+                    neighbours,
+                    weights,
+                    ..
+                } => {
+                    let neighbours = neighbours[lane % 2].map(|texel| Rgb565(texel).channels());
+                    average(neighbours, weights[lane % 2].map(u32::from))
+                }
+            };
+            (self.mask >> lane & 1 == 1).then(|| lit(texel, self.lights[lane]).0)
+        })
+    }
+}
+
+struct Bench {
+    module: Module,
+    lights: Port,
+    inputs: [Port; 9],
+    outputs: [Port; 6],
+    /// Steps of the last clocks, the newest first.
+    inside: VecDeque<Option<Step>>,
+    checked: usize,
+}
+
+impl Bench {
+    fn new(seed: u32) -> Self {
+        let module = Module::new("texture_filter", seed);
+        Self {
+            lights: module.port("lights"),
+            inputs: [
+                "valid",
+                "mask",
+                "half",
+                "last",
+                "bilinear",
+                "opaque",
+                "texels",
+                "neighbours",
+                "weights",
+            ]
+            .map(|name| module.port(&format!("in_{name}"))),
+            outputs: ["valid", "mask", "half", "last", "opaque", "colours"]
+                .map(|name| module.port(&format!("out_{name}"))),
+            inside: VecDeque::from([None; LATENCY + 1]),
+            module,
+            checked: 0,
+        }
+    }
+
+    fn clock(&mut self, step: Option<Step>) {
+        let [
+            valid,
+            mask,
+            half,
+            last,
+            bilinear,
+            opaque,
+            texels,
+            neighbours,
+            weights,
+        ] = self.inputs;
+        let module = &mut self.module;
+        self.inside.pop_back();
+        self.inside.push_front(step);
+        module.set(valid, u64::from(step.is_some()));
+        if let Some(step) = step {
+            module.set(mask, u64::from(step.mask));
+            module.set(half, u64::from(step.half));
+            module.set(last, u64::from(step.last));
+            module.set(opaque, u64::from(step.opaque));
+            module.set(bilinear, u64::from(step.is_bilinear()));
+            match step.texels {
+                Texels::Nearest(colours) => module.set(texels, Bits::pack(16, colours)),
+                Texels::Bilinear {
+                    neighbours: colours,
+                    weights: parts,
+                    ..
+                } => {
+                    module.set(
+                        neighbours,
+                        Bits::pack(16, colours.as_flattened().iter().copied()),
+                    );
+                    module.set(weights, Bits::pack(4, parts.as_flattened().iter().copied()));
+                }
+            }
+        }
+        if let Some(step) = self.inside[LIGHT] {
+            let lights = step.lights.as_flattened().iter().copied();
+            module.set(self.lights, Bits::pack(8, lights));
+        }
+        module.settle();
+        let [valid, mask, half, last, opaque, colours] = self.outputs;
+        let expected = self.inside[LATENCY];
+        assert_eq!(module.is_high(valid), expected.is_some(), "valid");
+        if let Some(step) = expected {
+            assert_eq!(module.value(mask), u64::from(step.mask), "{step:?}");
+            assert_eq!(module.value(opaque), u64::from(step.opaque), "{step:?}");
+            assert_eq!(module.is_high(half), step.half, "{step:?}");
+            assert_eq!(module.is_high(last), step.last, "{step:?}");
+            let found = module.value(colours);
+            for (lane, colour) in step.colours().into_iter().enumerate() {
+                let found = (found >> (16 * lane)) as u16;
+                if let Some(colour) = colour {
+                    assert_eq!(found, colour, "{found:04x}, lane {lane} of {step:?}");
+                    self.checked += 1;
+                }
+            }
+        }
+        module.clock();
+    }
+
+    fn drain(&mut self) {
+        for _ in 0..LATENCY {
+            self.clock(None);
+        }
+    }
+}
+
+fn colour([r, g, b]: [usize; 3]) -> u16 {
+    (r << 11 | g << 5 | b) as u16
+}
+
+/// A step with all its lanes covered.
+fn step(texels: Texels, lights: [[u8; 3]; 4]) -> Step {
+    let mask = match texels {
+        Texels::Nearest(_) => 0b1111,
+        Texels::Bilinear { upper, .. } => 0b11 << (2 * u32::from(upper)),
+    };
+    Step {
+        texels,
+        mask,
+        half: false,
+        last: false,
+        opaque: mask,
+        lights,
+    }
+}
+
+/// Lights of all lanes that together take all values as `number` does.
+fn lights(number: usize) -> [[u8; 3]; 4] {
+    [0, 71, 0, 71].map(|lane| {
+        FULL.map(|full| {
+            let count = usize::from(full) + 1;
+            ((number + lane) % count) as u8
+        })
+    })
+}
+
+#[test]
+fn nearest_texels_with_every_light() {
+    let mut bench = Bench::new(1);
+    for light in 0..=252 {
+        for value in 0..64 {
+            let texels = [0, 19, 38, 57].map(|lane: usize| {
+                let value = value + lane;
+                colour([value % 32, value % 64, (value + 5) % 32])
+            });
+            bench.clock(Some(step(Texels::Nearest(texels), lights(light))));
+        }
+    }
+    bench.drain();
+    assert_eq!(bench.checked, 4 * 253 * 64);
+}
+
+#[test]
+fn averages_of_every_value_with_every_light() {
+    let mut bench = Bench::new(2);
+    for light in 0..=252 {
+        for value in 0..64 {
+            // Every even weight, so that red and blue have all values; the other pixel has the next one.
+            for weight in (0..16).step_by(4) {
+                let neighbours = |value: usize| {
+                    let at = |value: usize| colour([value.min(31), value.min(63), value.min(31)]);
+                    [at(value), at(value + 1), 0, 0xFFFF]
+                };
+                let texels = Texels::Bilinear {
+                    upper: (value + light) % 2 == 1,
+                    neighbours: [neighbours(value), neighbours(value % 32)],
+                    weights: [[weight, 0], [weight + 2, 0]],
+                };
+                bench.clock(Some(step(texels, lights(light))));
+            }
+        }
+    }
+    bench.drain();
+    assert_eq!(bench.checked, 2 * 4 * 64 * 253);
+}
+
+#[test]
+fn every_weight_with_random_and_extreme_texels() {
+    let mut bench = Bench::new(3);
+    let mut random = Pcg64Mcg::new(7);
+    for round in 0..64 {
+        for weights in 0..=255 {
+            let mut texel = || match (round % 4, random.random_range(0..4)) {
+                (0, 0) => 0,
+                (0, 1) => 0xFFFF,
+                (0, 2) => 0xF81F,
+                (0, _) => 0x07E0,
+                _ => random.random(),
+            };
+            let neighbours = [(); 2].map(|()| [(); 4].map(|()| texel()));
+            let other: u8 = random.random();
+            let texels = Texels::Bilinear {
+                upper: random.random(),
+                neighbours,
+                weights: [weights, other].map(|weights| [weights & 15, weights >> 4]),
+            };
+            let lights = if round % 2 == 0 {
+                [FULL; 4]
+            } else {
+                [(); 4].map(|()| FULL.map(|full| random.random_range(0..=full)))
+            };
+            bench.clock(Some(step(texels, lights)));
+        }
+    }
+    bench.drain();
+    assert_eq!(bench.checked, 2 * 64 * 256);
+}
+
+/// Full light leaves a texel as it is, and steps of any kind, with gaps between them, come out in order with their marks.
+#[test]
+fn steps_keep_their_marks() {
+    let mut bench = Bench::new(4);
+    let mut random = Pcg64Mcg::new(8);
+    for is_bilinear in [false, true, false, true] {
+        for _ in 0..2000 {
+            let upper = random.random();
+            let texels = if is_bilinear {
+                Texels::Bilinear {
+                    upper,
+                    neighbours: [(); 2].map(|()| [random.random(); 4]),
+                    weights: random.random(),
+                }
+            } else {
+                Texels::Nearest(random.random())
+            };
+            let texels = match texels {
+                Texels::Bilinear {
+                    neighbours,
+                    weights,
+                    ..
+                } => Texels::Bilinear {
+                    upper,
+                    neighbours,
+                    weights: weights.map(|pixel: [u8; 2]| pixel.map(|weight| weight & 15)),
+                },
+                nearest @ Texels::Nearest(_) => nearest,
+            };
+            let mut step = step(texels, [FULL; 4]);
+            step.mask = match (is_bilinear, upper) {
+                (false, _) => random.random_range(1..16),
+                (true, false) => random.random_range(1..4),
+                (true, true) => 4 * random.random_range(1..4),
+            };
+            step.opaque = random.random_range(0..16);
+            (step.half, step.last) = (random.random(), random.random());
+            if let Texels::Nearest(texels) = texels {
+                for (colour, texel) in step.colours().into_iter().zip(texels) {
+                    assert!(colour.is_none_or(|colour| colour == texel));
+                }
+            }
+            bench.clock(random.random_bool(0.7).then_some(step));
+        }
+        bench.drain();
+    }
+}
