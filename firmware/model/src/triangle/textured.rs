@@ -18,8 +18,8 @@ const COORDINATE_BITS: u32 = 16;
 const SHARE_BITS: u32 = 17;
 /// Largest base-2 logarithm of the range of a coordinate on a triangle.
 const MAX_RANGE_LOG2: u32 = 15;
-/// A clamped coordinate on a triangle is relative to one of these, in periods of two repeats.
-const CLAMPED_PERIODS: RangeInclusive<i64> = -8..=1;
+/// A clamped coordinate on a triangle is relative to one of these, in periods of two repeats. From the last one on, all of it is beyond 1.
+const PERIODS: RangeInclusive<i64> = -8..=1;
 /// Fraction bits of a position in texels.
 const PLACE_BITS: u32 = 8;
 /// Bits of a weight of bilinear filtering.
@@ -107,17 +107,8 @@ impl<'a> Textured<'a> {
         } else {
             triangle.vertices.map(|vertex| vertex.w)
         };
-        let wrap = texture.sampler().wrap;
-        let axis = |number: usize| {
-            let is_clamped = wrap[number] == Wrap::Clamp;
-            Axis::new(
-                triangle,
-                setup,
-                coordinates.map(|c| c[number]),
-                weights,
-                is_clamped,
-            )
-        };
+        let axis =
+            |number: usize| Axis::new(triangle, setup, coordinates.map(|c| c[number]), weights);
         Self {
             texture,
             axes: [axis(0), axis(1)],
@@ -200,34 +191,19 @@ impl<'a> Textured<'a> {
 }
 
 impl Axis {
-    fn new(
-        triangle: &Oriented,
-        setup: &Setup,
-        coordinates: [i32; 3],
-        weights: [u32; 3],
-        is_clamped: bool,
-    ) -> Self {
+    fn new(triangle: &Oriented, setup: &Setup, coordinates: [i32; 3], weights: [u32; 3]) -> Self {
         let [a, b, c] = coordinates.map(i64::from);
         // Two repeats are a period of a mirrored texture.
         let periods = a.min(b).min(c) >> (COORDINATE_BITS + 1);
-        let periods = if is_clamped {
-            periods.clamp(*CLAMPED_PERIODS.start(), *CLAMPED_PERIODS.end())
-        } else {
-            periods
-        };
-        let base = periods << (COORDINATE_BITS + 1);
-        // As light, a share is at most 63/64, so that an accumulator just below 0 is known by its highest bits.
-        let most_of = |range_log2: u32| 63_u64 << (COORDINATE_BITS + range_log2) >> 6;
-        let [a, b, c] = [a, b, c].map(|coordinate| {
-            u64::try_from(coordinate - base)
-                .unwrap_or(0)
-                .min(most_of(MAX_RANGE_LOG2))
-        });
+        let [a, b, c] = [a, b, c].map(|x| (x - (periods << (COORDINATE_BITS + 1))) as u64);
+        // A share is below 63/64, as light is at most, so that an accumulator just below 0 is known by its highest bits.
+        let limit = |range_log2: u32| 63 << (COORDINATE_BITS + range_log2 - 6);
         let most = a.max(b).max(c);
         let mut range_log2 = 0;
-        while most > most_of(range_log2) {
+        while most >= limit(range_log2) && range_log2 < MAX_RANGE_LOG2 {
             range_log2 += 1;
         }
+        let [a, b, c] = [a, b, c].map(|x| x.min(limit(MAX_RANGE_LOG2) - 1));
         let weighted = |coordinate: u64, weight: u32| {
             // A share is exact for a range of at most two repeats.
             let share = ((coordinate << 2 >> range_log2) + 1) >> 1;
@@ -242,7 +218,7 @@ impl Axis {
                 setup.start(),
             ),
             range_log2,
-            periods: if is_clamped { periods as i32 } else { 0 },
+            periods: periods.clamp(*PERIODS.start(), *PERIODS.end()) as i32,
         }
     }
 }
