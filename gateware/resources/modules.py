@@ -59,7 +59,7 @@ MODULES = [
     Module(top="list_reader", measured=("list_reader",)),
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",
-           variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1},
+           variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_texture": {"TEXTURE": 1}, "triangle_engine_fields": {"FIELDS": 1},
                      "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_no_depths": _NO_DEPTHS,
                      "triangle_engine_lines": _LINES, "triangle_engine_lines_alone": _LINES_ALONE | {"DEPTHS": 0},
                      "triangle_engine_no_geometry": _NO_GEOMETRY,

@@ -8,6 +8,7 @@ mod gathered;
 mod light;
 mod lines;
 mod objects;
+mod textured;
 
 use bench::Bench;
 use expected::{CLEAR, SIZES, expected, expected_on, expected_smooth};

@@ -18,6 +18,9 @@ pub const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
 pub const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
 pub const MESH: u32 = 0x1c_0000;
+/// The table of textures, and a texture.
+const TEXTURES: u32 = 0x1e_0000;
+const TEXTURE: u32 = 0x1e_0100;
 const WORDS: usize = 0x20_0000;
 /// Logarithm to base 2 of the words per list.
 pub const LIST_SHIFT: u32 = 11;
@@ -349,6 +352,30 @@ impl Bench {
             read: self.reads[2].given - read,
             written: self.frame_words() - written,
         }
+    }
+
+    /// Draws the second set alone, of triangles whose texture has number 1, and compares the frame with the expected frame. Returns the
+    /// number of clocks.
+    pub fn draw_set(
+        &mut self,
+        name: &str,
+        expected: &Expected,
+        triangles: &[(Descriptor, Bounds)],
+        texture: &[u8],
+    ) -> u64 {
+        self.configure_raster(expected);
+        write_set(&mut self.memory, expected.size.0, triangles, self.layout);
+        self.memory.write(TEXTURE, texture);
+        let table = [0, bytes(TEXTURE) as u32].map(u32::to_le_bytes);
+        self.memory.write(TEXTURES, table.as_flattened());
+        self.set("raster.textures", bytes(TEXTURES));
+        self.module
+            .drive_all("raster.count", [0, triangles.len() as u32]);
+        self.set("raster_flags.first", 0);
+        self.set("raster_flags.second", 1);
+        self.wait_for("status.ready");
+        self.pulse("raster_start");
+        self.finish(name, expected)
     }
 
     /// The indices of the exceptions listed by geometry passes.

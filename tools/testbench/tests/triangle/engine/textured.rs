@@ -1,0 +1,128 @@
+//! Frames of meshes with textures, whose descriptors come from the model.
+
+use glint_core::colour::{Rgb565, Shading};
+use glint_core::light::{Light, MeshLighting};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_core::texture::{Filter, Format, Sampler, Source, Wrap, encode};
+use glint_model::triangle::descriptor::Descriptor;
+use glint_model::triangle::setup::Setup;
+use glint_model::triangle::textured::Textured;
+use glint_model::{
+    DrawnTriangle, Frame, FrameConstants, MeshSetup, MeshSubject, Options, Projected, Stats,
+    Subject,
+};
+use glint_vectors::meshes::textured_square;
+use glint_vectors::{Camera, Picture};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use super::bench::Bench;
+use super::expected::Expected;
+
+/// A texture of random texels with all mip levels.
+fn texture(random: &mut Pcg64Mcg) -> Source {
+    let format = Format::ALL[random.random_range(0..3)];
+    let size_log2 = [(); 2].map(|()| random.random_range(3..=7));
+    let [width, height] = size_log2;
+    let most = match format {
+        Format::Rgb565 => u16::MAX,
+        Format::Palette256 => 255,
+        Format::Palette16 => 15,
+    };
+    let mut level = |level: u8| {
+        let texels = [width, height].map(|side: u8| 1_usize << side.saturating_sub(level));
+        (0..texels[0] * texels[1])
+            .map(|_| random.random_range(0..=most))
+            .collect()
+    };
+    let levels = (0..=width.max(height)).map(&mut level).collect();
+    Source {
+        format,
+        size_log2,
+        palette: (0..format.colours())
+            .map(|_| Rgb565(random.random()))
+            .collect(),
+        sampler: Sampler {
+            wrap: [(); 2].map(|()| Wrap::ALL[random.random_range(0..3)]),
+            filter: Filter::ALL[random.random_range(0..2)],
+        },
+        key: random
+            .random_bool(0.5)
+            .then(|| random.random_range(0..=most)),
+        levels,
+    }
+}
+
+#[test]
+fn frames_with_textures() {
+    let (mut pixels, mut clocks) = (0, 0);
+    for seed in 0..24 {
+        let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
+        let mut bench = Bench::textured(seed, [0.0, 0.3, 0.7][seed as usize % 3]);
+        for number in 0..3 {
+            let repeats = [0.5, 1.0, 4.0, 30.0][random.random_range(0..4)];
+            let bytes = textured_square(encode(&texture(&mut random)).unwrap(), repeats);
+            let mesh = Mesh::new_checked(&bytes).unwrap();
+            let eye = [
+                random.random_range(-1.0..1.0),
+                random.random_range(-2.5..-0.3),
+                random.random_range(0.05..1.5),
+            ];
+            let camera = Camera::looking(eye, [0.1, 0.5, 0.0], 0.8, 0.02);
+            let frame = Frame {
+                subject: Subject::Mesh(MeshSubject {
+                    shading: Shading::Flat,
+                    ..MeshSubject::new(mesh)
+                }),
+                view: camera.rounded(),
+                size: Size::W320,
+                clear: Rgb565(0x001F),
+                lighting: MeshLighting {
+                    ambient: [0x60; 3],
+                    light: Light::at_camera([0xA0; 3]),
+                },
+                stereo: None,
+            };
+            let mut constants = FrameConstants::default();
+            constants.update(&frame).unwrap();
+            let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+            let (mut triangles, mut sorted) = (vec![], vec![]);
+            let mut put = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
+                let texture = textured.map(|textured| (textured, 1));
+                let drawn = (
+                    Descriptor::new(setup, triangle.colour, texture),
+                    setup.bounds,
+                );
+                if triangle.clipped {
+                    sorted.push(drawn);
+                } else {
+                    triangles.push(drawn);
+                }
+            };
+            frame
+                .set_up_meshes(&constants, &mut scratch, &mut put)
+                .unwrap();
+            triangles.extend(sorted);
+            let picture = Picture::of_frame(&frame);
+            pixels += picture.depth.iter().filter(|&&code| code != 0).count();
+            let texture = mesh.textures().next().unwrap();
+            let name = format!("frame {number} of seed {seed}");
+            let expected = Expected {
+                size: (320, 180),
+                frame: MeshSetup::default(),
+                options: Options {
+                    clear: frame.clear.0,
+                    ..Options::default()
+                },
+                colour: picture.colour,
+                depth: picture.depth,
+                clipped: vec![],
+                stats: Stats::default(),
+            };
+            clocks += bench.draw_set(&name, &expected, &triangles, texture.bytes());
+        }
+    }
+    println!("{pixels} pixels in {clocks} clocks");
+    assert!(pixels > 500_000, "{pixels}");
+}
