@@ -1,0 +1,3 @@
+//! Compares the modules of the texture unit with the model.
+
+mod sampler;
