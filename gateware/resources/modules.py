@@ -56,6 +56,7 @@ MODULES = [
     Module(top="reciprocal"),
     Module(top="setup", variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
+    Module(top="texture_sampler"),
     Module(top="list_reader", measured=("list_reader",)),
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",

@@ -3,3 +3,4 @@
 mod filter;
 mod loader;
 mod place;
+mod sampler;

@@ -1,0 +1,136 @@
+// Divides items into steps: the pixels of a step need blocks of at most two neighbouring columns and two neighbouring rows of blocks, an
+// even and an odd one of each, so that every class of blocks is looked up once.
+//
+//   item ─▶ which slots are in the same block column or row ─▶ FIFO ─▶ first pixels that fit together ─▶ step
+//                                                                            ▲       │ the others
+//                                                                            └───────┘
+//
+// The first pixel that waits is always in the step: so is every other one whose slots are all in the column and row of the first slot with
+// their parity. `items_room` and the flight of items are those of pipeline_fifo; a step goes in each clock with `step_room` while there
+// are items. Latency 2 clocks, throughput a step a clock.
+
+`default_nettype none
+
+module texture_choice #(
+    parameter int unsigned FLIGHT = 5
+) (
+    input  wire                    clk,
+    input  wire                    rst,
+    input  wire  [1:0]             format,
+    input  wire                    bilinear,
+    output logic                   busy,
+    output logic                   items_room,
+    input  wire                    in_valid,
+    input  texture_pkg::item_t     in_item,
+    input  wire                    step_room,
+    output logic                   out_valid,
+    output texture_pkg::step_t     out_step,
+    // The slots of the step: their columns and rows without the lowest two bits.
+    output logic [1:0][3:0][7:0]   out_places,
+    output logic [3:0]             out_level
+);
+    localparam int unsigned ITEMS = 16;
+
+    // A block has four or eight columns, and four or eight rows.
+    logic [1:0]      wide;
+    // Axis, slot; pairs of slots in the order 01, 02, 12, 03, 13, 23: different blocks in spite of the same parity; same block.
+    logic [1:0][3:0] parity, item_parity;
+    logic [1:0][5:0] differ, same, item_differ;
+    logic [1:0][2:0] item_same;   // 02, 03, 13
+    logic [1:0][3:0][6:0] rests;
+
+    assign wide = {format[1], format != 2'd0};
+
+    for (genvar axis = 0; axis < 2; axis++) begin : compared
+        for (genvar i = 0; i < 4; i++) begin : slots
+            assign parity[axis][i] = wide[axis] ? in_item.texels[axis][i][3] : in_item.texels[axis][i][2];
+            assign rests[axis][i]  = {in_item.texels[axis][i][9:4], !wide[axis] && in_item.texels[axis][i][3]};
+        end
+        for (genvar j = 1; j < 4; j++) begin : seconds
+            for (genvar i = 0; i < j; i++) begin : firsts
+                localparam int unsigned PAIR = j * (j - 1) / 2 + i;
+                assign differ[axis][PAIR] = parity[axis][i] == parity[axis][j] && rests[axis][i] != rests[axis][j];
+                assign same[axis][PAIR]   = parity[axis][i] == parity[axis][j] && rests[axis][i] == rests[axis][j];
+            end
+        end
+    end
+
+    // What a choice needs is in the FIFO's output register; everything else is read from LUT memory.
+    localparam int unsigned FITS_BITS = 4 + 2 * (4 + 6 + 3);
+
+    logic               ends, item_valid, items_idle, fits_room, fits_valid, more;
+    logic [3:0]         mask, waiting, rest, left, served;
+    texture_pkg::item_t item;
+
+    pipeline_fifo #(.WIDTH($bits(in_item)), .DEPTH(ITEMS), .FLIGHT(FLIGHT), .DIRECT(1'b1)) items (
+        .clk, .rst, .idle(items_idle), .room(items_room), .in_valid, .in_data(in_item),
+        .out_valid(item_valid), .out_ready(ends), .out_data(item)
+    );
+
+    fifo #(.WIDTH(FITS_BITS), .DEPTH(ITEMS)) fits (
+        .clk, .rst, .in_valid, .in_ready(fits_room),
+        .in_data({in_item.mask, parity, differ, same[1][4:3], same[1][1], same[0][4:3], same[0][1]}),
+        .out_valid(fits_valid), .out_ready(ends), .out_data({mask, item_parity, item_differ, item_same})
+    );
+
+    assign busy      = !items_idle;
+    assign out_valid = fits_valid && step_room;
+    assign waiting   = more ? rest : mask;
+    assign left      = waiting & ~served;
+    assign ends      = out_valid && left == '0;
+
+    // Whether the slots of pixels that wait fit to the first one of their parity, on an axis.
+    logic [2:0]      slots;
+    logic [1:0][3:1] fit;
+
+    assign slots = bilinear ? {waiting[1], {2{waiting[0]}}} : waiting[2:0];
+
+    for (genvar axis = 0; axis < 2; axis++) begin : fitting
+        logic [5:0] d;
+        logic [2:0] s;
+
+        assign d            = item_differ[axis];
+        assign s            = item_same[axis];
+        assign fit[axis][1] = !(slots[0] && d[0]);
+        assign fit[axis][2] = slots[0] && s[0] || !(slots[0] && d[1]) && !(slots[1] && d[2]);
+        assign fit[axis][3] = slots[0] && s[1] || !(slots[0] && d[3]) && (slots[1] && s[2] || !(slots[1] && d[4]) && !(slots[2] && d[5]));
+    end
+
+    logic [3:1] both;
+
+    assign both      = fit[0] & fit[1];
+    assign served[0] = waiting[0];
+    assign served[1] = waiting[1] && (bilinear ? !waiting[0] || both[2] && both[3] : both[1]);
+    assign served[2] = waiting[2] && both[2];
+    assign served[3] = waiting[3] && both[3];
+
+    always_ff @(posedge clk) begin
+        if (out_valid) begin
+            rest <= left;
+            more <= left != '0;
+        end
+        if (rst) more <= 1'b0;
+    end
+
+    assign out_level = item.level;
+
+    always_comb begin
+        out_step.served  = served;
+        out_step.half    = item.half;
+        out_step.last    = item.last && left == '0;
+        out_step.second  = item.second;
+        out_step.weights = item.weights;
+        out_step.upper   = item.upper;
+        out_step.parity  = item_parity;
+        for (int i = 0; i < 4; i++) begin
+            out_step.x[i]    = item.texels[0][i][2:0];
+            out_step.y[i]    = item.texels[1][i][2:0];
+            out_places[0][i] = item.texels[0][i][9:2];
+            out_places[1][i] = item.texels[1][i][9:2];
+        end
+    end
+
+    wire _unused = &{1'b0, fits_room, item_valid, item.mask, same};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,31 @@
+// A quarter of a copy of the cache's blocks. Two ports read 16 bits each, or write half of `in` each. Latency 1 clock. A port that writes
+// keeps its output.
+
+`default_nettype none
+
+module texture_memory #(
+    parameter int unsigned ADDRESS_BITS = 11
+) (
+    input  wire                     clk,
+    input  wire                     write,
+    input  wire  [ADDRESS_BITS-1:0] first,
+    input  wire  [ADDRESS_BITS-1:0] second,
+    input  wire  [31:0]             in,
+    output logic [15:0]             first_out,
+    output logic [15:0]             second_out
+);
+    (* ram_style = "block", rw_addr_collision = "no", no_rw_check *) logic [15:0] halves [0:2**ADDRESS_BITS-1];
+
+    // A process for each port, as synthesis tools expect it; always_ff allows no other process with the same variable.
+    always @(posedge clk) begin
+        if (write) halves[first] <= in[15:0];
+        else first_out <= halves[first];
+    end
+
+    always @(posedge clk) begin
+        if (write) halves[second] <= in[31:16];
+        else second_out <= halves[second];
+    end
+endmodule
+
+`default_nettype wire

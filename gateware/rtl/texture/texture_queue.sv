@@ -1,0 +1,105 @@
+// The queue of steps between tags and texels. At its head, the missed blocks of a step are filled, a word of memory a clock; then it
+// leaves and reads. So no block is replaced before the steps that were looked up earlier have read it, and each step finds its blocks.
+//
+//   step ───────────▶ memory ─┐
+//   places ─────────▶ memory ─┼──▶ head: fill clocks, then one that reads
+//   misses ─▶ FIFO ───────────┘
+//
+// The parts of a step arrive at different times, each in the order of the steps; it is in the queue when its misses have come. `room` is
+// high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks, throughput a step a clock.
+// Outputs: in a clock with `fills` or `reads`, the step at the head; the output is never stopped.
+
+`default_nettype none
+
+module texture_queue #(
+    parameter int unsigned STEPS = 32
+) (
+    input  wire                  clk,
+    input  wire                  rst,
+    output logic                 idle,
+    output logic                 room,
+    input  wire                  step_valid,
+    input  texture_pkg::step_t   in_step,
+    input  wire                  places_valid,
+    input  wire  [3:0][6:0]      in_places,
+    input  wire                  missed_valid,
+    input  wire  [3:0]           in_missed,
+    // A word of memory comes with `data_valid`, and goes while `data_ready` is high.
+    input  wire                  data_valid,
+    output logic                 data_ready,
+    output logic                 fills,
+    output logic [1:0]           fill_class,
+    output logic                 fill_second, // the second word of the block
+    output logic                 reads,
+    output texture_pkg::step_t   head_step,
+    output logic [3:0][6:0]      head_places
+);
+    localparam int unsigned INDEX_BITS = $clog2(STEPS);
+
+    typedef logic [INDEX_BITS:0] pointer_t;
+
+    // A step may come in the clock in which `room` is computed, and in the next one.
+    localparam pointer_t MOST = pointer_t'(STEPS - 2);
+
+    (* ram_style = "distributed", no_rw_check *) logic [$bits(in_step)-1:0] steps [0:STEPS-1];
+    (* ram_style = "distributed", no_rw_check *) logic [27:0] places [0:STEPS-1];
+    pointer_t              step_end, head, count;
+    logic [INDEX_BITS-1:0] places_end;
+
+    assign count      = step_end - head;
+    assign idle        = count == '0;
+    assign head_step   = steps[head[INDEX_BITS-1:0]];
+    assign head_places = places[head[INDEX_BITS-1:0]];
+
+    always_ff @(posedge clk) begin
+        if (step_valid) steps[step_end[INDEX_BITS-1:0]] <= in_step;
+        if (places_valid) places[places_end] <= in_places;
+        step_end   <= step_end + pointer_t'(step_valid);
+        places_end <= places_end + INDEX_BITS'(places_valid);
+        head       <= head + pointer_t'(reads);
+        room       <= count <= MOST;
+        if (rst) begin
+            step_end   <= '0;
+            places_end <= '0;
+            head       <= '0;
+            room       <= 1'b0;
+        end
+    end
+
+    // Misses of the step at the head that are left to fill.
+    logic       missed_room, next_valid, next_taken, ends;
+    logic [3:0] next_missed, left;
+
+    fifo #(.WIDTH(4), .DEPTH(STEPS), .DIRECT(1'b1)) misses (
+        .clk, .rst, .in_valid(missed_valid), .in_ready(missed_room), .in_data(in_missed),
+        .out_valid(next_valid), .out_ready(next_taken), .out_data(next_missed)
+    );
+
+    assign next_taken = !data_ready;
+    assign fills      = data_ready && data_valid;
+    assign ends       = fills && fill_second && (left & (left - 4'd1)) == '0;
+    assign fill_class = left[0] ? 2'd0 : left[1] ? 2'd1 : left[2] ? 2'd2 : 2'd3;
+
+    always_ff @(posedge clk) begin
+        reads <= ends;
+        if (fills) begin
+            fill_second <= !fill_second;
+            if (fill_second) left <= left & (left - 4'd1);
+            if (ends) data_ready <= 1'b0;
+        end
+        if (next_taken) begin
+            reads      <= next_valid && next_missed == '0;
+            data_ready <= next_valid && next_missed != '0;
+            left       <= next_missed;
+        end
+        if (rst) begin
+            reads       <= 1'b0;
+            data_ready  <= 1'b0;
+            fill_second <= 1'b0;
+        end
+    end
+
+    wire _unused = &{1'b0, missed_room};
+endmodule
+
+`default_nettype wire

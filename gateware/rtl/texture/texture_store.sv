@@ -1,0 +1,120 @@
+// The blocks of the cache: fills them, and reads the texels of a step.
+//
+//   head of the queue ─▶ addresses ─▶ two copies of four quarters ─▶ texels
+//
+// A quarter has the texels of even or odd columns in even or odd rows, as in the words of memory. Each copy serves two pixels of a nearest
+// texture, one on each port, or one pixel of a bilinear texture, whose four neighbours are in different quarters or are one texel. A fill
+// writes a word to both copies, half of each quarter on each port.
+//
+// Latency 3 clocks from the head to the texels, throughput a step or a word a clock. Outputs: of the first port all quarters, of the
+// second port that of the pixel's texel, as values of the format: bits 15:8 only matter for colours, and bits 7:4 are zero for indices of
+// 16 colours.
+
+`default_nettype none
+
+module texture_store (
+    input  wire                         clk,
+    input  wire  [1:0]                  format,
+    input  wire                         bilinear,
+    input  wire                         fills,
+    input  wire  [1:0]                  fill_class,
+    input  wire                         fill_second,
+    input  wire  [127:0]                data,
+    input  wire  [1:0][3:0]             parity,      // axis, slot
+    input  wire  [3:0][2:0]             x,
+    input  wire  [3:0][2:0]             y,
+    input  wire  [3:0][6:0]             places,      // in the cache, by class
+    output logic [1:0][3:0][15:0]       out_values,  // copy, quarter
+    output logic [1:0][15:0]            out_seconds  // copy
+);
+    // A word of memory has 32 bits of each quarter: two halves, of which a port reads one. A half has two bytes, a byte two digits.
+    localparam int unsigned ADDRESS_BITS = 11;
+
+    logic         is_colour, is_digit, write;
+    logic [127:0] filled;
+
+    assign is_colour = format == 2'd0;
+    assign is_digit  = format[1];
+
+    always_ff @(posedge clk) begin
+        filled <= data;
+        write  <= fills;
+    end
+
+    // Where a texel is in its block. The half is that of the row for indices of 16 colours, and that of the column for the others.
+    logic [3:0] word, half_across, half_down, byte_of, digit;
+
+    for (genvar i = 0; i < 4; i++) begin : slots
+        assign word[i]        = is_digit ? y[i][2] : y[i][1];
+        assign half_across[i] = is_colour ? x[i][1] : x[i][2];
+        assign half_down[i]   = y[i][1];
+        assign byte_of[i]     = !is_colour && (is_digit ? x[i][2] : x[i][1]);
+        assign digit[i]       = is_digit && x[i][1];
+    end
+
+    function automatic logic [15:0] value(input logic [15:0] half, input logic second_byte, input logic second_digit, input logic digits);
+        logic [7:0] of_byte;
+
+        of_byte = second_byte ? half[15:8] : half[7:0];
+        value   = {half[15:8], digits ? 4'd0 : of_byte[7:4], second_digit ? of_byte[7:4] : of_byte[3:0]};
+    endfunction
+
+    logic [1:0][3:0][15:0] firsts, seconds; // copy, quarter: what the ports read
+
+    for (genvar j = 0; j < 2; j++) begin : copies
+        localparam int unsigned LOWER = 2 * j, UPPER = 2 * j + 1;
+
+        // The second port.
+        logic [1:0]              class_of, quarter_1, quarter_2;
+        logic                    byte_1, byte_2, byte_3, digit_1, digit_2, digit_3;
+        logic [ADDRESS_BITS-1:0] address;
+        logic [15:0]             second;
+
+        assign class_of = fills ? fill_class : {parity[1][UPPER], parity[0][UPPER]};
+
+        always_ff @(posedge clk) begin
+            address   <= {class_of, places[class_of], fills ? fill_second : word[UPPER],
+                          fills || (is_digit ? half_down[UPPER] : half_across[UPPER])};
+            quarter_1 <= {y[UPPER][0], x[UPPER][0]};
+            quarter_2 <= quarter_1;
+            byte_1    <= byte_of[UPPER];
+            byte_2    <= byte_1;
+            byte_3    <= byte_2;
+            digit_1   <= digit[UPPER];
+            digit_2   <= digit_1;
+            digit_3   <= digit_2;
+            second    <= seconds[j][quarter_2];
+        end
+
+        assign out_seconds[j] = value(second, byte_3, digit_3, is_digit);
+
+        // The first port: the neighbour in a quarter is the one of the quarter's parity.
+        for (genvar q = 0; q < 4; q++) begin : quarters
+            logic                    right, below, first_byte_1, first_byte_2, first_digit_1, first_digit_2;
+            logic [1:0]              first_class;
+            logic [ADDRESS_BITS-1:0] first_address;
+
+            assign right       = bilinear && x[LOWER][0] != 1'(q % 2);
+            assign below       = bilinear && y[LOWER][0] != 1'(q / 2);
+            assign first_class = fills ? fill_class : {parity[1][below ? UPPER : LOWER], parity[0][right ? UPPER : LOWER]};
+
+            always_ff @(posedge clk) begin
+                first_address <= {first_class, places[first_class], fills ? fill_second : word[below ? UPPER : LOWER],
+                                  !fills && (is_digit ? half_down[below ? UPPER : LOWER] : half_across[right ? UPPER : LOWER])};
+                first_byte_1  <= byte_of[right ? UPPER : LOWER];
+                first_byte_2  <= first_byte_1;
+                first_digit_1 <= digit[right ? UPPER : LOWER];
+                first_digit_2 <= first_digit_1;
+            end
+
+            texture_memory #(.ADDRESS_BITS(ADDRESS_BITS)) memory (
+                .clk, .write, .first(first_address), .second(address), .in(filled[32*q +: 32]),
+                .first_out(firsts[j][q]), .second_out(seconds[j][q])
+            );
+
+            always_ff @(posedge clk) out_values[j][q] <= value(firsts[j][q], first_byte_2, first_digit_2, is_digit);
+        end
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,82 @@
+// The texels of a step: their colours, in the order that filtering needs.
+//
+//   values of quarters ─┬─▶ palettes ──────────────▶ colours ─▶ of each neighbour
+//                       └─▶ transparent? ─▶ quarter of each neighbour ──┘
+//
+// A transparent neighbour takes the colour of the nearest texel. Latency 2 clocks; the pipeline cannot be stopped.
+
+`default_nettype none
+
+module texture_texels (
+    input  wire                        clk,
+    input  wire  [1:0]                 format,
+    input  wire                        cut_out,
+    input  wire  [15:0]                key,
+    input  wire                        palette_write,
+    input  wire  [7:0]                 palette_index,
+    input  wire  [15:0]                palette_colour,
+    // By copy; the quarters in the order of texture_store.
+    input  wire  [1:0][3:0][15:0]      in_values,
+    input  wire  [1:0][15:0]           in_seconds,
+    input  wire  [1:0][3:0][1:0]       in_quarters, // of each neighbour; of a nearest texture the first is the texel
+    input  wire  [1:0][1:0]            in_nearest,  // the neighbour that is the nearest texel
+    output logic [1:0][3:0][15:0]      out_neighbours,
+    output logic [1:0][15:0]           out_seconds,
+    output logic [1:0]                 out_opaque,  // the nearest texel
+    output logic [1:0]                 out_seconds_opaque
+);
+    logic is_colour;
+
+    assign is_colour = format == 2'd0;
+
+    logic [1:0][3:0]       transparent; // copy, quarter
+    logic [1:0]            seconds_transparent, opaque, seconds_opaque;
+    logic [1:0][15:0]      second_colours;
+    logic [1:0][3:0][15:0] values, palette, colours;
+    logic [1:0][15:0]      seconds;
+    logic [1:0][3:0][1:0]  quarters;
+    logic [1:0][1:0]       nearest;
+
+    for (genvar j = 0; j < 2; j++) begin : copies
+        assign nearest[j]             = in_quarters[j][in_nearest[j]];
+        assign seconds_transparent[j] = cut_out && in_seconds[j][7:0] == key[7:0] && (!is_colour || in_seconds[j][15:8] == key[15:8]);
+
+        for (genvar q = 0; q < 4; q++) begin : each_quarter
+            assign transparent[j][q] = cut_out && in_values[j][q][7:0] == key[7:0] && (!is_colour || in_values[j][q][15:8] == key[15:8]);
+            assign colours[j][q]     = is_colour ? values[j][q] : palette[j][q];
+
+            always_ff @(posedge clk) begin
+                quarters[j][q]       <= transparent[j][in_quarters[j][q]] ? nearest[j] : in_quarters[j][q];
+                out_neighbours[j][q] <= colours[j][quarters[j][q]];
+            end
+        end
+
+        for (genvar k = 0; k < 2; k++) begin : palettes
+            texture_palette colours_of (
+                .clk, .write(palette_write), .write_index(palette_index), .write_colour(palette_colour),
+                .first(in_values[j][2*k][7:0]), .second(in_values[j][2*k+1][7:0]),
+                .first_colour(palette[j][2*k]), .second_colour(palette[j][2*k+1])
+            );
+        end
+
+        always_ff @(posedge clk) begin
+            opaque[j]         <= !transparent[j][nearest[j]];
+            seconds_opaque[j] <= !seconds_transparent[j];
+            out_seconds[j]    <= is_colour ? seconds[j] : second_colours[j];
+        end
+    end
+
+    texture_palette of_seconds (
+        .clk, .write(palette_write), .write_index(palette_index), .write_colour(palette_colour),
+        .first(in_seconds[0][7:0]), .second(in_seconds[1][7:0]), .first_colour(second_colours[0]), .second_colour(second_colours[1])
+    );
+
+    always_ff @(posedge clk) begin
+        values             <= in_values;
+        seconds            <= in_seconds;
+        out_opaque         <= opaque;
+        out_seconds_opaque <= seconds_opaque;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,84 @@
+//! What the sampler should give for a quad, by the model.
+
+use glint_core::colour::Rgb565;
+use glint_core::texture::{Filter, Texture};
+use glint_model::triangle::quotient::CHANNEL_BITS;
+use glint_model::triangle::textured::sample;
+
+/// A repeat of a texture, in the units of a position.
+pub const REPEAT: i64 = 1 << POSITION_BITS;
+const POSITION_BITS: u32 = 18;
+
+/// Four pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Quad {
+    /// Covered pixels.
+    pub mask: u8,
+    pub half: bool,
+    pub last: bool,
+    pub level: u32,
+    /// By lane, then axis, in 2^-18 repeats.
+    pub positions: [[i64; 2]; 4],
+}
+
+/// The texels of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texels {
+    /// The nearest one; `None` if it is transparent.
+    pub nearest: Option<u16>,
+    /// The colours of the neighbours, with those that are not transparent or have the nearest one's; without meaning where it is.
+    pub neighbours: [u16; 4],
+    pub weights: [u8; 2],
+}
+
+/// The texels of the pixel at a position.
+pub fn texels(texture: &Texture, level: u32, position: [i64; 2]) -> Texels {
+    let sides = texture.level_log2(level);
+    let wrap = texture.sampler().wrap;
+    // In 1/256 texels of the level.
+    let places = [0, 1].map(|axis: usize| position[axis] >> (POSITION_BITS - 8 - sides[axis]));
+    let at = |place: [i64; 2]| {
+        let place = [0, 1].map(|axis: usize| wrap[axis].place(place[axis] as i32, sides[axis]));
+        texture.colour(level, place).map(|Rgb565(colour)| colour)
+    };
+    let nearest = at(places.map(|place| place >> 8));
+    let [u, v] = places.map(|place| (place - 120) >> 8);
+    let neighbours = [[u, v], [u + 1, v], [u, v + 1], [u + 1, v + 1]]
+        .map(|place| at(place).or(nearest).unwrap_or(0));
+    let weights = places.map(|place| ((place - 120) >> 4 & 0xF) as u8);
+    Texels {
+        nearest,
+        neighbours,
+        weights,
+    }
+}
+
+/// Compares the texels that the sampler gave for a pixel with the model's sample. `texels` has the nearest one where the texture is not
+/// filtered, and otherwise the neighbours.
+pub fn check_sample(texture: &Texture, level: u32, position: [i64; 2], texels: &Texels) {
+    let sides = texture.size_log2();
+    // In 1/256 texels of level 0, of which the last bits do not matter.
+    let places = [0, 1].map(|axis: usize| position[axis] >> (POSITION_BITS - 8 - sides[axis]));
+    let expected = sample(texture, level, places);
+    let found = texels
+        .nearest
+        .map(|nearest| match texture.sampler().filter {
+            Filter::Nearest => {
+                let [r, g, b] = Rgb565(nearest).channels();
+                [r << 3, g << 2, b << 3]
+            }
+            Filter::Bilinear => {
+                let channels = texels
+                    .neighbours
+                    .map(|colour| Rgb565(colour).channels().map(u32::from));
+                [0, 1, 2].map(|channel: usize| {
+                    let [a, b, c, d] = channels.map(|texel| texel[channel]);
+                    let [x, y] = texels.weights.map(u32::from);
+                    let sum = (a * (16 - x) + b * x) * (16 - y) + (c * (16 - x) + d * x) * y;
+                    let bits = CHANNEL_BITS[channel];
+                    ((sum + (1 << (bits - 1))) >> bits) as u8
+                })
+            }
+        });
+    assert_eq!(found, expected, "the model's sample at {position:?}");
+}
