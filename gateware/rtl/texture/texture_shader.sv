@@ -48,25 +48,25 @@ module texture_shader #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output logic [GROUP_BITS-1:0]  out_group,
-    output logic [7:0]             out_mask,
+    output logic [7:0]             out_opaque, // lanes that no transparent texel hides
     output logic [7:0][15:0]       out_colours
 );
     // Groups that wait for their colours.
     logic             is_textured, group_valid, group_textured, group_gone, colours_valid;
     logic [15:0]      group_colour;
-    logic [7:0]       group_mask, opaque;
+    logic [7:0]       opaque;
     logic [7:0][15:0] colours;
 
     assign is_textured = in_texture.texture != '0;
 
-    pipeline_fifo #(.WIDTH(GROUP_BITS + 8 + 17), .DEPTH(GROUPS), .FLIGHT(FLIGHT)) groups (
-        .clk, .rst, .idle, .room, .in_valid, .in_data({is_textured, in_colour, in_mask, in_group}),
-        .out_valid(group_valid), .out_ready(group_gone), .out_data({group_textured, group_colour, group_mask, out_group})
+    pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(GROUPS), .FLIGHT(FLIGHT)) groups (
+        .clk, .rst, .idle, .room, .in_valid, .in_data({is_textured, in_colour, in_group}),
+        .out_valid(group_valid), .out_ready(group_gone), .out_data({group_textured, group_colour, out_group})
     );
 
     assign out_valid   = group_valid && (!group_textured || colours_valid && opaque != '0);
     assign group_gone  = !group_textured ? out_ready : colours_valid && (out_ready || opaque == '0);
-    assign out_mask    = group_textured ? opaque : group_mask;
+    assign out_opaque  = group_textured ? opaque : '1;
     assign out_colours = group_textured ? colours : {8{group_colour}};
 
     // Groups with a texture wait for their positions. This FIFO holds a subset of the groups in the FIFO of groups, so it is never full

@@ -143,7 +143,7 @@ module triangle_raster #(
             .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_colour(found_colour),
             .in_texture(walked_planes), .in_depth(found_depth),
             .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_mask(group_opaque), .out_colours(group_colours)
+            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_opaque(group_opaque), .out_colours(group_colours)
         );
     end else begin : plain
         assign {ask_valid, ask_addr, data_ready} = '0;
@@ -167,7 +167,7 @@ module triangle_raster #(
             .in_light_step_x({walked_planes[224 +: 32], walked_planes[128 +: 32], walked_planes[32 +: 32]}),
             .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_colours(group_colours)
         );
-        assign group_opaque = group.mask;
+        assign group_opaque = '1;
 
         wire _unused = &{1'b0, walked_planes};
     end else if (!TEXTURE) begin : flat
@@ -179,7 +179,7 @@ module triangle_raster #(
         );
 
         assign group_colours = {8{colour}};
-        assign group_opaque  = group.mask;
+        assign group_opaque  = '1;
 
         wire _unused = &{1'b0, walked_planes};
     end
@@ -187,7 +187,7 @@ module triangle_raster #(
     assign group_row     = group.row;
     assign group_line    = group.line;
     assign group_column  = group.column;
-    assign group_mask    = group_opaque;
+    assign group_mask    = group.mask & group_opaque;
     assign group_codes   = group.codes;
 endmodule
 
