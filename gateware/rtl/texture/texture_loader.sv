@@ -1,4 +1,5 @@
-// Reads what precedes the texels of a texture in memory, header and palette (docs/formats/texture.md), and gives the place of each mip level.
+// Reads what precedes the texels of a texture in memory, header and palette (docs/formats/texture.md), and gives the places of the mip
+// levels.
 //
 //   start ─▶ entry of the table ─▶ second and first word of the header ─▶ levels, the last first ─▶ palette, from its end ─▶ done
 //
@@ -6,10 +7,10 @@
 // the field `length` leads from the header to the end of the texture, from there it goes back by the size of each level, which grows by
 // shifts, and then back through the palette.
 //
-// `number` and `table_base` hold from `start` to `done`, which are high for a clock; the next start comes after `done`. `sampler` holds until
-// the next start. Time: twice the latency of memory and 22 clocks, with a palette once more the latency and a clock per colour. Memory may
-// contain anything: sides and levels are limited to what has a number here, and other invalid values count as valid ones. Memory: a client of
-// read_port.
+// `number` and `table_base` hold from `start` to `done`, which are high for a clock; the next start comes after `done`. `sampler` holds
+// until the next start. Time: twice the latency of memory and 22 clocks, with a palette once more the latency and a clock per colour.
+// Memory may contain anything: sides and levels are limited to what has a number here, and other invalid values count as valid ones.
+// Memory: a client of read_port.
 
 `default_nettype none
 
