@@ -78,6 +78,8 @@ module texture_loader #(
     logic [7:0]              index;
     logic                    asks_more, is_level, asks, takes_colour;
     logic [1:0]              grows;
+    // Logarithm of the least side whose next larger level is larger than a block of 4 texels.
+    logic [3:0]              least;
     logic [3:0][31:0]        entries;
     logic [31:0]             entry;
 
@@ -99,9 +101,10 @@ module texture_loader #(
             PALETTE:                        data_ready = index[2:0] == '0;
             default:                        data_ready = 1'b0;
         endcase
-        // Whether the next larger level has twice the blocks across, and down: it is larger than a block.
-        grows[0] = 5'(count[3:0]) + (sampler.format == 2'd0 ? 5'd2 : 5'd3) <= 5'(sampler.side_log2[0]);
-        grows[1] = 5'(count[3:0]) + (sampler.format == 2'd2 ? 5'd3 : 5'd2) <= 5'(sampler.side_log2[1]);
+        // Whether the next larger level has twice the blocks across, and down; blocks have 4 or 8 texels.
+        least    = count[3:0] + 4'd2;
+        grows[0] = {least, 1'b0} < {sampler.side_log2[0], sampler.format == 2'd0};
+        grows[1] = {least, 1'b0} < {sampler.side_log2[1], sampler.format != 2'd2};
     end
 
     // The address is 0 before a base or an entry is added to it. The bit below it carries the 1 of a subtraction. `keep` holds the
