@@ -1,16 +1,16 @@
 // Makes colours of the texels of a step: averages neighbours, and multiplies by the light.
 //
-//   clock  0                                          6                        9
-//   pixels ─▶ texture_lerp, two pixels of any kind ──▶ texture_light, 8 bits ──▶ lanes 0 and 1, bilinear: also lanes 2 and 3
-//   texels ─▶ delay, nearest texels of lanes 2 and 3 ─▶ texture_light, 5 and 6 ─▶ lanes 2 and 3
-//                                             lights ─▶
+//   clock  0                               6                7
+//   neighbours, texels of 0, 1 ─▶ texture_lerp ────────────────▶ texture_light, 8 bits ──▶ lanes 0 and 1; bilinear: or 2 and 3
+//   texels of 2, 3 ─────────────▶ delay ───────────────────────▶ texture_light, 5, 6, 5 ─▶ nearest: lanes 2 and 3
+//                                      lights ─▶ texture_share ─▶
 //
 // A step of a nearest texture has a texel for each of four lanes, one of a bilinear texture has the neighbours of the lanes 0 and 1, or 2
 // and 3. Two lanes therefore only need the bits of a channel, and two lerps and two wide multipliers serve both kinds of texture.
 //
 // `in_bilinear` must be constant while steps are inside. `lights` belongs to the step of LIGHT clocks before, by the lanes of the quad. The
-// colours come FILTER clocks after their step; those of lanes without a bit in `out_mask` have no meaning. Throughput one step per clock; the
-// pipeline cannot be stopped, and what follows always has room.
+// colours come FILTER clocks after their step; those of lanes without a bit in `out_mask` have no meaning. Throughput one step per clock;
+// the pipeline cannot be stopped, and what follows always has room.
 
 `default_nettype none
 
@@ -69,12 +69,16 @@ module texture_filter (
             localparam int unsigned BITS = k == 1 ? 6 : 5;
             localparam int unsigned LOW  = k == 0 ? 11 : k == 1 ? 5 : 0;
 
-            texture_light #(.BITS(8), .CHANNEL(BITS)) wide_light (
-                .clk, .texel(averages[i][k]), .light(upper ? lights[2+i][k] : lights[i][k]), .colour(wide[i][LOW +: BITS])
-            );
+            logic [7:0] wide_share, narrow_share;
 
-            texture_light #(.BITS(BITS), .CHANNEL(BITS)) narrow_light (
-                .clk, .texel(nearest[i][LOW +: BITS]), .light(lights[2+i][k]), .colour(narrow[i][LOW +: BITS])
+            texture_share #(.CHANNEL(BITS)) share_wide (.clk, .light(upper ? lights[2+i][k] : lights[i][k]), .share(wide_share));
+            texture_share #(.CHANNEL(BITS)) share_narrow (.clk, .light(lights[2+i][k]), .share(narrow_share));
+
+            texture_light #(.BITS(8), .CHANNEL(BITS)) light_wide (
+                .clk, .texel(averages[i][k]), .share(wide_share), .colour(wide[i][LOW +: BITS])
+            );
+            texture_light #(.BITS(BITS), .CHANNEL(BITS)) light_narrow (
+                .clk, .texel(nearest[i][LOW +: BITS]), .share(narrow_share), .colour(narrow[i][LOW +: BITS])
             );
         end
     end

@@ -1,18 +1,15 @@
-// Multiplies a channel of a texel by its light, to nearest (docs/formats/texture.md, "On a triangle").
+// Multiplies a channel of a texel by its share of 256, to nearest (docs/formats/texture.md, "On a triangle").
 //
-// The light is u0.8, and full light is 248, or 252 in a channel of 6 bits. The product is texel·share with the share of 256 that belongs to
-// a light, light + nearest(light·2^-CHANNEL), 256 for full light. The multiplier adds the texel once more, so its factor is the share minus
-// 1 and has 8 bits. The smallest shares differ by 1 from this, where every product is rounded to 0.
+//   clock  0             1                  2                 3
+//   texel ─▶ 3·texel ──▶ digits 0 and 1 ──▶ digits 2 and 3 ──▶ colour
+//                share ─▶
 //
-//   clock  0              1                 2           3
-//   light ─▶ share − 1 ──▶ digits 0 and 1 ─▶ 2 and 3 ──▶ colour
-//   texel ─▶ 3·texel ────▶ first sum ──────▶ last sum ─▶
+// The input `share` is the number minus 1 (texture_share), and the texel is added once more. It is used in four digits of two bits, the
+// lowest first. The multiples of a digit are 0, the texel, its double and its triple, so a digit takes one LUT for each bit of a sum. Half
+// of the unit of the rounding is in the first multiple, in bits that are free there or change by inversion.
 //
-// The factor is used in four digits of two bits, the lowest first. Their multiples of the texel are its copy, its double and the triple, so
-// each digit takes one LUT a bit. Half of the unit of the rounding is in the first sum, in bits that are free there or change by inversion.
-//
-// A texel has BITS bits, of which CHANNEL are its integer part. Its largest value is 2^BITS − 2^(BITS − CHANNEL). Light above full light
-// gives a colour that may be too dark. Latency 3 clocks, throughput one channel per clock; the pipeline cannot be stopped.
+// A texel has BITS bits, of which CHANNEL are its integer part. Its largest value is 2^BITS − 2^(BITS − CHANNEL). Latency 3 clocks from
+// `texel`, 2 clocks from `share`; throughput one texel per clock; the pipeline cannot be stopped.
 
 `default_nettype none
 
@@ -23,31 +20,14 @@ module texture_light #(
 ) (
     input  wire                clk,
     input  wire  [BITS-1:0]    texel,
-    input  wire  [7:0]         light,
+    input  wire  [7:0]         share,  // one clock after the texel
     output logic [CHANNEL-1:0] colour
 );
-    // nearest(light·2^-CHANNEL) − 1 by the six highest bits of the light, which suffice.
-    function automatic logic [255:0] corrections();
-        for (int i = 0; i < 64; i++) corrections[4*i +: 4] = 4'(((4 * i + (1 << (8 - CHANNEL))) >> CHANNEL) - 1);
-    endfunction
-
-    localparam logic [255:0] CORRECTIONS = corrections();
-
-    logic [3:0]      correction;
-    logic            is_dark;
-    logic [7:0]      factor;
     logic [BITS-1:0] texel_1, texel_2;
     logic [BITS+1:0] triple, triple_2;
     logic [3:0]      digits_2;
 
-    // The factor of light 0 must not be −1.
-    assign correction = CORRECTIONS[{light[7:2], 2'd0} +: 4];
-    assign is_dark    = CHANNEL == 5 ? light[7:2] == '0 : light[7:1] == '0;
-
-    logic unused_carry;
-
     always_ff @(posedge clk) begin
-        {factor, unused_carry} <= {light, 1'b1} + {{4{correction[3]}}, correction, is_dark};
         triple  <= (BITS + 2)'(texel) + {1'b0, texel, 1'b0};
         texel_1 <= texel;
     end
@@ -61,13 +41,23 @@ module texture_light #(
         endcase
     endfunction
 
-    // The lowest digit plus 1 is 1 to 4.
-    logic [BITS+1:0] lowest, row_3;
-    logic [BITS+2:0] row_0, row_1, row_2;
-    logic [BITS:0]   sum;
+    // The carry from the two lowest bits of a multiple and of the sum to which it is added.
+    function automatic logic carry(input logic [1:0] sum, input logic [1:0] digit, input logic [1:0] one);
+        logic [1:0] low;
+        low   = {digit[0] && one[1], 1'b0} ^ {digit[1] && one[0], digit[0] && one[0]};
+        carry = sum[1] && low[1] || (sum[1] || low[1]) && sum[0] && low[0];
+    endfunction
+
+    // A sum has the bits from the third one on: no bit of the product below 2^8 is part of the colour. Its lowest bit here is a 1 that
+    // makes the carry of the bits below.
+    logic [BITS+1:0] lowest, multiple_1, multiple_2, multiple_3;
+    logic [BITS+2:0] row_0;
+    logic [BITS+1:0] row_1, row_2;
+    logic [BITS:0]   sum, row_3;
 
     always_comb begin
-        unique case (factor[1:0])
+        // The lowest digit plus 1 is 1 to 4.
+        unique case (share[1:0])
             2'd0: lowest = {2'd0, texel_1};
             2'd1: lowest = {1'b0, texel_1, 1'b0};
             2'd2: lowest = triple;
@@ -75,20 +65,26 @@ module texture_light #(
         endcase
         // Plus 2^(BITS + 7 − CHANNEL).
         row_0 = CHANNEL == 5 ? {1'b1, lowest} : {lowest[BITS+1], !lowest[BITS+1], lowest[BITS:0]};
-        row_1 = {2'd0, row_0[BITS+2:2]} + {1'b0, multiple(factor[3:2], texel_1, triple)};
-        row_2 = {2'd0, sum} + {1'b0, multiple(digits_2[1:0], texel_2, triple_2)};
-        row_3 = {1'b0, row_2[BITS+2:2]} + multiple(digits_2[3:2], texel_2, triple_2);
+
+        multiple_1 = multiple(share[3:2], texel_1, triple);
+        multiple_2 = multiple(digits_2[1:0], texel_2, triple_2);
+        multiple_3 = multiple(digits_2[3:2], texel_2, triple_2);
+
+        row_1 = {2'd0, row_0[BITS+2:4], 1'b1} + {1'b0, multiple_1[BITS+1:2], carry(row_0[3:2], share[3:2], texel_1[1:0])};
+        row_2 = {2'd0, sum[BITS:2], 1'b1} + {1'b0, multiple_2[BITS+1:2], carry(sum[1:0], digits_2[1:0], texel_2[1:0])};
+        row_3 = {1'b0, row_2[BITS+1:3], 1'b1} + {multiple_3[BITS+1:2], carry(row_2[2:1], digits_2[3:2], texel_2[1:0])};
     end
 
     always_ff @(posedge clk) begin
-        sum      <= row_1[BITS+2:2];
+        sum      <= row_1[BITS+1:1];
         texel_2  <= texel_1;
         triple_2 <= triple;
-        digits_2 <= factor[7:4];
-        colour   <= row_3[BITS+1 -: CHANNEL];
+        digits_2 <= share[7:4];
+        colour   <= row_3[BITS -: CHANNEL];
     end
 
-    wire _unused = &{1'b0, unused_carry, row_0[1:0], row_1[1:0], row_2[1:0], row_3[BITS+1-CHANNEL:0]};
+    wire _unused = &{1'b0, row_0[1:0], row_1[0], row_2[0], row_3[BITS-CHANNEL:0],
+                     multiple_1[1:0], multiple_2[1:0], multiple_3[1:0]};
 endmodule
 
 `default_nettype wire

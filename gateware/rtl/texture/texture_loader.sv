@@ -1,4 +1,5 @@
-// Reads what precedes the texels of a texture in memory, header and palette (docs/formats/texture.md), and gives the place of each mip level.
+// Reads what precedes the texels of a texture in memory, header and palette (docs/formats/texture.md), and gives the places of the mip
+// levels.
 //
 //   start ─▶ entry of the table ─▶ second and first word of the header ─▶ levels, the last first ─▶ palette, from its end ─▶ done
 //
@@ -6,10 +7,10 @@
 // the field `length` leads from the header to the end of the texture, from there it goes back by the size of each level, which grows by
 // shifts, and then back through the palette.
 //
-// `number` and `table_base` hold from `start` to `done`, which are high for a clock; the next start comes after `done`. `sampler` holds until
-// the next start. Time: twice the latency of memory and 22 clocks, with a palette once more the latency and a clock per colour. Memory may
-// contain anything: sides and levels are limited to what has a number here, and other invalid values count as valid ones. Memory: a client of
-// read_port.
+// `number` and `table_base` hold from `start` to `done`, which are high for a clock; the next start comes after `done`. `sampler` holds
+// until the next start. Time: twice the latency of memory and 22 clocks, with a palette once more the latency and a clock per colour.
+// Memory may contain anything: sides and levels are limited to what has a number here, and other invalid values count as valid ones.
+// Memory: a client of read_port.
 
 `default_nettype none
 
@@ -77,6 +78,8 @@ module texture_loader #(
     logic [7:0]              index;
     logic                    asks_more, is_level, asks, takes_colour;
     logic [1:0]              grows;
+    // Logarithm of the least side whose next larger level is larger than a block of 4 texels.
+    logic [3:0]              least;
     logic [3:0][31:0]        entries;
     logic [31:0]             entry;
 
@@ -98,9 +101,10 @@ module texture_loader #(
             PALETTE:                        data_ready = index[2:0] == '0;
             default:                        data_ready = 1'b0;
         endcase
-        // Whether the next larger level has twice the blocks across, and down: it is larger than a block.
-        grows[0] = 5'(count[3:0]) + (sampler.format == 2'd0 ? 5'd2 : 5'd3) <= 5'(sampler.side_log2[0]);
-        grows[1] = 5'(count[3:0]) + (sampler.format == 2'd2 ? 5'd3 : 5'd2) <= 5'(sampler.side_log2[1]);
+        // Whether the next larger level has twice the blocks across, and down; blocks have 4 or 8 texels.
+        least    = count[3:0] + 4'd2;
+        grows[0] = {least, 1'b0} < {sampler.side_log2[0], sampler.format == 2'd0};
+        grows[1] = {least, 1'b0} < {sampler.side_log2[1], sampler.format != 2'd2};
     end
 
     // The address is 0 before a base or an entry is added to it. The bit below it carries the 1 of a subtraction. `keep` holds the
