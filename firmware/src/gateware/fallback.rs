@@ -17,6 +17,8 @@ pub enum Fallback {
     NoSmoothShading,
     /// This gateware is built without textures.
     NoTextures,
+    /// The triangle engine draws textures under flat light only.
+    SmoothTextures,
     /// This gateware is built without a depth buffer.
     NoDepths,
     /// The eye is farther from the origin than the number formats of the triangle engine allow.
@@ -46,7 +48,11 @@ impl Fallback {
             }
             Self::NoDepths => Some("without --no-depths"),
             Self::Descriptors(Unsupported::Geometry) => Some("without --no-geometry"),
-            Self::Triangle(_) | Self::Eye | Self::Orthographic | Self::Descriptors(_) => None,
+            Self::Triangle(_)
+            | Self::SmoothTextures
+            | Self::Eye
+            | Self::Orthographic
+            | Self::Descriptors(_) => None,
         }
     }
 
@@ -98,6 +104,9 @@ impl fmt::Display for Fallback {
             }
             Self::NoTextures => f.write_str(
                 "triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast",
+            )?,
+            Self::SmoothTextures => f.write_str(
+                "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
             )?,
             Self::NoDepths => f.write_str("triangle engine: this gateware has no depths")?,
             Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,

@@ -428,8 +428,13 @@ impl GatewareRenderer {
             if mesh.shading == Shading::Smooth && !self.layout.is_smooth {
                 return Err(Fallback::NoSmoothShading);
             }
-            if mesh.has_textures() && !self.layout.is_textured {
-                return Err(Fallback::NoTextures);
+            if mesh.has_textures() {
+                if !self.layout.is_textured {
+                    return Err(Fallback::NoTextures);
+                }
+                if mesh.shading == Shading::Smooth {
+                    return Err(Fallback::SmoothTextures);
+                }
             }
             if mesh.shading == Shading::Smooth
                 && frame.view.projection() == Projection::Orthographic

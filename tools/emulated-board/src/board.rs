@@ -84,6 +84,11 @@ impl EmulatedBoard {
         self.bus.devices.identity.blocks = blocks;
     }
 
+    /// Sets whether the triangle engine draws textures. The firmware reads it at its start.
+    pub fn state_textures(&mut self, is_textured: bool) {
+        self.bus.devices.triangle.set_textures(is_textured);
+    }
+
     /// Sets the best shading of the triangle engine, to emulate a gateware without smooth shading. The firmware reads it at its start.
     pub fn state_shading(&mut self, capability: Shading) {
         self.bus.devices.triangle.set_shading(capability);

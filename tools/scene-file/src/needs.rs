@@ -54,6 +54,8 @@ pub struct Needs {
     pub features: BTreeSet<Feature>,
     /// Smooth shading in the triangle engine.
     pub smooth: bool,
+    /// Textures in the triangle engine, which draws them under flat light.
+    pub texture: bool,
     /// The geometry pass of the triangle engine, which lines and most meshes require.
     pub geometry: bool,
     /// The depth buffer in memory, which triangles and depth codes require.
@@ -100,6 +102,10 @@ impl SceneFile {
         Needs {
             features: self.needed_features(),
             smooth: scene.options.shading == Shading::Smooth && has_triangles,
+            texture: scene.options.textures
+                && scene.options.shading == Shading::Flat
+                && has_triangles
+                && self.features().contains(&TEXTURE),
             // The soft core makes the descriptors of other meshes.
             geometry: has(Block::Line)
                 || has_triangles
@@ -164,6 +170,7 @@ impl Needs {
             blocks: &self.blocks | &other.blocks,
             features: &self.features | &other.features,
             smooth: self.smooth || other.smooth,
+            texture: self.texture || other.texture,
             geometry: self.geometry || other.geometry,
             depths: self.depths || other.depths,
             fields: match (self.fields, other.fields) {
@@ -179,6 +186,9 @@ impl Needs {
         options.extend(self.blocks.iter().map(|block| block.name().to_owned()));
         if self.smooth {
             options.push("--smooth".to_owned());
+        }
+        if self.texture {
+            options.push("--texture".to_owned());
         }
         let has = |block| self.blocks.contains(&block);
         if has(Block::Triangle) && !self.geometry {

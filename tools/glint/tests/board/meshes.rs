@@ -59,11 +59,9 @@ fn smooth_shading_is_the_models_on_every_backend() {
     }
 }
 
-/// The soft core draws textures, with a note; without them the triangle engine draws the mesh.
+/// The triangle engine draws textures under flat light, if the gateware supports them; otherwise the soft core does, with a note.
 #[test]
 fn textures_are_the_models_on_every_backend() {
-    let mut board = emulator_with(Shading::Smooth);
-    let mut renderer = renderer(&mut board);
     let texture = texture::encode(&Source {
         size_log2: [4, 4],
         sampler: Sampler {
@@ -75,11 +73,18 @@ fn textures_are_the_models_on_every_backend() {
         ..Source::default()
     });
     let mesh = textured_square(texture.unwrap(), 0.5);
-    for (shading, textures) in [
-        (Shading::Flat, true),
-        (Shading::Smooth, true),
-        (Shading::Flat, false),
+    const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected that of `cargo xtask gateware --texture`";
+    const SMOOTH: &str = "fallback triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`";
+    const DESCRIPTORS: &str = "fallback geometry passes: no textures";
+    for (has_textures, shading, textures, by, fallback) in [
+        (true, Shading::Flat, true, "gateware", Some(DESCRIPTORS)),
+        (true, Shading::Smooth, true, "cpu", Some(SMOOTH)),
+        (false, Shading::Flat, true, "cpu", Some(NO_TEXTURES)),
+        (false, Shading::Flat, false, "gateware", None),
     ] {
+        let mut board = emulator();
+        board.inner().state_textures(has_textures);
+        let mut renderer = renderer(&mut board);
         let subject = Subject::Mesh(MeshSubject {
             shading,
             textures,
@@ -87,13 +92,10 @@ fn textures_are_the_models_on_every_backend() {
         });
         let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
         let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "textures");
-        let by = if textures { "cpu" } else { "gateware" };
-        assert_eq!(stats.backend.as_deref(), Some(by));
         let notes = renderer.console().command("stats").unwrap();
-        let fell_back = notes.iter().any(|line| {
-            line == "fallback triangle engine: it draws no textures; `textures off` draws the mesh without them, fast"
-        });
-        assert_eq!(fell_back, textures, "{notes:#?}");
+        assert_eq!(stats.backend.as_deref(), Some(by), "{notes:#?}");
+        let found = notes.iter().find(|line| line.starts_with("fallback "));
+        assert_eq!(found.map(String::as_str), fallback, "{notes:#?}");
     }
 }
 
