@@ -80,7 +80,7 @@ class TriangleEngine(LiteXModule):
                      "the CPU has written."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
             CSRField("textures", offset=14, reset=int(texture), description="Textures: a descriptor has "
-                     f"{TEXTURE_BYTES} bytes more with them. Geometry passes write descriptors without a texture."),
+                     f"{TEXTURE_BYTES} bytes more with them."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
@@ -115,6 +115,8 @@ class TriangleEngine(LiteXModule):
             CSRField("lines", offset=8, description="Draw lines: `mesh` has segments instead of triangles."),
             CSRField("orthographic", offset=9, description="Orthographic projection, in which X and Y are not divided and depth codes "
                      "are linear. Light between vertices is not: `smooth` must be 0."),
+            CSRField("textures", offset=10, description="Draw the textures of the mesh, under flat light. No effect without `textures` in "
+                     "`caps`, or with `smooth`."),
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
             "and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied.")
         address = "Byte address, a multiple of 16, of"
@@ -150,6 +152,11 @@ class TriangleEngine(LiteXModule):
             CSRField("mantissa", size=17, offset=0, description="km, 2^16 to 2^17 - 1."),
             CSRField("exponent", size=4, offset=17, description="ke, two's complement."),
         ], description="Depth scale K = km * 2^ke.")
+
+        self._coordinates = Parameter(32, name="coordinates", description=f"{address} the texture coordinates of the mesh's vertices, with "
+                                      "`textures` in `geometry`.")
+        self._first_texture = Parameter(8, name="first_texture", description="Number in the table of `textures` before that of the mesh's "
+                                        "first texture.")
 
         # Registers with the parameters of the raster pass, constant while the pass runs.
         self._raster = Parameter(name="raster", fields=[
@@ -234,7 +241,7 @@ class TriangleEngine(LiteXModule):
             [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
              self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient,
-             self._colour],
+             self._colour, self._coordinates, self._first_texture],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()), self._textures])
         # A raymarcher copies its parameters when the raster pass starts; the pass waits until both have copied theirs.
         self.raster_load, self.field_loading = Signal(), Signal()
@@ -251,7 +258,7 @@ class TriangleEngine(LiteXModule):
 
         geometry_flags = Struct("geometry_flags_t", "Flags of a geometry pass.", {
             name: getattr(self._geometry.fields, name) for name in (
-                "size", "cull", "smooth", "append", "mirror", "recolour", "lines", "orthographic")})
+                "size", "cull", "smooth", "append", "mirror", "recolour", "lines", "orthographic", "textures")})
         geometry = Struct("geometry_t", "Parameters of the geometry pass. Memory regions are given by byte addresses.", {
             "mesh": self._mesh.storage,
             "mesh_bytes": self._mesh_bytes.storage,
@@ -264,6 +271,8 @@ class TriangleEngine(LiteXModule):
             **{name: [register.storage[9*i:9*i + 9] for i in range(3)]
                for name, register in (("light_colour", self._light_colour), ("ambient", self._ambient))},
             "colour": self._colour.storage,
+            "coordinates": self._coordinates.storage,
+            "first_texture": self._first_texture.storage,
         })
         view = Struct("view_t", "Camera and light of the geometry pass: docs/formats/camera.md, \"Frame constants\".", {
             "scale_shift": self._scale_shift.storage,

@@ -3,7 +3,9 @@
 use glint_core::camera::Projection;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
-use glint_hal::triangle::{self, DepthScale, GeometryStart, Lists, Prepared, TriangleEngine};
+use glint_hal::triangle::{
+    self, DepthScale, GeometryStart, Lists, Prepared, Textures, TriangleEngine,
+};
 use glint_model::triangle::descriptor::Layout;
 use glint_model::{MeshLight, MeshSetup, Shading};
 
@@ -25,6 +27,8 @@ pub struct MeshPass<'a> {
     pub shading: Shading,
     /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
+    /// The textures of the mesh, if they are drawn; only under flat shading.
+    pub textures: Option<Textures<'a>>,
     /// Empty memory for the output of the pass; `None` to append to the output of the previous pass, whose picture size and light colours
     /// must be equal.
     pub lists: Option<Lists>,
@@ -58,6 +62,7 @@ impl MeshPass<'_> {
                 .with_exponent(frame.depth.exponent as u8),
             lights: [light, ambient],
             colour: self.colour.map(|colour| colour.0),
+            textures: self.textures,
             lists: self.lists,
         })
     }

@@ -111,9 +111,20 @@ pub struct Geometry<'a> {
     pub lights: [[u16; 3]; 2],
     /// Colour that replaces the colours of the mesh, RGB565.
     pub colour: Option<u16>,
+    /// The textures of the mesh, if they are drawn. Gateware without textures, and smooth shading, draws none.
+    pub textures: Option<Textures<'a>>,
     /// Output of the pass, initially empty; `None` appends to the output of the previous pass, which must have an equal picture
     /// size and equal light colours.
     pub lists: Option<Lists>,
+}
+
+/// The textures of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Textures<'a> {
+    /// The texture coordinates of the mesh's vertices, aligned to 16 bytes.
+    pub coordinates: &'a [u8],
+    /// Number of textures in the frame's table before those of this mesh.
+    pub before: u8,
 }
 
 /// A geometry pass whose registers have been written, ready to start.
@@ -255,6 +266,11 @@ impl TriangleEngine {
         if let Some(colour) = pass.colour {
             registers.colour().write(colour);
         }
+        if let Some(textures) = pass.textures {
+            let coordinates = textures.coordinates.as_ptr().addr() as u32;
+            registers.coordinates().write(coordinates);
+            registers.first_texture().write(textures.before);
+        }
         registers.scale_shift().write(pass.scale_shift);
         // Each register has its own write, because a loop would need a table of addresses.
         registers.row_u0().write(pass.u[0] as u32);
@@ -284,7 +300,8 @@ impl TriangleEngine {
                 .options
                 .with_start(true)
                 .with_append(pass.lists.is_none())
-                .with_recolour(pass.colour.is_some()),
+                .with_recolour(pass.colour.is_some())
+                .with_textures(pass.textures.is_some()),
         }
     }
 

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x11e3_a0ec;
+pub const BUILD_ID: u32 = 0x9057_fdd2;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3263,7 +3263,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 10 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
+        /// `geometry`, 11 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -3487,12 +3487,28 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5088) }
         }
 
+        /// `coordinates`, 32 bits: Byte address, a multiple of 16, of the texture coordinates of the mesh's vertices, with `textures` in `geometry`. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn coordinates(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_508c) }
+        }
+
+        /// `first_texture`, 8 bits: Number in the table of `textures` before that of the mesh's first texture. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn first_texture(&self) -> Register<u8, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5090) }
+        }
+
         /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures` must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_508c) }
+            unsafe { Register::at(0xf000_5094) }
         }
 
         /// `frame`, 32 bits: Byte address, a multiple of 16, of the frame, RGB565, written by the pass. Reads as 0.
@@ -3500,7 +3516,7 @@ pub mod triangle {
         #[must_use]
         pub const fn frame(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5090) }
+            unsafe { Register::at(0xf000_5098) }
         }
 
         /// `depth`, 32 bits: Byte address, a multiple of 16, of the depth codes, 32 bits each, written by the pass. Reads as 0.
@@ -3508,7 +3524,7 @@ pub mod triangle {
         #[must_use]
         pub const fn depth(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5094) }
+            unsafe { Register::at(0xf000_509c) }
         }
 
         /// `clear`, 16 bits: Background colour, RGB565. Reads as 0.
@@ -3516,7 +3532,7 @@ pub mod triangle {
         #[must_use]
         pub const fn clear(&self) -> Register<u16, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5098) }
+            unsafe { Register::at(0xf000_50a0) }
         }
 
         /// `lists_0`, 32 bits: Byte address, a multiple of 16, of the first set's lists. Reads as 0.
@@ -3524,7 +3540,7 @@ pub mod triangle {
         #[must_use]
         pub const fn lists_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_509c) }
+            unsafe { Register::at(0xf000_50a4) }
         }
 
         /// `descriptors_0`, 32 bits: Byte address, a multiple of 16, of the first set's descriptors. Reads as 0.
@@ -3532,7 +3548,7 @@ pub mod triangle {
         #[must_use]
         pub const fn descriptors_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50a0) }
+            unsafe { Register::at(0xf000_50a8) }
         }
 
         /// `count_0`, 20 bits: Descriptors of the first set. Reads as 0.
@@ -3540,7 +3556,7 @@ pub mod triangle {
         #[must_use]
         pub const fn count_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50a4) }
+            unsafe { Register::at(0xf000_50ac) }
         }
 
         /// `lists_1`, 32 bits: Byte address, a multiple of 16, of the second set's lists. Reads as 0.
@@ -3548,7 +3564,7 @@ pub mod triangle {
         #[must_use]
         pub const fn lists_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50a8) }
+            unsafe { Register::at(0xf000_50b0) }
         }
 
         /// `descriptors_1`, 32 bits: Byte address, a multiple of 16, of the second set's descriptors. Reads as 0.
@@ -3556,7 +3572,7 @@ pub mod triangle {
         #[must_use]
         pub const fn descriptors_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50ac) }
+            unsafe { Register::at(0xf000_50b4) }
         }
 
         /// `count_1`, 20 bits: Descriptors of the second set. Reads as 0.
@@ -3564,7 +3580,7 @@ pub mod triangle {
         #[must_use]
         pub const fn count_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50b0) }
+            unsafe { Register::at(0xf000_50b8) }
         }
 
         /// `textures`, 32 bits: Byte address, a multiple of 16, of the table of the textures' addresses. No effect without `textures` in `caps`. Reads as 0.
@@ -3572,7 +3588,7 @@ pub mod triangle {
         #[must_use]
         pub const fn textures(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50b4) }
+            unsafe { Register::at(0xf000_50bc) }
         }
 
         /// `triangles`, 32 bits: Triangles of the mesh.
@@ -3580,7 +3596,7 @@ pub mod triangle {
         #[must_use]
         pub const fn triangles(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50b8) }
+            unsafe { Register::at(0xf000_50c0) }
         }
 
         /// `unseen`, 32 bits: Triangles behind the near plane or beyond one side of the picture.
@@ -3588,7 +3604,7 @@ pub mod triangle {
         #[must_use]
         pub const fn unseen(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50bc) }
+            unsafe { Register::at(0xf000_50c4) }
         }
 
         /// `culled`, 32 bits: Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds, and tiny ones that cover no pixel.
@@ -3596,7 +3612,7 @@ pub mod triangle {
         #[must_use]
         pub const fn culled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50c0) }
+            unsafe { Register::at(0xf000_50c8) }
         }
 
         /// `descriptor_count`, 32 bits: Descriptors written, with `append` including those of earlier passes.
@@ -3604,7 +3620,7 @@ pub mod triangle {
         #[must_use]
         pub const fn descriptor_count(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50c4) }
+            unsafe { Register::at(0xf000_50cc) }
         }
 
         /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` including those of earlier passes.
@@ -3612,7 +3628,7 @@ pub mod triangle {
         #[must_use]
         pub const fn exception_count(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50c8) }
+            unsafe { Register::at(0xf000_50d0) }
         }
 
         /// `cycles_busy`, 32 bits: Clock cycles of both passes, modulo 2^32.
@@ -3620,7 +3636,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_busy(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50cc) }
+            unsafe { Register::at(0xf000_50d4) }
         }
 
         /// `cycles_stalled`, 32 bits: Clock cycles in which memory refused a command, modulo 2^32.
@@ -3628,7 +3644,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_stalled(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d0) }
+            unsafe { Register::at(0xf000_50d8) }
         }
 
         /// `stalled_reads`, 32 bits: Clock cycles in which memory refused a read, modulo 2^32.
@@ -3636,7 +3652,7 @@ pub mod triangle {
         #[must_use]
         pub const fn stalled_reads(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d4) }
+            unsafe { Register::at(0xf000_50dc) }
         }
 
         /// `stalled_lists`, 32 bits: Clock cycles in which memory refused a write of the geometry pass, modulo 2^32.
@@ -3644,7 +3660,7 @@ pub mod triangle {
         #[must_use]
         pub const fn stalled_lists(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50d8) }
+            unsafe { Register::at(0xf000_50e0) }
         }
 
         /// `stalled_frame`, 32 bits: Clock cycles in which memory refused a write of the raster pass, modulo 2^32.
@@ -3652,7 +3668,7 @@ pub mod triangle {
         #[must_use]
         pub const fn stalled_frame(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50dc) }
+            unsafe { Register::at(0xf000_50e4) }
         }
 
         /// `items_in`, 32 bits: Words of 16 bytes read from memory, modulo 2^32.
@@ -3660,7 +3676,7 @@ pub mod triangle {
         #[must_use]
         pub const fn items_in(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e0) }
+            unsafe { Register::at(0xf000_50e8) }
         }
 
         /// `items_out`, 32 bits: Words of 16 bytes written to memory, modulo 2^32.
@@ -3668,7 +3684,7 @@ pub mod triangle {
         #[must_use]
         pub const fn items_out(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e4) }
+            unsafe { Register::at(0xf000_50ec) }
         }
 
         /// `cycles_geometry`, 32 bits: Clock cycles of geometry passes, modulo 2^32.
@@ -3676,7 +3692,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_geometry(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50e8) }
+            unsafe { Register::at(0xf000_50f0) }
         }
 
         /// `vertices`, 32 bits: Vertices transformed, modulo 2^32.
@@ -3684,7 +3700,7 @@ pub mod triangle {
         #[must_use]
         pub const fn vertices(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50ec) }
+            unsafe { Register::at(0xf000_50f4) }
         }
 
         /// `cycles_raster`, 32 bits: Clock cycles of raster passes, modulo 2^32.
@@ -3692,7 +3708,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_raster(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f0) }
+            unsafe { Register::at(0xf000_50f8) }
         }
 
         /// `cycles_walking`, 32 bits: Clock cycles in which the walker was at a group of pixels, modulo 2^32.
@@ -3700,7 +3716,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_walking(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f4) }
+            unsafe { Register::at(0xf000_50fc) }
         }
 
         /// `cycles_empty`, 32 bits: Clock cycles in which the walker was at a group without a covered pixel, modulo 2^32.
@@ -3708,7 +3724,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_empty(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50f8) }
+            unsafe { Register::at(0xf000_5100) }
         }
 
         /// `groups`, 32 bits: Groups of eight pixels with a covered pixel, modulo 2^32.
@@ -3716,7 +3732,7 @@ pub mod triangle {
         #[must_use]
         pub const fn groups(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_50fc) }
+            unsafe { Register::at(0xf000_5104) }
         }
 
         /// `pixels_covered`, 32 bits: Pixels covered, for each triangle, modulo 2^32.
@@ -3724,7 +3740,7 @@ pub mod triangle {
         #[must_use]
         pub const fn pixels_covered(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5100) }
+            unsafe { Register::at(0xf000_5108) }
         }
 
         /// `pixels_drawn`, 32 bits: Pixels that passed the depth test, modulo 2^32.
@@ -3732,7 +3748,7 @@ pub mod triangle {
         #[must_use]
         pub const fn pixels_drawn(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5104) }
+            unsafe { Register::at(0xf000_510c) }
         }
 
         /// `cycles_held`, 32 bits: Clock cycles in which a group waited for an earlier group of the same pixels, modulo 2^32.
@@ -3740,7 +3756,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_held(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5108) }
+            unsafe { Register::at(0xf000_5110) }
         }
 
         /// `cycles_memory`, 32 bits: Clock cycles in which the flush of a band waited for memory, modulo 2^32.
@@ -3748,7 +3764,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_memory(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_510c) }
+            unsafe { Register::at(0xf000_5114) }
         }
 
         /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the previous band, modulo 2^32.
@@ -3756,7 +3772,7 @@ pub mod triangle {
         #[must_use]
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5110) }
+            unsafe { Register::at(0xf000_5118) }
         }
 
         /// `light_0`, 25 bits: Row of the light, x, s2.23, two's complement. Reads as 0.
@@ -3764,7 +3780,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_0(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5114) }
+            unsafe { Register::at(0xf000_511c) }
         }
 
         /// `light_1`, 25 bits: Row of the light, y, s2.23, two's complement. Reads as 0.
@@ -3772,7 +3788,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_1(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5118) }
+            unsafe { Register::at(0xf000_5120) }
         }
 
         /// `light_2`, 25 bits: Row of the light, z, s2.23, two's complement. Reads as 0.
@@ -3780,7 +3796,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_511c) }
+            unsafe { Register::at(0xf000_5124) }
         }
 
         /// `light_colour`, 27 bits: Colour of the light, u1.8 of each channel, at most 1: red in bits 0 to 8, green, blue. Reads as 0.
@@ -3788,7 +3804,7 @@ pub mod triangle {
         #[must_use]
         pub const fn light_colour(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5120) }
+            unsafe { Register::at(0xf000_5128) }
         }
 
         /// `ambient`, 27 bits: Ambient light, in the format of `light_colour`. It must be 0 with `smooth` and without `cull`. Reads as 0.
@@ -3796,7 +3812,7 @@ pub mod triangle {
         #[must_use]
         pub const fn ambient(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5124) }
+            unsafe { Register::at(0xf000_512c) }
         }
 
         /// `colour`, 16 bits: Colour instead of those of the mesh, with `recolour` in `geometry`, RGB565. Reads as 0.
@@ -3804,7 +3820,7 @@ pub mod triangle {
         #[must_use]
         pub const fn colour(&self) -> Register<u16, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
-            unsafe { Register::at(0xf000_5128) }
+            unsafe { Register::at(0xf000_5130) }
         }
     }
 
@@ -3880,86 +3896,90 @@ pub mod triangle {
         pub const NEAR_HIGH: u32 = 0x84;
         /// `depth_scale`.
         pub const DEPTH_SCALE: u32 = 0x88;
+        /// `coordinates`.
+        pub const COORDINATES: u32 = 0x8c;
+        /// `first_texture`.
+        pub const FIRST_TEXTURE: u32 = 0x90;
         /// `raster`.
-        pub const RASTER: u32 = 0x8c;
+        pub const RASTER: u32 = 0x94;
         /// `frame`.
-        pub const FRAME: u32 = 0x90;
+        pub const FRAME: u32 = 0x98;
         /// `depth`.
-        pub const DEPTH: u32 = 0x94;
+        pub const DEPTH: u32 = 0x9c;
         /// `clear`.
-        pub const CLEAR: u32 = 0x98;
+        pub const CLEAR: u32 = 0xa0;
         /// `lists_0`.
-        pub const LISTS_0: u32 = 0x9c;
+        pub const LISTS_0: u32 = 0xa4;
         /// `descriptors_0`.
-        pub const DESCRIPTORS_0: u32 = 0xa0;
+        pub const DESCRIPTORS_0: u32 = 0xa8;
         /// `count_0`.
-        pub const COUNT_0: u32 = 0xa4;
+        pub const COUNT_0: u32 = 0xac;
         /// `lists_1`.
-        pub const LISTS_1: u32 = 0xa8;
+        pub const LISTS_1: u32 = 0xb0;
         /// `descriptors_1`.
-        pub const DESCRIPTORS_1: u32 = 0xac;
+        pub const DESCRIPTORS_1: u32 = 0xb4;
         /// `count_1`.
-        pub const COUNT_1: u32 = 0xb0;
+        pub const COUNT_1: u32 = 0xb8;
         /// `textures`.
-        pub const TEXTURES: u32 = 0xb4;
+        pub const TEXTURES: u32 = 0xbc;
         /// `triangles`.
-        pub const TRIANGLES: u32 = 0xb8;
+        pub const TRIANGLES: u32 = 0xc0;
         /// `unseen`.
-        pub const UNSEEN: u32 = 0xbc;
+        pub const UNSEEN: u32 = 0xc4;
         /// `culled`.
-        pub const CULLED: u32 = 0xc0;
+        pub const CULLED: u32 = 0xc8;
         /// `descriptor_count`.
-        pub const DESCRIPTOR_COUNT: u32 = 0xc4;
+        pub const DESCRIPTOR_COUNT: u32 = 0xcc;
         /// `exception_count`.
-        pub const EXCEPTION_COUNT: u32 = 0xc8;
+        pub const EXCEPTION_COUNT: u32 = 0xd0;
         /// `cycles_busy`.
-        pub const CYCLES_BUSY: u32 = 0xcc;
+        pub const CYCLES_BUSY: u32 = 0xd4;
         /// `cycles_stalled`.
-        pub const CYCLES_STALLED: u32 = 0xd0;
+        pub const CYCLES_STALLED: u32 = 0xd8;
         /// `stalled_reads`.
-        pub const STALLED_READS: u32 = 0xd4;
+        pub const STALLED_READS: u32 = 0xdc;
         /// `stalled_lists`.
-        pub const STALLED_LISTS: u32 = 0xd8;
+        pub const STALLED_LISTS: u32 = 0xe0;
         /// `stalled_frame`.
-        pub const STALLED_FRAME: u32 = 0xdc;
+        pub const STALLED_FRAME: u32 = 0xe4;
         /// `items_in`.
-        pub const ITEMS_IN: u32 = 0xe0;
+        pub const ITEMS_IN: u32 = 0xe8;
         /// `items_out`.
-        pub const ITEMS_OUT: u32 = 0xe4;
+        pub const ITEMS_OUT: u32 = 0xec;
         /// `cycles_geometry`.
-        pub const CYCLES_GEOMETRY: u32 = 0xe8;
+        pub const CYCLES_GEOMETRY: u32 = 0xf0;
         /// `vertices`.
-        pub const VERTICES: u32 = 0xec;
+        pub const VERTICES: u32 = 0xf4;
         /// `cycles_raster`.
-        pub const CYCLES_RASTER: u32 = 0xf0;
+        pub const CYCLES_RASTER: u32 = 0xf8;
         /// `cycles_walking`.
-        pub const CYCLES_WALKING: u32 = 0xf4;
+        pub const CYCLES_WALKING: u32 = 0xfc;
         /// `cycles_empty`.
-        pub const CYCLES_EMPTY: u32 = 0xf8;
+        pub const CYCLES_EMPTY: u32 = 0x100;
         /// `groups`.
-        pub const GROUPS: u32 = 0xfc;
+        pub const GROUPS: u32 = 0x104;
         /// `pixels_covered`.
-        pub const PIXELS_COVERED: u32 = 0x100;
+        pub const PIXELS_COVERED: u32 = 0x108;
         /// `pixels_drawn`.
-        pub const PIXELS_DRAWN: u32 = 0x104;
+        pub const PIXELS_DRAWN: u32 = 0x10c;
         /// `cycles_held`.
-        pub const CYCLES_HELD: u32 = 0x108;
+        pub const CYCLES_HELD: u32 = 0x110;
         /// `cycles_memory`.
-        pub const CYCLES_MEMORY: u32 = 0x10c;
+        pub const CYCLES_MEMORY: u32 = 0x114;
         /// `cycles_flush`.
-        pub const CYCLES_FLUSH: u32 = 0x110;
+        pub const CYCLES_FLUSH: u32 = 0x118;
         /// `light_0`.
-        pub const LIGHT_0: u32 = 0x114;
+        pub const LIGHT_0: u32 = 0x11c;
         /// `light_1`.
-        pub const LIGHT_1: u32 = 0x118;
+        pub const LIGHT_1: u32 = 0x120;
         /// `light_2`.
-        pub const LIGHT_2: u32 = 0x11c;
+        pub const LIGHT_2: u32 = 0x124;
         /// `light_colour`.
-        pub const LIGHT_COLOUR: u32 = 0x120;
+        pub const LIGHT_COLOUR: u32 = 0x128;
         /// `ambient`.
-        pub const AMBIENT: u32 = 0x124;
+        pub const AMBIENT: u32 = 0x12c;
         /// `colour`.
-        pub const COLOUR: u32 = 0x128;
+        pub const COLOUR: u32 = 0x130;
     }
 
     /// A value of `caps`.
@@ -4075,7 +4095,7 @@ pub mod triangle {
             Self(self.0 & !(0x3f << 8) | (value as u32 & 0x3f) << 8)
         }
 
-        /// `textures`, bit 14: Textures: a descriptor has 32 bytes more with them. Geometry passes write descriptors without a texture.
+        /// `textures`, bit 14: Textures: a descriptor has 32 bytes more with them.
         #[inline]
         #[must_use]
         pub const fn textures(self) -> bool {
@@ -4463,6 +4483,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_orthographic(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
+        }
+
+        /// `textures`, bit 10: Draw the textures of the mesh, under flat light. No effect without `textures` in `caps`, or with `smooth`.
+        #[inline]
+        #[must_use]
+        pub const fn textures(self) -> bool {
+            (self.0 >> 10) & 1 != 0
+        }
+
+        /// This value with another `textures`.
+        #[inline]
+        #[must_use]
+        pub const fn with_textures(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
         }
     }
 

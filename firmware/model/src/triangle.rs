@@ -30,7 +30,7 @@ pub use exceptions::clip_exceptions;
 pub use mesh_light::MeshLight;
 pub use mesh_setup::MeshSetup;
 pub use object::Placement;
-pub use primitive::{Options, Placed, light_of};
+pub use primitive::{Options, Placed, light_of, texture_on};
 pub use render::{
     DrawnTriangle, Emit, PreparedMesh, Stats, draw_parts, project_chunk, render, set_up_parts,
     trace, trace_frame,

@@ -3,9 +3,10 @@
 use core::mem;
 
 use glint_core::feature::TEXTURE;
+use glint_core::mesh::{Attribute, Mesh};
 use glint_core::picture::Size;
 use glint_core::texture::Texture;
-use glint_hal::triangle::{Lists, Set};
+use glint_hal::triangle::{Lists, Set, Textures};
 use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{Layout, ListCounts, list_shift};
 use glint_model::{Stats, WireframeStats};
@@ -101,7 +102,6 @@ impl Buffers {
     /// Removes the sets and counts of the previous frame.
     pub fn clear(&mut self) {
         (self.sets, self.stats) = ([None; 2], Stats::default());
-        self.textures.clear();
     }
 
     /// The list shift of both passes for a picture of this size.
@@ -172,8 +172,24 @@ impl TextureTable {
         }
     }
 
-    const fn clear(&mut self) {
+    /// Removes the textures of the previous frame.
+    pub const fn clear(&mut self) {
         self.count = 0;
+    }
+
+    /// The textures of a mesh for its geometry pass, which the table takes if they are new. `None` if they are not drawn, or do not fit the
+    /// table.
+    pub fn of_mesh<'a>(&mut self, mesh: &Mesh<'a>) -> Option<Textures<'a>> {
+        let coordinates = mesh.attribute(Attribute::TextureCoordinates)?;
+        let first = self.number(&mesh.textures().next()?)?;
+        // The textures of a mesh that the table already has follow each other.
+        let fits = mesh
+            .textures()
+            .all(|texture| self.number(&texture).is_some());
+        fits.then_some(Textures {
+            coordinates,
+            before: first - 1,
+        })
     }
 
     /// The number of a texture, which the table takes if it is new; `None` if the table is full.

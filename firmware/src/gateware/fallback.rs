@@ -136,8 +136,6 @@ pub enum Unsupported {
     Volume,
     /// Winding by the position on the screen.
     Winding,
-    /// Textures.
-    Textures,
     /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
     /// Transformed normals of an object, if no memory is free for a copy of its mesh. Objects are numbered from 1.
@@ -154,7 +152,6 @@ impl fmt::Display for Unsupported {
             Self::Geometry => f.write_str("none in this gateware"),
             Self::Volume => f.write_str("no clipping to the view volume"),
             Self::Winding => f.write_str("no winding by the screen"),
-            Self::Textures => f.write_str("no textures"),
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
             Self::Normals { object } => write!(
                 f,

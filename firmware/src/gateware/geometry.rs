@@ -8,11 +8,11 @@
 use core::mem;
 
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, MESH};
+use glint_core::feature::{CPU, MESH, TEXTURE};
 use glint_engines::triangle::MeshPass;
 use glint_hal::triangle::{Counts, EngineError, Error, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
-use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter};
+use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter, OfTexture};
 use glint_model::triangle::setup::Setup;
 use glint_model::triangle::textured::Textured;
 use glint_model::{
@@ -20,7 +20,7 @@ use glint_model::{
 };
 use litex_pac::cpu;
 
-use super::buffers::Buffers;
+use super::buffers::{Buffers, TextureTable};
 use super::fallback::{Fallback, Unsupported};
 use crate::memory::Scratch;
 
@@ -96,6 +96,7 @@ impl GeometryPasses {
     /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
     pub fn prepare(&mut self, job: &mut Job) -> Result<(), Fallback> {
         self.prepared = None;
+        job.buffers.textures.clear();
         if !MESH.is_built {
             return Ok(());
         }
@@ -118,6 +119,12 @@ impl GeometryPasses {
             return Ok(());
         };
         let setup = job.constants.mesh_setup(job.frame, number, &mut self.own)?;
+        let textures = if TEXTURE.is_built && subject.has_textures() {
+            let textures = job.buffers.textures.of_mesh(&subject.mesh);
+            Some(textures.ok_or(EngineError::from(Error::Full))?)
+        } else {
+            None
+        };
         let pass = MeshPass {
             mesh: &subject.mesh,
             size: job.frame.size,
@@ -126,6 +133,7 @@ impl GeometryPasses {
             cull: subject.cull,
             shading: subject.shading,
             colour,
+            textures,
             lists: (number == 0).then(|| job.buffers.lists(self.layout, job.frame.size)),
         };
         self.prepared = Some(pass.prepare(job.engine));
@@ -224,12 +232,15 @@ impl GeometryPasses {
             list_shift,
             self.layout,
         );
-        let mut put = |setup: &_, colour| writer.put(setup, colour, None);
+        let (textures, mut is_full) = (&mut buffers.textures, false);
+        let mut put = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
+            let texture = numbered(textures, textured, &mut is_full);
+            writer.put(setup, triangle.colour, texture.as_ref());
+        };
         self.drawn_clipped +=
             clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
-        let count = writer
-            .finish()
-            .map_err(|_| EngineError::from(Error::Full))?;
+        let count = writer.finish().ok().filter(|_| !is_full);
+        let count = count.ok_or(EngineError::from(Error::Full))?;
         if joins {
             buffers.sets[0] = Some(buffers.set(count));
         } else {
@@ -292,12 +303,8 @@ impl GeometryPasses {
             } else {
                 &mut whole
             };
-            let textured = textured.and_then(|textured| {
-                let number = textures.number(&textured.texture);
-                is_full |= number.is_none();
-                Some((textured, number?))
-            });
-            writer.put(setup, triangle.colour, textured);
+            let texture = numbered(textures, textured, &mut is_full);
+            writer.put(setup, triangle.colour, texture.as_ref());
         };
         let stats = frame.set_up_meshes(constants, scratch, &mut put)?;
         let full = |_| EngineError::from(Error::Full);
@@ -315,6 +322,18 @@ impl GeometryPasses {
     }
 }
 
+/// A texture for a descriptor; `None` if the triangle has none, or if the table is full, which sets `is_full`.
+fn numbered(
+    table: &mut TextureTable,
+    textured: Option<&Textured>,
+    is_full: &mut bool,
+) -> Option<OfTexture> {
+    let textured = textured.filter(|_| TEXTURE.is_built)?;
+    let number = table.number(&textured.texture);
+    *is_full |= number.is_none();
+    Some(textured.numbered(number?))
+}
+
 /// Whether clipped triangles are appended to the set of unclipped triangles, because the second set holds the lines of the mesh's edges.
 const fn joins_clipped(frame: &Frame) -> bool {
     matches!(frame.subject, Subject::Edges(..))
@@ -328,8 +347,6 @@ fn unsupported(frame: &Frame) -> Option<Unsupported> {
             Some(Unsupported::Volume)
         } else if subject.winding != Winding::Mesh {
             Some(Unsupported::Winding)
-        } else if subject.has_textures() {
-            Some(Unsupported::Textures)
         } else {
             let is_lit = sees_dark_sides && frame.mesh_lighting().ambient != [0; 3];
             is_lit.then_some(Unsupported::DarkSides)

@@ -19,10 +19,11 @@
 
 module cull #(
     parameter bit SMOOTH = 1'b0,
+    parameter bit TEXTURE = 1'b0,
     // Depth of the FIFO at the end, a power of two.
     parameter int unsigned PLACES = 128,
-    localparam int unsigned LIGHT_BITS = SMOOTH ? 41 : 1,
-    localparam int unsigned LIT_BITS   = SMOOTH ? 1 + 3 * 41 : 1
+    localparam int unsigned LIGHT_BITS = triangle_pkg::vertex_bits(SMOOTH, TEXTURE),
+    localparam int unsigned LIT_BITS   = SMOOTH || TEXTURE ? 1 + 3 * LIGHT_BITS : 1
 ) (
     input  wire                    clk,
     input  wire                    rst,
@@ -41,8 +42,11 @@ module cull #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output setup_pkg::oriented_t              out_triangle,
-    // {swap, light of the vertices numbered as in the mesh}; with `swap` vertices 1 and 2 are exchanged.
-    output logic [LIT_BITS-1:0]    out_lit
+    // {swap, light and texture coordinates of the vertices numbered as in the mesh}; with `swap` vertices 1 and 2 are exchanged.
+    output logic [LIT_BITS-1:0]    out_lit,
+    // Number of the triangle's texture, with TEXTURE.
+    input  wire  [TEXTURE ? 7 : 0:0] in_texture,
+    output logic [TEXTURE ? 7 : 0:0] out_texture
 );
     // The inputs of a triangle, and differences of the coordinates of its vertices: x10 is x1 − x0, y01 is y0 − y1, and so on.
     typedef struct packed {
@@ -262,7 +266,7 @@ module cull #(
     // setup_light, which uses the light of the vertices, exchanges vertices 1 and 2 according to `swap`.
     logic [LIT_BITS-1:0] lit;
 
-    if (SMOOTH) begin : light
+    if (SMOOTH || TEXTURE) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;
 
@@ -278,6 +282,25 @@ module cull #(
         wire _unused = &{1'b0, in_light};
     end
 
+    localparam int unsigned NUMBER_BITS = TEXTURE ? 8 : 1;
+
+    logic [NUMBER_BITS-1:0] number;
+
+    if (TEXTURE) begin : texture
+        logic [7:0] first_texture, last_texture;
+
+        assign number = last_texture;
+
+        always_ff @(posedge clk) begin
+            if (in_ready)      first_texture <= in_texture;
+            if (phase == 2'd2) last_texture  <= first_texture;
+        end
+    end else begin : no_texture
+        assign number = '0;
+
+        wire _unused = &{1'b0, in_texture};
+    end
+
     logic queued, tested, covers, pop;
 
     assign out_valid = queued && tested && covers;
@@ -285,9 +308,9 @@ module cull #(
     assign pop       = out_valid && out_ready || skip;
 
     // `room` includes an item before the next triangle can be accepted, so at most the two triangles in the stages are not counted.
-    pipeline_fifo #(.WIDTH($bits(oriented) + LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
-        .clk, .rst, .idle(queue_idle), .room, .in_valid(kept), .in_data({lit, oriented}),
-        .out_valid(queued), .out_ready(pop), .out_data({out_lit, out_triangle})
+    pipeline_fifo #(.WIDTH($bits(oriented) + LIT_BITS + NUMBER_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
+        .clk, .rst, .idle(queue_idle), .room, .in_valid(kept), .in_data({number, lit, oriented}),
+        .out_valid(queued), .out_ready(pop), .out_data({out_texture, out_lit, out_triangle})
     );
 
     logic             result_valid, result, result_room;

@@ -13,7 +13,9 @@
 
 `default_nettype none
 
-module flat_shade (
+module flat_shade #(
+    parameter bit TEXTURE = 1'b0
+) (
     input  wire              clk,
     input  wire              enable,
     input  wire  [3:0]       count,
@@ -23,7 +25,11 @@ module flat_shade (
     input  wire              front,
     input  wire  [2:0][15:0] normal,
     input  wire  [15:0]      colour,       // of the previous triangle
-    output logic [15:0]      lit
+    output logic [15:0]      lit,
+    // With TEXTURE: whether the previous triangle has a texture. Its light then replaces the lit colour: u0.8 of each channel, red is the
+    // lowest (docs/formats/texture.md, "On a triangle").
+    input  wire              textured,
+    output logic [2:0][7:0]  light
 );
     logic signed [24:0] a, chosen_a;
     logic signed [17:0] b, chosen_b;
@@ -56,7 +62,8 @@ module flat_shade (
         // The addend is selected three clocks after the factors of its product.
         unique case (count)
             4'd3:             addend = 44'd1 << 28;
-            4'd6, 4'd7, 4'd8: addend = 44'd1 << 7;
+            4'd6, 4'd8:       addend = TEXTURE && textured ? 44'd1 << 4 : 44'd1 << 7;
+            4'd7:             addend = TEXTURE && textured ? 44'd1 << 5 : 44'd1 << 7;
             4'd10:            addend = {27'b0, ambient[0], 8'h80};
             4'd0:             addend = {27'b0, ambient[1], 8'h80};
             default:          addend = {27'b0, ambient[2], 8'h80};
@@ -80,6 +87,18 @@ module flat_shade (
         if (count == 4'd7) lit[15:11] <= p[12:8];
         if (count == 4'd8) lit[10:5]  <= p[13:8];
         if (count == 4'd9) lit[4:0]   <= p[12:8];
+    end
+
+    if (TEXTURE) begin : of_texture
+        always_ff @(posedge clk) begin
+            if (count == 4'd7) light[0] <= p[12:5];
+            if (count == 4'd8) light[1] <= p[13:6];
+            if (count == 4'd9) light[2] <= p[12:5];
+        end
+    end else begin : of_colours
+        assign light = '0;
+
+        wire _unused = &{1'b0, textured};
     end
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);

@@ -51,13 +51,13 @@ module geometry_unit #(
     input  wire triangle_registers_pkg::geometry_flags_t flags,
     input  wire triangle_registers_pkg::geometry_t parameters,
     input  wire triangle_registers_pkg::view_t view,
-    // Clients of a read_port, one for the mesh and one for the vertices.
-    output logic [1:0]               ask_valid,
-    input  wire  [1:0]               ask_ready,
-    output logic [2*ADDRESS_BITS-1:0] ask_addr,
-    input  wire  [1:0]               data_valid,
-    output logic [1:0]               data_ready,
-    input  wire  [2*128-1:0]         data,
+    // Clients of read_ports, for the mesh, the vertices, and with TEXTURE the texture coordinates of the vertices.
+    output logic [2:0]               ask_valid,
+    input  wire  [2:0]               ask_ready,
+    output logic [3*ADDRESS_BITS-1:0] ask_addr,
+    input  wire  [2:0]               data_valid,
+    output logic [2:0]               data_ready,
+    input  wire  [3*128-1:0]         data,
     output triangle_registers_pkg::write_request_t descriptors_write_request,
     input  wire triangle_registers_pkg::write_answer_t descriptors_write_answer,
     output triangle_registers_pkg::write_request_t lists_write_request,
@@ -65,11 +65,10 @@ module geometry_unit #(
     output triangle_registers_pkg::results_t results,
     output triangle_registers_pkg::events_t events
 );
-    // Number of bits of a triangle's colour and normal together.
-    localparam int unsigned SIDE_BITS = 64;
-    // Number of bits of the light of a vertex, which is a triangle_pkg::light_t, or without SMOOTH one bit that is 0.
-    localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
-    localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
+    // Number of bits of a triangle's colour, normal and, with TEXTURE, texture together.
+    localparam int unsigned SIDE_BITS = TEXTURE ? 72 : 64;
+    localparam int unsigned LIGHT_BITS  = triangle_pkg::vertex_bits(SMOOTH, TEXTURE);
+    localparam int unsigned VERTEX_BITS = SMOOTH || TEXTURE ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;
 
     logic [10:0] width;
@@ -113,8 +112,8 @@ module geometry_unit #(
     records_pkg::triangle_t  triangle;
     records_pkg::vertex_t    vertex;
     logic [ADDRESS_BITS-1:0] vertex_base, mesh_first;
-    // Address of the first word after the mesh.
-    logic [ADDRESS_BITS:0]   mesh_past;
+    // Address of the first word after the mesh; number of the first vertex of the chunk.
+    logic [ADDRESS_BITS:0]   mesh_past, vertex_first;
 
     assign mesh_first = parameters.mesh[4 +: ADDRESS_BITS];
 
@@ -122,7 +121,7 @@ module geometry_unit #(
 
     mesh_walk #(.ADDRESS_BITS(ADDRESS_BITS)) mesh_walk (
         .clk, .rst(rst || restart), .start(state == BEGIN), .first(mesh_first), .past(mesh_past), .drained,
-        .busy(walk_busy), .error(mesh_error), .chunk, .vertex_base,
+        .busy(walk_busy), .error(mesh_error), .chunk, .vertex_base, .vertex_first,
         .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[0 +: ADDRESS_BITS]),
         .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[0 +: 128]),
         .out_valid(word_valid), .out_ready(word_ready), .out_triangle(triangle)
@@ -188,21 +187,76 @@ module geometry_unit #(
         logic [VERTEX_BITS-1:0] shaded;
         logic [SIDE_BITS-1:0] placed_side;
 
+        logic                    stage_valid, stage_ready;
+        logic [SIDE_BITS-1:0]    side;
+
+        if (TEXTURE) begin : texture_side
+            logic [7:0] number;
+
+            // A frame numbers the textures of all its meshes.
+            assign number = flags.textures && triangle.texture != '0 ? triangle.texture + parameters.first_texture : '0;
+            assign side   = {number, triangle.normal, triangle.colour};
+        end else begin : plain_side
+            assign side = {triangle.normal, triangle.colour};
+        end
+
         /* verilator lint_off PINCONNECTEMPTY */
         vertex_cache #(.SIDE_BITS(SIDE_BITS), .VERTEX_BITS(VERTEX_BITS)) vertex_cache (
             .clk, .rst(rst || restart), .clear(chunk), .idle(),
             .in_valid(triangle_valid), .in_ready(triangle_ready),
-            .in_indices(triangle.indices), .in_side({triangle.normal, triangle.colour}),
+            .in_indices(triangle.indices), .in_side(side),
             .fetch_valid, .fetch_ready, .fetch_index,
             .projected_valid, .projected_ready, .projected_vertex(shaded),
             .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(cached), .out_side(placed_side)
         );
         /* verilator lint_on PINCONNECTEMPTY */
 
-        assign vertex       = data[128 +: 128];
-        assign ask_valid[1] = fetch_valid;
-        assign fetch_ready  = ask_ready[1];
+        assign vertex = data[128 +: 128];
         assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
+
+        // Reads the texture coordinates of each fetched vertex, two vertices a word, beside the vertex.
+        logic [63:0] coordinates;
+        logic        has_coordinates;
+
+        if (TEXTURE) begin : textures_built
+            logic                  reads, places_ready, place_valid, half_room, half_valid, half, asks;
+            logic [ADDRESS_BITS:0] place;
+
+            // The frame may have textures on other meshes only.
+            assign reads        = flags.textures;
+            assign ask_valid[1] = fetch_valid && places_ready;
+            assign fetch_ready  = ask_ready[1] && places_ready;
+
+            fifo #(.WIDTH(ADDRESS_BITS + 1), .DEPTH(16)) element_places (
+                .clk, .rst(rst || restart), .in_valid(fetch_valid && ask_ready[1] && reads), .in_ready(places_ready),
+                .in_data(vertex_first + (ADDRESS_BITS+1)'(fetch_index)),
+                .out_valid(place_valid), .out_ready(ask_ready[2] && half_room), .out_data(place)
+            );
+
+            assign ask_valid[2] = place_valid && half_room;
+            assign asks         = ask_valid[2] && ask_ready[2];
+            assign ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS] = parameters.coordinates[4 +: ADDRESS_BITS] + place[ADDRESS_BITS:1];
+
+            fifo #(.WIDTH(1), .DEPTH(32)) halves (
+                .clk, .rst(rst || restart), .in_valid(asks), .in_ready(half_room), .in_data(place[0]),
+                .out_valid(half_valid), .out_ready(data_valid[2] && data_ready[2]), .out_data(half)
+            );
+
+            assign has_coordinates = !reads || data_valid[2] && half_valid;
+            assign data_ready[2]   = reads && half_valid && stage_valid && projected_ready;
+            assign coordinates     = half ? data[256 + 64 +: 64] : data[256 +: 64];
+        end else begin : no_texture
+            assign ask_valid[1]    = fetch_valid;
+            assign fetch_ready     = ask_ready[1];
+            assign has_coordinates = 1'b1;
+            assign coordinates     = '0;
+            assign {ask_valid[2], ask_addr[2*ADDRESS_BITS +: ADDRESS_BITS], data_ready[2]} = '0;
+
+            wire _unused = &{1'b0, vertex_first, coordinates, ask_ready[2], data_valid[2], data[256 +: 128]};
+        end
+
+        assign projected_valid = stage_valid && has_coordinates;
+        assign stage_ready     = projected_ready && has_coordinates;
 
         vertex_stage vertex_stage (
             .clk, .rst(rst || restart), .orthographic(flags.orthographic), .scale_shift(view.scale_shift),
@@ -211,7 +265,7 @@ module geometry_unit #(
             .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),
             .depth_mantissa(view.depth_mantissa), .depth_exponent(view.depth_exponent),
             .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(vertex.position),
-            .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
+            .out_valid(stage_valid), .out_ready(stage_ready), .out_vertex(projected)
         );
 
         for (genvar i = 0; i < 3; i++) begin : places
@@ -219,7 +273,7 @@ module geometry_unit #(
         end
 
         if (SMOOTH) begin : light
-            logic [LIGHT_BITS-1:0] projected_light;
+            logic [40:0] projected_light;
 
             vertex_light vertex_light (
                 .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
@@ -228,14 +282,23 @@ module geometry_unit #(
                 .give(projected_valid && projected_ready), .out_light(projected_light)
             );
 
-            assign shaded = {projected_light, projected};
-
-            for (genvar i = 0; i < 3; i++) begin : vertices
-                assign placed_light[i] = cached[i][68 +: LIGHT_BITS];
+            if (TEXTURE) begin : with_texture
+                assign shaded = {coordinates, projected_light, projected};
+            end else begin : light_alone
+                assign shaded = {projected_light, projected};
             end
+        end else if (TEXTURE) begin : texture_alone
+            assign shaded = {coordinates, projected};
         end else begin : flat
-            assign shaded       = projected;
-            assign placed_light = '0;
+            assign shaded = projected;
+        end
+
+        for (genvar i = 0; i < 3; i++) begin : lights
+            if (SMOOTH || TEXTURE) begin : of_vertex
+                assign placed_light[i] = cached[i][68 +: LIGHT_BITS];
+            end else begin : none
+                assign placed_light[i] = '0;
+            end
         end
 
         logic                 regular_valid, regular_ready;
@@ -250,35 +313,34 @@ module geometry_unit #(
             .exception_valid, .exception_ready, .exception_number
         );
 
-        logic [(SMOOTH ? 289 : 1)-1:0] light_planes;
+        logic [TEXTURE ? 7 : 0:0] texture_number;
 
-        setup #(.SMOOTH(SMOOTH)) setup (
+        if (TEXTURE) begin : number
+            assign texture_number = regular_side[71:64];
+        end else begin : no_number
+            assign texture_number = '0;
+        end
+
+        setup #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) setup (
             .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .mirror(flags.mirror), .row_light(view.row_light),
             .light_colour(parameters.light_colour), .ambient(parameters.ambient),
-            .smooth(flags.smooth), .busy(), .culled, .drawn(),
+            .smooth(flags.smooth), .textures(flags.textures && !flags.smooth), .linear(flags.orthographic), .busy(), .culled, .drawn(),
             .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
             .in_colour(flags.recolour ? parameters.colour : regular_side[15:0]), .in_normal(regular_side[63:16]),
-            .in_light(regular_light),
+            .in_light(regular_light), .in_texture(texture_number),
             .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
-            .out_planes(light_planes)
+            .out_planes(planes)
         );
         /* verilator lint_on PINCONNECTEMPTY */
-
-        // The planes of texture coordinates come from the firmware alone.
-        if (TEXTURE) begin : no_texture
-            assign planes = $bits(planes)'(light_planes);
-        end else begin : light_alone
-            assign planes = light_planes;
-        end
     end else begin : lines_alone
         assign {fetch_valid, fetch_ready, unseen, culled, descriptor_valid, exception_valid} = '0;
         assign {exception_number, descriptor, planes, results.triangles} = '0;
         assign {cached, placed, regular, placed_light, regular_light} = '0;
         assign triangle_ready = 1'b0;
-        assign {ask_valid[1], ask_addr[ADDRESS_BITS +: ADDRESS_BITS], data_ready[1]} = '0;
+        assign {ask_valid[2:1], ask_addr[ADDRESS_BITS +: 2*ADDRESS_BITS], data_ready[2:1]} = '0;
         assign vertex = '0;
 
-        wire _unused = &{1'b0, flags, view, width, height, chunk, vertex_base, ask_ready, data_valid, data, descriptor_ready,
+        wire _unused = &{1'b0, flags, view, width, height, chunk, vertex_base, vertex_first, ask_ready, data_valid, data, descriptor_ready,
                          exception_ready, cached, placed, regular, placed_light, regular_light};
     end
 

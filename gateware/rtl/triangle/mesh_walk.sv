@@ -26,6 +26,8 @@ module mesh_walk #(
     // when the chunk changes.
     output logic                    chunk,
     output logic [ADDRESS_BITS-1:0] vertex_base,
+    // Number in the mesh of the first vertex of this chunk.
+    output logic [ADDRESS_BITS:0]   vertex_first,
     // Memory.
     output logic                    ask_valid,
     input  wire                     ask_ready,
@@ -72,8 +74,9 @@ module mesh_walk #(
 
         case (state)
             IDLE: begin
-                header   <= first;
-                ask_addr <= first;
+                header       <= first;
+                ask_addr     <= first;
+                vertex_first <= '0;
                 if (start) begin
                     error <= 1'b0;
                     state <= ASK;
@@ -114,6 +117,7 @@ module mesh_walk #(
             default: begin
                 header   <= end_base[ADDRESS_BITS-1:0];
                 ask_addr <= end_base[ADDRESS_BITS-1:0];
+                if (drained) vertex_first <= vertex_first + vertices;
                 if (drained) state <= error || end_base >= SUM_BITS'(past) ? IDLE : ASK;
             end
         endcase

@@ -17,6 +17,9 @@
 // vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This equation holds at every point: the
 // differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
+// With TEXTURE, each texture coordinate has a plane, in a frame with the flag `textures`. Such a frame has flat light, and beats of three
+// rounds, as explained below; the first round prepares s.
+//
 // With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes the values P of the
 // plane at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then pass through one datapath in turn, in rounds of 11
 // clocks; a beat of a frame with smooth shading has three rounds:
@@ -34,9 +37,10 @@ module setup #(
     // number.
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
-    localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,
-    localparam int unsigned LIT_BITS    = SMOOTH ? 1 + 3 * 41 : 1,
-    localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
+    parameter bit TEXTURE = 1'b0,
+    localparam int unsigned LIGHT_BITS  = triangle_pkg::vertex_bits(SMOOTH, TEXTURE),
+    localparam int unsigned LIT_BITS    = SMOOTH || TEXTURE ? 1 + 3 * LIGHT_BITS : 1,
+    localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -48,6 +52,8 @@ module setup #(
     input  wire  [2:0][8:0]  light_colour, // u1.8, red is the lowest
     input  wire  [2:0][8:0]  ambient,
     input  wire              smooth,
+    input  wire              textures,    // texture coordinates have planes; not with `smooth`
+    input  wire              linear,      // orthographic projection
     output logic             busy,
     output logic             culled,
     output logic             drawn,
@@ -57,6 +63,7 @@ module setup #(
     input  wire  [15:0]      in_colour,   // RGB565
     input  wire  [2:0][15:0] in_normal,   // s2.14
     input  wire  [2:0][LIGHT_BITS-1:0] in_light,
+    input  wire  [TEXTURE ? 7 : 0:0] in_texture, // number of the texture, 0: none
     output logic             out_valid,
     input  wire              out_ready,
     output records_pkg::descriptor_t out_descriptor,
@@ -89,11 +96,14 @@ module setup #(
     setup_pkg::oriented_t     first;
     logic [LIT_BITS-1:0]      first_lit;
     logic                     first_valid, cull_busy;
+    logic [TEXTURE ? 7 : 0:0] first_texture;
+    logic                     textured_2;
+    logic [2:0][7:0]          light_2;
 
-    cull #(.SMOOTH(SMOOTH)) cull_stage (
+    cull #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) cull_stage (
         .clk, .rst, .width, .height, .cull_back, .mirror, .busy(cull_busy), .culled,
         .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal, .in_light,
-        .out_valid(first_valid), .out_ready(beat), .out_triangle(first), .out_lit(first_lit)
+        .out_valid(first_valid), .out_ready(beat), .out_triangle(first), .out_lit(first_lit), .in_texture, .out_texture(first_texture)
     );
 
     always_ff @(posedge clk) begin
@@ -160,9 +170,9 @@ module setup #(
     setup_normal normal (
         .clk, .enable, .count, .w10(~t.not_w10), .w20(~t.not_w20), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20), .nx, .ny
     );
-    flat_shade shade (
+    flat_shade #(.TEXTURE(TEXTURE)) shade (
         .clk, .enable, .count, .row_light, .light_colour, .ambient, .front(t.front), .normal(t.normal), .colour(colour_2),
-        .lit(lit_2)
+        .lit(lit_2), .textured(textured_2), .light(light_2)
     );
     // The computation of the area's reciprocal starts in clock 3 of stage 1. The reciprocal is valid from clock 7 of stage 2 on, or earlier
     // in stage 2 if the beat of stage 1 is longer than 11 clocks.
@@ -241,15 +251,19 @@ module setup #(
     // Planes of light, one channel after the other. `round_ends` is high in the last clock of a round, and `light_enable` low
     // while the last clock of the last round is repeated. In a frame with flat shading a beat has one round, whose results are not
     // used.
-    if (SMOOTH) begin : light
+    if (SMOOTH || TEXTURE) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [LIT_BITS-1:0]   lit_1;
+        logic [3*41-1:0]       lights;
+        logic [1:0]            place;
+        logic [16:0]           share;
+        logic                  is_coordinate;
         logic [3*96-1:0]       planes, planes_4;
         logic [3:0]            light_count;
         logic [1:0]            round;
         logic                  light_enable, round_ends, round_comes, last_round;
 
-        assign last_round  = round == 2'd2 || !smooth;
+        assign last_round  = round == 2'd2 || !smooth && !(TEXTURE && textures);
         assign round_comes = light_count == LAST - 1'b1 && !last_round || beat_comes;
         assign light_ends  = last_round && (light_count == LAST || light_count == LAST - 1'b1);
 
@@ -276,9 +290,9 @@ module setup #(
         logic [24:0] w10, w20;
         logic [23:0] value;
 
-        setup_light products (
+        setup_light #(.TEXTURE(TEXTURE)) products (
             .clk, .count(light_count), .round, .next(round_comes), .w0(origin_1.w0), .w10(~t.not_w10), .w20(~t.not_w20),
-            .front(t.front), .swap(lit_1[LIT_BITS-1]), .lights(lit_1[LIT_BITS-2:0]), .value, .p10(w10), .p20(w20)
+            .front(t.front), .swap(lit_1[LIT_BITS-1]), .lights, .is_coordinate, .linear, .share, .place, .value, .p10(w10), .p20(w20)
         );
 
         // The gradients of a triangle are computed in three rounds from round 1 on, and its starts in three rounds from round 2 on.
@@ -300,9 +314,71 @@ module setup #(
         end
 
         wide_register #(.WIDTH(3 * 96)) planes_stage (.clk, .next(beat_comes), .in(planes), .out(planes_4));
+        logic [PLANES_BITS-1:0] all_planes;
+
         wide_register #(.WIDTH(PLANES_BITS)) planes_result (
-            .clk, .next(beat_comes && valid[4]), .in({smooth, planes_4}), .out(out_planes)
+            .clk, .next(beat_comes && valid[4]), .in(all_planes), .out(out_planes)
         );
+
+        for (genvar i = 0; i < 3; i++) begin : vertices
+            if (SMOOTH) begin : lit_vertices
+                assign lights[41 * i +: 41] = lit_1[LIGHT_BITS * i +: 41];
+            end else begin : flat_vertices
+                assign lights[41 * i +: 41] = '0;
+            end
+        end
+
+        // Rounds 1 and 2 of a frame with textures are for s and t, whose shares are prepared in the round before.
+        if (TEXTURE) begin : textures_built
+            logic [3*32-1:0]  coordinates;
+            logic [3:0]       range, periods;
+            logic [7:0]       range_s, number_1;
+            logic [23:0]      of_triangle, of_triangle_2, of_triangle_3, light_3;
+            logic [47:0]      of_triangle_4;
+            records_pkg::texture_planes_t texture;
+
+            assign is_coordinate = textures && round != 2'd0;
+
+            for (genvar i = 0; i < 3; i++) begin : coordinates_of
+                assign coordinates[32 * i +: 32] = lit_1[LIGHT_BITS * (i + 1) - (round[0] ? 32 : 64) +: 32];
+            end
+
+            setup_texture shares (
+                .clk, .count(light_count), .next(round_comes), .coordinates, .vertex(place), .share, .range, .periods
+            );
+
+            // What belongs to t is kept in the last round, and what belongs to s in the round before.
+            always_ff @(posedge clk) if (round_ends && round == 2'd1) range_s <= {periods, range};
+
+            assign of_triangle = {number_1, periods, range_s[7:4], range, range_s[3:0]};
+            assign textured_2  = textures && of_triangle_2[23:16] != '0;
+
+            wide_register #(.WIDTH(8)) texture_1 (.clk, .next(beat_comes), .in(first_texture), .out(number_1));
+            wide_register #(.WIDTH(24)) texture_2 (.clk, .next(beat_comes), .in(of_triangle), .out(of_triangle_2));
+            wide_register #(.WIDTH(24)) texture_3 (.clk, .next(beat_comes), .in(of_triangle_2), .out(of_triangle_3));
+            wide_register #(.WIDTH(24)) light_stage (.clk, .next(beat_comes), .in(light_2), .out(light_3));
+            wide_register #(.WIDTH(48)) texture_4 (.clk, .next(beat_comes), .in({light_3, of_triangle_3}), .out(of_triangle_4));
+
+            always_comb begin
+                {texture.light, texture.texture, texture.periods, texture.range} = of_triangle_4;
+                texture.linear = linear;
+                texture.planes = planes_4[96 +: 192];
+                if (!textures) texture.texture = '0;
+            end
+
+            if (SMOOTH) begin : both
+                assign all_planes = {texture[240:192], smooth, texture[191:0], planes_4};
+            end else begin : alone
+                assign all_planes = texture;
+
+                wire _unused = &{1'b0, planes_4[95:0]};
+            end
+        end else begin : no_texture
+            assign {is_coordinate, share, textured_2} = '0;
+            assign all_planes = {smooth, planes_4};
+
+            wire _unused = &{1'b0, first_texture, place, light_2, textures, linear};
+        end
 
         setup_normal light_normal (
             .clk, .enable(light_enable), .count(light_count), .w10, .w20,
@@ -315,8 +391,9 @@ module setup #(
     end else begin : flat
         assign light_ends = 1'b1;
         assign out_planes = '0;
+        assign textured_2 = 1'b0;
 
-        wire _unused = &{1'b0, smooth, first_lit};
+        wire _unused = &{1'b0, smooth, textures, linear, first_lit, first_texture, light_2};
     end
 
     records_pkg::descriptor_t descriptor;

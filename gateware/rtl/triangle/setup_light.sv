@@ -1,6 +1,7 @@
-// Stage 1 of the triangle setup for smooth shading: computes P = nearest((w + 1/2)·L) of each vertex and channel
-// (docs/formats/triangle.md, "Smooth shading"), where w is the depth of the vertex and L its light. The results are the inputs of a plane:
-// P at vertex 0 (`value`), and P at the other vertices minus P at vertex 0 (`p10`, `p20`).
+// Stage 1 of the triangle setup for smooth shading and textures: computes P = nearest((w + 1/2)·L) of each vertex and channel
+// (docs/formats/triangle.md, "Smooth shading"), where w is the depth of the vertex and L its light, or its share σ of a texture coordinate
+// (docs/formats/texture.md, "On a triangle"). The results are the inputs of a plane: P at vertex 0 (`value`), and P at the other vertices
+// minus P at vertex 0 (`p10`, `p20`).
 //
 // A round computes the three products of a channel, vertex after vertex, for the triangle in stage 1. The results wait in a queue until the
 // same round of the next beat. The module `setup` drives `count`, the number of the clock in a round (11 clocks or more), `round`, and
@@ -12,7 +13,9 @@
 
 `default_nettype none
 
-module setup_light (
+module setup_light #(
+    parameter bit TEXTURE = 1'b0
+) (
     input  wire         clk,
     input  wire  [3:0]  count,
     input  wire  [1:0]  round,
@@ -23,15 +26,24 @@ module setup_light (
     input  wire         front,
     input  wire         swap,   // vertices 1 and 2 of the mesh are exchanged
     input  wire  [2:0][40:0] lights, // triangle_pkg::light_t each, numbered as in the mesh
+    // With TEXTURE: the channel is a coordinate with this share, u0.17, one clock after `place`; `linear` in orthographic projection.
+    input  wire         is_coordinate,
+    input  wire         linear,
+    input  wire  [16:0] share,
+    output logic [1:0]  place,   // number of the vertex in the mesh
     // Results for the triangle in stage 2, in the channel of the round.
     output logic [23:0] value,
     output logic [24:0] p10,
     output logic [24:0] p20
 );
-    logic        [1:0]    vertex, place;
+    // Orthographic projection has this weight for w.
+    localparam logic [24:0] WEIGHT = 25'd8388576;
+
+    logic        [1:0]    vertex;
     logic        [24:0]   w;
-    logic        [14:0]   half;
+    logic        [17:0]   half;
     logic        [13:0]   lit;
+    logic        [16:0]   factor;
     logic signed [43:0]   p;
     triangle_pkg::light_t light;
 
@@ -50,24 +62,25 @@ module setup_light (
             default: lit = {light.blue, 1'b0};
         endcase
         if (light.back == front) lit = '0;
+        factor = TEXTURE && is_coordinate ? share : {lit, 3'd0};
     end
 
-    // The product is w·L + L/2 + 1/2. In units of w half a depth code is 2^5; in units of the product half a unit of P is 2^13.
+    // The product is w·L + L/2 + 1/2. In units of w half a depth code is 2^5; in units of the product half a unit of P is 2^16.
     always_ff @(posedge clk) begin
-        w    <= {1'b0, w0} + (vertex[0] ? w10 : vertex[1] ? w20 : '0);
-        half <= {1'b0, lit} + 15'd256;
+        w    <= TEXTURE && is_coordinate && linear ? WEIGHT : {1'b0, w0} + (vertex[0] ? w10 : vertex[1] ? w20 : '0);
+        half <= {1'b0, factor} + 18'd2048;
     end
 
-    multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a(w), .b({4'b0, lit}), .c({24'b0, half, 5'b0}), .p);
+    multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a(w), .b({1'b0, factor}), .c({21'b0, half, 5'b0}), .p);
 
     logic [23:0] first;
     logic [24:0] p10_1, difference;
     logic [73:0] queue_1, queue_2;
 
-    assign difference = {1'b0, p[37:14]} - {1'b0, first};
+    assign difference = {1'b0, p[40:17]} - {1'b0, first};
 
     always_ff @(posedge clk) begin
-        if (count == 4'd4) first <= p[37:14];
+        if (count == 4'd4) first <= p[40:17];
         if (count == 4'd7) p10_1 <= difference;
     end
 
@@ -75,7 +88,7 @@ module setup_light (
         .clk, .next, .in({queue_1, queue_2, first, difference, p10_1}), .out({value, p20, p10, queue_1, queue_2})
     );
 
-    wire _unused = &{1'b0, p[43:38], p[13:0]};
+    wire _unused = &{1'b0, p[43:41], p[16:0], is_coordinate, linear, share};
 endmodule
 
 `default_nettype wire

@@ -77,7 +77,9 @@ module triangle_engine #(
     localparam int unsigned RASTER_CLIENTS = 4;
     // The client that reads textures is built with TEXTURE alone.
     localparam int unsigned BUILT_CLIENTS  = TEXTURE ? 4 : 3;
-    localparam int unsigned CLIENTS        = 2 + RASTER_CLIENTS;
+    // Of a geometry pass: mesh, vertices, texture coordinates.
+    localparam int unsigned CLIENTS        = 3 + RASTER_CLIENTS;
+    localparam int unsigned VERTEX_CLIENTS = TEXTURE ? 2 : 1;
 
     logic [CLIENTS-1:0]              ask_valid, ask_ready, data_valid, data_ready;
     logic [CLIENTS*ADDRESS_BITS-1:0] ask_addr;
@@ -108,8 +110,8 @@ module triangle_engine #(
         geometry_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .LINES(LINES)) geometry_unit (
             .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
             .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
-            .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
-            .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
+            .ask_valid(ask_valid[2:0]), .ask_ready(ask_ready[2:0]), .ask_addr(ask_addr[3*ADDRESS_BITS-1:0]),
+            .data_valid(data_valid[2:0]), .data_ready(data_ready[2:0]), .data(data[3*128-1:0]),
             .descriptors_write_request, .descriptors_write_answer, .lists_write_request, .lists_write_answer,
             .results, .events(geometry_events)
         );
@@ -117,19 +119,20 @@ module triangle_engine #(
         assign mesh_read_request = '0;
         assign {descriptors_write_request, lists_write_request} = '0;
         assign {ask_ready[0], data_valid[0], data[1*128-1:0]} = '0;
-        assign {ask_valid[1:0], ask_addr[2*ADDRESS_BITS-1:0], data_ready[1:0]} = '0;
+        assign {ask_valid[2:0], ask_addr[3*ADDRESS_BITS-1:0], data_ready[2:0]} = '0;
         assign {status.geometry_busy, status.geometry_done, status.mesh_error, status.full} = '0;
         assign {results, geometry_events} = '0;
         assign ports_idle[0] = 1'b1;
-        wire _unused = &{1'b0, geometry_start, geometry_flags, geometry, view, drop, ask_valid[0], ask_ready[1:0],
-                         ask_addr[1*ADDRESS_BITS-1:0], data_valid[1:0], data_ready[0], data[2*128-1:0], mesh_read_answer};
+        wire _unused = &{1'b0, geometry_start, geometry_flags, geometry, view, drop, ask_valid[0], ask_ready[2:0],
+                         ask_addr[1*ADDRESS_BITS-1:0], data_valid[2:0], data_ready[0], data[3*128-1:0], mesh_read_answer};
     end
 
     if (GEOMETRY && TRIANGLES) begin : vertices
-        read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) vertex_read (
+        read_port #(.CLIENTS(VERTEX_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS)) vertex_read (
             .clk, .rst, .drop, .idle(ports_idle[1]),
-            .ask_valid(ask_valid[1]), .ask_ready(ask_ready[1]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS]),
-            .data_valid(data_valid[1]), .data_ready(data_ready[1]), .data(data[2*128-1:1*128]),
+            .ask_valid(ask_valid[1 +: VERTEX_CLIENTS]), .ask_ready(ask_ready[1 +: VERTEX_CLIENTS]),
+            .ask_addr(ask_addr[ADDRESS_BITS +: VERTEX_CLIENTS*ADDRESS_BITS]), .data_valid(data_valid[1 +: VERTEX_CLIENTS]),
+            .data_ready(data_ready[1 +: VERTEX_CLIENTS]), .data(data[128 +: VERTEX_CLIENTS*128]),
             .cmd_valid(vertex_read_request.cmd_valid), .cmd_ready(vertex_read_answer.cmd_ready), .cmd_addr(vertex_read_request.cmd_addr),
             .rdata_valid(vertex_read_answer.rdata_valid), .rdata(vertex_read_answer.rdata)
         );
@@ -140,34 +143,39 @@ module triangle_engine #(
         wire _unused = &{1'b0, vertex_read_answer, ask_valid[1], ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS], data_ready[1]};
     end
 
+    if (!TEXTURE || !GEOMETRY || !TRIANGLES) begin : no_coordinates
+        assign {ask_ready[2], data_valid[2], data[3*128-1:2*128]} = '0;
+        wire _unused = &{1'b0, ask_valid[2], ask_addr[3*ADDRESS_BITS-1:2*ADDRESS_BITS], data_ready[2]};
+    end
+
     if (TRIANGLES || LINES) begin : descriptors
         // The FIFOs of list words and of descriptor words are in block RAM, which is less scarce in the FPGA than LUTs.
         read_port #(.CLIENTS(BUILT_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(BUILT_CLIENTS'(4'b1110))) raster_read (
             .clk, .rst, .drop, .idle(ports_idle[2]),
-            .ask_valid(ask_valid[2 +: BUILT_CLIENTS]), .ask_ready(ask_ready[2 +: BUILT_CLIENTS]),
-            .ask_addr(ask_addr[2*ADDRESS_BITS +: BUILT_CLIENTS*ADDRESS_BITS]), .data_valid(data_valid[2 +: BUILT_CLIENTS]),
-            .data_ready(data_ready[2 +: BUILT_CLIENTS]), .data(data[2*128 +: BUILT_CLIENTS*128]),
+            .ask_valid(ask_valid[3 +: BUILT_CLIENTS]), .ask_ready(ask_ready[3 +: BUILT_CLIENTS]),
+            .ask_addr(ask_addr[3*ADDRESS_BITS +: BUILT_CLIENTS*ADDRESS_BITS]), .data_valid(data_valid[3 +: BUILT_CLIENTS]),
+            .data_ready(data_ready[3 +: BUILT_CLIENTS]), .data(data[3*128 +: BUILT_CLIENTS*128]),
             .cmd_valid(raster_read_request.cmd_valid), .cmd_ready(raster_read_answer.cmd_ready), .cmd_addr(raster_read_request.cmd_addr),
             .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
         );
     end else begin : fields_alone
         assign raster_read_request = '0;
-        assign {ask_ready[4:2], data_valid[4:2], data[5*128-1:2*128]} = '0;
+        assign {ask_ready[5:3], data_valid[5:3], data[6*128-1:3*128]} = '0;
         assign ports_idle[2] = 1'b1;
-        wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[4:2], ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS], data_ready[4:2]};
+        wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[5:3], ask_addr[6*ADDRESS_BITS-1:3*ADDRESS_BITS], data_ready[5:3]};
     end
 
     if (!TEXTURE || !TRIANGLES && !LINES) begin : no_textures
-        assign {ask_ready[5], data_valid[5], data[6*128-1:5*128]} = '0;
-        wire _unused = &{1'b0, ask_valid[5], ask_addr[6*ADDRESS_BITS-1:5*ADDRESS_BITS], data_ready[5]};
+        assign {ask_ready[6], data_valid[6], data[7*128-1:6*128]} = '0;
+        wire _unused = &{1'b0, ask_valid[6], ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS], data_ready[6]};
     end
 
     raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .FIELDS(FIELDS), .LINES(LINES), .DEPTHS(DEPTHS)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
         .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster),
         .field_source, .field_sink,
-        .ask_valid(ask_valid[5:2]), .ask_ready(ask_ready[5:2]), .ask_addr(ask_addr[6*ADDRESS_BITS-1:2*ADDRESS_BITS]),
-        .data_valid(data_valid[5:2]), .data_ready(data_ready[5:2]), .data(data[6*128-1:2*128]),
+        .ask_valid(ask_valid[6:3]), .ask_ready(ask_ready[6:3]), .ask_addr(ask_addr[7*ADDRESS_BITS-1:3*ADDRESS_BITS]),
+        .data_valid(data_valid[6:3]), .data_ready(data_ready[6:3]), .data(data[7*128-1:3*128]),
         .even_write_request(frame_even_write_request), .even_write_answer(frame_even_write_answer),
         .odd_write_request(frame_odd_write_request), .odd_write_answer(frame_odd_write_answer),
         .events(raster_events)

@@ -43,6 +43,12 @@ package triangle_pkg;
         planes_bits = smooth || texture ? 96 * channels(smooth, texture) + (smooth ? 1 : 0) + (texture ? TEXTURE_BITS : 0) : 1;
     endfunction
 
+    // Returns the number of bits of what a vertex has besides its place: from the lowest bits a light_t with SMOOTH, and the texture
+    // coordinates with TEXTURE; without both one bit, 0.
+    function automatic int unsigned vertex_bits(input bit smooth, input bit texture);
+        vertex_bits = smooth || texture ? (smooth ? 41 : 0) + (texture ? 64 : 0) : 1;
+    endfunction
+
     // Returns the number of 128-bit words of a descriptor in memory.
     function automatic int unsigned descriptor_words(input bit smooth, input bit texture);
         descriptor_words = 3 + (smooth ? 3 : 0) + (texture ? 2 : 0);

@@ -32,6 +32,7 @@ package triangle_registers_pkg;
         logic recolour;
         logic lines;
         logic orthographic;
+        logic textures;
     } geometry_flags_t;
 
     // Parameters of the geometry pass. Memory regions are given by byte addresses.
@@ -47,6 +48,8 @@ package triangle_registers_pkg;
         logic [2:0][8:0] light_colour;
         logic [2:0][8:0] ambient;
         logic [15:0] colour;
+        logic [31:0] coordinates;
+        logic [7:0] first_texture;
     } geometry_t;
 
     // Camera and light of the geometry pass: docs/formats/camera.md, "Frame constants".

@@ -11,12 +11,13 @@ use glint_core::picture::Size;
 use glint_core::records::{
     PIECE_MARK, descriptor, piece as piece_fields, planes, stored_piece, texture_planes,
 };
+use glint_core::texture::Texture;
 
 use crate::line::Piece;
 use crate::triangle::setup::{Plane, Setup};
-use crate::triangle::textured::Textured;
+use crate::triangle::textured::{Axis, Textured};
 
-pub use contents::{Contents, OfTexture};
+pub use contents::Contents;
 
 /// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = constants::GROUP as i32;
@@ -35,6 +36,32 @@ const TEXTURE_WORDS: usize = texture_planes::BITS.div_ceil(128) * 4;
 /// Number of 32-bit words of the planes of light, whole words of 16 bytes.
 const LIGHT_WORDS: usize = planes::BITS.div_ceil(128) * 4;
 const WORDS: usize = FLAT_WORDS + TEXTURE_WORDS + LIGHT_WORDS;
+
+/// The texture of a triangle: the fields of a [`Textured`](crate::triangle::textured::Textured), with its number in the frame's table
+/// in place of the texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OfTexture {
+    /// The number, from 1.
+    pub number: u8,
+    /// The planes of the coordinates s and t.
+    pub axes: [Axis; 2],
+    /// Light under flat shading.
+    pub light: [u8; 3],
+    /// The weight of the coordinates in orthographic projection.
+    pub weight: Option<u32>,
+}
+
+impl OfTexture {
+    /// The same with the texture itself.
+    pub fn with<'a>(&self, texture: Texture<'a>) -> Textured<'a> {
+        Textured {
+            texture,
+            axes: self.axes,
+            light: self.light,
+            weight: self.weight,
+        }
+    }
+}
 
 /// The optional parts of the descriptors that a gateware reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -127,9 +154,9 @@ const LOW_WORDS: usize = 4;
 const HALF_A_CODE: i64 = 1 << 13;
 
 impl Descriptor {
-    /// Packs a triangle; `colour` is its colour under flat shading without a texture, and `texture` its texture with the number in the
-    /// frame's table of textures.
-    pub fn new(setup: &Setup, colour: Rgb565, texture: Option<(&Textured, u8)>) -> Self {
+    /// Packs a triangle; `colour` is its colour under flat shading without a texture, and `texture` its
+    /// texture.
+    pub fn new(setup: &Setup, colour: Rgb565, texture: Option<&OfTexture>) -> Self {
         let bounds = setup.bounds;
         // The bounds are in the picture and so not negative: unsigned divisions suffice.
         let group_start = setup.start_column / GROUP;
@@ -158,8 +185,8 @@ impl Descriptor {
             }
             SMOOTH.put(&mut words, 1);
         }
-        if let Some((textured, number)) = texture {
-            put_texture(&mut words, textured, number, back);
+        if let Some(texture) = texture {
+            put_texture(&mut words, texture, back);
         }
         Self { words }
     }
@@ -220,20 +247,20 @@ impl Descriptor {
 ///
 /// Not inlined, because few triangles have one.
 #[inline(never)]
-fn put_texture(words: &mut [u32], textured: &Textured, number: u8, back: i32) {
-    for (axis, of_axis) in textured.axes.iter().enumerate() {
+fn put_texture(words: &mut [u32], texture: &OfTexture, back: i32) {
+    for (axis, of_axis) in texture.axes.iter().enumerate() {
         put_plane(words, coordinate(axis), &of_axis.plane, back);
         let range = in_texture(texture_planes::RANGE).element(axis);
         range.put(words, of_axis.range_log2.into());
         let periods = in_texture(texture_planes::PERIODS).element(axis);
         periods.put(words, of_axis.periods.into());
     }
-    for (channel, light) in textured.light.into_iter().enumerate() {
+    for (channel, light) in texture.light.into_iter().enumerate() {
         let field = in_texture(texture_planes::LIGHT).element(channel);
         field.put(words, light.into());
     }
-    in_texture(texture_planes::TEXTURE).put(words, number.into());
-    in_texture(texture_planes::LINEAR).put(words, textured.weight.is_some().into());
+    in_texture(texture_planes::TEXTURE).put(words, texture.number.into());
+    in_texture(texture_planes::LINEAR).put(words, texture.weight.is_some().into());
 }
 
 /// Writes a plane with its start moved `back` columns to the left.
@@ -355,7 +382,7 @@ impl<'a> ListWriter<'a> {
     }
 
     /// Appends a triangle to the lists of all bands within its bounds; `colour` and `texture` as for [`Descriptor::new`].
-    pub fn put(&mut self, setup: &Setup, colour: Rgb565, texture: Option<(&Textured, u8)>) {
+    pub fn put(&mut self, setup: &Setup, colour: Rgb565, texture: Option<&OfTexture>) {
         // The bounds are in the picture and not empty.
         let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
         let bands = top / self.band_rows..=(bottom - 1) / self.band_rows;

@@ -4,15 +4,15 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
-use glint_core::texture::Texture;
 
 use crate::triangle::clip::{Cut, TexturedVertex, clip, off_picture};
+use crate::triangle::descriptor::OfTexture;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_light::MeshLight;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::setup::{Bounds, Oriented, Setup};
 use crate::triangle::shade::{Light, Lit, intensity, lit};
-use crate::triangle::textured::{Textured, flat_light};
+use crate::triangle::textured::{axes, flat_light, weight};
 use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 
 /// Options of drawing a mesh.
@@ -192,20 +192,20 @@ impl Placed {
     }
 }
 
-/// The texture of a placed triangle: `texture` has the coordinates s and t, s16.16, of the triangle's `vertices`, and `setup` is the setup of
-/// `placed`.
+/// The texture with this number in the frame's table on a triangle that [`Placed::new`] accepts, from the coordinates s and t of its
+/// vertices.
 ///
 /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
 #[inline(never)]
-pub fn textured<'a>(
+pub fn texture_on(
     frame: &MeshSetup,
     options: &Options,
     triangle: &Triangle,
     vertices: [&ScreenVertex; 3],
-    (texture, coordinates): &(Texture<'a>, [[i32; 2]; 3]),
+    (number, coordinates): (u8, &[[i32; 2]; 3]),
     placed: &Placed,
     setup: &Setup,
-) -> Textured<'a> {
+) -> OfTexture {
     let vertices = vertices.map(|v| *v);
     let order = match options.winding {
         Winding::Screen => Oriented::screen_order(&vertices),
@@ -216,14 +216,18 @@ pub fn textured<'a>(
     let normal = options.turned(triangle.normal);
     let intensity = intensity(normal, &frame.light, placed.oriented.facing);
     let colour = options.colour.unwrap_or(triangle.colour);
-    Textured::new(
-        *texture,
-        &placed.oriented,
-        setup,
-        &order.map(|i| coordinates[i]),
-        flat_light(colour, options.shares(intensity)),
-        placed.projection == Projection::Orthographic,
-    )
+    let is_linear = placed.projection == Projection::Orthographic;
+    OfTexture {
+        number,
+        axes: axes(
+            &placed.oriented,
+            setup,
+            &order.map(|i| coordinates[i]),
+            is_linear,
+        ),
+        light: flat_light(colour, options.shares(intensity)),
+        weight: weight(is_linear),
+    }
 }
 
 /// The light of a triangle's vertices.

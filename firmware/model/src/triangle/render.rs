@@ -13,7 +13,7 @@ use crate::triangle::clip::contains;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{
-    Options, Placed, TexturedCorner, clip_fan, clip_textured_fan, lit_corners, textured,
+    Options, Placed, TexturedCorner, clip_fan, clip_textured_fan, lit_corners, texture_on,
     vertex_light,
 };
 use crate::triangle::raster;
@@ -235,11 +235,8 @@ pub fn set_up_parts<'a>(
         stats.triangles_in += mesh.triangle_count();
         let clipped = stats.clipped;
         let mut renderer = Renderer {
-            frame,
-            options,
-            textures: MeshTextures::new(&mesh, options.textures),
-            emit,
             stats,
+            ..Renderer::new(&mesh, &frame, &options, emit)
         };
         renderer.regular(&mesh, scratch);
         stats = renderer.stats;
@@ -260,11 +257,8 @@ pub fn set_up_parts<'a>(
             break;
         };
         let mut renderer = Renderer {
-            frame,
-            options,
-            textures: MeshTextures::new(&mesh, options.textures),
-            emit,
             stats,
+            ..Renderer::new(&mesh, &frame, &options, emit)
         };
         // If a mesh has a single chunk, its projected vertices are still in the scratch memory.
         let is_projected = number == projected && mesh.chunks().nth(1).is_none();
@@ -307,7 +301,7 @@ fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
 }
 
 /// Makes the triangles of one mesh.
-struct Renderer<'a, 'b> {
+pub(super) struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options<'a>,
     /// The textures of the mesh, if it has some and they are drawn.
@@ -316,7 +310,22 @@ struct Renderer<'a, 'b> {
     stats: Stats,
 }
 
-impl<'a> Renderer<'a, '_> {
+impl<'a, 'b> Renderer<'a, 'b> {
+    pub(super) fn new(
+        mesh: &Mesh<'a>,
+        frame: &MeshSetup,
+        options: &Options<'a>,
+        emit: &'b mut Emit<'b>,
+    ) -> Self {
+        Self {
+            frame: *frame,
+            options: *options,
+            textures: MeshTextures::new(mesh, options.textures),
+            emit,
+            stats: Stats::default(),
+        }
+    }
+
     /// Makes the triangles that need no clipping, and counts the others.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
@@ -405,7 +414,13 @@ impl<'a> Renderer<'a, '_> {
 
     /// Clips a triangle and sets up its parts. Returns whether a part reached the walker. `first` is the number of the chunk's first
     /// vertex in the mesh.
-    fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk, first: usize) -> bool {
+    pub(super) fn clip(
+        &mut self,
+        index: u32,
+        triangle: &Triangle,
+        chunk: &Chunk,
+        first: usize,
+    ) -> bool {
         let (frame, options) = (self.frame, self.options);
         let mut any = false;
         if let Some((texture, coordinates)) = self.texture(first, triangle) {
@@ -448,9 +463,14 @@ impl<'a> Renderer<'a, '_> {
             return false;
         };
         let setup = placed.setup();
-        let textured = texture.filter(|_| TEXTURE.is_built).map(|texture| {
+        let textured = texture.filter(|_| TEXTURE.is_built);
+        let textured = textured.map(|(texture, coordinates)| {
             let (frame, options) = (&self.frame, &self.options);
-            textured(frame, options, triangle, vertices, texture, &placed, &setup)
+            let texture_of = (0, coordinates);
+            texture_on(
+                frame, options, triangle, vertices, texture_of, &placed, &setup,
+            )
+            .with(*texture)
         });
         let triangle = DrawnTriangle {
             index,

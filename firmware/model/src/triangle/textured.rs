@@ -8,6 +8,7 @@ use glint_core::mesh::{Attribute, Mesh, Triangle};
 use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Texture, Wrap};
 
+use crate::triangle::descriptor::OfTexture;
 use crate::triangle::quotient::CHANNEL_BITS;
 use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
 use crate::triangle::shade::HALF_CODE;
@@ -102,18 +103,21 @@ impl<'a> Textured<'a> {
         light: [u8; 3],
         is_linear: bool,
     ) -> Self {
-        let weights = if is_linear {
-            [WEIGHT; 3]
-        } else {
-            triangle.vertices.map(|vertex| vertex.w)
-        };
-        let axis =
-            |number: usize| Axis::new(triangle, setup, coordinates.map(|c| c[number]), weights);
         Self {
             texture,
-            axes: [axis(0), axis(1)],
+            axes: axes(triangle, setup, coordinates, is_linear),
             light,
-            weight: is_linear.then_some((WEIGHT + HALF_CODE) << 8),
+            weight: weight(is_linear),
+        }
+    }
+
+    /// The same for a descriptor, with the number of the texture in the frame's table.
+    pub fn numbered(&self, number: u8) -> OfTexture {
+        OfTexture {
+            number,
+            axes: self.axes,
+            light: self.light,
+            weight: self.weight,
         }
     }
 
@@ -188,6 +192,26 @@ impl<'a> Textured<'a> {
         });
         level_of(most[0].max(most[1]), &inverse).min(last)
     }
+}
+
+/// The coordinates s and t on a triangle, as for [`Textured::new`].
+pub fn axes(
+    triangle: &Oriented,
+    setup: &Setup,
+    coordinates: &[[i32; 2]; 3],
+    is_linear: bool,
+) -> [Axis; 2] {
+    let weights = if is_linear {
+        [WEIGHT; 3]
+    } else {
+        triangle.vertices.map(|vertex| vertex.w)
+    };
+    [0, 1].map(|number: usize| Axis::new(triangle, setup, coordinates.map(|c| c[number]), weights))
+}
+
+/// The weight of coordinates in orthographic projection, which replaces the depth.
+pub fn weight(is_linear: bool) -> Option<u32> {
+    is_linear.then_some((WEIGHT + HALF_CODE) << 8)
 }
 
 impl Axis {

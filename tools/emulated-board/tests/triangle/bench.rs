@@ -8,7 +8,8 @@ use glint_core::picture::Size;
 use glint_model::triangle::PreparedMesh;
 use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter, list_word};
 use glint_model::triangle::setup::Setup;
-use glint_model::{MeshLight, MeshSetup, Options, clip_exceptions};
+use glint_model::triangle::textured::Textured;
+use glint_model::{DrawnTriangle, MeshLight, MeshSetup, Options, clip_exceptions};
 use glint_vectors::Picture;
 use litex_pac::register::Value;
 use litex_pac::triangle::{
@@ -267,7 +268,9 @@ impl Bench {
             left_out[1] += self.read(offset::CULLED);
             let numbers = self.exceptions(listed);
             listed += numbers.len() as u32;
-            let mut put = |setup: &Setup, colour| clipped.push((*setup, colour));
+            let mut put = |triangle: &DrawnTriangle, setup: &Setup, _: Option<&Textured>| {
+                clipped.push((*setup, triangle.colour));
+            };
             let (frame, options) = (&part.frame, &part.options);
             clip_exceptions(
                 &part.mesh,

@@ -7,13 +7,12 @@ use glint_core::colour::Rgb565;
 use glint_core::records::{PIECE_MARK, descriptor, piece, stored_piece, texture_planes};
 
 use super::{
-    DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, Layout, PlaneFields, SMOOTH, coordinate,
-    in_texture, light,
+    DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, Layout, OfTexture, PlaneFields, SMOOTH,
+    coordinate, in_texture, light,
 };
 use crate::line::{Line, Piece};
-use crate::triangle::setup::{Bounds, Edge, Plane, Setup, WEIGHT};
-use crate::triangle::shade::HALF_CODE;
-use crate::triangle::textured::Axis;
+use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
+use crate::triangle::textured::{Axis, weight};
 
 /// Primitive that a descriptor in memory represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,20 +23,6 @@ pub enum Contents {
     Piece(Piece),
     /// A damaged triangle, whose groups are not in the picture; it is not drawn.
     Stray,
-}
-
-/// The texture of a triangle: the fields of a [`Textured`](crate::triangle::textured::Textured), with its number in the frame's table
-/// in place of the texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OfTexture {
-    /// The number, from 1.
-    pub number: u8,
-    /// The planes of the coordinates s and t.
-    pub axes: [Axis; 2],
-    /// Light under flat shading.
-    pub light: [u8; 3],
-    /// The weight of the coordinates in orthographic projection.
-    pub weight: Option<u32>,
 }
 
 impl OfTexture {
@@ -127,8 +112,7 @@ impl Descriptor {
             light: [0, 1, 2].map(|channel| {
                 (in_texture(texture_planes::LIGHT).element(channel)).get(words) as u8
             }),
-            weight: (in_texture(texture_planes::LINEAR).get(words) != 0)
-                .then_some((WEIGHT + HALF_CODE) << 8),
+            weight: weight(in_texture(texture_planes::LINEAR).get(words) != 0),
         })
     }
 

@@ -3,12 +3,13 @@
 use glint_core::colour::Shading;
 use glint_core::mesh::{Triangle, Vertex};
 use glint_core::picture::Size;
+use glint_core::records::TextureCoordinates;
 use glint_model::line::Segment;
 use glint_model::triangle::descriptor::Layout;
 use glint_model::triangle::shade::Light;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::triangle::vertex_cache::{SLOTS, VertexCache};
-use glint_model::triangle::{Path, Placed, light_of};
+use glint_model::triangle::{Path, Placed, light_of, texture_on};
 use glint_model::{Options, Projected};
 use litex_pac::triangle::{Counters, Error, Geometry, offset};
 
@@ -83,7 +84,12 @@ impl GeometryUnit {
         } else {
             let flags = flags.with_smooth(flags.smooth() && layout.is_smooth);
             let setup = Setup::new(flags, parameters, size);
-            self.draw_mesh(&mut walk, &setup, size, ram)
+            let textures = Textures {
+                is_drawn: flags.textures() && layout.is_textured && !flags.smooth(),
+                coordinates: parameters.word(offset::COORDINATES),
+                before: parameters.unsigned(offset::FIRST_TEXTURE, 8) as u8,
+            };
+            self.draw_mesh(&mut walk, &setup, &textures, size, ram)
         };
         let written = self.output.write(ram);
         self.results.descriptor_count = self.output.descriptors();
@@ -111,10 +117,12 @@ impl GeometryUnit {
         &mut self,
         walk: &mut Walk,
         setup: &Setup,
+        textures: &Textures,
         size: Size,
         ram: &MainMemory,
     ) -> GeometryTime {
         let mut time = GeometryTime::new(setup.shading);
+        time.has_textures = textures.is_drawn;
         let frame = &setup.frame;
         let options = Options {
             cull: setup.cull,
@@ -156,7 +164,16 @@ impl GeometryUnit {
                     Path::Regular(places) => {
                         match Placed::new(frame, &options, &triangle, places, light.as_ref()) {
                             Some(placed) => {
-                                lists.put(&placed.setup(), placed.colour, None);
+                                let setup = placed.setup();
+                                let texture = textures.of(ram, chunk.first, &triangle);
+                                let texture = texture.map(|(number, coordinates)| {
+                                    let texture = (number, &coordinates);
+                                    texture_on(
+                                        frame, &options, &triangle, places, texture, &placed,
+                                        &setup,
+                                    )
+                                });
+                                lists.put(&setup, placed.colour, texture.as_ref());
                                 time.drawn += 1;
                             }
                             None => results.culled += 1,
@@ -195,5 +212,33 @@ impl GeometryUnit {
             }
         }
         time
+    }
+}
+
+/// The textures of the mesh of a pass.
+struct Textures {
+    is_drawn: bool,
+    /// Address of the vertices' texture coordinates.
+    coordinates: u32,
+    /// Number in the frame's table before that of the first texture.
+    before: u8,
+}
+
+impl Textures {
+    /// The number of a triangle's texture, and the coordinates of its vertices; `None` without a texture. `first` is the number in the mesh of
+    /// the first vertex of its chunk.
+    fn of(&self, ram: &MainMemory, first: u32, triangle: &Triangle) -> Option<(u8, [[i32; 2]; 3])> {
+        if !self.is_drawn || triangle.texture == 0 {
+            return None;
+        }
+        let coordinates = triangle.indices.map(|index| {
+            let vertex = first.wrapping_add(index.into());
+            let place = TextureCoordinates::BYTES as u32 * vertex;
+            let bytes = ram.array(self.coordinates.wrapping_add(place));
+            let element = bytes.map(|bytes| TextureCoordinates::from_bytes(&bytes));
+            let TextureCoordinates { s, t } = element.unwrap_or_default();
+            [s, t]
+        });
+        Some((triangle.texture.wrapping_add(self.before), coordinates))
     }
 }

@@ -43,6 +43,8 @@ pub struct GeometryTime {
     pub vertices: u32,
     /// Shading of the triangles.
     pub shading: Shading,
+    /// Whether textures are drawn.
+    pub has_textures: bool,
     /// Number of cycles of the line set-up.
     lines: u64,
 }
@@ -55,6 +57,7 @@ impl GeometryTime {
             drawn: 0,
             vertices: 0,
             shading,
+            has_textures: false,
             lines: 0,
         }
     }
@@ -69,12 +72,13 @@ impl GeometryTime {
     }
 
     /// Returns the estimated number of cycles: the cycles of the slowest part, plus an eighth of the cycles of the other parts, which do
-    /// not overlap completely with the slowest part. A drawn triangle takes 11 cycles, or 33 with smooth shading, every triangle 3 cycles, a vertex 6 cycles.
+    /// not overlap completely with the slowest part. A drawn triangle takes 11 cycles, or 33 with smooth shading or in a pass with
+    /// textures, every triangle 3 cycles, a vertex 6 cycles.
     pub fn cycles(&self) -> u64 {
         let parts = [
             match self.shading {
-                Shading::Flat => 11,
-                Shading::Smooth => 33,
+                Shading::Flat if !self.has_textures => 11,
+                Shading::Flat | Shading::Smooth => 33,
             } * u64::from(self.drawn),
             3 * u64::from(self.triangles),
             6 * u64::from(self.vertices),

@@ -17,6 +17,8 @@ pub struct Walk {
     /// Index of the first word after the mesh.
     past: u64,
     has_begun: bool,
+    /// Number of vertices of the chunks before.
+    vertices: u32,
     /// Whether the iterator has stopped at a chunk that has no vertices, has more than [`MOST`] vertices or triangles, or extends
     /// beyond the mesh's end.
     pub is_damaged: bool,
@@ -26,6 +28,8 @@ pub struct Walk {
 
 /// A chunk, by the indices of its memory words.
 pub struct Chunk {
+    /// Number in the mesh of the first vertex.
+    pub first: u32,
     /// The first vertex.
     pub vertices: u32,
     /// The triangles.
@@ -39,6 +43,7 @@ impl Walk {
             header: first.into(),
             past,
             has_begun: false,
+            vertices: 0,
             is_damaged: false,
             words: 0,
         }
@@ -64,7 +69,10 @@ impl Walk {
         }
         self.header = end;
         self.words = self.words.wrapping_add(triangles);
+        let before = self.vertices;
+        self.vertices = before.wrapping_add(vertices);
         Some(Chunk {
+            first: before,
             vertices: first as u32,
             // The end is within main memory, so it fits 32 bits.
             triangles: base as u32..end as u32,

@@ -1,7 +1,7 @@
 //! Test bench of the triangle engine, with a memory.
 
 use glint_core::camera::Projection;
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{Attribute, Mesh};
 use glint_model::triangle::descriptor::{Descriptor, Layout, band_rows, list_word};
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::vertex_cache;
@@ -352,6 +352,48 @@ impl Bench {
             read: self.reads[2].given - read,
             written: self.frame_words() - written,
         }
+    }
+
+    /// Draws a mesh with textures, whose clipped triangles are the second set, and compares the frame with the expected frame. Returns the
+    /// numbers of clocks of both passes.
+    pub fn draw_textured(
+        &mut self,
+        name: &str,
+        expected: &Expected,
+        bytes_of_mesh: &[u8],
+        clipped: &[(Descriptor, Bounds)],
+    ) -> [u64; 2] {
+        let mesh = Mesh::new_checked(bytes_of_mesh).expect("a valid mesh");
+        let offset = |part: &[u8]| part.as_ptr().addr() - bytes_of_mesh.as_ptr().addr();
+        let coordinates = mesh.attribute(Attribute::TextureCoordinates).unwrap();
+        self.configure(bytes_of_mesh, expected);
+        let records = mesh.records().as_flattened().len();
+        self.set("geometry.mesh_bytes", records as u64);
+        self.set("geometry_flags.textures", 1);
+        self.set("geometry.first_texture", 4);
+        let place = bytes(MESH) + offset(coordinates) as u64;
+        self.set("geometry.coordinates", place);
+        self.wait_for("status.ready");
+        self.pulse("geometry_start");
+        let geometry = self.wait_for("status.geometry_done");
+        let counts = ["status.mesh_error", "status.full"].map(|path| self.read(path));
+        assert_eq!(counts, [0, 0], "{name}: error, full");
+        write_set(&mut self.memory, expected.size.0, clipped, self.layout);
+        let addresses = mesh
+            .textures()
+            .map(|texture| offset(texture.bytes()) as u64);
+        let table = [0; 5]
+            .into_iter()
+            .chain(addresses.map(|at| bytes(MESH) + at));
+        let table: Vec<u8> = table.flat_map(|at| (at as u32).to_le_bytes()).collect();
+        self.memory.write(TEXTURES, &table);
+        self.set("raster.textures", bytes(TEXTURES));
+        let counts = [self.read("results.descriptor_count"), clipped.len() as u64];
+        self.module.drive_all("raster.count", counts);
+        self.set("raster_flags.first", 1);
+        self.set("raster_flags.second", u64::from(!clipped.is_empty()));
+        self.pulse("raster_start");
+        [geometry, self.finish(name, expected)]
     }
 
     /// Draws the second set alone, of triangles whose texture has number 1, and compares the frame with the expected frame. Returns the

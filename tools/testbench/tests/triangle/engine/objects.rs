@@ -5,7 +5,9 @@ use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
-use glint_model::{MeshSetup, Options, Placement, Shading, clip_exceptions};
+use glint_model::triangle::setup::Setup;
+use glint_model::triangle::textured::Textured;
+use glint_model::{DrawnTriangle, MeshSetup, Options, Placement, Shading, clip_exceptions};
 use glint_vectors::meshes::{self, ahead};
 use glint_vectors::scenes::inside;
 use rand::RngExt;
@@ -92,7 +94,9 @@ fn draw(bench: &mut Bench, name: &str, things: &[Thing], setups: &[MeshSetup]) -
         let exceptions = bench.exceptions();
         let mut numbers = exceptions[listed..].iter().copied();
         listed = exceptions.len();
-        let mut put = |setup: &_, colour| clipped.push((*setup, colour));
+        let mut put = |triangle: &DrawnTriangle, setup: &Setup, _: Option<&Textured>| {
+            clipped.push((*setup, triangle.colour));
+        };
         clip_exceptions(mesh, setup, options, &mut numbers, &mut put);
     }
     assert_eq!(listed, expected.stats.clipped as usize, "{name}");
