@@ -95,8 +95,13 @@ fn check_pictures(pictures: &[(PathBuf, PathBuf)]) {
     assert!(bytes < MOST, "{bytes} bytes of pictures");
 }
 
-/// Commands of docs/first-steps.md that are not run: the tests of packaging, and those of the firmware, do what they do.
-const BUILDS: [&str; 2] = ["cargo install --path tools/glint", "cargo xtask firmware"];
+/// Commands of docs/first-steps.md that are not run: the tests of packaging, those of the firmware, and those of the live page do what
+/// they do.
+const NOT_RUN: [&str; 3] = [
+    "cargo install --path tools/glint",
+    "cargo xtask firmware",
+    "glint board --web",
+];
 
 /// The code blocks of a page in a language.
 fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
@@ -111,16 +116,23 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
 fn the_first_steps_make_their_pictures() {
     let folder = folder("first-steps");
     let page = page("docs/first-steps.md");
-    let [house] = blocks(&page, "obj")[..] else {
-        panic!("one model");
+    let models = ["obj", "mtl"].map(|language| blocks(&page, language));
+    let ([house, r#box], [material]) = (&models[0][..], &models[1][..]) else {
+        panic!("two models, one with a material file");
     };
-    std::fs::write(folder.join("house.obj"), house).unwrap();
+    for (name, text) in [
+        ("house.obj", house),
+        ("box.obj", r#box),
+        ("box.mtl", material),
+    ] {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
     let mut pictures = Vec::new();
     for command in blocks(&page, "sh").into_iter().flat_map(str::lines) {
-        let Some(arguments) = command.strip_prefix("glint ") else {
-            assert!(BUILDS.contains(&command), "{command}");
+        if NOT_RUN.contains(&command) {
             continue;
-        };
+        }
+        let arguments = command.strip_prefix("glint ").expect(command);
         let arguments = words(arguments);
         let output = glint(&folder, &arguments);
         assert!(!output.stdout.is_empty(), "{command}");
@@ -136,7 +148,7 @@ fn the_first_steps_make_their_pictures() {
             pictures.push((folder.join(name), root().join("docs").join(shown)));
         }
     }
-    assert_eq!(pictures.len(), 6);
+    assert_eq!(pictures.len(), 7);
     check_pictures(&pictures);
 }
 

@@ -7,6 +7,7 @@
 //! | [`channels`] | the channel for messages between the pages and the session |
 //! | [`message`] | messages between the page and the board's side |
 //! | [`viewer`] | one open page: acts on its messages |
+//! | [`beside`] | the files that come with a mesh |
 //! | [`hub`] | passes pictures, texts and levels to all viewers; one of them has control |
 //! | [`inputs`] | the levels that the page sets |
 //! | [`motion`] | the motion sensor that the page turns, and the hand that it moves |
@@ -18,6 +19,7 @@
 //! docs/live-page.md describes the page and the messages.
 #![forbid(unsafe_code)]
 
+pub mod beside;
 pub mod channels;
 pub mod choices;
 pub mod files;

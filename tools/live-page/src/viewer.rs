@@ -1,23 +1,21 @@
 //! One open page, and the processing of its messages.
 
+use crate::beside::Beside;
 use crate::channels::{Channels, Request, Upload};
 use crate::hub::{Hub, Id};
 use crate::message::{FileHead, FromPage, ToPage};
 use crate::orbit::Drag;
 use glint_core::console::{LINE_MAX, complete};
 use glint_mesh::convert::Options;
-use glint_mesh::error::InputError;
 use glint_mesh::model;
-use std::collections::HashMap;
-use std::path::Path;
 
 /// Maximum size in bytes of the files of an upload.
 const MAX_UPLOAD: usize = 64 << 20;
 
-/// Maximum number of auxiliary files of an upload.
-const MAX_BESIDE: usize = 64;
+/// Maximum number of auxiliary files of an upload. Their names fit a message, whatever their characters.
+const MAX_BESIDE: usize = 192;
 
-/// Maximum number of characters of a file's name.
+/// Maximum number of characters of a file's path.
 const MAX_NAME: usize = 100;
 
 /// The reason to close a page's connection.
@@ -47,29 +45,28 @@ impl Sent {
     }
 
     /// Converts the mesh of a complete upload.
-    fn converted(self) -> Result<Upload, InputError> {
+    ///
+    /// # Errors
+    /// A file violates its format, or a buffer is missing. The error is a line for the user.
+    fn converted(self) -> Result<Upload, String> {
         let mut rest = self.data;
-        let mut files = self.files.into_iter();
-        let mut next = |file: &FileHead| {
+        let mut files = self.files.into_iter().map(|file| {
             let after = rest.split_off(file.bytes);
-            std::mem::replace(&mut rest, after)
-        };
-        let (mut name, mut mesh) = (String::new(), Vec::new());
-        if let Some(file) = files.next() {
-            mesh = next(&file);
-            name = file.name;
-        }
-        let beside: HashMap<String, Vec<u8>> = files
-            .map(|file| {
-                let data = next(&file);
-                (file.name, data)
-            })
-            .collect();
-        let mut beside = |name: &str| beside.get(Path::new(name).file_name()?.to_str()?).cloned();
-        let model = model::of_file(&name, mesh, Options::default(), &mut beside)?;
+            (file.name, std::mem::replace(&mut rest, after))
+        });
+        let (name, mesh) = files.next().unwrap_or_default();
+        let mut beside = Beside::new(&name, files);
+        let options = Options::default();
+        let model = model::of_file(&name, mesh, options, &mut |name| beside.read(name));
+        let hint = beside.hint();
+        let model = model.map_err(|error| match &hint {
+            Some(hint) => format!("{error}; {hint}"),
+            None => error.to_string(),
+        })?;
+        let remarks = model.remarks().iter().cloned();
         let inside_out = model.inside_out().map(str::to_owned);
         Ok(Upload {
-            remarks: model.remarks().iter().cloned().chain(inside_out).collect(),
+            remarks: remarks.chain(hint).chain(inside_out).collect(),
             up: model.up,
             mesh: model.mesh,
         })
@@ -217,7 +214,7 @@ impl Viewer {
         {
             match file.converted() {
                 Ok(upload) => channels.request(self.id, Request::Upload(upload)),
-                Err(error) => channels.hub.notify_one(self.id, error.to_string()),
+                Err(error) => channels.hub.notify_one(self.id, error),
             }
         }
         Ok(())

@@ -1,36 +1,90 @@
-// Uploads of mesh files, dropped on the page or chosen.
+// Uploads of a model, dropped on the page or chosen, as files or as a folder.
 const CHUNK = 64 << 10;
 const MAX_BYTES = 64 << 20;
-// Auxiliary files of a mesh: materials of an OBJ, and buffers of a glTF.
-const BESIDE = [".mtl", ".bin"];
+// Most auxiliary files and longest name that the board's side accepts.
+const MAX_BESIDE = 192;
+const MAX_NAME = 100;
+// Most files and folders that are looked at: a folder that was dropped by mistake may have millions.
+const MAX_ENTRIES = 20000;
+// Auxiliary files of a mesh: materials of an OBJ, buffers of a glTF, pictures of textures.
+const BESIDE = [".mtl", ".bin", ".png", ".jpg", ".jpeg"];
+
+const extension = (path) => path.slice(path.lastIndexOf(".")).toLowerCase();
+const depth = (path) => path.split("/").length;
+const order = (a, b) => depth(a.path) - depth(b.path) || (a.path < b.path ? -1 : a.path > b.path ? 1 : 0);
+
+// Files with their paths, of files and folders: entries of a file system, or files.
+async function filesOf(entries) {
+  const found = [];
+  for (let i = 0; i < entries.length; i++) {
+    const entry = entries[i];
+    if (i >= MAX_ENTRIES) throw new Error(`expected the folder of a model, found one of more than ${MAX_ENTRIES} files`);
+    if (entry.isDirectory) {
+      const reader = entry.createReader();
+      const read = () => new Promise((done, fail) => reader.readEntries(done, fail));
+      // A call returns some of the entries, and none at the end.
+      for (let some = await read(); some.length > 0; some = await read()) entries.push(...some);
+    } else if (entry.isFile) {
+      const file = await new Promise((done, fail) => entry.file(done, fail));
+      found.push({ path: entry.fullPath.replace(/^\/+/, ""), file });
+    } else {
+      found.push({ path: entry.webkitRelativePath || entry.name, file: entry });
+    }
+  }
+  return found;
+}
+
+// Removes the folders that all paths share.
+function withoutCommonFolders(files) {
+  const [first, ...others] = files.map(({ path }) => path.split("/"));
+  let shared = 0;
+  while (shared < first.length - 1 && others.every((path) => shared < path.length - 1 && path[shared] === first[shared])) shared++;
+  return files.map(({ path, file }) => ({ path: path.split("/").slice(shared).join("/"), file }));
+}
 
 export function startUpload(send, sendBytes, notify) {
   const bar = document.getElementById("progress");
-  const choice = document.getElementById("file");
-  const MESHES = choice.accept.split(",").filter((name) => !BESIDE.includes(name));
+  const inputs = { files: document.getElementById("file"), folder: document.getElementById("folder") };
+  const MESHES = inputs.files.accept.split(",").filter((name) => !BESIDE.includes(name));
 
-  const extension = ({ name }) => name.slice(name.lastIndexOf(".")).toLowerCase();
-  // A name of at most 60 characters, with its end.
-  const head = ({ name }, bytes) => ({ name: [...name].slice(-60).join(""), bytes: bytes.byteLength });
-
-  // Uploads the first mesh of the files, with its materials and buffers.
-  async function upload(files) {
-    const mesh = files.find((file) => MESHES.includes(extension(file))) ?? files[0];
-    if (!mesh) return;
-    const all = [mesh, ...files.filter((file) => file !== mesh && BESIDE.includes(extension(file)))];
-    if (document.body.dataset.holder !== "you") return notify("Take control to upload a model.");
-    const size = all.reduce((sum, file) => sum + file.size, 0);
-    if (mesh.size === 0 || size > MAX_BYTES) return notify(`${mesh.name}: expected 1 byte to 64 MiB, found ${size} bytes`);
-    const contents = [];
-    for (const file of all) {
-      try {
-        contents.push(await file.arrayBuffer());
-      } catch (error) {
-        return notify(`${file.name}: expected a file that the browser can read: ${error.message}`);
-      }
+  // The mesh, in the folder nearest to the first, and its auxiliary files.
+  function modelOf(found) {
+    const sorted = found.sort(order);
+    const mesh = sorted.find(({ path }) => MESHES.includes(extension(path)));
+    if (!mesh) {
+      const names = sorted.slice(0, 3).map(({ path }) => path).join(", ");
+      throw new Error(`expected a model (${MESHES.join(", ")}) and the files that it names, found ${names || "no file"}`);
     }
-    const [own, ...beside] = all.map((file, number) => head(file, contents[number]));
-    send({ type: "upload", ...own, beside });
+    const files = withoutCommonFolders([mesh, ...sorted.filter(({ path }) => BESIDE.includes(extension(path)))]);
+    const size = files.reduce((sum, { file }) => sum + file.size, 0);
+    const instead = "drop only the model and the files that it names";
+    if (mesh.file.size === 0) throw new Error(`${mesh.path}: expected a model, found an empty file`);
+    if (files.length > MAX_BESIDE + 1) throw new Error(`expected at most ${MAX_BESIDE} materials, buffers and pictures, found ${files.length - 1}: ${instead}`);
+    if (size > MAX_BYTES) throw new Error(`${mesh.path}: expected files of at most 64 MiB together, found ${size} bytes: ${instead}`);
+    return files;
+  }
+
+  async function upload(entries) {
+    if (entries.length === 0) return;
+    if (document.body.dataset.holder !== "you") return notify("Take control to upload a model.");
+    notify("");
+    const contents = [];
+    let heads;
+    try {
+      const files = modelOf(await filesOf(entries));
+      for (const { path, file } of files) {
+        const bytes = await file.arrayBuffer().catch(({ message }) => {
+          throw new Error(`${path}: expected a file that the browser can read: ${message}`);
+        });
+        contents.push(bytes);
+      }
+      // Of a long path, its end.
+      heads = files.map(({ path }, i) => ({ name: [...path].slice(-MAX_NAME).join(""), bytes: contents[i].byteLength }));
+    } catch ({ message }) {
+      return notify(message);
+    }
+    const [mesh, ...beside] = heads;
+    send({ type: "upload", ...mesh, beside });
     for (const bytes of contents) {
       for (let start = 0; start < bytes.byteLength; start += CHUNK) sendBytes(bytes.slice(start, start + CHUNK));
     }
@@ -45,11 +99,16 @@ export function startUpload(send, sendBytes, notify) {
   addEventListener("drop", (event) => {
     if (!hasFile(event)) return;
     event.preventDefault();
-    upload([...event.dataTransfer.files]);
+    // The items are only valid during the event.
+    const items = [...event.dataTransfer.items].filter(({ kind }) => kind === "file");
+    upload(items.map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile()).filter(Boolean));
   });
-  choice.addEventListener("change", () => {
-    upload([...choice.files]);
-    choice.value = "";
-  });
+  for (const [name, input] of Object.entries(inputs)) {
+    document.getElementById(`choose-${name}`).addEventListener("click", () => input.click());
+    input.addEventListener("change", () => {
+      upload([...input.files]);
+      input.value = "";
+    });
+  }
   return show;
 }

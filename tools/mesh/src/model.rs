@@ -1,6 +1,6 @@
 //! The argument MODEL of the command line: a mesh file, or a generator.
 
-use crate::convert::{self, Options, Report};
+use crate::convert::{self, Options, Report, TextureOptions, TextureReport};
 use crate::error::{FormatError, InputError};
 use crate::formats::{self, Beside, Format, STDIN, glm};
 use crate::generate::{self, NAMES};
@@ -14,13 +14,18 @@ use std::path::Path;
 pub struct Model {
     /// The mesh in the board's memory layout.
     pub mesh: Vec<u8>,
-    /// The report of the conversion; `None` for a `.glm` file, which needs no conversion.
+    /// The report of the conversion; `None` for a `.glm` file that needs none.
     pub report: Option<Report>,
     /// The axis that points up, by the format of the file; z for a generator.
     pub up: Axis,
 }
 
 impl Model {
+    /// Reports on the textures that were converted.
+    pub fn textures(&self) -> &[TextureReport] {
+        self.report.as_ref().map_or(&[], |report| &report.textures)
+    }
+
     /// The remarks on the file.
     pub fn remarks(&self) -> &[String] {
         self.report.as_ref().map_or(&[], |report| &report.remarks)
@@ -107,7 +112,7 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
     }
 }
 
-/// Reads or generates a model and converts it.
+/// Reads or generates a model and converts it. A `.glm` file is kept as it is, except its textures if the options are about them.
 ///
 /// # Errors
 /// Those of [`polygons`] and [`convert::convert`].
@@ -148,7 +153,7 @@ fn of_bytes(
     options: Options,
     beside: &mut Beside,
 ) -> Result<Model, InputError> {
-    if format == Format::Glm {
+    if format == Format::Glm && options.textures == TextureOptions::default() {
         glm::check_file(&bytes).map_err(|error| error.in_path(path))?;
         return Ok(Model {
             mesh: bytes,
@@ -157,6 +162,13 @@ fn of_bytes(
         });
     }
     let polygons = formats::parse(path, format, &bytes, beside)?;
+    // A mesh in a board's memory layout keeps everything but its textures.
+    let is_kept = format == Format::Glm;
+    let options = Options {
+        keep_scale: is_kept || options.keep_scale,
+        keep_order: is_kept || options.keep_order,
+        ..options
+    };
     converted(path, &polygons, options)
 }
 

@@ -2,6 +2,7 @@
 //!
 //! [`Texture::new_checked`] checks the bytes of a texture once, and returns a view whose accessors do not fail.
 
+mod draw;
 #[cfg(feature = "alloc")]
 mod encode;
 
@@ -12,6 +13,7 @@ use crate::colour::Rgb565;
 pub use crate::records::TextureHeader;
 use crate::records::WORD;
 use crate::wire::crc_32_without;
+pub use draw::draw;
 #[cfg(feature = "alloc")]
 pub use encode::{Source, encode};
 

@@ -1,6 +1,7 @@
 //! Tests of the built-in meshes.
 
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{Attribute, Mesh, Rgb565};
+use glint_core::records::TextureCoordinates;
 use glint_core::shape::{MAX_BYTES, Shape};
 
 fn bytes(shape: Shape) -> Vec<u8> {
@@ -17,6 +18,7 @@ fn shapes_are_meshes() {
         (Shape::Torus, 544, 1024),
         (Shape::Cylinder, 640, 1024),
         (Shape::Polygons, 18, 6),
+        (Shape::Crate, 24, 12),
     ] {
         let bytes = bytes(shape);
         let mesh = Mesh::new_checked(&bytes).expect("a mesh");
@@ -25,10 +27,10 @@ fn shapes_are_meshes() {
     }
 }
 
-/// Faces of round shapes point outwards by their vertex order and by their normals, and vertices have the normals of the surface.
+/// Faces of closed shapes point outwards by their vertex order and by their normals, and vertices have the normals of the surface.
 #[test]
-fn round_shapes_are_closed_and_look_outwards() {
-    for shape in [Shape::Sphere, Shape::Torus, Shape::Cylinder] {
+fn closed_shapes_look_outwards() {
+    for shape in [Shape::Sphere, Shape::Torus, Shape::Cylinder, Shape::Crate] {
         let bytes = bytes(shape);
         let mesh = Mesh::new_checked(&bytes).expect("a mesh");
         let chunk = mesh.chunks().next().expect("a chunk");
@@ -60,6 +62,7 @@ fn round_shapes_are_closed_and_look_outwards() {
         let expected = match shape {
             Shape::Sphere => 4.0 / 3.0 * std::f64::consts::PI / 8.0,
             Shape::Torus => 2.0 * std::f64::consts::PI.powi(2) * 0.35 * 0.15 * 0.15,
+            Shape::Crate => 0.84_f64.powi(3),
             _ => std::f64::consts::PI * 0.09,
         };
         // Flat faces lie inside the round surface.
@@ -68,9 +71,47 @@ fn round_shapes_are_closed_and_look_outwards() {
     }
 }
 
+/// The sides of the crate have their pictures upright, and smaller mip levels have about the brightness of larger ones.
+#[test]
+fn the_crate_has_a_texture() {
+    let bytes = bytes(Shape::Crate);
+    let mesh = Mesh::new_checked(&bytes).expect("a mesh");
+    let places = mesh.attribute(Attribute::TextureCoordinates);
+    let places = places.expect("coordinates").as_chunks().0;
+    let chunk = mesh.chunks().next().expect("a chunk");
+    for (place, vertex) in places.iter().zip(chunk.vertices()) {
+        let TextureCoordinates { s, t } = TextureCoordinates::from_bytes(place);
+        let [x, _, z] = vertex.position;
+        if vertex.normal[2] == 0 {
+            assert_eq!(t, if z > 0 { 0 } else { 1 << 16 });
+        }
+        // The sides that look along the x axis have the star, on the right half.
+        let half = if vertex.normal[0] == 0 { 0 } else { 1 << 15 };
+        assert!(s == half || s == half + (1 << 15), "{x} {s}");
+    }
+    assert!(chunk.triangles().all(|triangle| triangle.texture == 1));
+    let textures: Vec<_> = mesh.textures().collect();
+    let [texture] = textures[..] else {
+        panic!("one texture");
+    };
+    assert_eq!((texture.size_log2(), texture.levels()), ([7, 6], 8));
+    let green = |level: u32| {
+        let [width, height] = texture.level_log2(level).map(|side| 1 << side);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let colours = places.map(|place| texture.colour(level, place).expect("opaque"));
+        let light = colours.map(|Rgb565(colour)| f64::from(colour >> 5 & 63).powi(2));
+        (light.sum::<f64>() / f64::from(width * height)).sqrt()
+    };
+    for level in 1..8 {
+        assert!((green(level) - green(0)).abs() < 4.0, "{level}");
+    }
+}
+
 #[test]
 fn short_memory_is_refused() {
     for length in [0, 47, 48, 1000, 20_000] {
-        assert_eq!(Shape::Sphere.write(&mut vec![0; length]), None, "{length}");
+        for shape in [Shape::Sphere, Shape::Crate] {
+            assert_eq!(shape.write(&mut vec![0; length]), None, "{length}");
+        }
     }
 }

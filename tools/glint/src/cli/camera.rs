@@ -4,6 +4,7 @@ use super::common::{bad_value, named};
 use super::messages::note;
 use super::options::OptionArguments;
 use clap::Args;
+use glint::convert::TextureReport;
 use glint::error::InputError;
 use glint::render::Frame;
 use glint::view;
@@ -46,6 +47,8 @@ pub struct CameraSubject<'a> {
     pub model: Option<&'a str>,
     /// The scene of the frame, if any.
     pub scene: Option<&'a SceneFile>,
+    /// Reports on the textures that were converted for the frame.
+    pub textures: &'a [TextureReport],
 }
 
 impl CameraArguments {

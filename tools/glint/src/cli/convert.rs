@@ -4,9 +4,9 @@ use super::common::bad_value;
 use super::messages::{print_json, say, warn};
 use super::output::{MESH, Output, STDOUT};
 use super::progress::spinner;
-use super::texture::TexelArguments;
+use super::texture::{MeshTextureArguments, print_textures};
 use clap::{Args, ValueEnum};
-use glint::convert::{self, Options, Report, TextureOptions};
+use glint::convert::{self, Options, Report};
 use glint::error::FormatError;
 use glint::formats::{Format, write};
 use glint::polygons::Polygons;
@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Generate a model: cube, icosphere:N, torus-knot, gear, teapot, globe, scan:N or sponge:N.
+/// Generate a model: cube, icosphere:N, torus-knot, gear, teapot, globe, room, fence, scan:N or sponge:N.
 #[derive(Args)]
 pub struct ModelArguments {
     /// Name of the generator.
@@ -59,11 +59,8 @@ pub struct ConvertArguments {
     /// possible.
     #[arg(long)]
     fix_winding: bool,
-    /// Leave textures out: faces have the colours of their materials.
-    #[arg(long, conflicts_with_all = ["palette", "texture_size", "filter"])]
-    no_textures: bool,
     #[command(flatten)]
-    texels: TexelArguments,
+    textures: MeshTextureArguments,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
@@ -128,12 +125,7 @@ impl ConvertArguments {
             keep_scale: self.keep_scale,
             keep_order: self.keep_order,
             fix_winding: self.fix_winding,
-            textures: TextureOptions {
-                left_out: self.no_textures,
-                format: self.texels.format(),
-                largest_side: self.texels.texture_size,
-                filter: self.texels.filter,
-            },
+            textures: self.textures.options(),
         };
         convert_to(
             polygons,
@@ -270,12 +262,7 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         "rounding   {:.3e} at most, {:.3e} RMS ({:.3} and {:.3} units of 2^-14)",
         report.error_max, report.error_rms, report.error_max_lsb, report.error_rms_lsb
     ))?;
-    for texture in &report.textures {
-        say(format_args!(
-            "texture    {}: {}",
-            texture.name, texture.report
-        ))?;
-    }
+    print_textures(&report.textures)?;
     report
         .remarks
         .iter()
@@ -283,15 +270,9 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
 }
 
 /// Loads the MODEL argument of a command: a mesh file, or the name of a generator. Remarks on the file become warnings.
-pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
+pub fn load(name: &str, options: Options) -> anyhow::Result<model::Model> {
     let spinner = spinner("reading the model");
-    let model = model::load(
-        name,
-        Options {
-            keep_scale,
-            ..Options::default()
-        },
-    )?;
+    let model = model::load(name, options)?;
     spinner.finish();
     for remark in model.remarks() {
         warn(format_args!("{}: {remark}", name.escape_debug()));

@@ -10,6 +10,7 @@ use clap::Args;
 use glint::board::Uart;
 use glint::board::{self, Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
+use glint::convert::Options;
 use glint::flash;
 use glint::model::Model;
 use glint::picture::{Image, write_animation};
@@ -91,7 +92,9 @@ impl DemoArguments {
             [] => MODELS.to_vec(),
             names => names.iter().map(String::as_str).collect(),
         };
-        let models = names.into_iter().map(|name| Ok((name, load(name, false)?)));
+        let models = names
+            .into_iter()
+            .map(|name| Ok((name, load(name, Options::default())?)));
         let models = models.collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = match &self.firmware {
             Some(path) => program::read(path)?,
@@ -454,7 +457,7 @@ mod tests {
         let mut renderer = BoardRenderer::new(console)
             .with_backend(Backend::Gateware)
             .with_route(Route::Memory);
-        let model = load("teapot", false).unwrap();
+        let model = load("teapot", Options::default()).unwrap();
         let subject = Subject::mesh(Mesh::new_checked(&model.mesh).unwrap());
         let frame = Frame::new(subject, camera(azimuth(0)).unwrap(), SIZE);
         renderer.show(&frame).unwrap();

@@ -5,10 +5,12 @@ use super::config::BoardChoice;
 use super::convert::load;
 use super::messages::{note, print_json, say, warn};
 use super::progress::{advance, bar, show_simulation, spinner};
+use super::texture::{MeshTextureArguments, print_textures};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{self, Board, SerialBoard};
 use glint::console::Console;
+use glint::convert::Options;
 use glint::flash;
 use glint::formats::read_up_to;
 use glint::image;
@@ -68,6 +70,8 @@ pub struct UploadArguments {
     /// Keep the model's coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
+    #[command(flatten)]
+    textures: MeshTextureArguments,
     /// Keep camera, objects and all other settings of the scene. By default the model is shown whole on the default scene, with
     /// the up axis of its format.
     #[arg(long)]
@@ -191,7 +195,12 @@ fn write_flash(path: &Path) -> anyhow::Result<()> {
 
 impl UploadArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let model = load(&self.model, self.keep_scale)?;
+        let options = Options {
+            keep_scale: self.keep_scale,
+            textures: self.textures.options(),
+            ..Options::default()
+        };
+        let model = load(&self.model, options)?;
         if let Some(remark) = model.inside_out() {
             warn(format_args!("{}: {remark}", self.model.escape_debug()));
         }
@@ -216,10 +225,14 @@ impl UploadArguments {
         bar.finish();
         let milliseconds = board.now_ms() - start;
         if self.json {
-            return print_json(
-                &serde_json::json!({ "bytes": model.mesh.len(), "milliseconds": milliseconds }),
-            );
+            let mut report =
+                serde_json::json!({ "bytes": model.mesh.len(), "milliseconds": milliseconds });
+            if !model.textures().is_empty() {
+                report["textures"] = serde_json::to_value(model.textures())?;
+            }
+            return print_json(&report);
         }
+        print_textures(model.textures())?;
         say(format_args!(
             "{} bytes in {milliseconds} ms of the board's time",
             model.mesh.len()

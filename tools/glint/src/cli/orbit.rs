@@ -1,14 +1,17 @@
 //! `glint orbit`.
 
+use super::camera::CameraSubject;
 use super::common::{DrawingArguments, SamplingArguments, bad_value};
 use super::heading;
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
 use super::progress::count_bar;
 use super::subject::SubjectArguments;
+use super::texture::print_textures;
 use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
+use glint::convert::TextureReport;
 use glint::picture::Animation;
 use glint::render::{Frame, Rendered, Subject, on_model, remarks};
 use glint_core::camera::View;
@@ -52,6 +55,8 @@ struct Outcome<'a> {
     board: String,
     size: [u32; 2],
     frames: u16,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    textures: &'a [TextureReport],
     /// Mean cycles of a frame, if the renderer counts cycles.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles: Option<u64>,
@@ -69,18 +74,13 @@ impl OrbitArguments {
                 return Err(bad_value("--scene", expected, "a wireframe program").into());
             }
             let views = self.subject.turn(shown, self.frames)?;
-            self.write(out, shown.frame, &views, shown.scene)
+            self.write(out, shown, &views)
         })
     }
 
     /// Renders a frame for each camera, and writes the animation.
-    fn write(
-        &self,
-        out: Output,
-        frame: &Frame,
-        views: &[View],
-        scene: Option<&SceneFile>,
-    ) -> anyhow::Result<()> {
+    fn write(&self, out: Output, shown: &CameraSubject, views: &[View]) -> anyhow::Result<()> {
+        let CameraSubject { frame, scene, .. } = *shown;
         let (size, factor) = self.sampling.of(frame.size, &self.drawing.board)?;
         let mut spool = out.spool()?;
         let mut drawn = Vec::new();
@@ -111,11 +111,13 @@ impl OrbitArguments {
             board: self.drawing.board.to_string(),
             size: frame.size.pixels(),
             frames: self.frames,
+            textures: shown.textures,
             cycles,
         };
         if self.drawing.transfer.json {
             return print_json(&outcome);
         }
+        print_textures(shown.textures)?;
         let shown = outcome.model.or(outcome.field).or(outcome.scene);
         let cycles = cycles.map_or(String::new(), |cycles| format!(", {cycles} cycles each"));
         say(format_args!(

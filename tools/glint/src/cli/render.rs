@@ -1,14 +1,17 @@
 //! `glint render`.
 
+use super::camera::CameraSubject;
 use super::common::{DrawingArguments, Opened, SamplingArguments};
 use super::heading;
 use super::messages::{print_json, say, warn};
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
 use super::progress::{advance, bar, spinner};
 use super::subject::SubjectArguments;
+use super::texture::print_textures;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard};
+use glint::convert::TextureReport;
 use glint::object::Description;
 use glint::render::{Frame, Parts, RayCounts, Rendered, Stats, on_model, remarks};
 use glint_scene_file::SceneFile;
@@ -64,6 +67,8 @@ struct Outcome<'a> {
     field: Option<&'a str>,
     board: String,
     size: [u32; 2],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    textures: &'a [TextureReport],
     #[serde(flatten)]
     stats: &'a Totals<'a>,
 }
@@ -85,18 +90,17 @@ impl RenderArguments {
         self.subject
             .with_frame(&objects, self.keep_scale, instead, |shown| {
                 let view = self.subject.view(shown)?;
-                self.write(
-                    &Frame {
-                        view,
-                        ..*shown.frame
-                    },
-                    shown.scene,
-                )
+                let frame = &Frame {
+                    view,
+                    ..*shown.frame
+                };
+                self.write(&CameraSubject { frame, ..*shown })
             })
     }
 
-    /// Renders a frame, and writes its pictures and statistics; `scene` is the scene of the frame, if any.
-    fn write(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<()> {
+    /// Renders a frame, and writes its pictures and statistics.
+    fn write(&self, shown: &CameraSubject) -> anyhow::Result<()> {
+        let CameraSubject { frame, scene, .. } = *shown;
         let mut inputs = self.subject.inputs(scene);
         let objects = self.objects()?.into_iter();
         inputs.extend(objects.map(|object| object.model.into()));
@@ -136,10 +140,12 @@ impl RenderArguments {
                 field: self.subject.field.name(),
                 board: self.drawing.board.to_string(),
                 size: frame.size.pixels(),
+                textures: shown.textures,
                 stats: &totals,
             };
             return print_json(&outcome);
         }
+        print_textures(shown.textures)?;
         print_stats(&stats)
     }
 

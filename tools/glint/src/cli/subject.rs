@@ -5,13 +5,17 @@ use super::common::{SizeArguments, bad_value};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::heading;
+use super::texture::TexelArguments;
 use clap::Args;
+use glint::convert::{Options, TextureOptions};
+use glint::error::InputError;
+use glint::model::Model;
 use glint::object::Description;
 use glint::scene;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::object::{MAX_OBJECTS, Place};
-use glint_scene::{Assets, Kind};
+use glint_scene::{Assets, Kind, Scene};
 use glint_scene_file::SceneFile;
 use std::path::PathBuf;
 
@@ -26,6 +30,8 @@ pub struct SubjectArguments {
     pub scene: Option<String>,
     #[command(flatten)]
     pub field: FieldArguments,
+    #[command(flatten, next_help_heading = heading::APPEARANCE)]
+    texels: TexelArguments,
     #[command(flatten, next_help_heading = heading::CAMERA)]
     camera: CameraArguments,
     #[command(flatten, next_help_heading = heading::PICTURE)]
@@ -47,6 +53,7 @@ impl SubjectArguments {
     ) -> anyhow::Result<T> {
         let model = self.model.as_deref();
         if let Some(name) = &self.scene {
+            self.texels.refuse("a model", "--scene")?;
             let file = super::scene::read(name)?;
             let scene = Some(&file);
             return scene::draw(&file, &self.size.changes()?, |frame| {
@@ -54,14 +61,19 @@ impl SubjectArguments {
                     frame,
                     model,
                     scene,
+                    textures: &[],
                 })
             })?;
         }
         let mut scene = self.field.scene(&self.size)?;
-        let loaded = model.map(|name| load(name, keep_scale)).transpose()?;
+        if model.is_none() && others.is_empty() {
+            self.texels.refuse("a model", "none")?;
+        }
+        let options = self.options(&scene, keep_scale)?;
+        let loaded = model.map(|name| load(name, options)).transpose()?;
         let mesh = loaded.as_ref().map(|model| Mesh::new_checked(&model.mesh));
         let mesh = mesh.transpose()?;
-        let models = others.iter().map(|object| load(&object.model, keep_scale));
+        let models = others.iter().map(|object| load(&object.model, options));
         let models = models.collect::<anyhow::Result<Vec<_>>>()?;
         let colour = self.field.mesh_colour(&scene)?;
         let place = Place {
@@ -96,10 +108,29 @@ impl SubjectArguments {
             objects: &objects,
             program: scene::program()?,
         });
+        let textures = loaded.iter().chain(&models);
+        let textures: Vec<_> = textures.flat_map(Model::textures).cloned().collect();
         draw(&CameraSubject {
             frame: &frame,
             model,
             scene: None,
+            textures: &textures,
+        })
+    }
+
+    /// The options of the conversion of meshes for a scene.
+    fn options(&self, scene: &Scene, keep_scale: bool) -> Result<Options, InputError> {
+        let has_textures = scene.options.textures;
+        if !has_textures {
+            self.texels.refuse("textures", "--no-textures")?;
+        }
+        Ok(Options {
+            keep_scale,
+            textures: TextureOptions {
+                left_out: !has_textures,
+                ..self.texels.options()
+            },
+            ..Options::default()
         })
     }
 

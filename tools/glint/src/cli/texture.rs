@@ -4,7 +4,8 @@ use super::common::{bad_value, named};
 use super::messages::{print_json, say};
 use super::output::{Output, STDOUT, TEXTURE};
 use clap::{Args, ValueEnum};
-use glint::error::FormatError;
+use glint::convert::{TextureOptions, TextureReport};
+use glint::error::{FormatError, InputError};
 use glint::formats::read_file;
 use glint_core::texture::{self, Filter, Format, MAGIC, Sampler, Wrap, checksum};
 use glint_texture::convert::{self, Report};
@@ -21,20 +22,71 @@ pub struct TexelArguments {
     /// memory layout keeps its own].
     #[arg(long, value_name = "16|256|none", value_parser = named(Format::ALL, palette_name))]
     palette: Option<Format>,
-    /// Largest side of a texture. The sides become the nearest powers of two up to this number.
-    #[arg(long, value_name = "N", default_value_t = MAX_SIDE, value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIDE)..=i64::from(MAX_SIDE)))]
-    pub texture_size: u32,
+    /// Largest side of a texture. The sides become the nearest powers of two up to this number [default: 1024].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIDE)..=i64::from(MAX_SIDE)))]
+    texture_size: Option<u32>,
     /// Colour between texels: that of the nearest one, or the average of four by their distances [default: as the file states;
     /// without a statement, bilinear].
     #[arg(long, value_name = "nearest|bilinear", value_parser = named(Filter::ALL, filter_name))]
-    pub filter: Option<Filter>,
+    filter: Option<Filter>,
 }
 
 impl TexelArguments {
-    /// The representation of the texels, if it is given.
-    pub fn format(&self) -> Option<Format> {
-        self.palette
+    /// The options of the conversion of a mesh's textures.
+    pub fn options(&self) -> TextureOptions {
+        TextureOptions {
+            left_out: false,
+            format: self.palette,
+            largest_side: self.texture_size.unwrap_or(MAX_SIDE),
+            filter: self.filter,
+        }
     }
+
+    /// Checks that no option is given where `instead` leaves no mesh with textures to convert.
+    ///
+    /// # Errors
+    /// An option is given.
+    pub fn refuse(&self, expected: &str, instead: &str) -> Result<(), InputError> {
+        let given = [
+            (self.palette.is_some(), "--palette"),
+            (self.texture_size.is_some(), "--texture-size"),
+            (self.filter.is_some(), "--filter"),
+        ];
+        match given.iter().find(|(is_given, _)| *is_given) {
+            Some((_, option)) => Err(bad_value(option, expected, instead)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The textures of a mesh that a command reads.
+#[derive(Args)]
+pub struct MeshTextureArguments {
+    /// Leave textures out: faces have the colours of their materials.
+    #[arg(long, conflicts_with_all = ["palette", "texture_size", "filter"])]
+    no_textures: bool,
+    #[command(flatten)]
+    texels: TexelArguments,
+}
+
+impl MeshTextureArguments {
+    /// The options of the conversion.
+    pub fn options(&self) -> TextureOptions {
+        TextureOptions {
+            left_out: self.no_textures,
+            ..self.texels.options()
+        }
+    }
+}
+
+/// Prints a line for each texture of a mesh that was converted: sizes, bytes and errors.
+pub fn print_textures(textures: &[TextureReport]) -> anyhow::Result<()> {
+    textures.iter().try_for_each(|texture| {
+        say(format_args!(
+            "texture    {}: {}",
+            texture.name, texture.report
+        ))
+    })
 }
 
 /// The word of `--palette` for a representation of texels.
@@ -129,6 +181,7 @@ impl TextureArguments {
             texture_size,
             filter,
         } = self.texels;
+        let texture_size = texture_size.unwrap_or(MAX_SIDE);
         let sampler = |of_file: Sampler| Sampler {
             wrap: match self.wrap[..] {
                 [] => of_file.wrap,

@@ -1,6 +1,6 @@
 //! `glint texture`, and textures of `glint convert`.
 
-use crate::common::{SQUARE, all_refused, files_refused, folder, glint, report, succeed};
+use crate::common::{SQUARE, all_refused, files_refused, folder, glint, report, said, succeed};
 use glint_texture::example::{repair_png, small_png};
 use glint_texture::picture::Picture;
 use std::fs;
@@ -146,6 +146,70 @@ fn textures_of_a_mesh() {
     fs::write(folder.join("a.obj"), SQUARE).unwrap();
     let text = succeed(&folder, "convert a.obj b.stl");
     assert!(!text.contains("textures"), "{text}");
+}
+
+/// Commands that take a model convert its textures by the options of `glint convert`, and print the same line.
+#[test]
+fn textures_where_a_model_is_taken() {
+    let folder = folder("textures-taken");
+    fs::write(folder.join("a.obj"), TEXTURED).unwrap();
+    fs::write(folder.join("a.mtl"), mtl("a.png")).unwrap();
+    let picture = Picture::drawn([64, 32], |x, y| [4 * x as u8, 8 * y as u8, 99, 255]);
+    fs::write(folder.join("a.png"), picture.png().unwrap()).unwrap();
+    let options = "--palette 16 --texture-size 16 --filter nearest";
+    let line_of = |text: &str| {
+        let mut lines = text.lines();
+        lines
+            .find(|line| line.starts_with("texture "))
+            .map(str::to_owned)
+    };
+    let text = succeed(&folder, &format!("convert a.obj a.glm {options}"));
+    let line = line_of(&text).unwrap();
+    assert!(
+        line.contains("'a.png': 16×16, palette 16, 5 levels"),
+        "{line}"
+    );
+    for command in [
+        "render a.obj --out p.png --force",
+        "render cube --object a.obj --out p.png --force",
+        "orbit a.obj --frames 2 --out a.gif --force",
+        "upload a.obj --board emulated",
+    ] {
+        let run = |options: &str| said(&folder, &format!("{command} {options}"))[0].clone();
+        assert_eq!(line_of(&run(options)).as_ref(), Some(&line), "{command}");
+        let json: serde_json::Value =
+            serde_json::from_str(&run(&format!("{options} --json"))).unwrap();
+        assert_eq!(json["textures"][0]["colours"], 16, "{command}");
+        assert_eq!(line_of(&run("--no-textures")), None, "{command}");
+    }
+    // The picture is that of the converted mesh; a mesh in memory keeps its texture, unless an option is given.
+    let picture = |arguments: &str| {
+        let command = format!("render {arguments} --up y --out p.png");
+        succeed(&folder, &command);
+        fs::read(folder.join("p.png")).unwrap()
+    };
+    let small = picture("a.glm");
+    assert!(small == picture(&format!("a.obj {options}")));
+    let full = picture("a.obj");
+    succeed(&folder, "convert a.obj full.glm");
+    assert!(small != full && full == picture("full.glm"));
+    let again = format!("convert full.glm again.glm --keep-scale --keep-order {options}");
+    succeed(&folder, &again);
+    let again = picture("again.glm");
+    assert!(again != full && again == picture(&format!("full.glm {options}")));
+    let plain = picture("a.obj --no-textures");
+    assert!(plain != full && plain == picture("full.glm --no-textures"));
+    all_refused(
+        &folder,
+        "
+        render a.obj --out q.png --no-textures --palette 16
+            --palette: expected textures, found --no-textures
+        render --field menger:2 --out q.png --texture-size 16
+            --texture-size: expected a model, found none
+        orbit --scene menger --out q.gif --filter nearest
+            --filter: expected a model, found --scene
+        ",
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tungstenite::{Message, WebSocket};
@@ -161,6 +162,29 @@ impl Browser {
         let buttons = u8::from(kind != "mouseReleased");
         let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
         self.call(Some(page), "Input.dispatchMouseEvent", event);
+    }
+
+    /// Drops files and folders at a position of the page.
+    pub fn drop_paths(&mut self, page: &Page, [x, y]: [f64; 2], paths: &[impl AsRef<Path>]) {
+        let paths: Vec<_> = paths.iter().map(AsRef::as_ref).collect();
+        let data = json!({ "items": [], "files": paths, "dragOperationsMask": 1 });
+        for kind in ["dragEnter", "dragOver", "drop"] {
+            let event = json!({ "type": kind, "x": x, "y": y, "data": data });
+            self.call(Some(page), "Input.dispatchDragEvent", event);
+        }
+    }
+
+    /// Chooses files, or a folder, in an input of the page.
+    pub fn choose_paths(&mut self, page: &Page, selector: &str, paths: &[impl AsRef<Path>]) {
+        let expression = format!("document.querySelector({selector:?})");
+        let found = self.call(
+            Some(page),
+            "Runtime.evaluate",
+            json!({ "expression": expression }),
+        );
+        let paths: Vec<_> = paths.iter().map(AsRef::as_ref).collect();
+        let chosen = json!({ "files": paths, "objectId": found["result"]["objectId"] });
+        self.call(Some(page), "DOM.setFileInputFiles", chosen);
     }
 
     /// Returns a screenshot of the page as PNG.

@@ -195,7 +195,7 @@ fn a_telephone_shows_picture_and_controls() {
         for target in [
             "#fields button:last-of-type",
             "#meshes button",
-            "#model input",
+            "#model button",
         ] {
             browser.middle(&page, target);
             let seen = browser.evaluate(

@@ -21,7 +21,7 @@ const TRIANGLE_BYTES: usize = 40;
 const LEAST_ROOM: usize = 1 << 20;
 
 /// Options of the conversion of textures.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureOptions {
     /// Leaves textures out: faces have their colours.
     pub left_out: bool,

@@ -1,10 +1,11 @@
-//! Generated models: closed surfaces, counter-clockwise seen from outside, z up.
+//! Generated models: closed surfaces, counter-clockwise seen from outside, z up. The room and the fence are open.
 
 mod builder;
 mod cube;
 mod gear;
 mod globe;
 mod icosphere;
+mod room;
 mod scan;
 mod sponge;
 mod teapot;
@@ -14,7 +15,7 @@ use crate::error::FormatError;
 use crate::polygons::Polygons;
 
 /// Names of the generators, for messages and help.
-pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe (with a texture), \
+pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe, room, fence (these three with textures), \
     scan:N (frequency, 1 to 64) or sponge:N (0 to 4)";
 
 /// Whether a name is the name of a generator, not of a file.
@@ -22,7 +23,16 @@ pub fn is_name(name: &str) -> bool {
     let stem = name.split(':').next().unwrap_or_default();
     matches!(
         stem,
-        "cube" | "icosphere" | "torus-knot" | "gear" | "teapot" | "globe" | "sponge" | "scan"
+        "cube"
+            | "icosphere"
+            | "torus-knot"
+            | "gear"
+            | "teapot"
+            | "globe"
+            | "room"
+            | "fence"
+            | "sponge"
+            | "scan"
     )
 }
 
@@ -48,6 +58,8 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         ("gear", None) => gear::gear(),
         ("teapot", None) => teapot::teapot(),
         ("globe", None) => globe::globe(),
+        ("room", None) => room::room(),
+        ("fence", None) => room::fence(),
         ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
         ("scan", Some(frequency @ 1..=64)) => scan::scan(frequency),
         _ => Err(refuse()),
@@ -141,6 +153,27 @@ mod tests {
                 [(a, b), (b, c), (c, a)]
             });
             assert_closed(name, edges);
+        }
+    }
+
+    /// Room and fence are open, and have textures; those of the fence have gaps.
+    #[test]
+    fn props_have_textures() {
+        for (name, triangles, textures) in [("room", 8, 2), ("fence", 4, 1)] {
+            let polygons = named(name).unwrap();
+            let (bytes, report) = convert::convert(&polygons, Options::default()).unwrap();
+            assert_eq!(
+                (report.triangles, report.degenerate),
+                (triangles, 0),
+                "{name}"
+            );
+            assert_eq!(report.textures.len(), textures, "{name}");
+            let cut_out = report.textures.iter().any(|texture| texture.report.cut_out);
+            assert_eq!(cut_out, name == "fence");
+            assert!(report.remarks.is_empty(), "{:?}", report.remarks);
+            let mesh = glm::check(&bytes).unwrap();
+            let mut all = mesh.chunks().flat_map(|chunk| chunk.triangles());
+            assert!(all.all(|triangle| triangle.texture > 0), "{name}");
         }
     }
 

@@ -1,0 +1,92 @@
+//! Textures that the firmware draws, without a heap.
+
+use super::{Filter, Format, MAGIC, Texture, TextureHeader, texel_bit};
+use crate::colour::Rgb565;
+
+/// Texels of a block.
+const BLOCK: usize = 16;
+
+/// Writes a texture in RGB565 with all mip levels, which repeats and is filtered. `texel` is the colour at a place of the largest level;
+/// smaller levels have averages of colours. Returns the length in bytes; `None` if `memory` is too short.
+pub fn draw(
+    memory: &mut [u8],
+    size_log2: [u8; 2],
+    texel: impl Fn([u32; 2]) -> Rgb565,
+) -> Option<usize> {
+    let [width_log2, height_log2] = size_log2;
+    let layout = Texture {
+        bytes: &[],
+        format: Format::Rgb565,
+        size_log2: size_log2.map(u32::from),
+        levels: 1 + u32::from(width_log2.max(height_log2)),
+        sampler: Default::default(),
+        key: None,
+    };
+    let length = layout.level_start(layout.levels);
+    let memory = memory.get_mut(..length)?;
+    let header = TextureHeader {
+        magic: MAGIC,
+        length: length as u32,
+        width_log2,
+        height_log2,
+        levels: layout.levels as u8,
+        format: Format::Rgb565 as u8,
+        filter: Filter::Bilinear as u8,
+        ..TextureHeader::default()
+    };
+    let (head, body) = memory.split_first_chunk_mut()?;
+    *head = header.to_bytes();
+    body.fill(0);
+    let (texels, _) = body.as_chunks_mut::<2>();
+    let mut start = 0;
+    let mut larger = None;
+    for level in 0..layout.levels {
+        let [across, _] = layout.blocks_log2(level);
+        let here = Level { start, across };
+        let [width, height] = layout.level_log2(level).map(|side| 1 << side);
+        for y in 0..height {
+            for x in 0..width {
+                let Rgb565(colour) = match larger {
+                    None => texel([x, y]),
+                    Some(larger) => average(texels, larger, [x, y]),
+                };
+                *texels.get_mut(here.index([x, y]))? = colour.to_le_bytes();
+            }
+        }
+        start += BLOCK * layout.blocks(level);
+        larger = Some((here, [width, height]));
+    }
+    Some(length)
+}
+
+/// The place of a level.
+#[derive(Clone, Copy)]
+struct Level {
+    /// Number of texels before it.
+    start: usize,
+    /// Base-2 logarithm of the number of blocks across.
+    across: u32,
+}
+
+impl Level {
+    /// The number of a texel in memory.
+    fn index(self, [x, y]: [u32; 2]) -> usize {
+        let block = ((y >> 2) << self.across) + (x >> 2);
+        self.start + BLOCK * block as usize + texel_bit(Format::Rgb565, [x, y]) / 16
+    }
+}
+
+/// The average of the four texels of a level that a texel of the next level covers; of two, twice, in a level of one row or column.
+fn average(texels: &[[u8; 2]], (level, size): (Level, [u32; 2]), [x, y]: [u32; 2]) -> Rgb565 {
+    let mut sums = [2; 3];
+    for corner in 0..4 {
+        let place = [2 * x + (corner & 1), 2 * y + (corner >> 1)];
+        let place = [0, 1].map(|axis: usize| place[axis].min(size[axis] - 1));
+        let texel = texels.get(level.index(place)).copied();
+        let colour = u16::from_le_bytes(texel.unwrap_or_default());
+        let [r, g, b] = [colour >> 11, colour >> 5 & 63, colour & 31];
+        sums = [sums[0] + r, sums[1] + g, sums[2] + b];
+    }
+    let [r, g, b] = sums.map(|sum| sum / 4);
+    Rgb565(r << 11 | g << 5 | b)
+}

@@ -1,0 +1,151 @@
+//! Props of a room with drawn textures: the room, which is seen from inside, and a fence with gaps.
+
+use crate::error::{FormatError, Location};
+use crate::polygons::{Content, Corner, Polygons, Rgb8, Texture, Vector};
+use glint_core::texture::{Filter, Sampler};
+use glint_texture::picture::Picture;
+use std::sync::Arc;
+
+/// Half of the width and depth of the room.
+const HALF: f64 = 2.0;
+/// Height of its walls.
+const HEIGHT: f64 = 2.0;
+/// Width and height of each picture.
+const SIDE: u32 = 64;
+
+/// A floor of tiles and three walls of bricks, without a ceiling; the side at −y is open.
+pub fn room() -> Result<Polygons, FormatError> {
+    let mut polygons = Polygons::default();
+    let tiles = add_picture(&mut polygons, "tiles", tile)?;
+    let bricks = add_picture(&mut polygons, "bricks", brick)?;
+    // Seen from inside, from below on the left, counter-clockwise.
+    let wall = |[left, right]: [[f64; 2]; 2]| {
+        let at = |[x, y]: [f64; 2], z| [x, y, z];
+        [
+            at(left, 0.0),
+            at(right, 0.0),
+            at(right, HEIGHT),
+            at(left, HEIGHT),
+        ]
+    };
+    let corners = [[-HALF, -HALF], [-HALF, HALF], [HALF, HALF], [HALF, -HALF]];
+    for ends in corners.windows(2) {
+        let &[left, right] = ends else { continue };
+        rectangle(&mut polygons, wall([left, right]), [4.0, 2.0], bricks)?;
+    }
+    let floor = [corners[0], corners[3], corners[2], corners[1]];
+    let floor = floor.map(|[x, y]| [x, y, 0.0]);
+    rectangle(&mut polygons, floor, [4.0, 4.0], tiles)?;
+    Ok(polygons)
+}
+
+/// A fence along the x axis, seen from both sides, whose gaps are transparent texels.
+pub fn fence() -> Result<Polygons, FormatError> {
+    let mut polygons = Polygons::default();
+    let pickets = add_picture(&mut polygons, "pickets", picket)?;
+    let at = |x: f64, z: f64| [x, 0.0, z];
+    for half in [HALF, -HALF] {
+        let corners = [at(-half, 0.0), at(half, 0.0), at(half, 1.0), at(-half, 1.0)];
+        rectangle(&mut polygons, corners, [4.0, 1.0], pickets)?;
+    }
+    Ok(polygons)
+}
+
+/// Adds a picture as a texture that repeats. `texel` is the colour at a place.
+fn add_picture(
+    polygons: &mut Polygons,
+    name: &str,
+    texel: impl Fn(u32, u32) -> [u8; 4],
+) -> Result<u8, FormatError> {
+    let picture = Picture::drawn([SIDE; 2], texel).png();
+    let picture = picture
+        .map_err(|error| FormatError::whole("a picture that can be written", error.to_string()))?;
+    polygons.add_texture(Texture {
+        name: name.into(),
+        content: Content::Picture(Arc::new(picture)),
+        sampler: Sampler {
+            filter: Filter::Bilinear,
+            ..Sampler::default()
+        },
+        cutoff: Some(0.5),
+    })
+}
+
+/// Adds a rectangle that shows its texture as often as stated, from its corners: below on the left, and on counter-clockwise.
+fn rectangle(
+    polygons: &mut Polygons,
+    corners: [Vector; 4],
+    [across, down]: [f64; 2],
+    texture: u8,
+) -> Result<(), FormatError> {
+    let places = [[0.0, down], [across, down], [across, 0.0], [0.0, 0.0]];
+    let mut face = Vec::new();
+    for (corner, place) in corners.into_iter().zip(places) {
+        let point = polygons.add_point(corner, Location::Whole)?;
+        let coordinates = polygons.add_coordinates(place, Location::Whole)?;
+        face.push(Corner {
+            coordinates,
+            ..Corner::at(point)
+        });
+    }
+    polygons.add_face(&face, Some(Rgb8::WHITE), Location::Whole)?;
+    if let Some(face) = polygons.faces.last_mut() {
+        face.texture = texture;
+    }
+    Ok(())
+}
+
+/// A floor of 2×2 tiles, light and dark ones.
+fn tile(x: u32, y: u32) -> [u8; 4] {
+    let half = SIDE / 2;
+    if (x % half).min(y % half) == 0 {
+        return [70, 66, 62, 255];
+    }
+    let is_light = (x < half) == (y < half);
+    let base = if is_light {
+        [196, 188, 172]
+    } else {
+        [112, 120, 128]
+    };
+    shaded(base, noise(x / 2, y / 2) % 14)
+}
+
+/// Four rows of two bricks, every other row by half a brick to the side.
+fn brick(x: u32, y: u32) -> [u8; 4] {
+    let [width, height] = [SIDE / 2, SIDE / 4];
+    let row = y / height;
+    let along = x + row % 2 * (width / 2);
+    if along % width < 2 || y % height < 2 {
+        return shaded([176, 168, 156], noise(x, y) % 12);
+    }
+    let number = noise(along / width % 2, row) % 40;
+    shaded([190, 92, 64], number + noise(x, y) % 14)
+}
+
+/// Four pickets with points, on two rails; transparent between them.
+fn picket(x: u32, y: u32) -> [u8; 4] {
+    let width = SIDE / 4;
+    let from_middle = (2 * (x % width) + 1).abs_diff(width);
+    if from_middle < 11 && 2 * y >= from_middle {
+        let edge = if from_middle > 8 { 50 } else { 0 };
+        return shaded([236, 230, 214], edge + noise(x, y / 8) % 24);
+    }
+    let is_rail = (14..20).contains(&y) || (46..52).contains(&y);
+    if is_rail {
+        return shaded([196, 188, 170], noise(x / 8, y) % 24);
+    }
+    // The colour of the pickets, so that averages have no rim.
+    [236, 230, 214, 0]
+}
+
+/// An opaque colour, darker by a number.
+fn shaded(colour: [u8; 3], darker: u32) -> [u8; 4] {
+    let [r, g, b] = colour.map(|c| c.saturating_sub(darker as u8));
+    [r, g, b, 255]
+}
+
+/// A number that looks random.
+fn noise(x: u32, y: u32) -> u32 {
+    let key = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B);
+    (key ^ key >> 15).wrapping_mul(0xC2B2_AE35) >> 16
+}
