@@ -3,7 +3,7 @@
 //   values of quarters ─┬─▶ palettes ──────────────▶ colours ─▶ of each neighbour
 //                       └─▶ transparent? ─▶ quarter of each neighbour ──┘
 //
-// A transparent neighbour takes the colour of the nearest texel. Latency 2 clocks; the pipeline cannot be stopped.
+// A transparent neighbour takes the colour of the nearest texel. Latency 3 clocks; the pipeline cannot be stopped.
 
 `default_nettype none
 
@@ -30,11 +30,12 @@ module texture_texels (
     assign is_colour = format == 2'd0;
 
     logic [1:0][3:0]       transparent; // copy, quarter
-    logic [1:0]            seconds_transparent, opaque, seconds_opaque;
-    logic [1:0][15:0]      second_colours;
+    logic [1:0]            seconds_transparent;
+    logic [1:0][1:0]       opaque, seconds_opaque;
+    logic [1:0][15:0]      second_palette, late_seconds;
     logic [1:0][3:0][15:0] values, palette, colours;
     logic [1:0][15:0]      seconds;
-    logic [1:0][3:0][1:0]  quarters;
+    logic [1:0][3:0][1:0]  quarters, late_quarters;
     logic [1:0][1:0]       nearest;
 
     for (genvar j = 0; j < 2; j++) begin : copies
@@ -43,11 +44,12 @@ module texture_texels (
 
         for (genvar q = 0; q < 4; q++) begin : each_quarter
             assign transparent[j][q] = cut_out && in_values[j][q][7:0] == key[7:0] && (!is_colour || in_values[j][q][15:8] == key[15:8]);
-            assign colours[j][q]     = is_colour ? values[j][q] : palette[j][q];
 
             always_ff @(posedge clk) begin
                 quarters[j][q]       <= transparent[j][in_quarters[j][q]] ? nearest[j] : in_quarters[j][q];
-                out_neighbours[j][q] <= colours[j][quarters[j][q]];
+                late_quarters[j][q]  <= quarters[j][q];
+                colours[j][q]        <= is_colour ? values[j][q] : palette[j][q];
+                out_neighbours[j][q] <= colours[j][late_quarters[j][q]];
             end
         end
 
@@ -60,22 +62,23 @@ module texture_texels (
         end
 
         always_ff @(posedge clk) begin
-            opaque[j]         <= !transparent[j][nearest[j]];
-            seconds_opaque[j] <= !seconds_transparent[j];
-            out_seconds[j]    <= is_colour ? seconds[j] : second_colours[j];
+            opaque[j]         <= {opaque[j][0], !transparent[j][nearest[j]]};
+            seconds_opaque[j] <= {seconds_opaque[j][0], !seconds_transparent[j]};
+            late_seconds[j]   <= is_colour ? seconds[j] : second_palette[j];
         end
     end
 
     texture_palette of_seconds (
         .clk, .write(palette_write), .write_index(palette_index), .write_colour(palette_colour),
-        .first(in_seconds[0][7:0]), .second(in_seconds[1][7:0]), .first_colour(second_colours[0]), .second_colour(second_colours[1])
+        .first(in_seconds[0][7:0]), .second(in_seconds[1][7:0]), .first_colour(second_palette[0]), .second_colour(second_palette[1])
     );
 
     always_ff @(posedge clk) begin
         values             <= in_values;
         seconds            <= in_seconds;
-        out_opaque         <= opaque;
-        out_seconds_opaque <= seconds_opaque;
+        out_seconds        <= late_seconds;
+        out_opaque         <= {opaque[1][1], opaque[0][1]};
+        out_seconds_opaque <= {seconds_opaque[1][1], seconds_opaque[0][1]};
     end
 endmodule
 

@@ -102,17 +102,27 @@ module texture_wrap (
         level[2:1]  <= level[1:0];
     end
 
+    // Cuts off up to 11 bits. Above the position, in the highest four bits, wrong ones stay; they are outside of the level.
+    function automatic logic [KEPT-1:0] cut_off(input logic [KEPT-1:0] place, input logic [3:0] bits);
+        logic [KEPT-1:0] coarse;
+
+        coarse = bits[3] ? {{2{place[KEPT-1 -: 4]}}, place[KEPT-1:8]} : bits[2] ? {place[KEPT-1 -: 4], place[KEPT-1:4]} : place;
+        cut_off = coarse >> bits[1:0];
+    endfunction
+
     // Of lanes 2 and 3, only nearest textures need a position.
     logic [1:0][3:0][9:0]       whole;
     logic [1:0][1:0][SHARE-1:0] shares;
+    logic [1:0][1:0][SHARE-1:0] unused_share;
     logic [1:0][9:0]            extent;  // the columns or rows of a level, as bits
     logic [1:0][3:0]            below, past, odd;
 
     always_ff @(posedge clk) begin
         for (int axis = 0; axis < 2; axis++) begin
             extent[axis] <= 10'h3FF >> paired_cut[axis];
-            for (int i = 0; i < 2; i++) {whole[axis][i], shares[axis][i]} <= places[axis][i] >> paired_cut[axis];
-            for (int i = 2; i < 4; i++) whole[axis][i] <= places[axis][i][KEPT-1:SHARE] >> paired_cut[axis];
+            for (int i = 0; i < 2; i++) {whole[axis][i], shares[axis][i]} <= cut_off(places[axis][i], paired_cut[axis]);
+            for (int i = 2; i < 4; i++)
+                {whole[axis][i], unused_share[axis][i-2]} <= cut_off({places[axis][i][KEPT-1:SHARE], SHARE'(0)}, paired_cut[axis]);
             for (int i = 0; i < 4; i++) begin
                 below[axis][i] <= beyond[axis][i][2] && wrap[axis] == 2'd2;
                 past[axis][i]   <= beyond[axis][i][1] && !beyond[axis][i][2] && wrap[axis] == 2'd2;
@@ -142,7 +152,7 @@ module texture_wrap (
             assign less       = bilinear && is_left;
             assign more       = bilinear && !is_left;
             assign limited    = wrap[axis] != 2'd0;
-            assign left       = bilinear ? whole[axis][j] : whole[axis][LANE];
+            assign left       = (bilinear ? whole[axis][j] : whole[axis][LANE]) & extent[axis];
             assign right      = (bilinear ? whole[axis][j] : whole[axis][LANE + 1]) | ~extent[axis];
             assign before_sum = {1'b0, left} + {1'b0, {10{less}}};
             assign past_sum   = {1'b0, right} + {10'd0, more};
@@ -170,6 +180,8 @@ module texture_wrap (
 
         end
     end
+
+    wire _unused = &{1'b0, unused_share};
 
     always_ff @(posedge clk) begin
         extent_sum <= extent;
