@@ -138,7 +138,7 @@ module texture_sampler #(
         assign nearest[j] = head.upper[j];
     end
 
-    delay #(.WIDTH(20), .CLOCKS(LATENCY - 3)) order (
+    delay #(.WIDTH(20), .CLOCKS(LATENCY - 2)) order (
         .clk, .enable(1'b1), .in({quarters, nearest}), .out({late_quarters, late_nearest})
     );
 

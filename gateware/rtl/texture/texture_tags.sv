@@ -38,15 +38,13 @@ module texture_tags (
 
     // The step, and the slots that its pixels use.
     logic                 valid;
-    logic [3:0]           served, used, level;
+    logic [3:0]           used, level;
     logic [1:0][3:0]      parity;
     logic [1:0][3:0][7:0] places;
 
-    assign used = bilinear ? {{2{served[1]}}, {2{served[0]}}} : served;
-
     always_ff @(posedge clk) begin
         valid  <= in_valid && !rst;
-        served <= in_served;
+        used   <= bilinear ? {{2{in_served[1]}}, {2{in_served[0]}}} : in_served;
         parity <= in_parity;
         places <= in_places;
         level  <= in_level;

@@ -18,7 +18,8 @@ module texture_texels (
     // By copy; the quarters in the order of texture_store.
     input  wire  [1:0][3:0][15:0]      in_values,
     input  wire  [1:0][15:0]           in_seconds,
-    input  wire  [1:0][3:0][1:0]       in_quarters, // of each neighbour; of a nearest texture the first is the texel
+    // A clock later: the quarter of each neighbour. Of a nearest texture the first neighbour is the texel.
+    input  wire  [1:0][3:0][1:0]       in_quarters,
     input  wire  [1:0][1:0]            in_nearest,  // the neighbour that is the nearest texel
     output logic [1:0][3:0][15:0]      out_neighbours,
     output logic [1:0][15:0]           out_seconds,
@@ -30,26 +31,22 @@ module texture_texels (
     assign is_colour = format == 2'd0;
 
     logic [1:0][3:0]       transparent; // copy, quarter
-    logic [1:0]            seconds_transparent;
-    logic [1:0][1:0]       opaque, seconds_opaque;
+    logic [1:0]            seconds_transparent, opaque, seconds_opaque;
     logic [1:0][15:0]      second_palette, late_seconds;
     logic [1:0][3:0][15:0] values, palette, colours;
     logic [1:0][15:0]      seconds;
-    logic [1:0][3:0][1:0]  quarters, late_quarters;
+    logic [1:0][3:0][1:0]  quarters;
     logic [1:0][1:0]       nearest;
 
     for (genvar j = 0; j < 2; j++) begin : copies
-        assign nearest[j]             = in_quarters[j][in_nearest[j]];
-        assign seconds_transparent[j] = cut_out && in_seconds[j][7:0] == key[7:0] && (!is_colour || in_seconds[j][15:8] == key[15:8]);
+        assign nearest[j] = in_quarters[j][in_nearest[j]];
 
         for (genvar q = 0; q < 4; q++) begin : each_quarter
-            assign transparent[j][q] = cut_out && in_values[j][q][7:0] == key[7:0] && (!is_colour || in_values[j][q][15:8] == key[15:8]);
-
             always_ff @(posedge clk) begin
                 quarters[j][q]       <= transparent[j][in_quarters[j][q]] ? nearest[j] : in_quarters[j][q];
-                late_quarters[j][q]  <= quarters[j][q];
+                transparent[j][q]    <= cut_out && in_values[j][q][7:0] == key[7:0] && (!is_colour || in_values[j][q][15:8] == key[15:8]);
                 colours[j][q]        <= is_colour ? values[j][q] : palette[j][q];
-                out_neighbours[j][q] <= colours[j][late_quarters[j][q]];
+                out_neighbours[j][q] <= colours[j][quarters[j][q]];
             end
         end
 
@@ -62,9 +59,10 @@ module texture_texels (
         end
 
         always_ff @(posedge clk) begin
-            opaque[j]         <= {opaque[j][0], !transparent[j][nearest[j]]};
-            seconds_opaque[j] <= {seconds_opaque[j][0], !seconds_transparent[j]};
-            late_seconds[j]   <= is_colour ? seconds[j] : second_palette[j];
+            opaque[j]              <= !transparent[j][nearest[j]];
+            seconds_transparent[j] <= cut_out && in_seconds[j][7:0] == key[7:0] && (!is_colour || in_seconds[j][15:8] == key[15:8]);
+            seconds_opaque[j]      <= !seconds_transparent[j];
+            late_seconds[j]        <= is_colour ? seconds[j] : second_palette[j];
         end
     end
 
@@ -77,8 +75,8 @@ module texture_texels (
         values             <= in_values;
         seconds            <= in_seconds;
         out_seconds        <= late_seconds;
-        out_opaque         <= {opaque[1][1], opaque[0][1]};
-        out_seconds_opaque <= {seconds_opaque[1][1], seconds_opaque[0][1]};
+        out_opaque         <= opaque;
+        out_seconds_opaque <= seconds_opaque;
     end
 endmodule
 

@@ -124,9 +124,9 @@ module texture_wrap (
             for (int i = 2; i < 4; i++)
                 {whole[axis][i], unused_share[axis][i-2]} <= cut_off({places[axis][i][KEPT-1:SHARE], SHARE'(0)}, paired_cut[axis]);
             for (int i = 0; i < 4; i++) begin
-                below[axis][i] <= beyond[axis][i][2] && wrap[axis] == 2'd2;
-                past[axis][i]   <= beyond[axis][i][1] && !beyond[axis][i][2] && wrap[axis] == 2'd2;
-                odd[axis][i]    <= beyond[axis][i][0] && wrap[axis] == 2'd1;
+                below[axis][i] <= beyond[axis][i][2];
+                past[axis][i]  <= beyond[axis][i][1];
+                odd[axis][i]   <= beyond[axis][i][0];
             end
         end
     end
@@ -154,23 +154,25 @@ module texture_wrap (
             assign limited    = wrap[axis] != 2'd0;
             assign left       = (bilinear ? whole[axis][j] : whole[axis][LANE]) & extent[axis];
             assign right      = (bilinear ? whole[axis][j] : whole[axis][LANE + 1]) | ~extent[axis];
-            assign before_sum = {1'b0, left} + {1'b0, {10{less}}};
+            assign before_sum = {1'b0, {10{less}}} + {1'b0, left};
             assign past_sum   = {1'b0, right} + {10'd0, more};
 
-            logic [1:0] is_before, is_past, is_odd;
-
             // The flags of the pixel of each of the two slots.
-            assign is_before = {bilinear ? below[axis][j] : below[axis][LANE + 1], bilinear ? below[axis][j] : below[axis][LANE]};
-            assign is_past   = {bilinear ? past[axis][j] : past[axis][LANE + 1], bilinear ? past[axis][j] : past[axis][LANE]};
-            assign is_odd    = {bilinear ? odd[axis][j] : odd[axis][LANE + 1], bilinear ? odd[axis][j] : odd[axis][LANE]};
+            logic [1:0] is_below, is_past, is_odd;
+
+            for (genvar k = 0; k < 2; k++) begin : slots
+                assign is_below[k] = wrap[axis] == 2'd2 && (bilinear ? below[axis][j] : below[axis][LANE + k]);
+                assign is_past[k]  = wrap[axis] == 2'd2 && (bilinear ? past[axis][j] : past[axis][LANE + k]);
+                assign is_odd[k]   = wrap[axis] == 2'd1 && (bilinear ? odd[axis][j] : odd[axis][LANE + k]);
+            end
 
             always_ff @(posedge clk) begin
                 sums[axis][LANE]        <= before_sum[9:0];
                 sums[axis][LANE + 1]    <= past_sum[9:0];
-                lowest[axis][LANE]      <= is_before[0] || !is_past[0] && limited && less && !before_sum[10];
-                lowest[axis][LANE + 1]  <= is_before[1];
-                highest[axis][LANE]     <= is_past[0];
-                highest[axis][LANE + 1] <= is_past[1] || !is_before[1] && limited && past_sum[10];
+                lowest[axis][LANE]      <= is_below[0] || !is_past[0] && limited && less && !before_sum[10];
+                lowest[axis][LANE + 1]  <= is_below[1];
+                highest[axis][LANE]     <= !is_below[0] && is_past[0];
+                highest[axis][LANE + 1] <= !is_below[1] && (is_past[1] || limited && past_sum[10]);
                 flipped[axis][LANE]     <= is_odd[0];
                 flipped[axis][LANE + 1] <= is_odd[1];
                 // To nearest sixteenths, of the position half a texel to the left.
