@@ -100,7 +100,7 @@ module texture_choice #(
 
     assign both      = fit[0] & fit[1];
     assign served[0] = waiting[0];
-    assign served[1] = waiting[1] && (bilinear ? !waiting[0] || both[2] && both[3] : both[1]);
+    assign served[1] = waiting[1] && (bilinear ? both[2] && both[3] : both[1]);
     assign served[2] = waiting[2] && both[2];
     assign served[3] = waiting[3] && both[3];
 

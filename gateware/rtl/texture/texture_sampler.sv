@@ -11,7 +11,7 @@
 // in the order of the quads. The colours of memory are read as they are; `sampler` may have any value, and no value stops the unit.
 //
 // Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for some 30 steps
-// ahead. Latency 18 clocks without misses. The quads are a valid/ready stream. Steps have no ready: what follows takes a step in every
+// ahead. Latency 19 clocks without misses. The quads are a valid/ready stream. Steps have no ready: what follows takes a step in every
 // clock. `idle` is high while no quad is inside; `sampler` and `number`, the texture's, hold while it is low. `forget` (one clock while
 // `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a texture's bytes have changed, or another
 // texture has got its number. The palette may be written while `idle` is high, and the addresses of the levels too.
@@ -63,7 +63,7 @@ module texture_sampler #(
     output logic [1:0][1:0][3:0]         out_weights
 );
     // Clocks from the head of the queue to a step.
-    localparam int unsigned LATENCY = 6;
+    localparam int unsigned LATENCY = 7;
 
     logic wrap_busy, choice_busy, queue_idle, tags_busy, sweeping, passing;
 

@@ -134,7 +134,8 @@ module texture_wrap (
     // Neighbours of a bilinear texture are half a texel to both sides: u is one less than the column if the fraction is below 120/256, and
     // u+1 is one more otherwise. In a column with ones above the level's bits, a carry leaves if the neighbour is outside.
     logic [1:0][3:0][9:0] sums;
-    logic [1:0][3:0]      lowest, highest, flipped; // the slot is outside of the level
+    // The slot is outside of the level; at or above 1, `highest` is stronger.
+    logic [1:0][3:0]      lowest, highest, flipped;
     logic [1:0][9:0]      extent_sum;
     logic [1:0][1:0][3:0] weights;
     logic [1:0][1:0]      upper;
@@ -169,9 +170,9 @@ module texture_wrap (
             always_ff @(posedge clk) begin
                 sums[axis][LANE]        <= before_sum[9:0];
                 sums[axis][LANE + 1]    <= past_sum[9:0];
-                lowest[axis][LANE]      <= is_below[0] || !is_past[0] && limited && less && !before_sum[10];
+                lowest[axis][LANE]      <= is_below[0] || limited && less && !before_sum[10];
                 lowest[axis][LANE + 1]  <= is_below[1];
-                highest[axis][LANE]     <= !is_below[0] && is_past[0];
+                highest[axis][LANE]     <= is_past[0];
                 highest[axis][LANE + 1] <= !is_below[1] && (is_past[1] || limited && past_sum[10]);
                 flipped[axis][LANE]     <= is_odd[0];
                 flipped[axis][LANE + 1] <= is_odd[1];

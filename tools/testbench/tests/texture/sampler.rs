@@ -200,7 +200,7 @@ fn seams() {
                         });
                         all.push(Quad {
                             mask: 0xF,
-                            half: lane_half(i),
+                            half: i % 2 == 1,
                             last: i % 3 == 0,
                             level,
                             positions,
@@ -211,10 +211,6 @@ fn seams() {
             }
         }
     }
-}
-
-fn lane_half(i: usize) -> bool {
-    i % 2 == 1
 }
 
 /// Textures that are used in turn do not read each other's blocks; one that replaces another of the same number, neither.
