@@ -39,12 +39,22 @@ module texture_texels (
     logic [1:0][1:0]       nearest;
 
     for (genvar j = 0; j < 2; j++) begin : copies
+        logic seconds_low, seconds_high;
+
+        equal #(.WIDTH(8)) low (.a(in_seconds[j][7:0]), .b(key[7:0]), .same(seconds_low));
+        equal #(.WIDTH(8)) high (.a(in_seconds[j][15:8]), .b(key[15:8]), .same(seconds_high));
+
         assign nearest[j] = in_quarters[j][in_nearest[j]];
 
         for (genvar q = 0; q < 4; q++) begin : each_quarter
+            logic same_low, same_high;
+
+            equal #(.WIDTH(8)) low (.a(in_values[j][q][7:0]), .b(key[7:0]), .same(same_low));
+            equal #(.WIDTH(8)) high (.a(in_values[j][q][15:8]), .b(key[15:8]), .same(same_high));
+
             always_ff @(posedge clk) begin
                 quarters[j][q]       <= transparent[j][in_quarters[j][q]] ? nearest[j] : in_quarters[j][q];
-                transparent[j][q]    <= cut_out && in_values[j][q][7:0] == key[7:0] && (!is_colour || in_values[j][q][15:8] == key[15:8]);
+                transparent[j][q]    <= cut_out && same_low && (!is_colour || same_high);
                 colours[j][q]        <= is_colour ? values[j][q] : palette[j][q];
                 out_neighbours[j][q] <= colours[j][quarters[j][q]];
             end
@@ -60,7 +70,7 @@ module texture_texels (
 
         always_ff @(posedge clk) begin
             opaque[j]              <= !transparent[j][nearest[j]];
-            seconds_transparent[j] <= cut_out && in_seconds[j][7:0] == key[7:0] && (!is_colour || in_seconds[j][15:8] == key[15:8]);
+            seconds_transparent[j] <= cut_out && seconds_low && (!is_colour || seconds_high);
             seconds_opaque[j]      <= !seconds_transparent[j];
             late_seconds[j]        <= is_colour ? seconds[j] : second_palette[j];
         end

@@ -105,9 +105,13 @@ module texture_wrap (
     // Cuts off up to 11 bits. Above the position, in the highest four bits, wrong ones stay; they are outside of the level.
     function automatic logic [KEPT-1:0] cut_off(input logic [KEPT-1:0] place, input logic [3:0] bits);
         logic [KEPT-1:0] coarse;
+        logic [3:0]      of_bit;
 
         coarse = bits[3] ? {{2{place[KEPT-1 -: 4]}}, place[KEPT-1:8]} : bits[2] ? {place[KEPT-1 -: 4], place[KEPT-1:4]} : place;
-        cut_off = coarse >> bits[1:0];
+        for (int i = 0; i < KEPT; i++) begin
+            of_bit     = 4'(coarse >> i);
+            cut_off[i] = of_bit[bits[1:0]];
+        end
     endfunction
 
     // Of lanes 2 and 3, only nearest textures need a position.
