@@ -280,6 +280,31 @@ fn places_that_are_in_turn() {
     }
 }
 
+/// No header, palette or position stops the sampler.
+#[test]
+fn any_values() {
+    for seed in 500..520 {
+        let mut random = Pcg64Mcg::new(seed.into());
+        let mut bench = Bench::new(seed, [0.1, 0.3, 0.3], 9);
+        let memory = Memory::new(0, Vec::new());
+        for _ in 0..10 {
+            bench.load_any(&mut random);
+            let quads: Vec<_> = (0..100)
+                .map(|_| Quad {
+                    mask: random.random_range(1..16),
+                    half: random.random(),
+                    last: random.random(),
+                    level: random.random_range(0..16),
+                    positions: [[0; 2]; 4].map(|place| {
+                        place.map(|_: i64| random.random_range(-3 * REPEAT..3 * REPEAT))
+                    }),
+                })
+                .collect();
+            bench.check_any(&memory, &quads);
+        }
+    }
+}
+
 /// Clocks for quads in rows over a whole texture, a texel a pixel, and the words of memory.
 fn walk(filter: Filter, format: Format, side_log2: u8, rounds: usize, latency: u64) -> [f64; 2] {
     let mut random = Pcg64Mcg::new(400);
