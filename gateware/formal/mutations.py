@@ -110,6 +110,10 @@ def _smooth(old, new, fails):
     return Mutation("smooth_shader.sv", old, new, fails)
 
 
+def _steps(old, new, fails):
+    return Mutation("texture_queue.sv", old, new, fails)
+
+
 def _cpu_bus(old, new, fails):
     return Mutation("cpu_bus.py", old, new, fails)
 
@@ -373,6 +377,20 @@ MUTATIONS = {
         _queue("level == '0;", "level <= LEVEL_BITS'(1);", "idle_when_empty"),
         _smooth("finished <= valid[LATENCY] && ends;", "finished <= valid[LATENCY] && ends && !group_valid;", "shown_in_time"),
         _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
+    ],
+    "texture_queue": [
+        _steps("pointer_t'(STEPS - 2)", "pointer_t'(STEPS)", "never_too_full"),
+        _steps("head       <= head + pointer_t'(reads)", "head       <= head + pointer_t'(reads || fills)", "in_order"),
+        _steps("places_end <= places_end + INDEX_BITS'(places_valid)", "places_end <= places_end + INDEX_BITS'(step_valid)", "in_order"),
+        _steps("reads      <= next_valid && next_missed", "reads      <= next_missed", "nothing_made_up"),
+        _steps("fill_second && (left & (left - 4'd1)) == '0", "fill_second", "read_complete"),
+        _steps("fills && fill_second && (left", "fills && (left", "read_complete"),
+        _steps("left[0] ? 2'd0 : left[1] ? 2'd1 : left[2] ? 2'd2 : 2'd3", "left[1] ? 2'd1 : left[0] ? 2'd0 : left[2] ? 2'd2 : 2'd3",
+               "missed_filled"),
+        _steps("data_ready && data_valid;", "data_ready;", "word_taken"),
+        _steps("count == '0;", "count <= pointer_t'(1);", "idle_when_empty"),
+        _steps("reads      <= next_valid && next_missed == '0;", "reads      <= next_valid && next_missed == '0 && !reads;", "goes_in_time"),
+        _steps("room       <= count <= MOST;", "room       <= count == MOST;", "taken_in_time"),
     ],
     "cpu_bus": [
         _cpu_bus("busy.eq(asks_data | asks_instructions)", "busy.eq(asks_data)", "shown"),

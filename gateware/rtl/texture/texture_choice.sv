@@ -44,13 +44,17 @@ module texture_choice #(
     for (genvar axis = 0; axis < 2; axis++) begin : compared
         for (genvar i = 0; i < 4; i++) begin : slots
             assign parity[axis][i] = wide[axis] ? in_item.texels[axis][i][3] : in_item.texels[axis][i][2];
-            assign rests[axis][i]  = {in_item.texels[axis][i][9:4], !wide[axis] && in_item.texels[axis][i][3]};
+            assign rests[axis][i]  = {!wide[axis] && in_item.texels[axis][i][3], in_item.texels[axis][i][9:4]};
         end
         for (genvar j = 1; j < 4; j++) begin : seconds
             for (genvar i = 0; i < j; i++) begin : firsts
                 localparam int unsigned PAIR = j * (j - 1) / 2 + i;
-                assign differ[axis][PAIR] = parity[axis][i] == parity[axis][j] && rests[axis][i] != rests[axis][j];
-                assign same[axis][PAIR]   = parity[axis][i] == parity[axis][j] && rests[axis][i] == rests[axis][j];
+                logic equal_rests;
+
+                equal #(.WIDTH(7)) compared (.a(rests[axis][i]), .b(rests[axis][j]), .same(equal_rests));
+
+                assign differ[axis][PAIR] = parity[axis][i] == parity[axis][j] && !equal_rests;
+                assign same[axis][PAIR]   = parity[axis][i] == parity[axis][j] && equal_rests;
             end
         end
     end
@@ -100,7 +104,7 @@ module texture_choice #(
 
     assign both      = fit[0] & fit[1];
     assign served[0] = waiting[0];
-    assign served[1] = waiting[1] && (bilinear ? !waiting[0] || both[2] && both[3] : both[1]);
+    assign served[1] = waiting[1] && (bilinear ? both[2] && both[3] : both[1]);
     assign served[2] = waiting[2] && both[2];
     assign served[3] = waiting[3] && both[3];
 

@@ -1,5 +1,5 @@
-// A quarter of a copy of the cache's blocks. Two ports read 16 bits each, or write half of `in` each. Latency 1 clock. A port that writes
-// keeps its output.
+// A quarter of a copy of the cache's blocks. Two ports read 16 bits each, or write half of `in` each. Latency 2 clocks: the second
+// one is for the output registers of the block RAM. A port that writes repeats its output.
 
 `default_nettype none
 
@@ -16,15 +16,19 @@ module texture_memory #(
 );
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *) logic [15:0] halves [0:2**ADDRESS_BITS-1];
 
+    logic [15:0] first_read, second_read;
+
     // A process for each port, as synthesis tools expect it; always_ff allows no other process with the same variable.
     always @(posedge clk) begin
         if (write) halves[first] <= in[15:0];
-        else first_out <= halves[first];
+        else first_read <= halves[first];
+        first_out <= first_read;
     end
 
     always @(posedge clk) begin
         if (write) halves[second] <= in[31:16];
-        else second_out <= halves[second];
+        else second_read <= halves[second];
+        second_out <= second_read;
     end
 endmodule
 

@@ -11,7 +11,7 @@
 // in the order of the quads. The colours of memory are read as they are; `sampler` may have any value, and no value stops the unit.
 //
 // Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for some 30 steps
-// ahead. Latency 17 clocks without misses. The quads are a valid/ready stream. Steps have no ready: what follows takes a step in every
+// ahead. Latency 18 clocks without misses. The quads are a valid/ready stream. Steps have no ready: what follows takes a step in every
 // clock. `idle` is high while no quad is inside; `sampler` and `number`, the texture's, hold while it is low. `forget` (one clock while
 // `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a texture's bytes have changed, or another
 // texture has got its number. The palette may be written while `idle` is high, and the addresses of the levels too.
@@ -63,7 +63,7 @@ module texture_sampler #(
     output logic [1:0][1:0][3:0]         out_weights
 );
     // Clocks from the head of the queue to a step.
-    localparam int unsigned LATENCY = 5;
+    localparam int unsigned LATENCY = 7;
 
     logic wrap_busy, choice_busy, queue_idle, tags_busy, sweeping, passing;
 
@@ -76,8 +76,8 @@ module texture_sampler #(
     texture_pkg::item_t item;
 
     texture_wrap wrapping (
-        .clk, .rst, .side_log2(sampler.side_log2), .wrap(sampler.wrap), .bilinear(sampler.bilinear), .room(items_room), .busy(wrap_busy), .in_valid, .in_ready, .in_mask, .in_half, .in_last, .in_level,
-        .in_positions, .out_valid(item_valid), .out_item(item)
+        .clk, .rst, .side_log2(sampler.side_log2), .wrap(sampler.wrap), .bilinear(sampler.bilinear), .room(items_room), .busy(wrap_busy),
+        .in_valid, .in_ready, .in_mask, .in_half, .in_last, .in_level, .in_positions, .out_valid(item_valid), .out_item(item)
     );
 
     logic                 queue_room, step_room, step_valid;
@@ -89,8 +89,8 @@ module texture_sampler #(
     assign step_room = queue_room && !sweeping;
 
     texture_choice choice (
-        .clk, .rst, .format(sampler.format), .bilinear(sampler.bilinear), .busy(choice_busy), .items_room, .in_valid(item_valid), .in_item(item), .step_room,
-        .out_valid(step_valid), .out_step(step), .out_places(step_places), .out_level(step_level)
+        .clk, .rst, .format(sampler.format), .bilinear(sampler.bilinear), .busy(choice_busy), .items_room, .in_valid(item_valid),
+        .in_item(item), .step_room, .out_valid(step_valid), .out_step(step), .out_places(step_places), .out_level(step_level)
     );
 
     logic                 places_valid, missed_valid;
@@ -99,14 +99,14 @@ module texture_sampler #(
     texture_pkg::blocks_t blocks;
 
     texture_tags tags (
-        .clk, .rst, .forget, .sweeping, .busy(tags_busy), .format(sampler.format), .bilinear(sampler.bilinear), .number, .in_valid(step_valid), .in_served(step.served),
-        .in_parity(step.parity), .in_places(step_places), .in_level(step_level), .at_valid(places_valid), .at_places(places),
+        .clk, .rst, .forget, .sweeping, .busy(tags_busy), .format(sampler.format), .bilinear(sampler.bilinear), .number,
+        .in_valid(step_valid), .in_served(step.served), .in_parity(step.parity), .in_places(step_places), .in_level(step_level), .at_valid(places_valid), .at_places(places),
         .out_valid(missed_valid), .out_missed(missed), .out_blocks(blocks)
     );
 
     texture_fetch #(.ADDRESS_BITS(ADDRESS_BITS)) fetch (
-        .clk, .rst, .format(sampler.format), .width_log2(sampler.side_log2[0]), .level_write, .level_number, .level_first, .in_valid(missed_valid && missed != '0), .in_missed(missed),
-        .in_blocks(blocks), .ask_valid, .ask_ready, .ask_addr
+        .clk, .rst, .format(sampler.format), .width_log2(sampler.side_log2[0]), .level_write, .level_number, .level_first,
+        .in_valid(missed_valid && missed != '0), .in_missed(missed), .in_blocks(blocks), .ask_valid, .ask_ready, .ask_addr
     );
 
     logic               fills, fill_second, reads;
@@ -126,8 +126,8 @@ module texture_sampler #(
     logic [1:0]            opaque, seconds_opaque;
 
     texture_store store (
-        .clk, .format(sampler.format), .bilinear(sampler.bilinear), .fills, .fill_class, .fill_second, .data, .parity(head.parity), .x(head.x), .y(head.y),
-        .places(head_places), .out_values(values), .out_seconds(seconds)
+        .clk, .format(sampler.format), .bilinear(sampler.bilinear), .fills, .fill_class, .fill_second, .data, .parity(head.parity),
+        .x(head.x), .y(head.y), .places(head_places), .out_values(values), .out_seconds(seconds)
     );
 
     for (genvar j = 0; j < 2; j++) begin : neighbours
@@ -143,7 +143,8 @@ module texture_sampler #(
     );
 
     texture_texels texels (
-        .clk, .format(sampler.format), .cut_out(sampler.cut_out), .key(sampler.key), .palette_write, .palette_index, .palette_colour, .in_values(values), .in_seconds(seconds),
+        .clk, .format(sampler.format), .cut_out(sampler.cut_out), .key(sampler.key), .palette_write, .palette_index, .palette_colour,
+        .in_values(values), .in_seconds(seconds),
         .in_quarters(late_quarters), .in_nearest(late_nearest), .out_neighbours, .out_seconds(second_colours), .out_opaque(opaque),
         .out_seconds_opaque(seconds_opaque)
     );

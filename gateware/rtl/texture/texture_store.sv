@@ -6,7 +6,7 @@
 // texture, one on each port, or one pixel of a bilinear texture, whose four neighbours are in different quarters or are one texel. A fill
 // writes a word to both copies, half of each quarter on each port.
 //
-// Latency 3 clocks from the head to the texels, throughput a step or a word a clock. Outputs: of the first port all quarters, of the
+// Latency 4 clocks from the head to the texels, throughput a step or a word a clock. Outputs: of the first port all quarters, of the
 // second port that of the pixel's texel, as values of the format: bits 15:8 only matter for colours, and bits 7:4 are zero for indices of
 // 16 colours.
 
@@ -65,8 +65,8 @@ module texture_store (
         localparam int unsigned LOWER = 2 * j, UPPER = 2 * j + 1;
 
         // The second port.
-        logic [1:0]              class_of, quarter_1, quarter_2;
-        logic                    byte_1, byte_2, byte_3, digit_1, digit_2, digit_3;
+        logic [1:0]              class_of, quarter_1, quarter_2, quarter_3;
+        logic [3:0]              bytes, digits; // of steps that were at the head 1 to 4 clocks ago
         logic [ADDRESS_BITS-1:0] address;
         logic [15:0]             second;
 
@@ -77,20 +77,18 @@ module texture_store (
                           fills || (is_digit ? half_down[UPPER] : half_across[UPPER])};
             quarter_1 <= {y[UPPER][0], x[UPPER][0]};
             quarter_2 <= quarter_1;
-            byte_1    <= byte_of[UPPER];
-            byte_2    <= byte_1;
-            byte_3    <= byte_2;
-            digit_1   <= digit[UPPER];
-            digit_2   <= digit_1;
-            digit_3   <= digit_2;
-            second    <= seconds[j][quarter_2];
+            quarter_3 <= quarter_2;
+            bytes     <= {bytes[2:0], byte_of[UPPER]};
+            digits    <= {digits[2:0], digit[UPPER]};
+            second    <= seconds[j][quarter_3];
         end
 
-        assign out_seconds[j] = value(second, byte_3, digit_3, is_digit);
+        assign out_seconds[j] = value(second, bytes[3], digits[3], is_digit);
 
         // The first port: the neighbour in a quarter is the one of the quarter's parity.
         for (genvar q = 0; q < 4; q++) begin : quarters
-            logic                    right, below, first_byte_1, first_byte_2, first_digit_1, first_digit_2;
+            logic                    right, below;
+            logic [2:0]              first_bytes, first_digits;
             logic [1:0]              first_class;
             logic [ADDRESS_BITS-1:0] first_address;
 
@@ -101,10 +99,8 @@ module texture_store (
             always_ff @(posedge clk) begin
                 first_address <= {first_class, places[first_class], fills ? fill_second : word[below ? UPPER : LOWER],
                                   !fills && (is_digit ? half_down[below ? UPPER : LOWER] : half_across[right ? UPPER : LOWER])};
-                first_byte_1  <= byte_of[right ? UPPER : LOWER];
-                first_byte_2  <= first_byte_1;
-                first_digit_1 <= digit[right ? UPPER : LOWER];
-                first_digit_2 <= first_digit_1;
+                first_bytes   <= {first_bytes[1:0], byte_of[right ? UPPER : LOWER]};
+                first_digits  <= {first_digits[1:0], digit[right ? UPPER : LOWER]};
             end
 
             texture_memory #(.ADDRESS_BITS(ADDRESS_BITS)) memory (
@@ -112,7 +108,7 @@ module texture_store (
                 .first_out(firsts[j][q]), .second_out(seconds[j][q])
             );
 
-            always_ff @(posedge clk) out_values[j][q] <= value(firsts[j][q], first_byte_2, first_digit_2, is_digit);
+            always_ff @(posedge clk) out_values[j][q] <= value(firsts[j][q], first_bytes[2], first_digits[2], is_digit);
         end
     end
 endmodule

@@ -38,15 +38,13 @@ module texture_tags (
 
     // The step, and the slots that its pixels use.
     logic                 valid;
-    logic [3:0]           served, used, level;
+    logic [3:0]           used, level;
     logic [1:0][3:0]      parity;
     logic [1:0][3:0][7:0] places;
 
-    assign used = bilinear ? {{2{served[1]}}, {2{served[0]}}} : served;
-
     always_ff @(posedge clk) begin
         valid  <= in_valid && !rst;
-        served <= in_served;
+        used   <= bilinear ? {{2{in_served[1]}}, {2{in_served[0]}}} : in_served;
         parity <= in_parity;
         places <= in_places;
         level  <= in_level;
@@ -56,6 +54,7 @@ module texture_tags (
     texture_pkg::blocks_t blocks;
     logic [3:0]           needed, needs;
     logic [1:0][1:0][7:0] chosen;
+    logic [1:0][1:0][1:0] first;
     logic [2:0]           mix;
 
     always_comb begin
@@ -67,8 +66,9 @@ module texture_tags (
                             && parity[0][i] == 1'(class_of) && parity[1][k] == 1'(class_of / 2)) needs[class_of] = 1'b1;
         for (int axis = 0; axis < 2; axis++)
             for (int odd = 0; odd < 2; odd++) begin
-                chosen[axis][odd] = places[axis][3];
-                for (int i = 2; i >= 0; i--) if (used[i] && parity[axis][i] == 1'(odd)) chosen[axis][odd] = places[axis][i];
+                first[axis][odd] = 2'd3;
+                for (int i = 2; i >= 0; i--) if (used[i] && parity[axis][i] == 1'(odd)) first[axis][odd] = 2'(i);
+                chosen[axis][odd] = places[axis][first[axis][odd]];
             end
     end
 
@@ -106,7 +106,11 @@ module texture_tags (
             if (writes[i]) memory[at_places[i]] <= entries[i];
         end
 
-        assign out_missed[i] = missing[i] && found[i] != replaced[i];
+        logic hit;
+
+        equal #(.WIDTH(TAG_BITS)) compared (.a(found[i]), .b(replaced[i]), .same(hit));
+
+        assign out_missed[i] = missing[i] && !hit;
     end
 
     assign busy = valid || at_valid || out_valid;

@@ -3,7 +3,7 @@
 //   values of quarters ─┬─▶ palettes ──────────────▶ colours ─▶ of each neighbour
 //                       └─▶ transparent? ─▶ quarter of each neighbour ──┘
 //
-// A transparent neighbour takes the colour of the nearest texel. Latency 2 clocks; the pipeline cannot be stopped.
+// A transparent neighbour takes the colour of the nearest texel. Latency 3 clocks; the pipeline cannot be stopped.
 
 `default_nettype none
 
@@ -18,7 +18,8 @@ module texture_texels (
     // By copy; the quarters in the order of texture_store.
     input  wire  [1:0][3:0][15:0]      in_values,
     input  wire  [1:0][15:0]           in_seconds,
-    input  wire  [1:0][3:0][1:0]       in_quarters, // of each neighbour; of a nearest texture the first is the texel
+    // A clock later: the quarter of each neighbour. Of a nearest texture the first neighbour is the texel.
+    input  wire  [1:0][3:0][1:0]       in_quarters,
     input  wire  [1:0][1:0]            in_nearest,  // the neighbour that is the nearest texel
     output logic [1:0][3:0][15:0]      out_neighbours,
     output logic [1:0][15:0]           out_seconds,
@@ -31,22 +32,30 @@ module texture_texels (
 
     logic [1:0][3:0]       transparent; // copy, quarter
     logic [1:0]            seconds_transparent, opaque, seconds_opaque;
-    logic [1:0][15:0]      second_colours;
+    logic [1:0][15:0]      second_palette, late_seconds;
     logic [1:0][3:0][15:0] values, palette, colours;
     logic [1:0][15:0]      seconds;
     logic [1:0][3:0][1:0]  quarters;
     logic [1:0][1:0]       nearest;
 
     for (genvar j = 0; j < 2; j++) begin : copies
-        assign nearest[j]             = in_quarters[j][in_nearest[j]];
-        assign seconds_transparent[j] = cut_out && in_seconds[j][7:0] == key[7:0] && (!is_colour || in_seconds[j][15:8] == key[15:8]);
+        logic seconds_low, seconds_high;
+
+        equal #(.WIDTH(8)) low (.a(in_seconds[j][7:0]), .b(key[7:0]), .same(seconds_low));
+        equal #(.WIDTH(8)) high (.a(in_seconds[j][15:8]), .b(key[15:8]), .same(seconds_high));
+
+        assign nearest[j] = in_quarters[j][in_nearest[j]];
 
         for (genvar q = 0; q < 4; q++) begin : each_quarter
-            assign transparent[j][q] = cut_out && in_values[j][q][7:0] == key[7:0] && (!is_colour || in_values[j][q][15:8] == key[15:8]);
-            assign colours[j][q]     = is_colour ? values[j][q] : palette[j][q];
+            logic same_low, same_high;
+
+            equal #(.WIDTH(8)) low (.a(in_values[j][q][7:0]), .b(key[7:0]), .same(same_low));
+            equal #(.WIDTH(8)) high (.a(in_values[j][q][15:8]), .b(key[15:8]), .same(same_high));
 
             always_ff @(posedge clk) begin
                 quarters[j][q]       <= transparent[j][in_quarters[j][q]] ? nearest[j] : in_quarters[j][q];
+                transparent[j][q]    <= cut_out && same_low && (!is_colour || same_high);
+                colours[j][q]        <= is_colour ? values[j][q] : palette[j][q];
                 out_neighbours[j][q] <= colours[j][quarters[j][q]];
             end
         end
@@ -60,20 +69,22 @@ module texture_texels (
         end
 
         always_ff @(posedge clk) begin
-            opaque[j]         <= !transparent[j][nearest[j]];
-            seconds_opaque[j] <= !seconds_transparent[j];
-            out_seconds[j]    <= is_colour ? seconds[j] : second_colours[j];
+            opaque[j]              <= !transparent[j][nearest[j]];
+            seconds_transparent[j] <= cut_out && seconds_low && (!is_colour || seconds_high);
+            seconds_opaque[j]      <= !seconds_transparent[j];
+            late_seconds[j]        <= is_colour ? seconds[j] : second_palette[j];
         end
     end
 
     texture_palette of_seconds (
         .clk, .write(palette_write), .write_index(palette_index), .write_colour(palette_colour),
-        .first(in_seconds[0][7:0]), .second(in_seconds[1][7:0]), .first_colour(second_colours[0]), .second_colour(second_colours[1])
+        .first(in_seconds[0][7:0]), .second(in_seconds[1][7:0]), .first_colour(second_palette[0]), .second_colour(second_palette[1])
     );
 
     always_ff @(posedge clk) begin
         values             <= in_values;
         seconds            <= in_seconds;
+        out_seconds        <= late_seconds;
         out_opaque         <= opaque;
         out_seconds_opaque <= seconds_opaque;
     end

@@ -102,21 +102,35 @@ module texture_wrap (
         level[2:1]  <= level[1:0];
     end
 
+    // Cuts off up to 11 bits. Above the position, in the highest four bits, wrong ones stay; they are outside of the level.
+    function automatic logic [KEPT-1:0] cut_off(input logic [KEPT-1:0] place, input logic [3:0] bits);
+        logic [KEPT-1:0] coarse;
+        logic [3:0]      of_bit;
+
+        coarse = bits[3] ? {{2{place[KEPT-1 -: 4]}}, place[KEPT-1:8]} : bits[2] ? {place[KEPT-1 -: 4], place[KEPT-1:4]} : place;
+        for (int i = 0; i < KEPT; i++) begin
+            of_bit     = 4'(coarse >> i);
+            cut_off[i] = of_bit[bits[1:0]];
+        end
+    endfunction
+
     // Of lanes 2 and 3, only nearest textures need a position.
     logic [1:0][3:0][9:0]       whole;
     logic [1:0][1:0][SHARE-1:0] shares;
+    logic [1:0][1:0][SHARE-1:0] unused_share;
     logic [1:0][9:0]            extent;  // the columns or rows of a level, as bits
     logic [1:0][3:0]            below, past, odd;
 
     always_ff @(posedge clk) begin
         for (int axis = 0; axis < 2; axis++) begin
             extent[axis] <= 10'h3FF >> paired_cut[axis];
-            for (int i = 0; i < 2; i++) {whole[axis][i], shares[axis][i]} <= places[axis][i] >> paired_cut[axis];
-            for (int i = 2; i < 4; i++) whole[axis][i] <= places[axis][i][KEPT-1:SHARE] >> paired_cut[axis];
+            for (int i = 0; i < 2; i++) {whole[axis][i], shares[axis][i]} <= cut_off(places[axis][i], paired_cut[axis]);
+            for (int i = 2; i < 4; i++)
+                {whole[axis][i], unused_share[axis][i-2]} <= cut_off({places[axis][i][KEPT-1:SHARE], SHARE'(0)}, paired_cut[axis]);
             for (int i = 0; i < 4; i++) begin
-                below[axis][i] <= beyond[axis][i][2] && wrap[axis] == 2'd2;
-                past[axis][i]   <= beyond[axis][i][1] && !beyond[axis][i][2] && wrap[axis] == 2'd2;
-                odd[axis][i]    <= beyond[axis][i][0] && wrap[axis] == 2'd1;
+                below[axis][i] <= beyond[axis][i][2];
+                past[axis][i]  <= beyond[axis][i][1];
+                odd[axis][i]   <= beyond[axis][i][0];
             end
         end
     end
@@ -124,7 +138,8 @@ module texture_wrap (
     // Neighbours of a bilinear texture are half a texel to both sides: u is one less than the column if the fraction is below 120/256, and
     // u+1 is one more otherwise. In a column with ones above the level's bits, a carry leaves if the neighbour is outside.
     logic [1:0][3:0][9:0] sums;
-    logic [1:0][3:0]      lowest, highest, flipped; // the slot is outside of the level
+    // The slot is outside of the level; at or above 1, `highest` is stronger.
+    logic [1:0][3:0]      lowest, highest, flipped;
     logic [1:0][9:0]      extent_sum;
     logic [1:0][1:0][3:0] weights;
     logic [1:0][1:0]      upper;
@@ -142,25 +157,27 @@ module texture_wrap (
             assign less       = bilinear && is_left;
             assign more       = bilinear && !is_left;
             assign limited    = wrap[axis] != 2'd0;
-            assign left       = bilinear ? whole[axis][j] : whole[axis][LANE];
+            assign left       = (bilinear ? whole[axis][j] : whole[axis][LANE]) & extent[axis];
             assign right      = (bilinear ? whole[axis][j] : whole[axis][LANE + 1]) | ~extent[axis];
-            assign before_sum = {1'b0, left} + {1'b0, {10{less}}};
+            assign before_sum = {1'b0, {10{less}}} + {1'b0, left};
             assign past_sum   = {1'b0, right} + {10'd0, more};
 
-            logic [1:0] is_before, is_past, is_odd;
-
             // The flags of the pixel of each of the two slots.
-            assign is_before = {bilinear ? below[axis][j] : below[axis][LANE + 1], bilinear ? below[axis][j] : below[axis][LANE]};
-            assign is_past   = {bilinear ? past[axis][j] : past[axis][LANE + 1], bilinear ? past[axis][j] : past[axis][LANE]};
-            assign is_odd    = {bilinear ? odd[axis][j] : odd[axis][LANE + 1], bilinear ? odd[axis][j] : odd[axis][LANE]};
+            logic [1:0] is_below, is_past, is_odd;
+
+            for (genvar k = 0; k < 2; k++) begin : slots
+                assign is_below[k] = wrap[axis] == 2'd2 && (bilinear ? below[axis][j] : below[axis][LANE + k]);
+                assign is_past[k]  = wrap[axis] == 2'd2 && (bilinear ? past[axis][j] : past[axis][LANE + k]);
+                assign is_odd[k]   = wrap[axis] == 2'd1 && (bilinear ? odd[axis][j] : odd[axis][LANE + k]);
+            end
 
             always_ff @(posedge clk) begin
                 sums[axis][LANE]        <= before_sum[9:0];
                 sums[axis][LANE + 1]    <= past_sum[9:0];
-                lowest[axis][LANE]      <= is_before[0] || !is_past[0] && limited && less && !before_sum[10];
-                lowest[axis][LANE + 1]  <= is_before[1];
+                lowest[axis][LANE]      <= is_below[0] || limited && less && !before_sum[10];
+                lowest[axis][LANE + 1]  <= is_below[1];
                 highest[axis][LANE]     <= is_past[0];
-                highest[axis][LANE + 1] <= is_past[1] || !is_before[1] && limited && past_sum[10];
+                highest[axis][LANE + 1] <= !is_below[1] && (is_past[1] || limited && past_sum[10]);
                 flipped[axis][LANE]     <= is_odd[0];
                 flipped[axis][LANE + 1] <= is_odd[1];
                 // To nearest sixteenths, of the position half a texel to the left.
@@ -170,6 +187,8 @@ module texture_wrap (
 
         end
     end
+
+    wire _unused = &{1'b0, unused_share};
 
     always_ff @(posedge clk) begin
         extent_sum <= extent;

@@ -200,7 +200,7 @@ fn seams() {
                         });
                         all.push(Quad {
                             mask: 0xF,
-                            half: lane_half(i),
+                            half: i % 2 == 1,
                             last: i % 3 == 0,
                             level,
                             positions,
@@ -211,10 +211,6 @@ fn seams() {
             }
         }
     }
-}
-
-fn lane_half(i: usize) -> bool {
-    i % 2 == 1
 }
 
 /// Textures that are used in turn do not read each other's blocks; one that replaces another of the same number, neither.
@@ -281,6 +277,31 @@ fn places_that_are_in_turn() {
             })
             .collect();
         bench.check(&memory, &quads);
+    }
+}
+
+/// No header, palette or position stops the sampler.
+#[test]
+fn any_values() {
+    for seed in 500..520 {
+        let mut random = Pcg64Mcg::new(seed.into());
+        let mut bench = Bench::new(seed, [0.1, 0.3, 0.3], 9);
+        let memory = Memory::new(0, Vec::new());
+        for _ in 0..10 {
+            bench.load_any(&mut random);
+            let quads: Vec<_> = (0..100)
+                .map(|_| Quad {
+                    mask: random.random_range(1..16),
+                    half: random.random(),
+                    last: random.random(),
+                    level: random.random_range(0..16),
+                    positions: [[0; 2]; 4].map(|place| {
+                        place.map(|_: i64| random.random_range(-3 * REPEAT..3 * REPEAT))
+                    }),
+                })
+                .collect();
+            bench.check_any(&memory, &quads);
+        }
     }
 }
 

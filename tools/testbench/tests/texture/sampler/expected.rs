@@ -53,6 +53,46 @@ pub fn texels(texture: &Texture, level: u32, position: [i64; 2]) -> Texels {
     }
 }
 
+/// The lanes of each step of a quad. The first lane that waits is in the step, and every other one of its pair or quad whose texels are all
+/// in the block column and the block row of the first waiting texel with their parity.
+pub fn steps(texture: &Texture, quad: &Quad) -> Vec<u8> {
+    let is_bilinear = texture.sampler().filter == Filter::Bilinear;
+    let (sides, block) = (
+        texture.level_log2(quad.level),
+        texture.format().block_log2(),
+    );
+    let wrap = texture.sampler().wrap;
+    // The block columns and block rows of a lane's texels.
+    let blocks = |lane: usize, axis: usize| {
+        let place = quad.positions[lane][axis] >> (POSITION_BITS - 8 - sides[axis]);
+        let texels = if is_bilinear {
+            [place - 120, place - 120 + 256]
+        } else {
+            [place; 2]
+        };
+        texels.map(|place| wrap[axis].place((place >> 8) as i32, sides[axis]) >> block[axis])
+    };
+    let groups: &[u8] = if is_bilinear { &[0x3, 0xC] } else { &[0xF] };
+    let mut steps = Vec::new();
+    for group in groups {
+        let mut waiting = quad.mask & group;
+        while waiting != 0 {
+            let lanes = (0..4).filter(|lane| waiting >> lane & 1 != 0);
+            let fits = |lane: usize, axis: usize| {
+                blocks(lane, axis).into_iter().all(|block| {
+                    let mut all = lanes.clone().flat_map(|lane| blocks(lane, axis));
+                    all.find(|other| other % 2 == block % 2) == Some(block)
+                })
+            };
+            let served = lanes.clone().filter(|&lane| fits(lane, 0) && fits(lane, 1));
+            let served = served.fold(0, |mask, lane| mask | 1 << lane);
+            steps.push(served);
+            waiting &= !served;
+        }
+    }
+    steps
+}
+
 /// Compares the texels that the sampler gave for a pixel with the model's sample. `texels` has the nearest one where the texture is not
 /// filtered, and otherwise the neighbours.
 pub fn check_sample(texture: &Texture, level: u32, position: [i64; 2], texels: &Texels) {
