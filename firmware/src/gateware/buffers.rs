@@ -154,7 +154,7 @@ impl Buffers {
     }
 }
 
-/// The table of the addresses of a frame's textures (docs/formats/texture.md, "Textures of a frame"). Entry 0 is not used.
+/// The table of the addresses of a frame's textures (docs/textures.md, "Textures of a frame"). Entry 0 is not used.
 pub struct TextureTable {
     addresses: &'static mut [u32],
     /// Number of the last texture.

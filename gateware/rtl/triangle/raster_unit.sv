@@ -20,7 +20,7 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
-// With TEXTURE, triangles may have textures, whose table is `parameters.textures` (docs/formats/texture.md, "Textures of a frame").
+// With TEXTURE, triangles may have textures, whose table is `parameters.textures` (docs/textures.md, "Textures of a frame").
 //
 // Without TRIANGLES, triangle_raster is not built, and a descriptor that is no piece of a line counts as damaged. With neither TRIANGLES
 // nor LINES, list_reader is not built either: frames have fields only, `flags.first` and `flags.second` must be low, and the unit reads no
