@@ -12,9 +12,9 @@ use glint_core::feature::{CPU, MESH, TEXTURE};
 use glint_engines::triangle::MeshPass;
 use glint_hal::triangle::{Counts, EngineError, Error, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
-use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter, OfTexture};
+use glint_model::triangle::descriptor::{Layout, ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
-use glint_model::triangle::textured::Textured;
+use glint_model::triangle::textured::{OfTexture, Textured};
 use glint_model::{
     Clip, DrawnTriangle, Frame, FrameConstants, MeshSetup, Subject, clip_exceptions,
 };

@@ -11,11 +11,10 @@ use glint_core::picture::Size;
 use glint_core::records::{
     PIECE_MARK, descriptor, piece as piece_fields, planes, stored_piece, texture_planes,
 };
-use glint_core::texture::Texture;
 
 use crate::line::Piece;
 use crate::triangle::setup::{Plane, Setup};
-use crate::triangle::textured::{Axis, Textured};
+use crate::triangle::textured::OfTexture;
 
 pub use contents::Contents;
 
@@ -36,32 +35,6 @@ const TEXTURE_WORDS: usize = texture_planes::BITS.div_ceil(128) * 4;
 /// Number of 32-bit words of the planes of light, whole words of 16 bytes.
 const LIGHT_WORDS: usize = planes::BITS.div_ceil(128) * 4;
 const WORDS: usize = FLAT_WORDS + TEXTURE_WORDS + LIGHT_WORDS;
-
-/// The texture of a triangle: the fields of a [`Textured`](crate::triangle::textured::Textured), with its number in the frame's table
-/// in place of the texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OfTexture {
-    /// The number, from 1.
-    pub number: u8,
-    /// The planes of the coordinates s and t.
-    pub axes: [Axis; 2],
-    /// Light under flat shading.
-    pub light: [u8; 3],
-    /// The weight of the coordinates in orthographic projection.
-    pub weight: Option<u32>,
-}
-
-impl OfTexture {
-    /// The same with the texture itself.
-    pub fn with<'a>(&self, texture: Texture<'a>) -> Textured<'a> {
-        Textured {
-            texture,
-            axes: self.axes,
-            light: self.light,
-            weight: self.weight,
-        }
-    }
-}
 
 /// The optional parts of the descriptors that a gateware reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,13 +6,12 @@ use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 
 use crate::triangle::clip::{Cut, TexturedVertex, clip, off_picture};
-use crate::triangle::descriptor::OfTexture;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_light::MeshLight;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::setup::{Bounds, Oriented, Setup};
 use crate::triangle::shade::{Light, Lit, intensity, lit};
-use crate::triangle::textured::{axes, flat_light, weight};
+use crate::triangle::textured::{OfTexture, axes, flat_light, weight};
 use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 
 /// Options of drawing a mesh.

@@ -8,7 +8,6 @@ use glint_core::mesh::{Attribute, Mesh, Triangle};
 use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Texture, Wrap};
 
-use crate::triangle::descriptor::OfTexture;
 use crate::triangle::quotient::CHANNEL_BITS;
 use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
 use crate::triangle::shade::HALF_CODE;
@@ -37,6 +36,31 @@ pub struct Textured<'a> {
     pub light: [u8; 3],
     /// The weight of the coordinates in orthographic projection, in the format of the depth accumulator.
     pub weight: Option<u32>,
+}
+
+/// The texture of a triangle in a descriptor: a [`Textured`] with the number in the frame's table in place of the texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OfTexture {
+    /// The number, from 1.
+    pub number: u8,
+    /// The planes of the coordinates s and t.
+    pub axes: [Axis; 2],
+    /// Light under flat shading.
+    pub light: [u8; 3],
+    /// The weight of the coordinates in orthographic projection.
+    pub weight: Option<u32>,
+}
+
+impl OfTexture {
+    /// The same with the texture itself.
+    pub fn with<'a>(&self, texture: Texture<'a>) -> Textured<'a> {
+        Textured {
+            texture,
+            axes: self.axes,
+            light: self.light,
+            weight: self.weight,
+        }
+    }
 }
 
 /// The textures of a mesh, and the coordinates of its vertices.

@@ -138,18 +138,14 @@ fn positions_and_levels() {
         let bytes = texture(size_log2, wrap, seed % 8 == 0);
         let texture = Texture::new_checked(&bytes).unwrap();
 
-        for axis in 0..2 {
-            module.drive(&format!("sampler.side_log2[{axis}]"), size_log2[axis]);
-        }
+        module.drive_all("sampler.side_log2", size_log2);
         module.drive("sampler.last_level", texture.levels() - 1);
         let mut expected = VecDeque::new();
         for number in 0..60 {
             let is_wild = seed % 3 == 0;
             let (textured, setup) = triangle(texture, &mut vectors, &mut random, is_wild);
             let planes = [setup.depth, textured.axes[0].plane, textured.axes[1].plane];
-            let group = random.random_range(
-                i32::from(setup.bounds.left) / 8..=(i32::from(setup.bounds.right) - 1) / 8,
-            );
+            let group = random.random_range(setup.bounds.left / 8..=(setup.bounds.right - 1) / 8);
             let row = random.random_range(setup.bounds.top..setup.bounds.bottom);
             let at = |plane: &Plane, column: i32| {
                 plane

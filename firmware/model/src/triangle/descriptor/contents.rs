@@ -7,12 +7,12 @@ use glint_core::colour::Rgb565;
 use glint_core::records::{PIECE_MARK, descriptor, piece, stored_piece, texture_planes};
 
 use super::{
-    DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, Layout, OfTexture, PlaneFields, SMOOTH,
-    coordinate, in_texture, light,
+    DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, Layout, PlaneFields, SMOOTH, coordinate,
+    in_texture, light,
 };
 use crate::line::{Line, Piece};
 use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
-use crate::triangle::textured::{Axis, weight};
+use crate::triangle::textured::{Axis, OfTexture, weight};
 
 /// Primitive that a descriptor in memory represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

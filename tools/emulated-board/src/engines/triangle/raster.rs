@@ -4,12 +4,10 @@ use glint_core::picture::Size;
 use glint_core::texture::{Filter, Texture};
 use glint_model::FrameBuffer;
 use glint_model::line::band_bounds;
-use glint_model::triangle::descriptor::{
-    Contents, Descriptor, GROUP, LENGTHS, Layout, OfTexture, list_word,
-};
+use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, Layout, list_word};
 use glint_model::triangle::raster::draw_groups;
 use glint_model::triangle::setup::Bounds;
-use glint_model::triangle::textured::Textured;
+use glint_model::triangle::textured::{OfTexture, Textured};
 use litex_pac::triangle::{Counters, Error, Raster, offset};
 
 use super::region::{COUNT_BITS, Regions, WORD, entry, list_words, picture_size, record};
@@ -397,12 +395,7 @@ fn read_texture<'a>(ram: &'a MainMemory, table: u32, of: &OfTexture) -> Option<T
     let place = entry(ram, table, of.number.into());
     let length = u32::from_le_bytes(ram.array(place.wrapping_add(4))?);
     let texture = Texture::new_checked(ram.bytes(place, length as usize)?).ok()?;
-    Some(Textured {
-        texture,
-        axes: of.axes,
-        light: of.light,
-        weight: of.weight,
-    })
+    Some(of.with(texture))
 }
 
 const _: () = assert!(Size::W1280.bands() as usize <= LENGTHS);
