@@ -83,12 +83,13 @@ module texture_shader #(
         .out_valid(waiting_valid), .out_ready(waiting_gone), .out_data({mask, depth, texture})
     );
 
-    // Sends the quads of the first waiting group, one per clock, if its texture is the current one; otherwise changes the texture.
-    typedef enum logic [1:0] {CHANGED, SEND, EMPTY, LOAD} state_t;
+    // Sends the quads of the first waiting group, one per clock, if its texture is the current one; otherwise changes the texture as soon as
+    // all quads have left the sampler.
+    typedef enum logic [1:0] {EMPTY, START, LOAD, SEND} state_t;
     state_t state;
 
     logic [7:0] number;
-    logic       second, half, sends, ends, credit, place_idle, sampler_idle, same, loads, loaded;
+    logic       second, half, sends, ends, credit, place_idle, sampler_idle, same, loaded;
     logic [3:0] quad;
 
     assign half  = second || mask[3:0] == '0;
@@ -98,21 +99,21 @@ module texture_shader #(
 
     assign waiting_gone = sends && ends;
     assign same         = texture.texture == number;
-    assign loads        = state == EMPTY && place_idle && sampler_idle;
 
     always_ff @(posedge clk) begin
         if (sends) second <= !ends;
 
         case (state)
-            CHANGED: if (waiting_valid) state <= EMPTY;
-            SEND:    if (waiting_valid && !same) state <= EMPTY;
-            EMPTY:   if (loads) state <= LOAD;
-            default: if (loaded) state <= SEND;
+            EMPTY: if (waiting_valid && place_idle && sampler_idle) begin
+                number <= texture.texture;
+                state  <= START;
+            end
+            START:   state <= LOAD;
+            LOAD:    if (loaded) state <= SEND;
+            default: if (waiting_valid && !same) state <= EMPTY;
         endcase
-        // A group that waits does not change.
-        if (state == CHANGED || state == SEND && waiting_valid && !same) number <= texture.texture;
 
-        if (rst || forget) state <= CHANGED;
+        if (rst || forget) state <= EMPTY;
         if (rst) second <= 1'b0;
     end
 
@@ -133,7 +134,7 @@ module texture_shader #(
     assign data_ready = loading ? load_data_ready : sample_data_ready;
 
     texture_loader #(.ADDRESS_BITS(ADDRESS_BITS)) texture_loader (
-        .clk, .rst, .start(loads), .number, .table_base, .done(loaded),
+        .clk, .rst, .start(state == START), .number, .table_base, .done(loaded),
         .ask_valid(load_ask_valid), .ask_ready(ask_ready && loading), .ask_addr(load_ask_addr),
         .data_valid(data_valid && loading), .data_ready(load_data_ready), .data,
         .sampler, .level_write, .level_number, .level_first, .palette_write, .palette_index, .palette_colour

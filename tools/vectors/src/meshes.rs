@@ -115,12 +115,13 @@ pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
         .collect()
 }
 
-/// A white square from (−2, −2, 0) to (2, 2, 0) with a texture, which has `repeats` repeats in a world unit.
+/// A white square from (−2, −2, 0) to (2, 2, 0) with a texture, or with two for its two halves, which have `repeats` repeats in a world
+/// unit.
 ///
 /// # Panics
-/// If the texture is too large for a mesh.
+/// If the textures are too large for a mesh.
 #[must_use]
-pub fn textured_square(texture: Vec<u8>, repeats: f64) -> Vec<u8> {
+pub fn textured_square(textures: &[Vec<u8>], repeats: f64) -> Vec<u8> {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let up = [0, 0, 1 << 14];
     let vertices = corners.map(|[x, y]: [f64; 2]| Vertex {
@@ -132,12 +133,13 @@ pub fn textured_square(texture: Vec<u8>, repeats: f64) -> Vec<u8> {
         let [s, t] = corner.map(|c| (c * repeats * 65_536.0) as i32);
         TextureCoordinates { s, t }.to_bytes()
     });
-    let triangles = [[0, 1, 2], [0, 2, 3]].map(|indices| IndexedTriangle {
+    let halves = [([0, 1, 2], 1), ([0, 2, 3], textures.len() as u8)];
+    let triangles = halves.map(|(indices, texture)| IndexedTriangle {
         indices,
         colour: Rgb565::WHITE,
         normal: up,
-        texture: 1,
+        texture,
     });
     let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
-    mesh::encode_with(&vertices, &triangles, &attributes, &[texture]).unwrap()
+    mesh::encode_with(&vertices, &triangles, &attributes, textures).unwrap()
 }

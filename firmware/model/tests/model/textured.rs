@@ -165,7 +165,10 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
 /// The texels of a floor that passes under the camera, clipped and not, are those that exact rays hit.
 #[test]
 fn a_floor_has_the_texels_that_rays_hit() {
-    let bytes = textured_square(encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap(), 0.5);
+    let bytes = textured_square(
+        &[encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap()],
+        0.5,
+    );
     let mesh = Mesh::new_checked(&bytes).unwrap();
     for (eye, shading) in [
         ([0.3, -0.4, 0.3], Shading::Flat),
@@ -219,7 +222,7 @@ fn cut_out_texels_leave_colour_and_depth() {
         levels: vec![chess.collect()],
         ..Source::default()
     });
-    let bytes = textured_square(texture.unwrap(), 0.25);
+    let bytes = textured_square(&[texture.unwrap()], 0.25);
     let camera = Camera::looking([0.0, -0.01, 2.5], [0.0; 3], 0.7, 0.1);
     let picture = Picture::of_frame(&frame(
         Mesh::new_checked(&bytes).unwrap(),

@@ -72,7 +72,7 @@ fn textures_are_the_models_on_every_backend() {
         levels: vec![(0..256).map(|i| i * 0x101).collect()],
         ..Source::default()
     });
-    let mesh = textured_square(texture.unwrap(), 0.5);
+    let mesh = textured_square(&[texture.unwrap()], 0.5);
     const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected that of `cargo xtask gateware --texture`";
     const SMOOTH: &str = "fallback triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`";
     const DESCRIPTORS: &str = "fallback geometry passes: no textures";

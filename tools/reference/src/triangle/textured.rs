@@ -182,7 +182,7 @@ pub fn blank(has_levels: bool) -> impl Fn([u8; 2]) -> Vec<u8> {
 /// All scenes; `texture` makes their textures, of 1024×1024 texels and for the globe of 512×256.
 #[must_use]
 pub fn scenes(texture: &dyn Fn([u8; 2]) -> Vec<u8>) -> Vec<Scene> {
-    let square = glint_vectors::meshes::textured_square(texture([10, 10]), 0.5);
+    let square = glint_vectors::meshes::textured_square(&[texture([10, 10])], 0.5);
     let floor = |name, size| Scene {
         name,
         size,

@@ -18,9 +18,11 @@ pub const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
 pub const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
 pub const MESH: u32 = 0x1c_0000;
-/// The table of textures, and a texture.
+/// The table of textures, and the first texture.
 const TEXTURES: u32 = 0x1e_0000;
 const TEXTURE: u32 = 0x1e_0100;
+/// Distance of two textures, more than the words of one.
+const TEXTURE_WORDS: u32 = 0x1000;
 const WORDS: usize = 0x20_0000;
 /// Logarithm to base 2 of the words per list.
 pub const LIST_SHIFT: u32 = 11;
@@ -396,21 +398,31 @@ impl Bench {
         [geometry, self.finish(name, expected)]
     }
 
-    /// Draws the second set alone, of triangles whose texture has number 1, and compares the frame with the expected frame. Returns the
+    /// Writes the table of textures, whose first ones are not used.
+    fn write_table(&mut self, addresses: impl Iterator<Item = u64>) {
+        let table = [0; 5].into_iter().chain(addresses);
+        let table: Vec<u8> = table.flat_map(|at| (at as u32).to_le_bytes()).collect();
+        self.memory.write(TEXTURES, &table);
+        self.set("raster.textures", bytes(TEXTURES));
+    }
+
+    /// Draws the second set alone, of triangles whose textures have the numbers from 5 on, and compares the frame with the expected frame. Returns the
     /// number of clocks.
     pub fn draw_set(
         &mut self,
         name: &str,
         expected: &Expected,
         triangles: &[(Descriptor, Bounds)],
-        texture: &[u8],
+        textures: &[Vec<u8>],
     ) -> u64 {
         self.configure_raster(expected);
         write_set(&mut self.memory, expected.size.0, triangles, self.layout);
-        self.memory.write(TEXTURE, texture);
-        let table = [0, bytes(TEXTURE) as u32].map(u32::to_le_bytes);
-        self.memory.write(TEXTURES, table.as_flattened());
-        self.set("raster.textures", bytes(TEXTURES));
+        let places = (0..).map(|number| TEXTURE + TEXTURE_WORDS * number);
+        let places: Vec<_> = places.take(textures.len()).collect();
+        for (&place, texture) in places.iter().zip(textures) {
+            self.memory.write(place, texture);
+        }
+        self.write_table(places.into_iter().map(bytes));
         self.module
             .drive_all("raster.count", [0, triangles.len() as u32]);
         self.set("raster_flags.first", 0);

@@ -4,7 +4,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_core::texture::{Filter, Format, Sampler, Source, Wrap, encode};
+use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::setup::Setup;
 use glint_model::triangle::textured::Textured;
@@ -62,7 +62,10 @@ fn frames_with_textures() {
         let mut bench = Bench::textured(seed, [0.0, 0.3, 0.7][seed as usize % 3]);
         for count in 0..4 {
             let repeats = [0.5, 1.0, 4.0, 30.0][random.random_range(0..4)];
-            let bytes = textured_square(encode(&texture(&mut random)).unwrap(), repeats);
+            let textures: Vec<_> = (0..random.random_range(1..=2))
+                .map(|_| encode(&texture(&mut random)).unwrap())
+                .collect();
+            let bytes = textured_square(&textures, repeats);
             let mesh = Mesh::new_checked(&bytes).unwrap();
             // From afar no triangle is clipped.
             let distance = if random.random_bool(0.5) { 1.0 } else { 3.0 };
@@ -90,11 +93,15 @@ fn frames_with_textures() {
             constants.update(&frame).unwrap();
             let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
             let by_engine = random.random_bool(0.7);
-            // Descriptors of the geometry pass name the fifth texture of the table, others the first one.
-            let number = if by_engine { 5 } else { 1 };
+            // The first textures of the table are not those of this mesh.
+            const BEFORE: u8 = 4;
             let (mut triangles, mut sorted) = (vec![], vec![]);
             let mut put = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
-                let texture = textured.map(|textured| textured.numbered(number));
+                let texture = textured.map(|textured| {
+                    let same = |texture: &Texture| texture.bytes() == textured.texture.bytes();
+                    let number = mesh.textures().position(|texture| same(&texture)).unwrap();
+                    textured.numbered(BEFORE + 1 + number as u8)
+                });
                 let drawn = (
                     Descriptor::new(setup, triangle.colour, texture.as_ref()),
                     setup.bounds,
@@ -112,7 +119,6 @@ fn frames_with_textures() {
             let light: &MeshLight = Box::leak(Box::new(*constants.light().unwrap()));
             let picture = Picture::of_frame(&frame);
             pixels += picture.depth.iter().filter(|&&code| code != 0).count();
-            let texture = mesh.textures().next().unwrap();
             let name = format!("frame {count} of seed {seed}");
             let expected = Expected {
                 size: (320, 180),
@@ -133,7 +139,7 @@ fn frames_with_textures() {
                 raster
             } else {
                 triangles.extend(sorted);
-                bench.draw_set(&name, &expected, &triangles, texture.bytes())
+                bench.draw_set(&name, &expected, &triangles, &textures)
             };
         }
     }
