@@ -34,6 +34,7 @@ fn pass(options: GeometryStart) -> Geometry<'static> {
         depth_scale: DepthScale::default().with_mantissa(17).with_exponent(18),
         lights: [[256, 7, 1], [0, 255, 256]],
         colour: None,
+        textures: None,
         lists: Some(LISTS),
     }
 }
@@ -209,7 +210,10 @@ fn a_raster_pass_is_described_before_it_is_started() {
         depth: None,
         clear: 0xabcd,
         list_shift: 11,
-        sets: [Some(set(0)), None],
+        input: Input {
+            sets: [Some(set(0)), None],
+            textures: None,
+        },
     };
     let r = registers();
     for (pass, second, depth) in [
@@ -217,7 +221,10 @@ fn a_raster_pass_is_described_before_it_is_started() {
         (
             Raster {
                 depth: Some(0x4140_0000),
-                sets: [None, Some(set(16))],
+                input: Input {
+                    sets: [None, Some(set(16))],
+                    textures: Some(0x4720_0000),
+                },
                 ..pass
             },
             true,
@@ -244,6 +251,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
         [0x4700_0000, 0x4700_0010]
     );
     assert_eq!(r.depth().read(), 0x4140_0000);
+    assert_eq!(r.textures().read(), 0x4720_0000);
     assert_eq!(r.clear().read(), 0xabcd);
     assert_eq!(r.list_shift().read(), 11);
 }
