@@ -4,7 +4,8 @@
 `default_nettype none
 
 module cull #(
-    parameter bit SMOOTH = 1'b0
+    parameter bit SMOOTH  = 1'b0,
+    parameter bit TEXTURE = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -23,7 +24,9 @@ module cull #(
     output logic             out_valid,
     input  wire              out_ready,
     output setup_pkg::oriented_t out_triangle,
-    output logic             out_lit
+    output logic             out_lit,
+    input  wire              in_texture,
+    output logic             out_texture
 );
     logic [3:0] number;
 
@@ -43,6 +46,7 @@ module cull #(
     end
 
     always_comb begin
+        out_texture              = 1'b0;
         out_triangle             = '0;
         out_triangle.colour      = {12'd1, number};
         out_triangle.top         = {6'd2, number};
@@ -96,7 +100,9 @@ module setup_normal (
     assign ny = {21'd0, w20};
 endmodule
 
-module flat_shade (
+module flat_shade #(
+    parameter bit TEXTURE = 1'b0
+) (
     input  wire              clk,
     input  wire              enable,
     input  wire  [3:0]       count,
@@ -106,9 +112,12 @@ module flat_shade (
     input  wire              front,
     input  wire  [2:0][15:0] normal,
     input  wire  [15:0]      colour,
-    output logic [15:0]      lit
+    output logic [15:0]      lit,
+    input  wire              textured,
+    output logic [2:0][7:0]  light
 );
-    assign lit = colour;
+    assign lit   = colour;
+    assign light = '0;
 
     // `enable` is low exactly when the last clock of a beat, here number 2, is repeated.
     logic       running = 1'b0;
