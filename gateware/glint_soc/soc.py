@@ -50,8 +50,8 @@ class GlintSoC(SoCCore):
     `triangle`, the parts of the engine that draw triangles are left out: with `line`, the parts for lines and all registers remain; with
     `raymarch` alone, the raster pass, the band buffer and all registers. `build_id` is the checksum of the register map of the full build
     (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `texture` textures, `geometry` its geometry
-    pass, which a build without lines may lack, and `depths` the memory of depths, which a build without triangles may lack. `fields` are the build options of
-    the raymarcher. `mode` is the video mode, which also limits the picture sizes.
+    pass, which a build without lines may lack, and `depths` the memory of depths, which a build without triangles may lack. `fields`
+    are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
     """
 
     csr_map = CSR_MAP
@@ -67,6 +67,8 @@ class GlintSoC(SoCCore):
             raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
         if "line" in blocks and not geometry:
             raise ValueError("no geometry pass: expected a build without the block 'line', whose lines need it")
+        if texture and smooth:
+            raise ValueError("textures: expected a build without smooth shading, because the engine has one shader for groups")
         if texture and "triangle" not in blocks:
             raise ValueError("textures: expected a build with the block 'triangle', whose meshes have them")
         if "triangle" in blocks and not depths:

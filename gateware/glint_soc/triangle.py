@@ -47,8 +47,8 @@ class TriangleEngine(LiteXModule):
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
-    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `texture` textures, `fields` the
-    input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws lines and fields only, and does not use
+    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `texture` textures, not both, `fields`
+    the input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws lines and fields only, and does not use
     the port of the vertices; without both triangles and lines it uses the last two writers only. The registers are the same. Then `depths`
     may be left out too: the memory of the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from
     the firmware's lists, and does not use the ports of mesh, vertices, descriptors and lists.
@@ -69,7 +69,7 @@ class TriangleEngine(LiteXModule):
         self._caps = CSRStatus(name="caps", fields=[
             CSRField("sizes", size=3, offset=0, reset=sizes, description="Bit k: `size` k is supported."),
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
-                     f"vertices. A descriptor has {LIGHT_BYTES} bytes more than {DESCRIPTOR.size} with smooth shading."),
+                     f"vertices. A descriptor has {DESCRIPTOR.size} bytes, and {LIGHT_BYTES} more with smooth shading."),
             CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes without `lines`, and raster "
                      "passes of their lists. With neither triangles nor lines a raster pass draws the raymarcher's field alone."),
             CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`, and raster passes of their "
@@ -117,8 +117,8 @@ class TriangleEngine(LiteXModule):
                      "are linear. Light between vertices is not: `smooth` must be 0."),
             CSRField("textures", offset=10, description="Draw the textures of the mesh, under flat light. No effect without `textures` in "
                      "`caps`, or with `smooth`."),
-        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
-            "and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied.")
+        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to "
+            "`first_texture`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied.")
         address = "Byte address, a multiple of 16, of"
         self._mesh = Parameter(32, name="mesh", description=f"{address} the mesh's first chunk.")
         self._mesh_bytes = Parameter(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
@@ -213,8 +213,8 @@ class TriangleEngine(LiteXModule):
             "cycles_raster": "Clock cycles of raster passes.",
             "cycles_walking": "Clock cycles in which the walker was at a group of pixels.",
             "cycles_empty": "Clock cycles in which the walker was at a group without a covered pixel.",
-            "groups": "Groups of eight pixels with a covered pixel.",
-            "pixels_covered": ("Pixels covered, for each triangle.", 4),
+            "groups": "Groups of eight pixels with a covered pixel, without those whose texels are all transparent.",
+            "pixels_covered": ("Pixels covered, for each triangle, without those of transparent texels.", 4),
             "pixels_drawn": ("Pixels that passed the depth test.", 4),
             "cycles_held": "Clock cycles in which a group waited for an earlier group of the same pixels.",
             "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
@@ -241,8 +241,9 @@ class TriangleEngine(LiteXModule):
             [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
              self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient,
-             self._colour, self._coordinates, self._first_texture],
-            [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()), self._textures])
+             self._colour, *([self._coordinates, self._first_texture] if texture else [])],
+            [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()),
+             *([self._textures] if texture else [])])
         # A raymarcher copies its parameters when the raster pass starts; the pass waits until both have copied theirs.
         self.raster_load, self.field_loading = Signal(), Signal()
         # A refused request does not change the parameters of the running pass.

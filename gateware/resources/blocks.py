@@ -9,8 +9,9 @@ OWN = ("exit_lane", "setup", "triangle_raster", "band_buffer", "scanout", "verte
        "i2c_engine", "flash_reader")
 """This project's own blocks. The block that takes longest to measure comes first."""
 
-BUILDS = ("triangle_engine_smooth", "raymarcher", "triangle_engine", "raymarcher_sponge", "raymarcher_round", "raymarcher_faces",
-          "ring_lane", "ring_lane_all", "exit_lane_all", "ray_generator", "ray_paint", "round_light")
+BUILDS = ("triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "raymarcher", "triangle_engine", "raymarcher_sponge",
+          "raymarcher_round", "raymarcher_faces", "ring_lane", "ring_lane_all", "exit_lane_all", "ray_generator", "ray_paint",
+          "round_light")
 """Engines that consist of the own blocks, in several builds, and parts of the raymarcher. The tables list them, but they take too long to
 be measured by `cargo xtask test`."""
 
@@ -25,9 +26,9 @@ FLAT = "flat_build"
 """The sum of `FLAT_PARTS`."""
 
 ROWS = ("scanout", "i2c_engine", "flash_reader", *FLAT_PARTS, FLAT, "line_setup", "line_raster", "gesture_engine", "band_buffer",
-        "triangle_engine", "triangle_engine_smooth", "field_menger", "field_box", "field_sphere", "exit_lane", "exit_lane_all",
-        "ring_lane", "ring_lane_all", "ray_generator", "round_light", "ray_paint", "raymarcher", "raymarcher_round", "raymarcher_faces",
-        "raymarcher_sponge", SOC)
+        "triangle_engine", "triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "field_menger", "field_box",
+        "field_sphere", "exit_lane", "exit_lane_all", "ring_lane", "ring_lane_all", "ray_generator", "round_light", "ray_paint",
+        "raymarcher", "raymarcher_round", "raymarcher_faces", "raymarcher_sponge", SOC)
 """The blocks in the order of their rows in the tables. Other measured modules come after them."""
 
 FIELDS = tuple(sorted(path.stem for path in RTL.glob("raymarch/field_*.sv") if path.stem != "field_unit"))

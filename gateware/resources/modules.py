@@ -67,6 +67,7 @@ MODULES = [
                      "triangle_engine_smooth_lines": _SMOOTH | _LINES},
            measured=("triangle_engine_fields",)),
     Module(top="texture_place"),
+    Module(top="texture_shader", measured=("texture_shader",)),
     Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),
     Module(top="colour_window"),
     # A sensor's clock counts as stopped after 2^6 clocks.

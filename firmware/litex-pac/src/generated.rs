@@ -3263,7 +3263,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 11 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
+        /// `geometry`, 11 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `first_texture`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -3727,7 +3727,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5100) }
         }
 
-        /// `groups`, 32 bits: Groups of eight pixels with a covered pixel, modulo 2^32.
+        /// `groups`, 32 bits: Groups of eight pixels with a covered pixel, without those whose texels are all transparent, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn groups(&self) -> Register<u32, ReadOnly> {
@@ -3735,7 +3735,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5104) }
         }
 
-        /// `pixels_covered`, 32 bits: Pixels covered, for each triangle, modulo 2^32.
+        /// `pixels_covered`, 32 bits: Pixels covered, for each triangle, without those of transparent texels, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn pixels_covered(&self) -> Register<u32, ReadOnly> {
@@ -4011,7 +4011,7 @@ pub mod triangle {
             Self(self.0 & !0x7 | value as u32 & 0x7)
         }
 
-        /// `gouraud`, bit 3: Smooth shading: colours interpolated between vertices. A descriptor has 48 bytes more than 48 with smooth shading.
+        /// `gouraud`, bit 3: Smooth shading: colours interpolated between vertices. A descriptor has 48 bytes, and 48 more with smooth shading.
         #[inline]
         #[must_use]
         pub const fn gouraud(self) -> bool {
@@ -4823,9 +4823,9 @@ pub mod triangle {
         pub cycles_walking: u32,
         /// Clock cycles in which the walker was at a group without a covered pixel, modulo 2^32.
         pub cycles_empty: u32,
-        /// Groups of eight pixels with a covered pixel, modulo 2^32.
+        /// Groups of eight pixels with a covered pixel, without those whose texels are all transparent, modulo 2^32.
         pub groups: u32,
-        /// Pixels covered, for each triangle, modulo 2^32.
+        /// Pixels covered, for each triangle, without those of transparent texels, modulo 2^32.
         pub pixels_covered: u32,
         /// Pixels that passed the depth test, modulo 2^32.
         pub pixels_drawn: u32,

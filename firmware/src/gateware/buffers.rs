@@ -11,6 +11,8 @@ use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{Layout, ListCounts, list_shift};
 use glint_model::{Stats, WireframeStats};
 
+use super::fallback::Fallback;
+
 /// Capacity of the memory of one frame. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
 pub struct Capacity {
@@ -177,26 +179,32 @@ impl TextureTable {
         self.count = 0;
     }
 
-    /// The textures of a mesh for its geometry pass, which the table takes if they are new. `None` if they are not drawn, or do not fit the
-    /// table.
-    pub fn of_mesh<'a>(&mut self, mesh: &Mesh<'a>) -> Option<Textures<'a>> {
-        let coordinates = mesh.attribute(Attribute::TextureCoordinates)?;
-        let first = self.number(&mesh.textures().next()?)?;
-        // The textures of a mesh that the table already has follow each other.
+    /// The textures of a mesh for its geometry pass, which the table takes if they are new; `None` for a mesh without textures or
+    /// coordinates.
+    ///
+    /// # Errors
+    /// The table is full.
+    pub fn of_mesh<'a>(&mut self, mesh: &Mesh<'a>) -> Result<Option<Textures<'a>>, Fallback> {
+        let coordinates = mesh.attribute(Attribute::TextureCoordinates);
+        let Some((coordinates, first)) = coordinates.zip(mesh.textures().next()) else {
+            return Ok(None);
+        };
+        // The textures of a mesh follow each other in the table.
+        let first = self.number(&first);
         let fits = mesh
             .textures()
             .all(|texture| self.number(&texture).is_some());
-        fits.then_some(Textures {
+        let first = first.filter(|_| fits).ok_or(Fallback::TooManyTextures)?;
+        Ok(Some(Textures {
             coordinates,
             before: first - 1,
-        })
+        }))
     }
 
     /// The number of a texture, which the table takes if it is new; `None` if the table is full.
     pub fn number(&mut self, texture: &Texture) -> Option<u8> {
         let address = address(texture.bytes());
         let known = self.addresses.get(1..=self.count).unwrap_or_default();
-        // Successive triangles mostly have the same texture.
         if let Some(place) = known.iter().rposition(|&known| known == address) {
             return u8::try_from(place + 1).ok();
         }
@@ -208,7 +216,7 @@ impl TextureTable {
 
     /// The address of the table for the engine; `None` without textures.
     pub fn address(&self) -> Option<u32> {
-        (self.count > 0).then(|| address(self.addresses))
+        (TEXTURE.is_built && self.count > 0).then(|| address(self.addresses))
     }
 }
 

@@ -19,6 +19,8 @@ pub enum Fallback {
     NoTextures,
     /// The triangle engine draws textures under flat light only.
     SmoothTextures,
+    /// The frame has more textures than the triangle engine can number.
+    TooManyTextures,
     /// This gateware is built without a depth buffer.
     NoDepths,
     /// The eye is farther from the origin than the number formats of the triangle engine allow.
@@ -50,6 +52,7 @@ impl Fallback {
             Self::Descriptors(Unsupported::Geometry) => Some("without --no-geometry"),
             Self::Triangle(_)
             | Self::SmoothTextures
+            | Self::TooManyTextures
             | Self::Eye
             | Self::Orthographic
             | Self::Descriptors(_) => None,
@@ -108,6 +111,9 @@ impl fmt::Display for Fallback {
             Self::SmoothTextures => f.write_str(
                 "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
             )?,
+            Self::TooManyTextures => {
+                f.write_str("triangle engine: expected at most 255 textures in a frame")?;
+            }
             Self::NoDepths => f.write_str("triangle engine: this gateware has no depths")?,
             Self::Eye => f.write_str("triangle engine: the eye is too far from the origin")?,
             Self::Orthographic => {

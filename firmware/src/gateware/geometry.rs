@@ -96,7 +96,9 @@ impl GeometryPasses {
     /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
     pub fn prepare(&mut self, job: &mut Job) -> Result<(), Fallback> {
         self.prepared = None;
-        job.buffers.textures.clear();
+        if TEXTURE.is_built {
+            job.buffers.textures.clear();
+        }
         if !MESH.is_built {
             return Ok(());
         }
@@ -120,8 +122,7 @@ impl GeometryPasses {
         };
         let setup = job.constants.mesh_setup(job.frame, number, &mut self.own)?;
         let textures = if TEXTURE.is_built && subject.has_textures() {
-            let textures = job.buffers.textures.of_mesh(&subject.mesh);
-            Some(textures.ok_or(EngineError::from(Error::Full))?)
+            job.buffers.textures.of_mesh(&subject.mesh)?
         } else {
             None
         };
@@ -239,8 +240,12 @@ impl GeometryPasses {
         };
         self.drawn_clipped +=
             clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
-        let count = writer.finish().ok().filter(|_| !is_full);
-        let count = count.ok_or(EngineError::from(Error::Full))?;
+        let count = writer
+            .finish()
+            .map_err(|_| EngineError::from(Error::Full))?;
+        if is_full {
+            return Err(Fallback::TooManyTextures);
+        }
         if joins {
             buffers.sets[0] = Some(buffers.set(count));
         } else {
@@ -309,7 +314,7 @@ impl GeometryPasses {
         let stats = frame.set_up_meshes(constants, scratch, &mut put)?;
         let full = |_| EngineError::from(Error::Full);
         if is_full {
-            return Err(EngineError::from(Error::Full).into());
+            return Err(Fallback::TooManyTextures);
         }
         let whole = whole.finish().map_err(full)?;
         let clipped = clipped.finish().map_err(full)?;

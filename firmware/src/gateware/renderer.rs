@@ -425,16 +425,14 @@ impl GatewareRenderer {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());
             }
+            if mesh.has_textures() && mesh.shading == Shading::Smooth {
+                return Err(Fallback::SmoothTextures);
+            }
             if mesh.shading == Shading::Smooth && !self.layout.is_smooth {
                 return Err(Fallback::NoSmoothShading);
             }
-            if mesh.has_textures() {
-                if !self.layout.is_textured {
-                    return Err(Fallback::NoTextures);
-                }
-                if mesh.shading == Shading::Smooth {
-                    return Err(Fallback::SmoothTextures);
-                }
+            if mesh.has_textures() && !self.layout.is_textured {
+                return Err(Fallback::NoTextures);
             }
             if mesh.shading == Shading::Smooth
                 && frame.view.projection() == Projection::Orthographic

@@ -100,7 +100,8 @@ module texture_sampler #(
 
     texture_tags tags (
         .clk, .rst, .forget, .sweeping, .busy(tags_busy), .format(sampler.format), .bilinear(sampler.bilinear), .number,
-        .in_valid(step_valid), .in_served(step.served), .in_parity(step.parity), .in_places(step_places), .in_level(step_level), .at_valid(places_valid), .at_places(places),
+        .in_valid(step_valid), .in_served(step.served), .in_parity(step.parity), .in_places(step_places), .in_level(step_level),
+        .at_valid(places_valid), .at_places(places),
         .out_valid(missed_valid), .out_missed(missed), .out_blocks(blocks)
     );
 

@@ -13,8 +13,8 @@
 // the descriptor is read from its line, so no multiplexer follows the block RAM. An item without a descriptor (`in_end`) passes in order.
 //
 // Latency: 8 clocks for a hit, 11 clocks plus the latency of memory for a miss. Throughput one hit per 4 clocks, or one miss per 5
-// clocks, 7 with TEXTURE, 8 with SMOOTH, 10 with both. Descriptors must not change in memory while `forget` is low. If `forget` is high for one clock, all lines are
-// invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while the cache holds no
+// clocks, 7 with TEXTURE, 8 with SMOOTH, 10 with both. Descriptors must not change in memory while `forget` is low. If `forget` is high for
+// one clock, all lines are invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while the cache holds no
 // item: each item from the input has left at the output.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
@@ -26,7 +26,7 @@ module descriptor_cache #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter int unsigned LINE_BITS    = 8,
-    // A descriptor has three words of 16 bytes; with TEXTURE two words for the texture follow it, with SMOOTH three for the planes of light.
+    // A descriptor has three words of 16 bytes; with TEXTURE two words for the texture follow, with SMOOTH three for the planes of light.
     parameter bit          SMOOTH       = 1'b0,
     parameter bit          TEXTURE      = 1'b0,
     localparam int unsigned PLANES_BITS = triangle_pkg::planes_bits(SMOOTH, TEXTURE)

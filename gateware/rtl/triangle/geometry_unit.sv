@@ -25,10 +25,13 @@
 //
 // Without TRIANGLES, the units for triangles, from vertex_cache to setup, are not built, and each pass has the flag `lines`.
 //
-// The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled triangle, 6 per vertex
-// that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) plus 2 clocks for each band of the triangle after the
-// first. Memory: two clients of a read_port, two native write ports. `results` contains the numbers of the frame's triangles, descriptors
-// and exceptions.
+// With TEXTURE, the flag `textures` selects the textures of the mesh: the texture coordinates of a vertex are read beside the vertex, and
+// kept with it in the vertex_cache.
+//
+// The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading or textures), 3 per culled triangle, 6
+// per vertex that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH, 8 with TEXTURE) plus 2 clocks for each band of
+// the triangle after the first. Memory: three clients of read_ports, two native write ports. `results` contains the numbers of the frame's
+// triangles, descriptors and exceptions.
 
 `default_nettype none
 
@@ -324,7 +327,8 @@ module geometry_unit #(
         setup #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) setup (
             .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .mirror(flags.mirror), .row_light(view.row_light),
             .light_colour(parameters.light_colour), .ambient(parameters.ambient),
-            .smooth(flags.smooth), .textures(flags.textures && !flags.smooth), .linear(flags.orthographic), .busy(), .culled, .drawn(),
+            .smooth(flags.smooth), .textures(flags.textures && !(SMOOTH && flags.smooth)), .linear(flags.orthographic),
+            .busy(), .culled, .drawn(),
             .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
             .in_colour(flags.recolour ? parameters.colour : regular_side[15:0]), .in_normal(regular_side[63:16]),
             .in_light(regular_light), .in_texture(texture_number),

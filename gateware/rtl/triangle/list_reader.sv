@@ -7,7 +7,8 @@
 //                        └─▶ jobs ───┘      └──────────────────┘
 //
 // Each of the three parts reads ahead until its FIFO is full, even past the ends of lists and bands: the lengths of up to 16 bands, up to 8
-// jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH, 6 with TEXTURE, 4 with both). Reading ahead hides the latency of memory.
+// jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH, 6 with TEXTURE). Reading ahead hides the
+// latency of memory.
 // Three clients of a read_port read the lengths of the lists, the lists, and the descriptors. Throughput as in descriptor_cache; a list
 // takes at least 4 clocks.
 //

@@ -16,7 +16,8 @@
 // interpolated with perspective correction, which takes a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then
 // have twice the words.
 //
-// TEXTURE builds textures: descriptors have two more words, and a fourth client reads textures.
+// TEXTURE builds textures: descriptors have two more words, a second client of the vertices' port reads texture coordinates, and a fourth
+// one of the raster pass's port textures. Not with SMOOTH.
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //

@@ -13,7 +13,7 @@
 //
 // A group is {line = y - y0, where y0 is the first row of the band, column = x / 8, row address in the band buffer = line * stride +
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
-// 0. Each group that a triangle covers is sent once; triangles keep their order.
+// 0. Each group that a triangle covers is sent once, or not at all if its texels are transparent; triangles keep their order.
 //
 // Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stalls while
 // the FIFO cannot hold all groups in the lanes. Latency 21 clocks from a descriptor to its first group. Throughput: the walker tests one

@@ -187,7 +187,8 @@ impl Needs {
         if self.smooth {
             options.push("--smooth".to_owned());
         }
-        if self.texture {
+        // Gateware with smooth shading leaves textures to the soft core.
+        if self.texture && !self.smooth {
             options.push("--texture".to_owned());
         }
         let has = |block| self.blocks.contains(&block);

@@ -70,8 +70,8 @@ pub struct Options {
     /// Build the triangle engine with smooth shading
     #[arg(long)]
     smooth: bool,
-    /// Build the triangle engine with textures
-    #[arg(long)]
+    /// Build the triangle engine with textures, which it draws under flat light
+    #[arg(long, conflicts_with = "smooth")]
     texture: bool,
     /// Leave out the geometry pass of the triangle engine: the soft core makes the descriptors of meshes
     #[arg(long)]

@@ -191,6 +191,9 @@ impl<'a> Textured<'a> {
     /// coordinates and the two directions on the screen, within an eighth.
     pub fn level(&self, setup: &Setup, depth: u32, values: [u32; 2]) -> u32 {
         let last = self.texture.levels() - 1;
+        if last == 0 {
+            return 0;
+        }
         let inverse = Inverse::of(self.weight.unwrap_or(depth));
         let depth_steps = match self.weight {
             None => [setup.depth.step_x, setup.depth.step_y],

@@ -63,8 +63,8 @@ impl GatewareRenderer {
             while runs {
                 runs = self.await_geometry(frame, now, output)?;
             }
-            // A raster pass may still read the buffers at `next`. This call only writes registers: the geometry pass, which
-            // overwrites these buffers, starts after the end of the raster pass.
+            // A raster pass may still read the buffers at `next`. This call writes registers, and the same table of textures again: the
+            // geometry pass, which overwrites these buffers, starts after the end of the raster pass.
             self.prepare_geometry(frame, next)?;
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
