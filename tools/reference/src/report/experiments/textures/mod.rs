@@ -1,6 +1,5 @@
-//! Experiments on textures: positions of pixels, the cache for texels, filters and formats, and the speed of the engine.
+//! Experiments on textures: positions of pixels, the cache for texels, filters and formats.
 
 pub mod cache;
-pub mod engine;
 pub mod filters;
 pub mod runs;
