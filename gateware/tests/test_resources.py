@@ -58,7 +58,7 @@ def test_amounts():
 def test_selection():
     """Each block is measured once, and the flat build by its parts."""
     assert selection([], ALL) == list(ALL)
-    assert len(ALL) == 1 + 12 + 11 + 3
+    assert len(ALL) == 1 + 14 + 11 + 3
     assert ALL[0] == SOC
     assert selection(["scanout"], ALL) == ["scanout"]
     assert selection(["setup", FLAT], ALL) == ["setup", "vertex_stage", "triangle_raster"]
