@@ -31,10 +31,11 @@ pub fn emulator() -> SimulatedBoard<EmulatedBoard> {
     board::emulated(&built_firmware(None).unwrap()).unwrap()
 }
 
-/// An emulated board as [`emulator`] makes it, whose gateware has this best shading.
+/// An emulated board as [`emulator`] makes it, whose gateware has this best shading and no textures.
 pub fn emulator_with(capability: Shading) -> SimulatedBoard<EmulatedBoard> {
     let mut board = emulator();
     board.inner().state_shading(capability);
+    board.inner().state_textures(false);
     board
 }
 

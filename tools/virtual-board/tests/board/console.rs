@@ -113,6 +113,7 @@ fn the_emulated_board_prints_the_transcript_too() {
     let (path, expected) = committed();
     let mut board = EmulatedBoard::fast(&image()).expect("an image that fits");
     board.state_shading(Shading::Flat);
+    board.state_textures(false);
     let said = board.expect(PROMPT, "start");
     let common = |text: &str| {
         let lines = text.lines();
