@@ -111,7 +111,7 @@ pub struct Geometry<'a> {
     pub lights: [[u16; 3]; 2],
     /// Colour that replaces the colours of the mesh, RGB565.
     pub colour: Option<u16>,
-    /// The textures of the mesh, if they are drawn. Gateware without textures, and smooth shading, draws none.
+    /// The textures of the mesh, if they are drawn. None are drawn under smooth shading, or by gateware without textures.
     pub textures: Option<Textures<'a>>,
     /// Output of the pass, initially empty; `None` appends to the output of the previous pass, which must have an equal picture
     /// size and equal light colours.

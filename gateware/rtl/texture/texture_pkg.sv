@@ -16,10 +16,10 @@ package texture_pkg;
 
     // Position of a pixel on an axis.
     typedef struct packed {
-        logic        below;        // below 0
-        logic        past;           // at or above 1
-        logic        odd;            // the number of the repeat is odd
-        logic [17:0] fraction;       // of a repeat, u0.18, rounded down
+        logic        below;    // below 0
+        logic        past;     // at or above 1
+        logic        odd;      // the number of the repeat is odd
+        logic [17:0] fraction; // of a repeat, u0.18, rounded down
     } position_t;
 
     // Four columns and four rows of texels that a pair or a quad of pixels needs, each called a slot. Of a nearest texture, slot i is the

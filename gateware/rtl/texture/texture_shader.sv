@@ -9,7 +9,7 @@
 // A group without a texture takes one clock. A group with a texture takes one clock for each half with a covered pixel (a quad of four
 // pixels), with bilinear filtering one clock for each two pixels; more if its texels are in more than 2x2 blocks of the texture. A group
 // with another texture than the one before waits until that one has left, and until texture_loader has read the texture's header and
-// palette, some 100 clocks, 300 with a palette of 256 colours.
+// palette.
 //
 // The source of the groups is a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives
 // FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group without an opaque pixel is dropped. Output: a

@@ -71,7 +71,7 @@ impl Layout {
         FLAT_WORDS + texture + light
     }
 
-    /// Length and place in a [`Descriptor`] of each part, which is empty if gateware does not read it.
+    /// The words of each part in a [`Descriptor`]; none of a part that gateware does not read.
     fn parts(self) -> [core::ops::Range<usize>; 3] {
         let texture = FLAT_WORDS..FLAT_WORDS + TEXTURE_WORDS;
         let light = texture.end..WORDS;
@@ -127,8 +127,7 @@ const LOW_WORDS: usize = 4;
 const HALF_A_CODE: i64 = 1 << 13;
 
 impl Descriptor {
-    /// Packs a triangle; `colour` is its colour under flat shading without a texture, and `texture` its
-    /// texture.
+    /// Packs a triangle; `colour` is its colour under flat shading without a texture.
     pub fn new(setup: &Setup, colour: Rgb565, texture: Option<&OfTexture>) -> Self {
         let bounds = setup.bounds;
         // The bounds are in the picture and so not negative: unsigned divisions suffice.

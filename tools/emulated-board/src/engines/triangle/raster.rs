@@ -321,6 +321,7 @@ impl Drawing<'_> {
                 let below = part.bounds.top - setup.bounds.top;
                 let textured = texture.and_then(|texture| {
                     let texture = read_texture(ram, *textures, &texture.moved(below))?;
+                    // An estimate: the words of the header. The cache of texels is not modelled.
                     self.counts.read += 2;
                     Some(texture)
                 });
