@@ -22,8 +22,8 @@ module texture_shader #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned GROUP_BITS   = 8,
     parameter int unsigned FLIGHT       = 5,
-    // Depth of the FIFOs of groups, a power of two.
-    parameter int unsigned GROUPS       = 32
+    // Most groups inside, a power of two. A quad takes some 62 clocks, and a group is one or two quads.
+    parameter int unsigned GROUPS       = 64
 ) (
     input  wire                    clk,
     input  wire                    rst,
@@ -52,7 +52,7 @@ module texture_shader #(
     output logic [7:0][15:0]       out_colours
 );
     // Groups that wait for their colours.
-    logic             is_textured, group_valid, group_textured, group_gone, colours_valid;
+    logic             is_textured, group_valid, group_textured, group_gone, colours_valid, groups_room, waiting_idle, waiting_room;
     logic [15:0]      group_colour;
     logic [7:0]       opaque;
     logic [7:0][15:0] colours;
@@ -60,7 +60,7 @@ module texture_shader #(
     assign is_textured = in_texture.texture != '0;
 
     pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(GROUPS), .FLIGHT(FLIGHT)) groups (
-        .clk, .rst, .idle, .room, .in_valid, .in_data({is_textured, in_colour, in_group}),
+        .clk, .rst, .idle, .room(groups_room), .in_valid, .in_data({is_textured, in_colour, in_group}),
         .out_valid(group_valid), .out_ready(group_gone), .out_data({group_textured, group_colour, out_group})
     );
 
@@ -69,17 +69,18 @@ module texture_shader #(
     assign out_opaque  = group_textured ? opaque : '1;
     assign out_colours = group_textured ? colours : {8{group_colour}};
 
-    // Groups with a texture wait for their positions. This FIFO holds a subset of the groups in the FIFO of groups, so it is never full
-    // unless the FIFO of groups is full.
+    // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than there may be inside.
     localparam int unsigned WAITING_BITS = 8 + $bits(in_depth) + $bits(in_texture);
 
-    logic                         waiting_valid, waiting_gone, waiting_room;
+    logic                         waiting_valid, waiting_gone;
     logic [7:0]                   mask;
     records_pkg::plane_t          depth;
     records_pkg::texture_planes_t texture;
 
-    fifo #(.WIDTH(WAITING_BITS), .DEPTH(GROUPS)) waiting (
-        .clk, .rst, .in_valid(in_valid && is_textured), .in_ready(waiting_room), .in_data({in_mask, in_depth, in_texture}),
+    assign room = groups_room && waiting_room;
+
+    pipeline_fifo #(.WIDTH(WAITING_BITS), .DEPTH(32), .FLIGHT(FLIGHT)) waiting (
+        .clk, .rst, .idle(waiting_idle), .room(waiting_room), .in_valid(in_valid && is_textured), .in_data({in_mask, in_depth, in_texture}),
         .out_valid(waiting_valid), .out_ready(waiting_gone), .out_data({mask, depth, texture})
     );
 
@@ -226,7 +227,7 @@ module texture_shader #(
         .out_valid(colours_valid), .out_ready(group_gone && group_textured), .out_data({opaque, colours})
     );
 
-    wire _unused = &{1'b0, waiting_room, light_room, light_valid, colours_room};
+    wire _unused = &{1'b0, waiting_idle, light_room, light_valid, colours_room};
 endmodule
 
 `default_nettype wire
