@@ -44,6 +44,7 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 
 /// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
 /// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
+/// `textures`: the SoC with textures.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
@@ -52,6 +53,7 @@ fn build_parts(name: &str) -> Result<()> {
             model("raymarcher")
         }
         "gouraud" => model("triangle_raster"),
+        "textures" => gateware::build_beside("texture", &["--texture"], Library::Quick).map(|_| ()),
         "quality" | "timeline" => {
             gateware::build_beside("smooth", &["--smooth"], Library::Quick).map(|_| ())
         }
@@ -81,6 +83,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     if !quick {
         build_parts("raymarch")?;
         build_parts("quality")?;
+        build_parts("textures")?;
     }
     firmware::build(Board::Virtual, &[])?;
     firmware::build(Board::Virtual, &["peers"])?;
@@ -148,6 +151,7 @@ fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
         files.extend([
             "gateware/virtual-lattice-4/libglint_soc.so",
             "gateware/virtual-smooth/libglint_soc.so",
+            "gateware/virtual-texture/libglint_soc.so",
             "gateware/models/raymarcher.so",
         ]);
     }

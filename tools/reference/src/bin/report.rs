@@ -75,8 +75,12 @@ enum Page {
         #[arg(long, conflicts_with = "quick")]
         earlier: bool,
     },
-    /// Textures: errors of positions with fewer divisions, misses of caches for texels, errors of filters and formats
-    Textures,
+    /// Textures: errors of positions with fewer divisions, misses of caches for texels, errors of filters and formats, speed of the engine
+    Textures {
+        /// Skip the frames on the virtual board
+        #[arg(long)]
+        quick: bool,
+    },
     /// Matrices, normals and projection with several word lengths: errors and cycles; drift of the wireframe simulator's rotation
     Geometry {
         #[command(flatten)]
@@ -158,13 +162,14 @@ impl Page {
             Self::Sine { quick, .. }
             | Self::Gouraud { quick, .. }
             | Self::Imu { quick, .. }
+            | Self::Textures { quick }
             | Self::Kernels { quick, .. }
             | Self::Long { quick, .. } => *quick,
             Self::Triangle { quick, only, .. }
             | Self::Raymarch { quick, only, .. }
             | Self::Quality { quick, only, .. } => *quick || only.is_some(),
             Self::Timeline { only } | Self::Stiff { only, .. } => only.is_some(),
-            Self::Geometry { .. } | Self::Gesture { .. } | Self::Textures | Self::Pages => false,
+            Self::Geometry { .. } | Self::Gesture { .. } | Self::Pages => false,
         }
     }
 }
@@ -243,11 +248,14 @@ fn main() -> Result<()> {
             measure_raymarch(quick, study.as_deref(), only.as_deref(), &to)?;
         }
         Page::Gouraud { quick, earlier } => measure_gouraud(quick, earlier, &to)?,
-        Page::Textures => {
+        Page::Textures { quick } => {
             to.write("textures-runs", &textures::runs::measure())?;
             to.write("textures-cache", &textures::cache::measure())?;
             to.write("textures-filters", &textures::filters::measure())?;
             to.write("textures-formats", &textures::filters::measure_formats())?;
+            if !quick {
+                to.write("textures-engine", &textures::engine::measure()?)?;
+            }
         }
         Page::Geometry { cycles } => {
             let cycles = cycles.measure("geometry")?;

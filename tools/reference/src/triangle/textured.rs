@@ -230,7 +230,11 @@ fn across(angle: f64) -> Camera {
 }
 
 /// A sphere of radius 1 about the origin, of `bands` bands and twice as many sectors, with a texture that spans it once.
-fn globe(texture: Vec<u8>, bands: u32) -> Vec<u8> {
+///
+/// # Panics
+/// If it has too many vertices for a mesh.
+#[must_use]
+pub fn globe(texture: Vec<u8>, bands: u32) -> Vec<u8> {
     let sectors = 2 * bands;
     let places = (0..=bands).flat_map(|band| (0..=sectors).map(move |sector| [sector, band]));
     let (vertices, elements): (Vec<_>, Vec<_>) = places

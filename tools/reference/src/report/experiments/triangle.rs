@@ -118,7 +118,7 @@ fn screen() -> Result<Vec<u8>> {
 }
 
 /// Returns the view from the point (0, −2, 0) along +y.
-fn ahead(half_width: f64) -> Result<View> {
+pub fn ahead(half_width: f64) -> Result<View> {
     let json = format!(
         r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":0.5}}"#
     );
