@@ -112,7 +112,7 @@ module band_pipe #(
         end
     end
 
-    wide_delay #(.WIDTH($bits(pixels)), .CLOCKS(3)) pixels_wait (.clk, .in(pixels), .out(comparing));
+    wide_delay #(.WIDTH($bits(pixels)), .CLOCKS(3)) pixels_wait (.clk, .zero(1'b0), .in(pixels), .out(comparing));
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
         assign write_lanes[lane] = compared.mask[lane]

@@ -3,7 +3,7 @@
 //
 //   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
 //
-// CLOCKS is at least 3.
+// CLOCKS is at least 3. With `zero` in a clock, `out` is 0 in the next one in place of the word: a reset of its register takes no LUT.
 
 `default_nettype none
 
@@ -12,6 +12,7 @@ module wide_delay #(
     parameter int unsigned CLOCKS = 4
 ) (
     input  wire              clk,
+    input  wire              zero,
     input  wire  [WIDTH-1:0] in,
     output logic [WIDTH-1:0] out
 );
@@ -24,7 +25,7 @@ module wide_delay #(
 
     always_ff @(posedge clk) begin
         places[place] <= in;
-        out           <= places[place];
+        out           <= zero ? '0 : places[place];
         place         <= place == PLACE_BITS'(PLACES - 1) ? '0 : place + 1'b1;
     end
 endmodule

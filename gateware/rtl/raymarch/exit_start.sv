@@ -88,8 +88,8 @@ module exit_start #(
         exit_quotient quotient (.clk, .distance(distance_13[i]), .inverse(inverse_13[i]), .t(exit_18[i]));
     end
 
-    wide_delay #(.WIDTH(3 * exit_pkg::INVERSE_BITS), .CLOCKS(9)) inverse_waits (.clk, .in(inverse_13), .out(inverse_22));
-    wide_delay #(.WIDTH(3 * exit_pkg::SPEED_BITS), .CLOCKS(21)) speed_waits (.clk, .in(speed_1), .out(speed_22));
+    wide_delay #(.WIDTH(3 * exit_pkg::INVERSE_BITS), .CLOCKS(9)) inverse_waits (.clk, .zero(1'b0), .in(inverse_13), .out(inverse_22));
+    wide_delay #(.WIDTH(3 * exit_pkg::SPEED_BITS), .CLOCKS(21)) speed_waits (.clk, .zero(1'b0), .in(speed_1), .out(speed_22));
 
     logic [2:0] there_18, away_18, away_19, away_20, away_21, last_18, last_19, last_20, crossed_20, above_21;
     logic       some_19, some_20;
@@ -256,7 +256,7 @@ module exit_start #(
 
         exit_mantissa reciprocal (.clk, .enable(1'b1), .whole({square_8, 3'd0}), .mantissa(mantissa_18), .exponent(exponent_18));
         delay #(.WIDTH(2), .CLOCKS(9)) doublings_wait (.clk, .enable(1'b1), .in(doublings_9), .out(doublings_18));
-        wide_delay #(.WIDTH(exit_pkg::LENGTH_BITS), .CLOCKS(13)) length_waits (.clk, .in({doublings_9, short_9}), .out(length_22));
+        wide_delay #(.WIDTH(exit_pkg::LENGTH_BITS), .CLOCKS(13)) length_waits (.clk, .zero(1'b0), .in({doublings_9, short_9}), .out(length_22));
         delay #(.WIDTH(exit_pkg::INVERSE_SQUARE_BITS), .CLOCKS(3)) reciprocal_waits (
             .clk, .enable(1'b1), .in(inverse_19), .out(inverse_square_22)
         );

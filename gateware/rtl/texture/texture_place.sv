@@ -162,14 +162,16 @@ module texture_place (
         delay #(.WIDTH(4), .CLOCKS(7)) zeros_delay (.clk, .enable(1'b1), .in(zeros), .out(zeros_12[lane]));
 
         for (genvar axis = 0; axis < 2; axis++) begin : axes
-            logic [23:0]        value, value_9, value_10, value_11;
+            logic               negative, negative_8;
+            logic [23:0]        value_9, value_10, value_11;
             logic signed [42:0] product;
             logic [4:0]         shift;
 
             // Negative accumulators, which rounding may cause if the exact value is 0, count as 0.
-            assign value = values[1 + axis][lane][31:26] == '1 ? '0 : values[1 + axis][lane][31:8];
+            assign negative = values[1 + axis][lane][31:26] == '1;
 
-            wide_delay #(.WIDTH(24), .CLOCKS(6)) value_delay (.clk, .in(value), .out(value_9));
+            delay #(.WIDTH(1), .CLOCKS(5)) negative_delay (.clk, .enable(1'b1), .in(negative), .out(negative_8));
+            wide_delay #(.WIDTH(24), .CLOCKS(6)) value_delay (.clk, .zero(negative_8), .in(values[1 + axis][lane][31:8]), .out(value_9));
 
             always_ff @(posedge clk) begin
                 value_10 <= value_9;
@@ -241,7 +243,7 @@ module texture_place (
         end
     end
 
-    wide_delay #(.WIDTH(8 * 21), .CLOCKS(LATENCY - 15)) positions_delay (.clk, .in(positions), .out(out_positions));
+    wide_delay #(.WIDTH(8 * 21), .CLOCKS(LATENCY - 15)) positions_delay (.clk, .zero(1'b0), .in(positions), .out(out_positions));
 
     // The mip level of the first pixel. The changes of a coordinate for a pixel to the right and down are G - σ·Gd, with the gradients G of
     // the coordinate and Gd of the depth.
@@ -258,7 +260,7 @@ module texture_place (
         wire _unused = &{1'b0, plane};
     end
 
-    wide_delay #(.WIDTH(6 * 24), .CLOCKS(14)) gradients_delay (.clk, .in(gradients), .out(gradients_14));
+    wide_delay #(.WIDTH(6 * 24), .CLOCKS(14)) gradients_delay (.clk, .zero(1'b0), .in(gradients), .out(gradients_14));
 
     assign depth_gradients = gradients_14[1:0];
 
@@ -266,9 +268,10 @@ module texture_place (
     logic [1:0][8:0]       magnitudes;
 
     for (genvar axis = 0; axis < 2; axis++) begin : changes
-        logic [27:0] share;
-        logic [3:0]  zeros;
-        logic [1:0]  zeros_13;
+        // `keep` holds the selections of a lane and of a shift apart, which are one LUT for each bit alone.
+        (* keep *) logic [27:0] share;
+        (* keep *) logic [1:0]  fours;
+        logic [1:0]  ones, zeros_13;
         logic [19:0] by_4;
         logic [16:0] sigma;
         logic [28:0] most;
@@ -277,16 +280,21 @@ module texture_place (
         logic [1:0]  zeros_of_head;
         logic [2:0]  head_part;
 
-        assign share = shares[axis][lane_12][40:13];
-        assign zeros = zeros_12[lane_12];
+        always_comb
+            unique case (lane_12)
+                2'd0: {fours, ones, share} = {zeros_12[0], shares[axis][0][40:13]};
+                2'd1: {fours, ones, share} = {zeros_12[1], shares[axis][1][40:13]};
+                2'd2: {fours, ones, share} = {zeros_12[2], shares[axis][2][40:13]};
+                2'd3: {fours, ones, share} = {zeros_12[3], shares[axis][3][40:13]};
+            endcase
 
         always_ff @(posedge clk) begin
-            unique case (zeros[3:2])
+            unique case (fours)
                 2'd0:    by_4 <= share[27:8];
                 2'd1:    by_4 <= share[23:4];
                 default: by_4 <= share[19:0];
             endcase
-            zeros_13 <= zeros[1:0];
+            zeros_13 <= ones;
             unique case (zeros_13)
                 2'd0: sigma <= by_4[19:3];
                 2'd1: sigma <= by_4[18:2];
