@@ -12,7 +12,7 @@
 `default_nettype none
 
 module texture_queue #(
-    parameter int unsigned STEPS = 32
+    parameter int unsigned STEPS = 64
 ) (
     input  wire                  clk,
     input  wire                  rst,

@@ -10,7 +10,7 @@
 // texture two, one for each pair of lanes that has covered pixels. Together the steps of a quad serve each of its pixels once; steps come
 // in the order of the quads. The colours of memory are read as they are; `sampler` may have any value, and no value stops the unit.
 //
-// Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for some 30 steps
+// Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for some 60 steps
 // ahead. Latency 18 clocks without misses. The quads are a valid/ready stream. Steps have no ready: what follows takes a step in every
 // clock. `idle` is high while no quad is inside; `sampler` and `number`, the texture's, hold while it is low. `forget` (one clock while
 // `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a texture's bytes have changed, or another
