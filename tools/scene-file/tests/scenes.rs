@@ -24,7 +24,8 @@ fn with_camera(text: &str) -> SceneFile {
     parse(&format!("title = \"a\"\ncamera = \"3 30 60\"\n{text}")).unwrap()
 }
 
-/// The rows of a table: the lines of a file with `;` between them, and after `→` what they give.
+/// The rows of a table: the lines of a scene file, separated by `;`, and after `→` the expected
+/// result.
 fn rows(table: &str) -> impl Iterator<Item = (String, &str)> {
     let rows = table.lines().filter_map(|row| row.split_once('→'));
     rows.map(|(lines, result)| (lines.trim().replace("; ", "\n"), result.trim()))
@@ -44,7 +45,7 @@ fn the_files_of_the_folder_are_built_in() {
         let text = fs::read_to_string(&path).unwrap();
         let scene = SceneFile::parse(&name, &path.display().to_string(), &text).unwrap();
         assert!(scene.lines().count() > 0, "{name}");
-        // Reads the lines like a board.
+        // A board reads the lines in the same way.
         let text: String = scene.lines().map(|line| format!("{line}\n")).collect();
         let read: Result<Vec<_>, _> = lines(&text).collect();
         let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -122,7 +123,7 @@ fn keys_are_console_commands() {
     assert_eq!(*scene.steer(), Steer::Command("orbit 60".to_owned()));
 }
 
-/// A scene with neither quality nor size is balanced; a size overrides the size of the quality.
+/// The default quality is `balanced`; a size overrides the size that the quality sets.
 #[test]
 fn a_scene_has_a_quality() {
     for (text, lines, size) in [
@@ -239,8 +240,8 @@ fn refused_files() {
     }
 }
 
-/// The error states all violations, in the order of the file. Missing keys are not reported if a key is misspelt or a line is
-/// damaged.
+/// The error states all violations, in the order of the file. A missing key is not reported if a
+/// key is misspelt or a line is damaged.
 #[test]
 fn all_violations_of_a_file() {
     let text = "titel = \"a\"\nmodel = \"cube\"\ncamera = \"4,30,70\"\nlight = 3\nsize = \"640\"\nfog = 1\ndepth = 2\n\
@@ -291,7 +292,8 @@ fn each_example_is_valid() {
     }
 }
 
-/// Without a camera, the scene shows whole meshes with the axis of their format up; a field has the camera of `glint render`.
+/// Without the key `camera`, a scene shows whole meshes with the axis of their file format up, and
+/// a field with the default camera of `glint render`.
 #[test]
 fn automatic_cameras() {
     let table = r#"

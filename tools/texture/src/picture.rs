@@ -9,9 +9,9 @@ use image::{
 };
 use std::io::Cursor;
 
-/// Largest width and height of a picture.
+/// Largest width and height of a picture in texels.
 pub const MAX_SIDE: u32 = 8192;
-/// Largest number of bytes of a picture's decoded colours.
+/// Maximum size of a decoded picture in bytes.
 pub const MAX_BYTES: u64 = 256 << 20;
 /// Maximum number of characters of a decoder's message in an error.
 const MAX_MESSAGE: usize = 200;
@@ -26,7 +26,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture whose texels `texel` computes from their columns and rows.
+    /// A picture whose texels `texel` computes from column and row.
     pub fn drawn(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
         let [width, height] = size;
         let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
@@ -34,11 +34,12 @@ impl Picture {
         Self { size, texels }
     }
 
-    /// Decodes a PNG or JPEG file. The contents decide the format. Of an animation this is the first picture.
+    /// Decodes a PNG or JPEG file; the content determines the format. An animation gives its first
+    /// frame.
     ///
     /// # Errors
-    /// The file is neither PNG nor JPEG, is damaged, or exceeds [`MAX_SIDE`] or [`MAX_BYTES`]. Sides and bytes are checked before
-    /// memory for the picture is taken.
+    /// The file is neither PNG nor JPEG, is damaged, or exceeds [`MAX_SIDE`] or [`MAX_BYTES`].
+    /// Sides and size are checked before memory for the picture is allocated.
     pub fn decode(file: &[u8]) -> Result<Self, PictureError> {
         let format = match image::guess_format(file) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
@@ -105,7 +106,7 @@ fn start_of(file: &[u8]) -> String {
     }
 }
 
-/// The error of a decoder in the project's words.
+/// Converts an error of a decoder.
 fn refused(format: &str, error: &ImageError) -> PictureError {
     match error {
         ImageError::Limits(limit) if limit.kind() == LimitErrorKind::DimensionError => {
@@ -216,7 +217,7 @@ mod tests {
                 "{size:?}"
             );
         }
-        // 16 bits a channel: 512 MiB.
+        // With 16 bits per channel the picture has 512 MiB.
         let mut file = with_size([8192, 8192]);
         file[24] = 16;
         repair_png(&mut file);
