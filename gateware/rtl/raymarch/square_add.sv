@@ -1,4 +1,5 @@
-// Computes p = c + x² without the square of the low bits of x, mapped to one DSP48 (docs/raymarch-exits.md, "Spheres of a list").
+// Computes p = c + x², where the square of the low bits of x is left out, mapped to one DSP48 (docs/raymarch-exits.md, "Spheres
+// of a list").
 //
 //   x ─▶ high·(2·x - high) ─▶ + ─▶ p
 //                             ▲
