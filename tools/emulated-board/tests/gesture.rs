@@ -232,7 +232,7 @@ fn faults_are_those_of_the_frames() {
         }
         assert_eq!(bench.status().fault(), Some(expected), "{fault:?}");
         bench.engine.sensor().unwrap().fault = None;
-        assert!(bench.run(4 * FRAME), "whole again after {fault:?}");
+        assert!(bench.run(4 * FRAME), "no complete frame after {fault:?}");
         assert_eq!(bench.status().fault(), Some(Fault::None), "{fault:?}");
     }
 }

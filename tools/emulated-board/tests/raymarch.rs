@@ -132,7 +132,7 @@ fn view() -> View {
     Camera::looking([1.0, -2.6, 1.2], [0.0; 3], 0.7, 0.1).rounded()
 }
 
-/// Draws a field by the engine and by the model, and compares the pictures and counts.
+/// Draws a field with the engine and with the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size: Size) {
     let name = format!("{} {size} {stereo:?}", subject.field);
     let frame = Frame {
@@ -281,7 +281,7 @@ fn random_fields() {
     }
 }
 
-/// Any register contents draw a picture.
+/// Draws a picture from any register contents.
 #[test]
 fn random_registers_do_no_harm() {
     let mut state = 9_u32;
@@ -297,7 +297,7 @@ fn random_registers_do_no_harm() {
             for register in (raymarch::offset::SOLID..=raymarch::offset::FOG_SHIFT).step_by(4) {
                 block.write(register, random(), *now, ram);
             }
-            // With few evaluations of each ray.
+            // Limits the evaluations of each ray, for speed.
             let tuning = raymarch::Tuning::from_bits(random()).with_cap(20);
             block.write(raymarch::offset::TUNING, tuning.bits(), *now, ram);
             for _ in 0..500 {

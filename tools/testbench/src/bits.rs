@@ -13,7 +13,7 @@ impl Bits {
     /// Makes a value from 32-bit words, lowest first; missing words are 0.
     ///
     /// # Panics
-    /// The value has more than 512 bits.
+    /// When the value has more than 512 bits.
     #[must_use]
     pub fn from_words(words: &[u32]) -> Self {
         let mut bits = Self::default();

@@ -76,7 +76,7 @@ const LATENCY: u64 = 12;
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Words requested and not yet delivered: the earliest cycle of delivery, and the address.
+    /// Requested words that are not delivered yet: the earliest cycle of delivery, and the address.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
     /// Minimum number of clocks from a command to its data.
@@ -136,7 +136,7 @@ impl ReadPort {
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
-    /// Addresses of the commands whose data were not taken yet.
+    /// Addresses of the commands whose data are not taken yet.
     owed: VecDeque<u32>,
     takes: bool,
     stalls: Stalls,

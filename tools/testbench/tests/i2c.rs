@@ -154,7 +154,7 @@ impl Bench {
         self.clock();
         while self.module.is_high(self.ports.busy) {
             self.clock();
-            assert!(self.module.cycles() - start < LONG, "it does not end");
+            assert!(self.module.cycles() - start < LONG, "the transfer does not end");
         }
         self.module.cycles() - start
     }
@@ -191,7 +191,7 @@ impl Bench {
         self.push(commands);
     }
 
-    /// Runs for `clocks` clocks; returns the clocks of start conditions.
+    /// Runs for `clocks` clocks; returns the numbers of the clocks with start conditions.
     fn starts(&mut self, clocks: u64) -> Vec<u64> {
         let [_, scl_out, _, sda_out] = self.ports.wires;
         let mut starts = Vec::new();

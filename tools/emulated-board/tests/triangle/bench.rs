@@ -31,7 +31,7 @@ const HEADER: u32 = 32;
 /// A colour that is neither a drawn colour nor the background.
 pub const UNTOUCHED: u16 = 0x7777;
 
-/// Best shading of the engine.
+/// Layout of the engine's descriptors.
 pub const LAYOUT: Layout = Layout::WHOLE;
 
 /// Size of a descriptor in bytes.
@@ -103,7 +103,8 @@ impl Bench {
         self.finish(kind)
     }
 
-    /// Runs until all passes have ended, when an event must be pending. Returns the error of the last pass of this kind.
+    /// Runs until all passes have ended; an event must then be pending. Returns the error of the
+    /// last pass of this kind.
     pub fn finish(&mut self, kind: Kind) -> Error {
         while self.status().geometry_busy() || self.status().raster_busy() {
             assert!(!self.engine.interrupt());
@@ -319,7 +320,7 @@ pub fn geometry_flags(frame: &MeshSetup, options: &Options) -> Geometry {
         .with_orthographic(frame.projection == Projection::Orthographic)
 }
 
-/// A mesh alone.
+/// Prepares a mesh for a frame of this mesh only.
 pub fn alone<'a>(mesh: &'a [u8], frame: MeshSetup, cull: bool) -> PreparedMesh<'a> {
     PreparedMesh {
         mesh: Mesh::new_checked(mesh).expect("a mesh"),

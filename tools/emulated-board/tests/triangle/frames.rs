@@ -45,7 +45,7 @@ fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
     picture
 }
 
-/// Draws parts by the engine and by the model, and compares the pictures and counts.
+/// Draws parts with the engine and with the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, name: &str, size: Size, parts: &[PreparedMesh]) -> Stats {
     let expected = by_model(size, parts);
     let counters = [
@@ -98,7 +98,7 @@ fn scenes_of_all_sizes() {
     assert!(pixels > 1_000_000 && clipped > 100);
 }
 
-/// Flat and smooth frames alternate, also in changing light; a smooth pass takes longer.
+/// Alternates flat and smooth frames, also in changing light. A smooth pass takes longer.
 #[test]
 fn frames_with_smooth_shading() {
     let mut random = Pcg64Mcg::new(22);
@@ -135,7 +135,8 @@ fn frames_with_smooth_shading() {
     assert!(cycles[1] > cycles[0]);
 }
 
-/// Without smooth shading in the engine its flag has no effect, and a descriptor is half as long.
+/// In an engine without smooth shading, the flag `smooth` has no effect, and a descriptor is half
+/// as long.
 #[test]
 fn an_engine_without_smooth_shading() {
     let mut bench = Bench::new();
@@ -296,8 +297,8 @@ fn a_frame_is_whole_after_a_cancelled_one() {
     }
 }
 
-/// A pass takes about as many cycles as the gateware's for icosphere:6 (docs/report/triangle.md), which is similar to this sphere.
-/// Counters grow meanwhile.
+/// A pass takes about as many cycles as a pass of the gateware for icosphere:6
+/// (docs/report/triangle.md), a similar sphere. Counters increase during the pass.
 #[test]
 fn passes_take_about_the_time_of_the_gateware() {
     let mut bench = Bench::new();

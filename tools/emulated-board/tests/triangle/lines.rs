@@ -75,7 +75,7 @@ fn lines_are_the_models() {
     }
 }
 
-/// Triangles in the first set, lines in the second set, as for the edges of a mesh.
+/// Draws triangles from the first set and lines from the second set, as for the edges of a mesh.
 #[test]
 fn lines_are_drawn_over_triangles() {
     let size = Size::W640;

@@ -219,8 +219,9 @@ impl Bench {
 }
 
 impl Bench {
-    /// Restarts the band buffer while memory takes no words, and checks that the banks are cleared nevertheless. Then memory
-    /// takes words again: at most the words in the buffer's FIFO may follow.
+    /// Restarts the band buffer while memory takes no words, and checks that the buffer still
+    /// clears its banks. Then memory takes words again, of which at most the words in the buffer's
+    /// FIFO may come.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 

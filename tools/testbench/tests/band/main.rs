@@ -221,7 +221,8 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     const COUNT: usize = 1920;
     let mut bench = Bench::ready(7, 0.0, 0.0);
     let rows = (0..COUNT).map(|i| full_group(i, 1));
-    // Pairs of groups as from two adjacent triangles: in the same row, with different lanes (pixels of the row).
+    // Pairs of groups like those of two adjacent triangles: in the same row, with different lanes
+    // (pixels of the row).
     let lanes = (0..COUNT).map(|i| Group {
         mask: 0x0f << (i % 2 * 4),
         ..full_group(i / 2, 2)
@@ -237,7 +238,8 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
 
 #[test]
 fn a_group_waits_for_the_lanes_it_shares() {
-    // Per case: the number of groups between the two groups of a row, and the clocks for which the second group is delayed.
+    // Each case: the number of groups between two groups of the same row, and the number of clocks
+    // for which the second group is delayed.
     for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
@@ -297,8 +299,8 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Per case: the number of drawn words in every n-th line, n, and the clocks of the flush without start and end, if the
-    // previous frame drew the same words.
+    // Each case: the number of drawn words in every n-th line, n, and the number of clocks of the
+    // flush, without its start and end, if the previous frame drew the same words.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)

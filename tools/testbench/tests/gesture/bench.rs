@@ -32,7 +32,7 @@ impl Clocks {
 /// The build with short time-outs and with sums of products.
 pub const HASTY: &str = "gesture_engine_hasty";
 
-/// Settings that mark every pixel of a frame of this size as a hand's.
+/// Settings that mark every pixel of a frame of this size as part of a hand.
 pub const fn settings(size: [u16; 2]) -> Settings {
     const ALL: Window = window(0, 255);
     Settings {
@@ -90,7 +90,8 @@ impl Bench {
         let mut bench = Self::stopped(name, clocks, polarity, settings, seed);
         bench.falling = falling;
         bench.module.drive("pins.falling", falling);
-        // Registers without a reset start with random values, and so may the FIFO. A VSYNC discards these values.
+        // Registers without a reset start with random values, so the FIFO may contain random data.
+        // A VSYNC discards them.
         bench.idle(3000);
         bench.begin();
         bench.twin = Engine::new(polarity, settings, bench.camera.pins(false, false, 0));

@@ -34,7 +34,7 @@ fn frames_of_all_fields_with_stalls() {
     for text in further_kinds() {
         draw_in_short(&mut bench, &mut random, &[text]);
     }
-    // Back-pressure of pixels blocks the ends of rays, which in turn block the rays.
+    // Backpressure at the output of pixels blocks the ends of rays, which in turn block the rays.
     assert!(bench.stalled() > 0);
 }
 
@@ -94,7 +94,7 @@ fn small_and_lit(random: &mut Random, text: &str) -> (FieldSetup, Palette) {
     (setup, palette)
 }
 
-/// Cones alone and in unions, in all lights, also after spheres and without a cone after one.
+/// Draws cones alone and in unions, in all lights. Frames with and without a cone alternate.
 #[test]
 fn frames_of_cones_in_all_lights() {
     let mut random = Random(15);
@@ -115,7 +115,8 @@ fn frames_of_cones_in_all_lights() {
     }
 }
 
-/// Spheres in a repeated field need the eye's position in the world, the field that in its cell.
+/// In a repeated field, spheres need the eye's position in the world, and the field needs the eye's
+/// position in its cell.
 #[test]
 fn frames_of_spheres_in_endless_fields() {
     let mut random = Random(14);
@@ -126,7 +127,8 @@ fn frames_of_spheres_in_endless_fields() {
     }
 }
 
-/// Draws a sphere with one pass and with eight: each further pass may take one more clock for each pixel of the sphere.
+/// Draws a sphere with one lighting pass and with eight passes. Each further pass may take one more
+/// clock per pixel of the sphere.
 #[test]
 fn round_pixels_take_a_clock_a_pass() {
     let mut random = Random(13);

@@ -1,4 +1,5 @@
-//! Tests of a lane of marching rays: every ray ends once, with the model's result, under any back-pressure.
+//! Tests of a lane of marching rays: every ray must end exactly once, with the model's result,
+//! under any backpressure.
 
 use std::collections::HashMap;
 
@@ -88,12 +89,13 @@ impl Bench {
     }
 }
 
-/// Number of rays per test: the environment variable `GLINT_RTL_RAYS`, by default 150,000.
+/// Number of rays of the test. The environment variable `GLINT_RTL_RAYS` sets it, 150,000 by
+/// default.
 fn rays() -> usize {
     std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
 }
 
-/// Creates benches of the module `name`, each with another share of stalls.
+/// Creates benches of the module `name` with different shares of stalls.
 fn benches(name: &str) -> Vec<Bench> {
     let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
     let numbered = (1..).zip(shares);

@@ -23,7 +23,7 @@ pub const ROUND: [&str; 8] = [
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
-/// Unions with a fillet, in which rays march, for a build with sponges up to depth 4.
+/// Unions with a fillet, which need marching rays, for a build with sponges up to depth 4.
 pub const SMOOTH: [&str; 9] = [
     "smooth:0.25,menger:2+sphere:1",
     "smooth:0.5,menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
@@ -117,14 +117,14 @@ fn camera_at(random: &mut Random, distance: f64) -> View {
     Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
 }
 
-/// Lowers the step limit of a frame's rays, which march, to `cap` if it is higher.
+/// Lowers the step limit of marching rays to `cap` if it is higher.
 pub fn limit_steps(setup: &mut FieldSetup, cap: u32) {
     if let Form::Marching(marching) = &mut setup.form {
         marching.cap = marching.cap.min(cap);
     }
 }
 
-/// Makes random frame constants as [`setup`], without shadows.
+/// Makes random frame constants like [`setup`], but without shadows.
 pub fn unshaded_setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     let mut setup = setup(random, fields);
     if let Form::Exits(exits) = &mut setup.form {

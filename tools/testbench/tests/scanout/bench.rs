@@ -9,7 +9,7 @@ use crate::monitor::Monitor;
 use crate::raster::{Clocks, Raster};
 use crate::settings::{Settings, error};
 
-/// What the bench expects the module to count.
+/// Expected values of the module's counters.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counted {
     vblanks: u32,

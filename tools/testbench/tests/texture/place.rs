@@ -1,4 +1,4 @@
-//! Compares positions in a texture and mip levels with the model.
+//! Compares the positions in a texture, and the mip levels, with the model.
 
 use std::collections::VecDeque;
 
@@ -11,7 +11,7 @@ use glint_vectors::triangles::{SIZE, random_triangle};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Fraction bits of a position_t.
+/// Number of fraction bits of a `position_t`.
 const FRACTION_BITS: u32 = 18;
 
 fn texture(size_log2: [u8; 2], wrap: Wrap, is_one_level: bool) -> Vec<u8> {
@@ -33,7 +33,7 @@ fn texture(size_log2: [u8; 2], wrap: Wrap, is_one_level: bool) -> Vec<u8> {
     .unwrap()
 }
 
-/// A triangle with a texture, as a triangle of a frame, or with random planes if `is_wild`.
+/// Makes a triangle with a texture. Its planes are those of a frame, or random if `is_wild`.
 fn triangle<'a>(
     texture: Texture<'a>,
     vectors: &mut Random,
@@ -80,7 +80,8 @@ fn triangle<'a>(
     }
 }
 
-/// A quad that the module must send: its place in a group, its level, and the expected position of each covered lane.
+/// An expected quad at the output: its covered lanes and its place in the group, its level, and the
+/// position of each lane.
 #[derive(Debug)]
 struct Expected {
     mask: u64,

@@ -32,8 +32,10 @@ fn converted(name: &str, options: convert::Options) -> Vec<u8> {
     converted.expect("a mesh").0
 }
 
-/// Draws every scene at one size, in either frame buffer: at the smallest size with depths and without, at a larger one with or without
-/// them in turn, because writing depths triples the time, and without large meshes, whose geometry pass is the same in all sizes.
+/// Draws every scene at one size, in a random frame buffer. At the smallest size, each scene is
+/// drawn with depths and without. Larger sizes draw alternate scenes with and without depths,
+/// because writing depths triples the time, and skip large meshes, because the geometry pass does
+/// not depend on the size.
 fn all_scenes(size: (u32, u32)) {
     let mut bench = Bench::new(size.0, 0.0);
     let mut random = Pcg64Mcg::new(size.0.into());
@@ -101,8 +103,8 @@ fn scenes_in_orthographic_projection() {
     assert!(clipped > 20 && pixels > 100_000);
 }
 
-/// Draws random lists of triangles with random memory stalls, on which a frame must not depend. The environment variable
-/// `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
+/// Draws random lists of triangles with random memory stalls, which must not change a frame. The
+/// environment variable `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
 #[test]
 fn random_lists_with_random_stalls() {
     let lists = std::env::var("GLINT_RTL_LISTS").map_or(25, |text| text.parse().unwrap());
@@ -361,9 +363,10 @@ fn frames_end_with_random_memory() {
     }
 }
 
-/// Checks the pixels drawn per clock on a sphere of 96 % of the picture's height, without memory stalls, after an identical
-/// frame. Two lower bounds: `alone`, over the clocks of both passes of a frame, and `overlapped`, over the clocks of the longer
-/// pass, as for frames with overlapping passes.
+/// Checks the pixels drawn per clock on a sphere of 96 % of the picture's height, without memory
+/// stalls, after an identical frame. There are two lower bounds: `alone` refers to the clocks of
+/// both passes of a frame, `overlapped` to the clocks of the longer pass, as for frames whose
+/// passes overlap.
 #[test]
 fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
@@ -392,7 +395,7 @@ fn a_sphere_is_drawn_fast() {
         ];
         println!(
             "{name} at {size:?}, smooth {smooth}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, {} words read, {} written, \
-             {:.2} pixels a clock alone, {:.2} overlapped",
+             {:.2} pixels per clock alone, {:.2} overlapped",
             clocks.geometry,
             clocks.raster,
             bench.count("cycles_walking") - counts[0],
@@ -411,7 +414,8 @@ fn a_sphere_is_drawn_fast() {
     }
 }
 
-/// Reads are issued ahead: 64 more clocks of memory latency cost a frame only a few times 64 clocks.
+/// The engine prefetches: with 64 more clocks of memory latency, a frame takes only a few times 64
+/// clocks longer.
 #[test]
 fn latency_of_memory_is_hidden() {
     for (name, size) in [("icosphere:6", SIZES[0]), ("icosphere:12", SIZES[2])] {
@@ -427,7 +431,8 @@ fn latency_of_memory_is_hidden() {
             bench.draw(name, &mesh, &expected).raster
         });
         println!("{name} at {size:?}: {raster:?} clocks for the raster");
-        // The reads of lengths, lists and descriptors depend on each other in the first band, and a few times later.
+        // Reads of lengths, lists and descriptors depend on each other, so their latency is visible
+        // in the first band and a few times later.
         assert!(raster[1] < raster[0] + 8 * 64, "{name}: {raster:?}");
     }
 }
@@ -445,8 +450,8 @@ fn empty_bands_are_passed_fast() {
     assert!(raster < 60 * 30 + 100, "{raster} clocks");
 }
 
-/// Checks the clocks of the geometry pass for a mesh of many small triangles, without memory stalls, in `glint convert`'s order
-/// and in the order of a scanner's file.
+/// Checks the clocks of the geometry pass for a mesh of many small triangles, without memory
+/// stalls, with the triangles in the order of `glint convert` and in the order of a scanner's file.
 #[test]
 fn a_scan_is_drawn_fast() {
     for (keep_order, most) in [(false, 5.0), (true, 9.6)] {
@@ -462,12 +467,12 @@ fn a_scan_is_drawn_fast() {
         let clocks = bench.draw(&name, &mesh, &expected);
         let a_triangle = clocks.geometry as f64 / f64::from(expected.stats.triangles_in);
         println!(
-            "{name}: {} of {} triangles drawn, {} clocks for the geometry, {a_triangle:.2} a triangle, {} for the raster",
+            "{name}: {} of {} triangles drawn, {} clocks for the geometry, {a_triangle:.2} per triangle, {} for the raster",
             expected.stats.drawn, expected.stats.triangles_in, clocks.geometry, clocks.raster
         );
         assert!(
             a_triangle <= most,
-            "{name}: {a_triangle:.2} clocks a triangle"
+            "{name}: {a_triangle:.2} clocks per triangle"
         );
     }
 }

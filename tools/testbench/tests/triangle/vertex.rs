@@ -151,7 +151,8 @@ fn edges() {
         let at = position(&mut random);
         let z = transform(&frame, at).z;
 
-        // Puts the near plane at the vertex, one unit in the last place nearer and farther, and at larger distances from the vertex.
+        // Puts the near plane at the vertex, 1 ulp nearer and farther, and at larger distances from
+        // the vertex.
         if (least + 1..1 << 38).contains(&z) {
             near_planes += 1;
             for off in [-1, 0, 1, -(1 << 20), 1 << 20] {

@@ -134,8 +134,9 @@ impl Bench {
     }
 }
 
-/// Makes triangles of one random kind. Their vertices are from a window of 20 that advances by one every two triangles, from three that
-/// share a slot of the cache, from the first six, or any.
+/// Makes triangles of one random kind. Their vertices are from a window of 20 vertices that
+/// advances by one vertex every two triangles, from three vertices that share a slot of the cache,
+/// from the first six vertices, or from all vertices.
 fn triangles(random: &mut Pcg64Mcg, count: usize) -> Vec<Triangle> {
     let kind = random.random_range(0..4);
     let base: u16 = random.random();

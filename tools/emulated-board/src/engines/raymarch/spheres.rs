@@ -60,7 +60,7 @@ impl Spheres {
     pub fn lights(&self, last: u8, is_stereo: bool) -> Lights {
         let [has_normals, is_lit, has_highlight] = [0, 1, 2].map(|bit| self.kinds >> bit & 1 != 0);
         Lights {
-            // Without colours by normals there is always a light.
+            // Without colours by normals, there is at least one light.
             count: if is_lit || !has_normals {
                 usize::from(last) + 1
             } else {

@@ -10,21 +10,22 @@ use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePor
 
 use super::expected::{Expected, SIZES};
 
-// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: one for the engine, one for the
-// clipper (firmware on the board, here the model).
+// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` have two areas each: one for
+// the engine, and one for the clipper, which is the firmware on the board and the model here.
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 pub const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
 pub const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
 pub const MESH: u32 = 0x1c_0000;
-/// The table of textures, and the first texture.
+/// The table of textures.
 const TEXTURES: u32 = 0x1e_0000;
+/// The first texture.
 const TEXTURE: u32 = 0x1e_0100;
-/// Distance of two textures, more than the words of one.
+/// Number of words from one texture to the next; no texture is longer.
 const TEXTURE_WORDS: u32 = 0x1000;
 const WORDS: usize = 0x20_0000;
-/// Logarithm to base 2 of the words per list.
+/// Base-2 logarithm of the number of words per list.
 pub const LIST_SHIFT: u32 = 11;
 /// Number of words after a picture that are checked to be unchanged: more than the size of a bank of the band buffer.
 const BEHIND: usize = 4096;
@@ -37,7 +38,8 @@ fn bytes(word: u32) -> u64 {
     u64::from(word) * 16
 }
 
-/// Writes the second set of lists and descriptors to memory, as the firmware does, for a build whose descriptors have this layout.
+/// Writes the second set of lists and descriptors to memory, as the firmware does, with descriptors
+/// of this layout.
 fn write_set(memory: &mut Memory, width: u32, triangles: &[(Descriptor, Bounds)], layout: Layout) {
     let rows = band_rows(width);
     let mut lists = vec![Vec::new(); 64];
@@ -183,7 +185,7 @@ impl Bench {
             let clocks = self.module.cycles() - start;
             assert!(
                 clocks < 2_000_000,
-                "no end after {clocks} clocks: given {:?} written {} groups {}",
+                "no end after {clocks} clocks: words read {:?}, words written {}, groups {}",
                 self.reads.each_ref().map(|read| read.given),
                 self.frame_words(),
                 self.count("groups")
@@ -356,8 +358,8 @@ impl Bench {
         }
     }
 
-    /// Draws a mesh with textures, whose clipped triangles are the second set, and compares the frame with the expected frame. Returns the
-    /// numbers of clocks of both passes.
+    /// Draws a mesh with textures, and its clipped triangles as the second set, and compares the
+    /// frame with the expected frame. Returns the numbers of clocks of both passes.
     pub fn draw_textured(
         &mut self,
         name: &str,
@@ -398,7 +400,7 @@ impl Bench {
         [geometry, self.finish(name, expected)]
     }
 
-    /// Writes the table of textures, whose first ones are not used.
+    /// Writes the table of textures. Its first five entries are unused.
     fn write_table(&mut self, addresses: impl Iterator<Item = u64>) {
         let table = [0; 5].into_iter().chain(addresses);
         let table: Vec<u8> = table.flat_map(|at| (at as u32).to_le_bytes()).collect();
@@ -406,8 +408,8 @@ impl Bench {
         self.set("raster.textures", bytes(TEXTURES));
     }
 
-    /// Draws the second set alone, of triangles whose textures have the numbers from 5 on, and compares the frame with the expected frame. Returns the
-    /// number of clocks.
+    /// Draws only the second set, from triangles whose texture numbers begin at 5, and compares the
+    /// frame with the expected frame. Returns the number of clocks.
     pub fn draw_set(
         &mut self,
         name: &str,
@@ -489,7 +491,7 @@ impl Bench {
         }
     }
 
-    /// Overwrites the frame buffer: its last frame counts as unknown.
+    /// Overwrites the frame buffer, whose content then counts as unknown.
     pub fn scribble(&mut self) {
         self.memory
             .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);

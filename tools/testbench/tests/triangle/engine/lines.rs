@@ -43,7 +43,7 @@ fn random_segments_with_random_stalls() {
     }
 }
 
-/// A build for lines alone draws lines without depths as one for triangles and lines does.
+/// A build for lines alone draws lines without depths like a build for triangles and lines.
 #[test]
 fn a_build_for_lines_alone_draws_them() {
     for (size, &picture) in SIZES.iter().enumerate() {
@@ -145,7 +145,7 @@ fn face(distance: f64, colour: u16) -> Vec<u8> {
     meshes::mesh(&[triangle([0, 1, 2]), triangle([0, 2, 3])], 100)
 }
 
-/// Lines and faces of a list keep their order, even at equal depths.
+/// Lines and faces are drawn in the order of the list, even at equal depths.
 #[test]
 fn lines_and_faces_in_turn() {
     let mut numbers = Pcg64Mcg::new(23);

@@ -54,15 +54,16 @@ fn texture(random: &mut Pcg64Mcg) -> Source {
     }
 }
 
-/// The first textures of the table are not those of a mesh.
+/// Offset of the mesh's texture numbers, which begin at 1, in the table of textures.
 const BEFORE: u8 = 4;
 
 /// A frame of a square with textures.
 struct Shown {
     mesh: Vec<u8>,
     expected: Expected,
-    /// The triangles that need no clipping, and those that are clipped.
+    /// The triangles that need no clipping.
     whole: Vec<(Descriptor, Bounds)>,
+    /// The clipped triangles.
     clipped: Vec<(Descriptor, Bounds)>,
 }
 
