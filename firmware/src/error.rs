@@ -246,14 +246,14 @@ impl Display for CommandError<'_> {
                 write!(f, "scene {name}: this gateware lacks")?;
                 let mut lacks = Block::of_bits(*lacks);
                 lacks.try_for_each(|block| write!(f, " {block}"))?;
-                write!(f, ", expected that of `cargo xtask gateware --scene {name}`")
+                write!(f, ", expected a build by `cargo xtask gateware --scene {name}`")
             }
             Self::Features { built_in } => {
                 let name = built_in.name;
                 write!(f, "scene {name}: this firmware lacks")?;
                 let mut lacks = built_in.lacks_features();
                 lacks.try_for_each(|feature| write!(f, " {}", feature.name))?;
-                write!(f, ", expected that of `cargo xtask firmware --scene {name}`")
+                write!(f, ", expected a build by `cargo xtask firmware --scene {name}`")
             }
             Self::Setting(error) => error.fmt(f),
             Self::NoField => {
@@ -295,7 +295,7 @@ impl Display for CommandError<'_> {
                 "press: no wireframe shown, expected `program` first",
             ),
             Self::Reach => {
-                f.write_str("press: the wireframe is 16 from its start, expected another key")
+                f.write_str("press: the wireframe would be more than 16 from its start, expected another key")
             }
             Self::Render(error) => write!(f, "render: {error}"),
             Self::NoFrame => f.write_str("stats: no frame drawn, expected `render` first"),
@@ -314,7 +314,7 @@ impl Display for CommandError<'_> {
             }
             Self::ImageSensor(error) => GESTURE.when_built(|| write!(f, "gesture: {error}")),
             Self::NoSensorFrame => f.write_str(
-                "gesture: no whole frame came within 500 ms, `gesture` shows what the image sensor sends",
+                "gesture: no whole frame within 500 ms, `gesture` shows what the image sensor sends",
             ),
             Self::HandColour(error) => GESTURE.when_built(|| write!(f, "gesture calibrate: {error}")),
             Self::Log(error) => REPLAY.when_built(|| write!(f, "replay: {error}")),

@@ -46,8 +46,8 @@ pub struct Models {
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
     objects: Objects,
-    /// The mesh of the scene of the last [`update`](Models::update): a frame is made at each step of its drawing, and to find a mesh by
-    /// its name takes a thousand clock cycles.
+    /// The mesh of the scene of the last [`update`](Models::update). The mesh is stored, because finding it
+    /// by its name takes a thousand clock cycles, and every step of drawing a frame needs it.
     shown: Mesh<'static>,
     revision: u32,
     /// Largest number of triangles of an uploaded mesh.

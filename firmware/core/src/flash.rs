@@ -57,7 +57,7 @@ impl Kind {
     /// All kinds.
     pub const ALL: [Self; 3] = [Self::Mesh, Self::Scene, Self::List];
 
-    /// Name for people.
+    /// Name for messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mesh => "mesh",
@@ -157,7 +157,7 @@ impl<'a> Contents<'a> {
             u32::from_le_bytes(header.magic),
             header.magic == MAGIC,
         )?;
-        let limit = Expected::AtMost("bytes of contents, as there are", found);
+        let limit = Expected::AtMost("bytes of contents (to the end of the image)", found);
         expect(place(FlashHeader::LENGTH), limit, length, length <= found)?;
         let limit = Expected::AtMost("items", MAX_ITEMS);
         expect(
@@ -169,7 +169,7 @@ impl<'a> Contents<'a> {
         // At most 64.
         let count = header.items as usize;
         let list = list_end(count);
-        let least = Expected::AtLeast("bytes of contents, for the list of items", list as u32);
+        let least = Expected::AtLeast("bytes of contents (for the list of items)", list as u32);
         expect(
             place(FlashHeader::LENGTH),
             least,
@@ -245,7 +245,10 @@ impl<'a> Contents<'a> {
                 kind_of(kind).is_some(),
             )?;
             let rest = self.bytes.len().saturating_sub(offset);
-            let limit = Expected::AtMost("bytes of an item, up to the end", clamped(rest));
+            let limit = Expected::AtMost(
+                "bytes of an item (to the end of the contents)",
+                clamped(rest),
+            );
             let is_inside = length as usize <= rest;
             expect(place(FlashEntry::LENGTH), limit, length, is_inside)?;
             let reserved = entry.get(FlashEntry::RESERVED).unwrap_or_default();

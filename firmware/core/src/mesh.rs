@@ -153,19 +153,19 @@ impl<'a> Mesh<'a> {
         let (number, offset) = largest_texture;
         expect(
             offset,
-            Expected::AtMost("as the number of a texture", texture_count),
+            Expected::AtMost("(number of a texture)", texture_count),
             number,
             number <= texture_count,
         )?;
         expect(
             start(MeshHeader::VERTICES),
-            Expected::Exactly("vertices, as the chunks have", seen_vertices),
+            Expected::Exactly("vertices, the sum of the chunks", seen_vertices),
             header.vertices,
             header.vertices == seen_vertices,
         )?;
         expect(
             start(MeshHeader::TRIANGLES),
-            Expected::Exactly("triangles, as the chunks have", seen_triangles),
+            Expected::Exactly("triangles, the sum of the chunks", seen_triangles),
             header.triangles,
             header.triangles == seen_triangles,
         )?;
@@ -334,7 +334,7 @@ impl<'a> Chunk<'a> {
                 let index = u32::from(index);
                 expect(
                     offset + place as u32,
-                    Expected::Below("vertices of the chunk, as an index", count),
+                    Expected::Below("vertices in the chunk", count),
                     index,
                     index < count,
                 )?;
@@ -554,7 +554,7 @@ impl fmt::Display for Expected {
             Self::Exactly(what, count) => write!(f, "{count} {what}"),
             Self::AtLeast(what, count) => write!(f, "at least {count} {what}"),
             Self::AtMost(what, count) => write!(f, "at most {count} {what}"),
-            Self::Below(what, count) => write!(f, "less than the {count} {what}"),
+            Self::Below(what, count) => write!(f, "an index below {count}, the number of {what}"),
             Self::MultipleOf(what, count) => write!(f, "a multiple of {count} {what}"),
             Self::Texture(_) => f.write_str("a texture"),
         }

@@ -291,11 +291,11 @@ pub(crate) mod tests {
             &mut clock, 100
         ));
         let mut context = Context::from_waker(Waker::noop());
-        let mut looks = 1;
+        let mut polls = 1;
         while delay.as_mut().poll(&mut context).is_pending() {
-            looks += 1;
+            polls += 1;
         }
         // The delay takes 8125 cycles, and each reading of the clock advances the model by 1000.
-        assert_eq!((looks, asked.get()), (9, 8_126));
+        assert_eq!((polls, asked.get()), (9, 8_126));
     }
 }

@@ -174,7 +174,7 @@ pub fn show<'l>(machine: &mut Machine, name: &'l str) -> CommandResult<'l> {
             let found = machine.library.find(first);
             match content(first, &found.ok_or(CommandError::Scene(first))?)? {
                 Content::Lines(lines) => lines,
-                // A list of lists.
+                // The first item of the list is itself a list, and lists do not nest.
                 Content::Scenes(_) => return Err(CommandError::Scene(first)),
             }
         }

@@ -16,8 +16,8 @@ use super::fallback::Fallback;
 /// Capacity of the memory of one frame. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
 pub struct Capacity {
-    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without optional parts in a set. Of
-    /// longer descriptors fewer fit.
+    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without
+    /// optional parts in a set. With optional parts, fewer descriptors fit.
     descriptors: usize,
     /// Number of 32-bit words of a set of band lists, including the table of their lengths.
     list_words: usize,

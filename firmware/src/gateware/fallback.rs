@@ -126,7 +126,7 @@ impl fmt::Display for Fallback {
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine")?,
         }
         match self.build() {
-            Some(build) => write!(f, ", expected that of `cargo xtask gateware {build}`"),
+            Some(build) => write!(f, ", expected a build by `cargo xtask gateware {build}`"),
             None => Ok(()),
         }
     }
@@ -136,7 +136,7 @@ impl fmt::Display for Fallback {
 /// them.
 #[derive(Clone, Copy, Debug)]
 pub enum Unsupported {
-    /// All: this gateware has no geometry passes.
+    /// Every option: this gateware has no geometry passes.
     Geometry,
     /// Clipping to the view volume.
     Volume,

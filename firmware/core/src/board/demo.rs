@@ -19,7 +19,7 @@ pub struct Demo {
     count: usize,
     /// Index of the present scene.
     number: usize,
-    /// Whether the present scene is not yet shown.
+    /// Whether the present scene must still be shown.
     is_due: bool,
     /// Time at which the present scene ends.
     end: u64,
@@ -59,12 +59,12 @@ impl Demo {
         self.count
     }
 
-    /// Whether the shown scene stays.
+    /// Whether the demo holds the shown scene.
     pub const fn is_held(&self) -> bool {
         self.is_held
     }
 
-    /// Sets whether the shown scene stays. At the end of a hold the scene stays for another [`TURN_MS`].
+    /// Starts or ends a hold of the shown scene. After a hold the scene stays for another [`TURN_MS`].
     pub const fn hold(&mut self, now: u64, held: bool) {
         if self.is_held && !held {
             self.end = now.saturating_add(TURN_MS);
@@ -72,7 +72,7 @@ impl Demo {
         self.is_held = held;
     }
 
-    /// Moves to another scene; during a hold that scene stays.
+    /// Moves to another scene. A hold continues with that scene.
     pub fn go(&mut self, step: Move) {
         let last = self.count.saturating_sub(1);
         self.number = match step {

@@ -96,7 +96,7 @@ impl BoundingSphere {
         })
     }
 
-    /// Returns a camera in whose picture the sphere takes 80 % of the height, with the axis `up` up on the screen. The direction
+    /// Returns a camera in whose picture the sphere fills 80 % of the height, with the axis `up` up on the screen. The direction
     /// to the camera has an angle of 60° from this axis, and an azimuth of 30° plus `turned` about it.
     ///
     /// A given horizontal field of view determines the distance of the eye; otherwise the distance is 3.5 radii, which determines
@@ -144,7 +144,7 @@ impl BoundingSphere {
     }
 }
 
-/// Length of a tangent from the eye to a sphere of this radius that takes 80 % of the height with this field of view; at most
+/// Length of a tangent from the eye to a sphere of this radius that fills 80 % of the height with this field of view; at most
 /// [`FARTHEST`].
 fn tangent_length(radius: Length, angle: Turns) -> Length {
     let [sin, cos] = sines(Turns(angle.0 / 2)).map(i64::unsigned_abs);
@@ -154,7 +154,8 @@ fn tangent_length(radius: Length, angle: Turns) -> Length {
     length.min(FARTHEST as u64) as Length
 }
 
-/// The half width with which a sphere of this radius takes 80 % of the height at this distance. The distance is larger than the
+/// The half width of the image plane with which a sphere of this radius fills 80 % of the height at
+/// this distance. The distance is larger than the
 /// radius.
 fn half_width(radius: Length, distance: Length) -> U8_28 {
     let touching = ((distance - radius) * (distance + radius)).isqrt().max(1);

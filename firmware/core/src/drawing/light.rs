@@ -200,7 +200,7 @@ pub struct Lighting {
     pub lights: Vec<Light, MAX_LIGHTS>,
     /// Highlight of the first light.
     pub highlight: Option<Highlight>,
-    /// Direction halfway between those to the first light and to the camera, s1.14, of length 1; 0 if they are opposite, and before
+    /// Direction halfway between the directions to the first light and to the camera, s1.14, of length 1; 0 if they are opposite, and before
     /// [`seen_from`](Self::seen_from).
     pub half: [i16; 3],
 }
@@ -237,7 +237,8 @@ impl Lighting {
         }
     }
 
-    /// Returns the lighting as seen from a camera: sets the directions of lights at the camera, and that of the highlight.
+    /// Returns the lighting as seen from a camera: sets the directions of the highlight and of lights at
+    /// the camera.
     #[must_use]
     pub fn seen_from(mut self, view: &View) -> Self {
         for light in &mut self.lights {
@@ -265,7 +266,7 @@ impl Lighting {
         })
     }
 
-    /// Computes the colours of the faces perpendicular to the axes x, y and z that are turned to the first light and in its shadow.
+    /// Computes the shadowed colours of the faces perpendicular to x, y and z that face the first light.
     pub fn shadows(&self, faces: &[Rgb; 6]) -> [Rgb; 3] {
         let Some((first, rest)) = self.lights.split_first() else {
             return [[0; 3]; 3];
@@ -368,8 +369,8 @@ impl Highlight {
     }
 }
 
-/// The share of a highlight with this steepness, u5.8, in 255ths, for a cosine with 16 fraction bits, at most 1. Each product is rounded
-/// down.
+/// Brightness of a highlight relative to its strength, in units of 1/255, for a steepness in u5.8 and
+/// a cosine with 16 fraction bits, at most 1. Each product is rounded down.
 pub const fn highlight_share(steepness: u16, cosine: i32) -> u8 {
     const FULL: i32 = (1 << 16) - 1;
     let below = if cosine > FULL {
@@ -425,7 +426,7 @@ pub enum Material {
     /// The colour depends on the normal.
     #[default]
     Normal,
-    /// Successive spheres have the colours of the materials of one colour; faces are those of `Ivory`.
+    /// Successive spheres have the colours of the single-colour materials; faces have that of `Ivory`.
     Mixed,
     /// Reddish brown.
     Clay,
@@ -494,7 +495,8 @@ impl Material {
         colours
     }
 
-    /// The colours of the spheres in full light, by their numbers. Those of `Normal` depend on the normal instead.
+    /// The colours of the spheres in full light, by their numbers. With `Normal`, the colour of a sphere
+    /// depends on the normal instead.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Mixed = self {

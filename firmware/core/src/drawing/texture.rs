@@ -70,23 +70,23 @@ impl Format {
     }
 }
 
-/// The texels beyond the sides of a texture.
+/// Rule for texture coordinates beyond the sides of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// The texture again.
+    /// Repeats the texture.
     #[default]
     Repeat,
-    /// The texture again, every other time reversed.
+    /// Repeats the texture, mirrored every other time.
     Mirror,
-    /// The texels at the side.
+    /// Clamps to the texels at the side.
     Clamp,
 }
 
 impl Wrap {
-    /// All kinds, by their numbers in the header.
+    /// All rules, by their numbers in the header.
     pub const ALL: [Self; 3] = [Self::Repeat, Self::Mirror, Self::Clamp];
 
-    /// The column or row in a level of 2^`side_log2` texels that stands for `place`, which may be outside of the level.
+    /// Maps a column or row, which may be outside of a level of 2^`side_log2` texels, to one inside.
     pub fn place(self, place: i32, side_log2: u32) -> u32 {
         let side = 1 << side_log2;
         let inside = place & (side - 1);
@@ -100,13 +100,13 @@ impl Wrap {
     }
 }
 
-/// The colour between texels.
+/// Rule for the colour between texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
     /// The colour of the nearest texel.
     #[default]
     Nearest,
-    /// The average of the four nearest texels, by their distances.
+    /// The average of the four nearest texels, weighted by their distances.
     Bilinear,
 }
 
@@ -115,12 +115,12 @@ impl Filter {
     pub const ALL: [Self; 2] = [Self::Nearest, Self::Bilinear];
 }
 
-/// How a texture is read.
+/// The rules by which a texture is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sampler {
-    /// Beyond the left and right side, and beyond the upper and lower side.
+    /// The rules beyond the left and right sides, and beyond the upper and lower sides.
     pub wrap: [Wrap; 2],
-    /// Between texels.
+    /// The rule between texels.
     pub filter: Filter,
 }
 
@@ -225,12 +225,12 @@ impl<'a> Texture<'a> {
         self.bytes
     }
 
-    /// The representation of its texels.
+    /// The format of the texels.
     pub const fn format(&self) -> Format {
         self.format
     }
 
-    /// How it is read.
+    /// The sampling rules.
     pub const fn sampler(&self) -> Sampler {
         self.sampler
     }
@@ -303,8 +303,9 @@ impl<'a> Texture<'a> {
     }
 }
 
-/// The position of a texel's lowest bit in its block. The texels of even columns and even rows come first, in the first 32 bits of each
-/// word, then those of odd columns and even rows, then odd rows: four neighbours are in different quarters.
+/// The position of a texel's lowest bit in its block. The first 32 bits of each word have the texels of
+/// even columns and even rows, the next 32 bits those of odd columns and even rows, the last 64 bits
+/// those of odd rows. Therefore four neighbours are in different quarters of their words.
 fn texel_bit(format: Format, [x, y]: [u32; 2]) -> usize {
     let [width, height] = format.block_log2();
     let [x, y] = [x & ((1 << width) - 1), y & ((1 << height) - 1)];
@@ -314,7 +315,8 @@ fn texel_bit(format: Format, [x, y]: [u32; 2]) -> usize {
     (in_class / 32) * 128 + class as usize * 32 + in_class % 32
 }
 
-/// The texel in 16 bits of memory that contain its lowest bit, number `bit`, in their lowest byte.
+/// Extracts the texel whose lowest bit is number `bit` in memory. The lowest byte of `bits` contains
+/// this bit.
 const fn texel(format: Format, bits: u16, bit: usize) -> u16 {
     let value = bits >> (bit % 8);
     match format {
@@ -340,7 +342,7 @@ fn expect(offset: usize, expected: Expected, found: u32, holds: bool) -> Result<
     })
 }
 
-/// The value with a number in the header.
+/// The value for which a number in the header stands.
 fn one_of<T: Copy>(offset: usize, number: u8, values: &[T]) -> Result<T, TextureError> {
     values
         .get(usize::from(number))

@@ -15,7 +15,7 @@ use crate::orientation::{
 };
 use crate::steering::{self, Mounting, Steering};
 
-/// How the sensor steers the camera.
+/// Mode in which the sensor steers the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follow {
     /// The camera turns in place, in the direction of the sensor.
@@ -178,12 +178,12 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// How the sensor steers the camera.
+    /// Mode in which the sensor steers the camera; `None` if it does not.
     pub const fn follow(&self) -> Option<Follow> {
         self.follow
     }
 
-    /// Sets how the sensor steers the camera; with `None` the sensor does not steer it.
+    /// Sets the mode in which the sensor steers the camera; `None` ends the steering.
     pub const fn set_follow(&mut self, follow: Option<Follow>) {
         self.follow = follow;
         self.moved = true;

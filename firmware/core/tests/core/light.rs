@@ -280,7 +280,7 @@ fn highlights_are_read_and_come_back() {
     }
 }
 
-/// The power of the cosine in the highlight against the exact one, for all exponents.
+/// The approximated power of the cosine in the highlight against the exact power, for all exponents.
 #[test]
 fn the_highlight_is_near_the_power_of_the_cosine() {
     let mut most: [f64; 2] = [0.0; 2];

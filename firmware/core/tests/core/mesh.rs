@@ -49,7 +49,6 @@ fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
         .collect()
 }
 
-/// An optional attribute is an array after the chunks: one element per vertex, in the order of the chunks.
 /// A texture of 8×8 texels, RGB565, without mip levels.
 fn texture(colour: u16) -> Vec<u8> {
     let levels = vec![vec![colour; 64]];
@@ -92,14 +91,14 @@ fn textures_follow_the_arrays() {
     assert_eq!(
         text(&encode(&textures[..1])),
         format!(
-            "mesh byte {}: expected at most 1 as the number of a texture, found 2",
+            "mesh byte {}: expected at most 1 (number of a texture), found 2",
             number + WORD
         )
     );
     assert_eq!(
         text(&encode(&[])),
         format!(
-            "mesh byte {}: expected at most 0 as the number of a texture, found 2",
+            "mesh byte {}: expected at most 0 (number of a texture), found 2",
             number + WORD
         )
     );
@@ -123,6 +122,8 @@ fn textures_follow_the_arrays() {
     );
 }
 
+/// An optional attribute is an array after the chunks: one element per vertex, in the order of the
+/// chunks.
 #[test]
 fn an_optional_attribute_follows_the_chunks() {
     let vertices: Vec<Vertex> = (0..5).map(vertex).collect();
@@ -327,7 +328,7 @@ fn every_field_is_checked() {
         (
             16,
             1,
-            "16: expected 2 triangles, as the chunks have, found 1",
+            "16: expected 2 triangles, the sum of the chunks, found 1",
         ),
         (
             32,

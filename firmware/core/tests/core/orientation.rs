@@ -321,7 +321,7 @@ fn what_becomes_of_samples() {
     );
 }
 
-/// Single wrong times and a restart of the clock cost few samples: the attitude goes on.
+/// After single wrong times or a restart of the clock, few samples are lost.
 #[test]
 fn wrong_times_do_not_end_the_attitude() {
     const START: u64 = 5_000_000;
@@ -409,7 +409,8 @@ fn a_wrong_time_is_no_doubt_of_the_tilt() {
     assert!(tracker.is_settled());
 }
 
-/// The first reading of the accelerometer that shows gravity gives the tilt of the start: neither a shock nor free fall does.
+/// The first reading of the accelerometer that shows gravity sets the initial tilt. Shocks and free
+/// fall do not show gravity.
 #[test]
 fn a_shock_at_the_start_is_no_gravity() {
     let shocks: [(&str, [i16; 3], u64); 5] = [

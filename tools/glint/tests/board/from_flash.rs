@@ -283,7 +283,7 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
         &[scene("program\n")],
         lacks,
         5,
-        "scene bad: this gateware lacks line, expected that of `cargo xtask gateware --scene bad`",
+        "scene bad: this gateware lacks line, expected a build by `cargo xtask gateware --scene bad`",
     );
     let failing = scene("field box:1,1,1\nedges over\n");
     keeps_the_scene(&[failing], all, 8, "edges: not available for objects");

@@ -18,7 +18,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The reason why the soft core draws smooth shading.
-const NO_SMOOTH: &str = "triangle engine: this gateware has no smooth shading, expected that of `cargo xtask gateware --smooth`";
+const NO_SMOOTH: &str = "triangle engine: this gateware has no smooth shading, expected a build by `cargo xtask gateware --smooth`";
 
 /// The triangle engine draws smooth shading if the gateware supports it, otherwise the CPU draws it, with a note in `stats`.
 #[test]
@@ -73,7 +73,7 @@ fn textures_are_the_models_on_every_backend() {
         ..Source::default()
     });
     let mesh = textured_square(&[texture.unwrap()], 0.5);
-    const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected that of `cargo xtask gateware --texture`";
+    const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected a build by `cargo xtask gateware --texture`";
     const SMOOTH: &str = "fallback triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`";
     for (has_textures, shading, textures, by, fallback) in [
         (true, Shading::Flat, true, "gateware", None),

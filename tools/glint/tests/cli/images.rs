@@ -111,7 +111,7 @@ fn damaged_images_are_refused_with_the_place() {
     let cut = check(&good[..CONTENTS + 100]);
     assert!(
         cut.contains(
-            "bad.bin: byte 4194308: expected at most 100 bytes of contents, as there are, found"
+            "bad.bin: byte 4194308: expected at most 100 bytes of contents (to the end of the image), found"
         ),
         "{cut}"
     );

@@ -84,7 +84,8 @@ impl Tilt {
         self.set_age(self.age.min(DOUBTFUL));
     }
 
-    /// The age of the attitude in µs: the total time of the readings so far, less after a doubt.
+    /// The age of the attitude in µs: the total time of the readings so far, reduced by
+    /// [`doubt`](Self::doubt).
     pub(super) const fn age(&self) -> u32 {
         self.age
     }

@@ -44,7 +44,8 @@ const LARGEST_BIAS: i32 = 1 << 30;
 /// of order are no restart.
 const RESTART: u8 = 4;
 
-/// The samples since the last step whose times do not follow it, from which a wrong time or a restart of the clock is recognised.
+/// The samples since the last step whose times do not follow it. They show whether single times were
+/// wrong or the clock has restarted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Detour {
     /// Time of the first sample after the latest gap.
@@ -207,13 +208,14 @@ impl Tracker {
         effect
     }
 
-    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap. A clock that returns
-    /// from gaps has had wrong times in between; the attitude then continues from the time before the gaps.
+    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap. If the time goes back
+    /// to before earlier gaps, the times in between were wrong; the attitude then continues from before the
+    /// gaps.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, sample: &Sample, last: u64) -> SampleEffect {
         let mut detour = self.detour;
-        // A clock that has had right steps for longer does not return.
+        // After a longer series of valid steps, the times after the gaps count as right.
         let since = last.wrapping_sub(detour.start);
         if since > u64::from(LONGEST_STEP) {
             detour.before = None;
