@@ -146,9 +146,9 @@ pub trait Simulation: Uart {
     /// The 16 LEDs, one bit each.
     fn leds(&self) -> u16;
 
-    /// The last complete frame on the monitor and the number of the vertical blanking after it.
-    /// Returns `None` if the monitor has shown no frame since the vertical blanking `last`, the
-    /// number from an earlier call. The first call passes 0.
+    /// The last complete frame on the monitor and its number, which counts vertical blankings.
+    /// Returns `None` if the monitor has shown no frame since the frame with the number `last` of
+    /// an earlier call. The first call passes 0.
     ///
     /// # Errors
     /// The picture on the monitor is not a frame.

@@ -23,7 +23,7 @@ pub use textures::{TextureOptions, TextureReport};
 /// Options of a conversion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// Keeps the coordinates, instead of scaling the mesh to the 1×1×1 box about the origin.
+    /// Keeps the coordinates. Otherwise the mesh is scaled to the 1×1×1 box about the origin.
     pub keep_scale: bool,
     /// Keeps the triangles in the order of the file. Otherwise they are reordered if this reduces the number of vertices that the engine
     /// fetches.
@@ -76,7 +76,8 @@ pub struct Report {
 /// Converts polygons with checked indices to the board's memory layout.
 ///
 /// # Errors
-/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large, also with its textures.
+/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle of non-zero area, or
+/// is too large, including its textures.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
     let unusual = Unusual::of(polygons).filter(|_| !options.keep_scale);
     let polygons = &*prepared(polygons, options, unusual)?;
@@ -137,8 +138,8 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// The polygons with usual magnitudes, with repaired winding if `options` requests it, and with back faces of double-sided faces if
-/// they can be visible.
+/// Prepares a copy of the polygons: scales unusual magnitudes, repairs the winding if `options`
+/// requests it, and adds back faces of double-sided faces that can be visible.
 fn prepared(
     polygons: &Polygons,
     options: Options,
@@ -159,7 +160,8 @@ fn prepared(
     Ok(polygons)
 }
 
-/// Translates and scales the points, and reverses and adds faces, like [`convert`], but without rounding and in the order of the file.
+/// Translates and scales the points, repairs the winding and adds back faces like [`convert`], but
+/// without rounding and in the order of the file.
 ///
 /// # Errors
 /// The mesh has no extent, or too many triangles.
@@ -190,8 +192,8 @@ struct FlatTriangle {
     face: usize,
 }
 
-/// Returns all triangles with a non-zero area after rounding, the number of triangles of area 0, and a remark on faces that cross
-/// themselves.
+/// Returns all triangles of non-zero area after rounding, the number of triangles of area 0, and a
+/// remark on self-intersecting faces.
 fn flat_triangles(
     polygons: &Polygons,
     rounded: &Rounded,
@@ -216,7 +218,7 @@ fn flat_triangles(
     (triangles, degenerate, crossing.remark())
 }
 
-/// Faces that cross themselves: their number, and the first of them, counted from 1.
+/// Self-intersecting faces: how many exist, and the number of the first of them, counted from 1.
 #[derive(Default)]
 struct Crossing {
     count: usize,
@@ -224,7 +226,8 @@ struct Crossing {
 }
 
 impl Crossing {
-    /// Counts the face that was cut into triangles last.
+    /// Counts the face with this number if its triangulation, which has just filled `scratch`,
+    /// found a self-intersection.
     fn count(&mut self, number: usize, scratch: &triangulate::Scratch) {
         if scratch.crosses {
             self.count += 1;
@@ -248,7 +251,8 @@ impl Crossing {
     }
 }
 
-/// Returns the unit normal of a triangle, from its corners before rounding; `None` for a triangle without area after rounding.
+/// Returns the unit normal of a triangle, from its corners before rounding; `None` for a triangle
+/// of area 0 after rounding.
 fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Option<Vector> {
     // Differences of rounded coordinates have 17 bits, and their products are exact in f64, so `unit` returns `None` exactly for
     // an area of zero.
@@ -256,8 +260,8 @@ fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Optio
         corners.map(|corner| rounded.position(corner).map(f64::from)),
     ))?;
     let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
-    // Rounding may flip a very narrow triangle. The normal is then computed from the rounded corners, because the rounded triangle is
-    // drawn.
+    // Rounding may flip a very narrow triangle. The normal is then computed from the rounded
+    // corners, because the board draws the rounded triangle.
     Some(
         before
             .filter(|before| dot(*before, after) > 0.0)
@@ -370,7 +374,7 @@ fn point_colour(polygons: &Polygons, corner: Corner) -> Option<Rgb8> {
     polygons.point_colours.get(corner.point as usize).copied()
 }
 
-/// Mean of the corners' colours, as the flat colour of a triangle whose points have colours.
+/// Flat colour of a triangle whose points have colours: the mean of its corners' colours.
 fn mean_colour(polygons: &Polygons, corners: [Corner; 3]) -> Option<Rgb8> {
     let mut sums = [0_u16; 3];
     for corner in corners {
@@ -415,7 +419,7 @@ mod tests {
 
     #[test]
     fn scaled_to_the_unit_box() {
-        // No face uses the last point, so it has no influence on the scale.
+        // No face uses the last point, so it does not affect the scale.
         let polygons = soup(
             &[
                 [10.0, 0.0, 0.0],
@@ -509,7 +513,7 @@ mod tests {
         );
     }
 
-    /// A mesh of any magnitude becomes the same mesh.
+    /// The magnitude of the coordinates does not affect the result.
     #[test]
     fn every_finite_magnitude() {
         let converted = |exponent: i32| {
@@ -531,7 +535,7 @@ mod tests {
         for exponent in [-1022, -600, -201, -100, 100, 201, 600, 1022] {
             assert!(converted(exponent) == usual, "{exponent}");
         }
-        // The smallest number above 0, and the largest.
+        // The smallest positive number, and the largest number.
         for size in [f64::from_bits(1), f64::MAX] {
             let polygons = soup(
                 &[[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]],
@@ -555,7 +559,8 @@ mod tests {
 
     #[test]
     fn normals_of_a_corner() {
-        // Three faces at a cube's corner: the shared normal is the diagonal, for any triangulation of the faces.
+        // Three faces at a cube's corner: for any triangulation of the faces, the shared normal is
+        // the diagonal of the cube.
         let polygons = soup(
             &[
                 [0.0, 0.0, 0.0],

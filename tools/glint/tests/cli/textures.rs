@@ -235,7 +235,7 @@ fn pictures_that_cannot_be_used_are_named() {
     ] {
         fs::write(folder.join("a.mtl"), mtl(name)).unwrap();
         let text = succeed(&folder, "convert a.obj a.glm");
-        let expected = "beside the mesh: its faces have their colours";
+        let expected = "beside the mesh: its faces keep their own colours";
         assert!(
             text.contains("note       no image file '"),
             "{name}: {text}"

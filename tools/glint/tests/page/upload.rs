@@ -249,7 +249,7 @@ fn a_dropped_model_has_its_textures() {
     assert!(
         notice.ends_with(&format!(
             "expected the file of an image in the folder of the glTF, found 'pictures/squares.png': \
-             its surfaces have their base colours; {hint} 'pictures/squares.png', or drop their folder"
+             its surfaces keep their base colours; {hint} 'pictures/squares.png', or drop their folder"
         )),
         "{notice}"
     );

@@ -1,4 +1,4 @@
-//! Back faces of double-sided faces. The engine draws a triangle from one side only.
+//! Back faces of double-sided faces. The engine draws only one side of a triangle.
 
 use super::winding;
 use crate::error::{FormatError, Location};
@@ -12,7 +12,8 @@ fn double_sided(polygons: &Polygons) -> Vec<usize> {
     faces.map(|(number, _)| number).collect()
 }
 
-/// Whether the back of a double-sided face can be visible: together, these faces do not enclose solids.
+/// Whether the back of a double-sided face can be visible, which is so unless these faces enclose
+/// solids.
 pub fn are_needed(polygons: &Polygons) -> bool {
     let faces = double_sided(polygons);
     !faces.is_empty() && !winding::are_solid(polygons, &faces)
@@ -63,7 +64,7 @@ mod tests {
     use super::*;
     use crate::generate;
 
-    /// The number of triangles of a cube whose faces are double-sided, after a change.
+    /// Number of triangles of a cube with double-sided faces after `change`.
     fn triangles(change: impl Fn(&mut Polygons)) -> u32 {
         let mut cube = generate::named("cube").unwrap();
         change(&mut cube);

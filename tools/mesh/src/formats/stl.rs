@@ -1,7 +1,8 @@
 //! STL, ASCII and binary.
 //!
-//! This parser replaces `stl_io`, whose errors have neither line nor offset, which skips the colours of the attribute word, and which
-//! treats a binary file as ASCII if its header starts with `solid`.
+//! This parser replaces `stl_io`, whose errors state neither line nor offset. It also skips the
+//! colours in the attribute word, and treats a binary file as ASCII if its header starts with
+//! `solid`.
 
 use super::text::{BYTE_ORDER_MARK, Words, any_number, coordinate, finite, vector};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
@@ -10,9 +11,10 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, because ASCII text at this position would be
-/// a count too large for any file; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a
-/// remark. Normals are ignored, because the winding gives the same information more reliably.
+/// Parses an STL. A file is binary if it is long enough for the triangle count in its header: ASCII
+/// text at this position would be a count that is too large for any file. Any other file that
+/// starts with `solid` is ASCII. Bytes after the last triangle are skipped with a remark. Normals
+/// are ignored, because the winding states the same direction more reliably.
 ///
 /// # Errors
 /// The first violation of the format, with its line or offset.
@@ -53,10 +55,11 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 /// Encoding of a colour in the attribute word of a binary record. Each channel has five bits.
 #[derive(Clone, Copy)]
 enum Colours {
-    /// The encoding of VisCAM and SolidView: a set bit 15 marks a face with a colour; red is in the highest bits.
+    /// The encoding of VisCAM and SolidView: bit 15 is set in a face with a colour; red is in the
+    /// highest bits.
     VisCam,
-    /// The encoding of Materialise Magics: the header has a default colour, and a clear bit 15 marks a face with its own colour; blue is
-    /// in the highest bits.
+    /// The encoding of Materialise Magics: the header has a default colour, and bit 15 is clear in
+    /// a face with its own colour; blue is in the highest bits.
     Magics(Rgb8),
 }
 
@@ -127,8 +130,8 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Parses an ASCII STL as programs write it: in any number of lines, with `end facet` for `endfacet`, with a facet without a normal, or
-/// without the last `endsolid`.
+/// Parses an ASCII STL, including variants that programs write: any division into lines, `end
+/// facet` for `endfacet`, facets without a normal, and a missing last `endsolid`.
 fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     let mut words = Words::new(file);
@@ -157,7 +160,8 @@ fn is(word: &[u8], keyword: &str) -> bool {
     word.eq_ignore_ascii_case(keyword.as_bytes())
 }
 
-/// Whether a word ends `keyword`: `endfacet` or `end facet`. A name may follow without a space, as in `endsolidNAME`.
+/// Whether a word starts the end of `keyword`, such as `endfacet` or `end facet`. A name may follow
+/// without a space, as in `endsolidNAME`.
 fn ends(word: &[u8], words: &mut Words, keyword: &str) -> bool {
     if is(word, "end") {
         let mut ahead = words.clone();
@@ -187,7 +191,7 @@ fn skip_name(words: &mut Words) {
     }
 }
 
-/// Adds a facet, after its first word at `place`.
+/// Adds a facet whose first word, at `place`, is already read.
 fn add_facet(
     polygons: &mut Polygons,
     words: &mut Words,

@@ -5,7 +5,7 @@ use crate::error::{FormatError, Location, MAX_LINE, quote};
 /// The byte order mark of UTF-8.
 pub const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Lines of a text, ended by LF, CR LF or CR.
+/// The lines of a text, which end in LF, CR LF or CR.
 pub struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
@@ -115,14 +115,15 @@ impl<'a> Words<'a> {
         Location::Line(self.line)
     }
 
-    /// Goes to the next line with a word, or stays on the current line if it has a further word. Returns whether there is one.
+    /// Advances to the next line with a word, unless the current line has a further word. Returns
+    /// false if no word is left.
     pub fn skip_blank_lines(&mut self) -> bool {
         while !self.has_more_on_line() {
             self.rest = match self.rest {
                 [] => return false,
                 [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
             };
-            // The end of the text is on its last line, not after it.
+            // The end of the text counts as a part of the last line.
             if !self.rest.is_empty() {
                 self.line += 1;
             }

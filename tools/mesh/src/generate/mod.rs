@@ -39,7 +39,7 @@ pub fn is_name(name: &str) -> bool {
 /// Generates the model with a name such as `icosphere:4`.
 ///
 /// # Errors
-/// No such model, or its number is missing or out of range.
+/// No generator has this name, or its number is missing or out of range.
 pub fn named(name: &str) -> Result<Polygons, FormatError> {
     let refuse = || {
         FormatError::whole(
@@ -156,7 +156,7 @@ mod tests {
         }
     }
 
-    /// Room and fence are open, and have textures; those of the fence have gaps.
+    /// Room and fence are open and textured; the textures of the fence have transparent texels.
     #[test]
     fn props_have_textures() {
         for (name, triangles, textures) in [("room", 8, 2), ("fence", 4, 1)] {

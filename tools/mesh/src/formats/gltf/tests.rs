@@ -1,5 +1,5 @@
-//! Tests with a file of two meshes under a node: one mesh rotated by 90° about z, with a material and indices; the other mesh mirrored, a
-//! strip with vertex colours.
+//! Tests with a file that has two meshes under one node: an indexed mesh with a material, rotated
+//! by 90° about z, and a mirrored strip with vertex colours.
 
 use super::example::{TWO_MESHES, as_binary};
 use super::*;
@@ -39,7 +39,7 @@ fn transforms_colours_and_strips() {
     assert_eq!(
         faces(&polygons),
         [
-            // The strip, mirrored, so with reversed winding.
+            // The strip is mirrored, so its winding is reversed.
             vec![[10, 0, 0], [10, 2, 0], [8, 0, 0]],
             vec![[10, 2, 0], [8, 2, 1], [8, 0, 0]],
             // The indexed triangles, rotated.
@@ -47,7 +47,7 @@ fn transforms_colours_and_strips() {
             vec![[10, 2, 0], [8, 2, 1], [8, 0, 0]],
         ]
     );
-    // The linear intensity 0.214 is half of the full sRGB value.
+    // The linear intensity 0.214 corresponds to half of the full sRGB value.
     let material = Rgb8([127, 255, 0]);
     assert_eq!(polygons.faces[3].colour, Some(material));
     assert_eq!(polygons.faces[0].colour, None);
@@ -158,7 +158,7 @@ fn memory_is_bounded() {
     assert_eq!(structure(br#"{"a\"{{{": "}}}\\"}"#), 8);
 }
 
-/// Minor versions are compatible.
+/// A file of a later minor version is compatible.
 #[test]
 fn a_later_minor_version_is_read() {
     for version in ["2.1", "2.10\", \"minVersion\": \"2.0"] {
@@ -192,14 +192,14 @@ fn what_is_ignored_is_remarked() {
         [
             "points and lines are ignored",
             "skins are ignored: meshes have their rest pose",
-            "expected the file of an image in the folder of the glTF, found 'x.png': its surfaces have their base colours",
+            "expected the file of an image in the folder of the glTF, found 'x.png': its surfaces keep their base colours",
             "transparency is ignored: surfaces are opaque",
-            "light from surfaces is ignored (emissiveFactor)",
+            "emitted light is ignored (emissiveFactor)",
         ]
     );
 }
 
-/// Whether the file with a changed text has the faces of the file without a change.
+/// Whether the replacement of `from` by `to` in the file leaves its faces unchanged.
 fn is_unchanged(from: &str, to: &str) -> bool {
     assert!(TWO_MESHES.contains(from), "{from}");
     let read = |text: &str| read(text).unwrap_or_else(|error| panic!("{to}: {error}"));
@@ -260,8 +260,8 @@ fn required_extensions_of_the_shape_are_named() {
     }
 }
 
-/// A node whose extension places an instance, scaled and moved by the last point of the positions, (2, 2, 1); then two instances, by the
-/// last two points.
+/// First the extension of a node places one instance, scaled and moved by the last point of the
+/// positions, (2, 2, 1); then it places two instances by the last two points.
 #[test]
 fn instances_of_a_mesh() {
     let views = "\"accessors\": [";
@@ -305,7 +305,8 @@ fn hidden_nodes_and_colours_of_an_extension() {
     assert_eq!(polygons.faces[3].colour, Some(Rgb8([255, 0, 0])));
 }
 
-/// The sparse index, the number of 16 bits at the start of view 3, is 0: the first normal, (0, 0, 1), replaces point 0.
+/// The 16-bit sparse index at the start of view 3 is 0, so the first normal, (0, 0, 1), replaces
+/// point 0.
 #[test]
 fn sparse_positions() {
     let sparse = "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 3, \"componentType\": 5123}, \"values\": {\"bufferView\": 1}}";
@@ -340,7 +341,8 @@ fn double_sided_materials() {
     assert_eq!(sides, [false, false, true, true]);
 }
 
-/// A square with two sets of texture coordinates: 32-bit numbers from 0 to 1 in steps of 1/2, and normalised bytes.
+/// A square with two sets of texture coordinates: 32-bit floats from 0 to 1 in steps of 1/2, and
+/// normalised bytes.
 struct Textured {
     material: String,
     textures: String,
@@ -394,7 +396,8 @@ impl Textured {
     }
 }
 
-/// A material with the first texture, and more members of the material and of the texture.
+/// A material with the first texture. `more` adds members to the material, and `of_texture` adds
+/// members to its texture.
 fn material(more: &str, of_texture: &str) -> String {
     format!(
         "{{{more}\"pbrMetallicRoughness\": {{\"baseColorTexture\": {{\"index\": 0{of_texture}}}}}}}"
@@ -416,7 +419,7 @@ fn pictures(polygons: &Polygons) -> Vec<&[u8]> {
 fn textures_from_files_data_and_buffers() {
     for (image, picture, name) in [
         ("{\"uri\": \"a%20b.png\"}", &b"file"[..], "'a%20b.png'"),
-        // The contents decide the type.
+        // The content determines the type of the picture.
         (
             "{\"uri\": \"data:text/plain;base64,AQID\", \"mimeType\": \"image/x\"}",
             &[1, 2, 3],
@@ -468,26 +471,26 @@ fn pictures_that_cannot_be_read_are_remarked() {
             "{}",
             "expected image 0 with a URI or a view of a buffer, found neither",
         ),
-        ("", "expected an image below 0, found 0"),
+        ("", "expected an image index below 0, found 0"),
     ] {
         let polygons = Textured::new(&material("", ""), image).read();
         assert_eq!(
             polygons.remarks,
-            [format!("{expected}: its surfaces have their base colours")]
+            [format!("{expected}: its surfaces keep their base colours")]
         );
         assert!(polygons.textures.is_empty());
         assert!(polygons.faces.iter().all(|face| face.texture == 0));
     }
     let mut other = Textured::new(&material("", ""), "{}");
     other.textures = "[{\"extensions\": {\"KHR_texture_basisu\": {\"source\": 0}}}]".into();
-    let expected = "texture 0 has no PNG or JPEG file: its surfaces have their base colours";
+    let expected = "texture 0 has no PNG or JPEG file: its surfaces keep their base colours";
     assert_eq!(other.read().remarks, [expected]);
     other.textures = "[]".into();
-    let expected = "expected a texture below 0, found 0: its surfaces have their base colours";
+    let expected = "expected a texture index below 0, found 0: its surfaces keep their base colours";
     assert_eq!(other.read().remarks, [expected]);
     let set = material("", ", \"texCoord\": 2");
     let expected =
-        "no texture coordinates TEXCOORD_2 (up to 3 are read): surfaces have their base colours";
+        "no texture coordinates TEXCOORD_2 (up to 3 are read): surfaces keep their base colours";
     assert_eq!(
         Textured::new(&set, "{\"uri\": \"a b.png\"}").read().remarks,
         [expected]
@@ -580,7 +583,8 @@ fn transforms_of_textures() {
         transformed("\"offset\": [0.25, 2], \"scale\": [2, -1]"),
         [[0.25, 1.0], [1.25, 1.0], [1.25, 2.0], [0.25, 2.0]]
     );
-    // The example of the extension: the lower left quarter, turned clockwise by 90°.
+    // The example from the extension's specification: the lower left quarter, rotated clockwise by
+    // 90°.
     assert_eq!(
         transformed("\"offset\": [0, 1], \"rotation\": 1.57079632679, \"scale\": [0.5, 0.5]"),
         [[0.5, 1.0], [0.5, 0.75], [0.0, 0.75], [0.0, 1.0]]

@@ -88,12 +88,12 @@ fn list_length(count: Scalar, source: &mut impl Source) -> Result<u64, FormatErr
     Ok(length as u64)
 }
 
-/// The coordinate or colour channel that a scalar property sets.
+/// The coordinate, normal component or colour channel that a scalar property sets.
 #[derive(Clone, Copy)]
 enum Slot {
     Position(usize),
     Normal(usize),
-    /// Number of the channel, and the value of full intensity in the property's type.
+    /// Number of the channel, and the value that means full intensity in the property's type.
     Colour(usize, f64),
     None,
 }
@@ -118,7 +118,8 @@ impl Slot {
     }
 }
 
-/// Whether the properties of an element set x, y and z, or red, green and blue, as selected by `kind`.
+/// Whether an element has all three properties of a kind, such as x, y and z. `kind` returns the
+/// number of a property of this kind.
 fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
     (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
 }
@@ -133,7 +134,7 @@ fn has_colour(slots: &[Slot]) -> bool {
     })
 }
 
-/// Adds a remark for each list of an element that is skipped.
+/// Adds a remark for each skipped list of an element.
 fn remark_lists(element: &Element, used: impl Fn(&Property) -> bool, polygons: &mut Polygons) {
     for property in &element.properties {
         if matches!(property.kind, Kind::List { .. }) && !used(property) {
@@ -231,7 +232,8 @@ fn read_faces(
     let slots: Vec<Slot> = element.properties.iter().map(Slot::of).collect();
     check_lists(element, polygons)?;
     let with_colour = has_colour(&slots);
-    // Faces use the normals of the vertices only if the vertices come first, as in every known file.
+    // Faces use the normals of the vertices only if the vertices precede the faces, as in every
+    // known file.
     let with_normal = !polygons.normals.is_empty();
     let mut corners = Vec::new();
     let first = polygons.faces.len();
@@ -312,7 +314,8 @@ fn read_strip(
         let (Some(a), Some(b)) = (a, b) else {
             continue;
         };
-        // Two equal corners continue a strip elsewhere: the triangle has no area.
+        // Writers repeat a corner to continue a strip at another place; such a triangle has no
+        // area.
         if a != b && b != c && c != a {
             let face = if reversed { [b, a, c] } else { [a, b, c] };
             polygons.add_face(&face, None, place)?;
@@ -401,7 +404,7 @@ mod tests {
         );
     }
 
-    /// A strip is one line of any length.
+    /// A strip is one line, which may have any length.
     #[test]
     fn long_strips() {
         let count = 100_000;
@@ -498,7 +501,7 @@ mod tests {
             ),
             (
                 b"ply\nend_header\n".to_vec(),
-                "line 2: expected a line format before end_header, found 'end_header'",
+                "line 2: expected a format line before end_header, found 'end_header'",
             ),
             (
                 b"ply\nformat ascii 1.0\nend_header\n".to_vec(),
