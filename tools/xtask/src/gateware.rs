@@ -38,7 +38,7 @@ impl Board {
         }
     }
 
-    /// Whether the board has the pins of the block. The ULX3S has no digits, and its SoC cannot read the flash.
+    /// Whether the board has the block's pins. The ULX3S has no digits, and its SoC cannot read the flash.
     const fn has(self, block: Block) -> bool {
         match self {
             Self::Virtual | Self::Urbana => true,
@@ -46,7 +46,8 @@ impl Board {
         }
     }
 
-    /// What scenes need of the blocks for which the board has pins. The SPI flash, from which a board starts without a host, is one.
+    /// The needs of scenes, without blocks for which the board has no pins, and with the SPI flash, from which a board starts without a
+    /// host.
     pub fn needs(self, scenes: &[SceneFile]) -> Needs {
         let mut needs = Needs::of(scenes);
         needs.blocks.insert(Block::Flash);
@@ -155,7 +156,7 @@ impl Options {
     }
 }
 
-/// Builds the gateware of `board`, if out of date.
+/// Builds the gateware of `board`, if it is out of date.
 ///
 /// # Errors
 /// A tool is missing or fails. The output of a failed tool is printed.
@@ -237,7 +238,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
-            // Caches objects, because LiteX compiles the same C library again in another folder for each BIOS.
+            // A cache of objects, because LiteX compiles the same C library again in another folder for each BIOS.
             .env("CCACHE", "ccache")
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
@@ -247,8 +248,8 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Writes the committed files that follow from the descriptions of blocks, records and shared numbers. With `check` nothing is written:
-/// the files must be up to date.
+/// Writes the committed files that are generated from the descriptions of blocks, records and shared numbers. With `check`, writes
+/// nothing and fails if a file is stale.
 ///
 /// # Errors
 /// A description is wrong, or (with `check`) a file is stale.
@@ -321,7 +322,7 @@ fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
     )
 }
 
-/// Numbers of used and available cells by kind.
+/// Numbers of used and of available cells, by kind of cell.
 pub type Cells = BTreeMap<String, [u64; 2]>;
 
 /// Counts the cells of the ULX3S's build with `options` of `glint_soc` in `target/gateware/ulx3s-NAME`. The build stops before place and
@@ -417,7 +418,7 @@ mod tests {
         blocks.map(String::as_str).collect()
     }
 
-    /// A board that runs alone starts from its flash, so every build for scenes can read it.
+    /// A board without a host starts from its flash, so every build for scenes needs the block `flash`.
     #[test]
     fn builds_for_scenes_start_from_the_flash() {
         for name in glint_scene_file::NAMES

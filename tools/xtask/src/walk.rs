@@ -34,10 +34,10 @@ const BIOS_PROMPT: &str = "litex";
 /// Prefix of the name of a build with a single block.
 const ONLY: &str = "only-";
 
-/// The builds of a test run, one of each kind: for a scene, and with a single block.
+/// The builds of `cargo xtask test`, one of each kind: for a scene, and with a single block.
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
-/// A command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
+/// One command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
 const COMMANDS: [(Feature, &str); 21] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
@@ -169,18 +169,18 @@ fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     ))
 }
 
-/// A program that ends with this value.
+/// A child process, killed on drop.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended before.
+        // The process may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// The text on a board's serial port up to the first prompt, or until `end`.
+/// Reads a board's serial port up to the first prompt, or until the time `end`.
 fn said_at_power_up(port: &Path, end: Instant) -> Result<String> {
     let mut line = File::open(port).with_context(|| format!("opening {}", port.display()))?;
     let (sender, receiver) = mpsc::channel();
@@ -319,7 +319,7 @@ impl Build {
         Ok(())
     }
 
-    /// Fails unless the firmware, on the emulated board, accepts a wireframe program of a user and draws it.
+    /// Fails unless the firmware, on the emulated board, accepts an uploaded wireframe program and draws it.
     fn draws_other_programs(&self) -> Result<()> {
         let folder = folder()?;
         let program = folder.join("ball.wfb");
