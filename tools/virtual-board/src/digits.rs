@@ -1,9 +1,11 @@
-//! The digit displays, whose digits the SoC lights one at a time.
+//! The digit displays. The SoC multiplexes the digits: it drives one digit of each display at a
+//! time.
 
-/// Number of cycles for which a digit appears lit after it was lit: two refresh cycles of the digits.
+/// Number of cycles for which a digit still appears lit after it was driven: two refresh cycles of
+/// the digits.
 const SEEN: u64 = 2 << 16;
 
-/// The digits as perceived by an eye.
+/// The digits as a viewer sees them, without flicker.
 #[derive(Default)]
 pub(crate) struct Digits {
     /// Segments of each digit from left to right when it was last lit, and the cycle after which it appears dark.

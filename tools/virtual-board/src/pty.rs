@@ -46,7 +46,8 @@ impl<B: Uart + Send + 'static> Pty<B> {
         Self::watched(board, |_, _| ())
     }
 
-    /// Moves the board to a new thread, and starts it. Calls `watch` with the bytes that have been passed: to the board, and from it.
+    /// Moves the board to a new thread, and starts it. Calls `watch` with the bytes passed to the
+    /// board and the bytes passed from the board.
     ///
     /// # Errors
     /// When the system provides no pseudo-terminal.
@@ -101,7 +102,7 @@ impl<B: Uart + Send + 'static> Pty<B> {
         let thread = self
             .thread
             .take()
-            .expect("the thread is there until it is stopped");
+            .expect("the thread runs until `stop`");
         thread
             .join()
             .expect("the virtual board's thread has panicked")

@@ -31,7 +31,8 @@ pub trait Device {
     fn acknowledges(&self) -> bool;
     /// Time in ns for which the device stretches the clock after each acknowledged byte from the master.
     fn stretch(&self) -> Option<u64>;
-    /// Whether the device still holds SDA low after this number of clocks from the master since the fault was set.
+    /// Whether the device still holds SDA low after `clocks` clocks of the master since the fault
+    /// was set.
     fn is_stuck(&self, clocks: u32) -> bool;
     /// Reads a register.
     fn read(&mut self, register: u16) -> u8;
@@ -319,7 +320,8 @@ mod tests {
         fn write(&mut self, _register: u16, _value: u8) {}
     }
 
-    /// At 1,000 samples per second, a sensor sees 2^32 clocks in 8.3 hours.
+    /// At 1,000 samples per second, the master sends 2^32 clocks in 8.3 hours, so the count must
+    /// saturate.
     #[test]
     fn the_number_of_clocks_stays_at_its_largest() {
         let mut wires = Wires::new(Stuck);

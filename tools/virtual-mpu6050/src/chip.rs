@@ -154,7 +154,8 @@ pub enum Fault {
     NoAcknowledge,
     /// The chip holds SDA low until the master has sent this number of clocks; with 0, forever.
     StuckData(u32),
-    /// The chip stretches the clock for this time in ns after each byte; on its [`Wires`](crate::Wires), only after those of the master.
+    /// The chip stretches the clock for this time in ns after each byte; on its
+    /// [`Wires`](crate::Wires), only after bytes from the master.
     Stretched(u64),
     /// The data registers do not change, but INT_STATUS still announces new data.
     Frozen,
@@ -162,7 +163,7 @@ pub enum Fault {
     Stalled,
     /// WHO_AM_I reads as this value.
     Identity(u8),
-    /// The chip sends this number of bytes, and is missing from then on: the released bus reads as ones.
+    /// The chip sends this number of bytes, and is then missing: the released bus reads as ones.
     Vanishing(u32),
 }
 

@@ -27,7 +27,8 @@ const FIRST: u32 = MAIN_RAM.base + 0x400;
 const RESULTS: u32 = 0x4600_0000;
 const TRAPS: u32 = 0x4700_0000;
 const DATA: u32 = 0x47f0_0000;
-/// The word after the last program's results, which is set after the end of all programs.
+/// Address of the word after the last program's results. The word is not 0 after the end of all
+/// programs.
 const DONE: u32 = RESULTS + 128 * PROGRAMS as u32;
 
 /// Number of bytes of the data window, which loads and stores address relative to its middle.
@@ -101,7 +102,8 @@ fn csrr(rd: u32, csr: u32) -> u32 {
     i(csr, 0, 2, rd, 0x73)
 }
 
-/// Constants in all registers, the trap handler, and a jump over the handler.
+/// Returns code that loads constants into all registers, the trap handler, and a jump over the
+/// handler.
 fn set_up(random: &mut Random) -> Vec<u32> {
     let mut code: Vec<u32> = (1..32).flat_map(|x| li(x, random.bits() as u32)).collect();
     for (x, value) in [
@@ -133,7 +135,8 @@ fn place(code: &mut Vec<u32>, address: u32) {
     code.resize(length, 0);
 }
 
-/// Stores cause, value and address of a trap and continues with the next instruction.
+/// Returns a trap handler that stores cause, value and address of the trap, and continues with the
+/// next instruction.
 fn handler() -> Vec<u32> {
     let stored = [MCAUSE, MTVAL, MSTATUS, MEPC]
         .into_iter()
@@ -326,7 +329,7 @@ fn compare(seed: u64) {
         program(&mut code, &mut random);
     }
     starts.push(code.len());
-    // The end: a word that is not 0, and a loop.
+    // Ends the programs: stores a word that is not 0, then loops.
     code.extend([sw(RESULT, 0, RESULT), 0x0000_006f]);
     let image: Vec<u8> = code.iter().flat_map(|word| word.to_le_bytes()).collect();
     let data: Vec<u8> = (0..WINDOW).map(|_| random.bits() as u8).collect();

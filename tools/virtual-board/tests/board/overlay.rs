@@ -25,7 +25,7 @@ const MARGIN: usize = 4;
 /// Height of a line of text, in pixels.
 const LINE: usize = 11;
 
-/// The colours of the last frame, of the first size.
+/// The pixels of the last frame, which has the smallest size.
 fn frame(board: &mut EmulatedBoard) -> Vec<u16> {
     let answer = command(board, "info frame");
     let word = answer

@@ -173,7 +173,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     assert_eq!(line(&answer, "video_underflows"), "0");
     let cycles = |key| line(&status, key).parse::<u32>().expect("a number");
     let [read, tracked] = ["cycles_read", "cycles_tracked"].map(cycles);
-    println!("cycles a sample: {read} to read it, {tracked} to make an attitude of it");
+    println!("cycles per sample: {read} to read it, {tracked} to compute the attitude");
     assert!(u64::from(read) < millisecond / 20, "5 % of 1 ms: {status}");
     assert!(tracked < 4_500, "{status}");
     let violations = board.unplug().expect("the sensor").violations;

@@ -1,4 +1,5 @@
-//! Loads and stores at unused addresses: the emulated board counts bus errors and waits like the verilated SoC.
+//! Tests of loads and stores at unused addresses: the emulated board counts bus errors and waits
+//! like the verilated SoC.
 
 use emulated_board::EmulatedBoard;
 use litex_pac::ctrl;
