@@ -184,7 +184,7 @@ commands! {
         textures Textures(on: bool) in TEXTURE: "turn textures of meshes on or off"
             => key(Order::Option, "off").with(MESHES)
                 .host(switch("no-textures", "off", "Draw meshes without their textures"));
-        edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh: hidden (without faces, and without edges behind faces) or over (on the shaded faces)"
+        edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh: hidden (only edges that no face hides) or over (on the shaded faces)"
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
         overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";

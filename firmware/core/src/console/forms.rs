@@ -37,7 +37,7 @@ pub struct HostOption {
     pub name: &'static str,
     /// Name of the value in the help.
     pub value: &'static str,
-    /// Value that an option without a value stands for; `None` for an option with a value.
+    /// Value of the setting for an option that takes no value; `None` for an option that takes one.
     pub switch: Option<&'static str>,
     /// Help.
     pub help: &'static str,

@@ -118,9 +118,9 @@ impl Filter {
 /// The rules by which a texture is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sampler {
-    /// The rules beyond the left and right sides, and beyond the upper and lower sides.
+    /// The rule beyond the left and right sides, and the rule beyond the upper and lower sides.
     pub wrap: [Wrap; 2],
-    /// The rule between texels.
+    /// The filter between texels.
     pub filter: Filter,
 }
 
