@@ -87,7 +87,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// Creates an estimator that has not processed a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
+    /// Creates an estimator without samples. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,

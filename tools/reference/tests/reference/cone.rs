@@ -6,7 +6,8 @@ use glint_reference::raymarch::raymarched::{Measured, Subject};
 
 const SIZE: (u32, u32) = (640, 360);
 
-/// Cones that are needles, usual and flat, and cameras by name: eye, target, half the picture's width at distance 1, near plane.
+/// Thin, common and flat cones, each seen by several cameras. A camera has a name, eye, target, and half the picture's width at
+/// distance 1.
 fn subjects() -> Vec<Subject> {
     let views = [
         (
@@ -298,7 +299,7 @@ fn stiff_pictures_of_cones() {
         .accuracy;
         println!("{name}: {found:?}");
         let wrong = found.false_hit + found.false_miss;
-        // An eye there is drawn from a place beside it.
+        // The model moves an eye on the lateral face's lines above the apex outwards.
         let (most, limit) = match name {
             "on a line of the lateral face, above the apex" => (60, 0.03),
             _ => (8, 4e-4),

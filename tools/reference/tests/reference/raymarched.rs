@@ -176,7 +176,7 @@ fn lenses_may_be_long_and_wide() {
         .near(1e-6, 2e-6)
         .faced(2e-4)
         .cheap(1.7);
-    // A face of 1,218 is wrong: its ray passes an edge by less than the rounding of its direction.
+    // Of 1,218 faces, one is wrong: its ray passes an edge at a distance below the rounding of the ray's direction.
     with(4.0)
         .masked(0)
         .decided(0)

@@ -383,9 +383,9 @@ fn the_committed_clocks_of_pictures_hold() {
     }
 }
 
-/// Bounds of the pictures of fields whose text starts with a word: false hits and misses, undecided rays, the median and the 99th
+/// Bounds of the pictures, by form of rays and start of the field's text: false hits and misses, undecided rays, the median and the 99th
 /// percentile of the depth's error in world units, the fraction of wrong faces, the 99th percentile of the normal's error in degrees, and
-/// evaluations per ray. The first line that matches a form of rays and a field determines its bounds.
+/// evaluations per ray. The first matching line applies.
 const BOUNDS: [(Form, &str, [f64; 7]); 9] = [
     // Exact masks, and errors of depths by the rounding of the eye.
     (

@@ -32,7 +32,7 @@ impl Run {
         run
     }
 
-    /// Writes a text in place of the checksums of all files that the jobs run.
+    /// Writes a text in place of the checksums of all files that the jobs execute.
     fn stamp(&self, text: &str) {
         fs::write(self.folder.join("inputs"), text).expect("writable");
     }
