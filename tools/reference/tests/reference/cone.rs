@@ -299,7 +299,7 @@ fn stiff_pictures_of_cones() {
         .accuracy;
         println!("{name}: {found:?}");
         let wrong = found.false_hit + found.false_miss;
-        // The model moves an eye on the lateral face's lines above the apex outwards.
+        // The model moves an eye on the surface of the double cone's upper half outwards.
         let (most, limit) = match name {
             "on a line of the lateral face, above the apex" => (60, 0.03),
             _ => (8, 4e-4),

@@ -125,7 +125,7 @@ fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
         }
     }
     Ok(Outcome::exact(
-        "cut off: what remains is at the near plane or beyond",
+        "cut off: the rest is at the near plane or beyond",
     ))
 }
 
