@@ -1,10 +1,10 @@
-//! Objects given on the command line: a model, its model matrix and its colour.
+//! Objects on the command line: a model with its model matrix and its colour.
 
 use crate::error::{FormatError, quote};
 use glint_core::object::{Place, PlaceError};
 use glint_core::words::Words;
 
-/// An object given on the command line: `MODEL` and the operations of a [`Place`].
+/// An object on the command line: `MODEL` and the operations of a [`Place`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// A mesh file or a generator's name.

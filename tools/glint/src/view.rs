@@ -1,4 +1,4 @@
-//! Cameras from files, and the forms of a camera that only the command line of `glint` accepts.
+//! Cameras from files, and the notations of a camera that only the command line of `glint` accepts.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
@@ -37,7 +37,7 @@ pub fn read(path: &Path) -> Result<View, InputError> {
 /// Parses the bytes of a camera file; see [`read`].
 ///
 /// # Errors
-/// Those of [`read`].
+/// As for [`read`].
 pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
     let file: ViewFile = serde_json::from_slice(bytes).map_err(|error| {
         let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}"#;
@@ -71,7 +71,7 @@ fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError>
     Ok([number(x, name)?, number(y, name)?, number(z, name)?])
 }
 
-/// Rounds a value to the nearest fixed-point number; an error names `name`.
+/// Rounds a value to the nearest fixed-point number. An error states `name`, the name of the value.
 fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
     T::checked_from_num(value).ok_or_else(|| {
         FormatError::whole(
@@ -118,15 +118,16 @@ pub fn look(text: &str) -> Result<View, FormatError> {
     View::look(eye, yaw, pitch, roll).map_err(no_camera)
 }
 
-/// Returns the camera after a turn about the z axis through the origin, from the x axis towards the y axis. Without a turn the
-/// result is `view`.
+/// Returns the camera after a rotation by `by` about the z axis through the origin, from the x axis
+/// towards the y axis. A rotation by 0 returns `view` unchanged.
 ///
 /// # Errors
 /// The eye is at the maximum distance from the origin, and rounding moves it beyond the limit.
 pub fn turned(view: &View, by: Turns) -> Result<View, FormatError> {
     let (sin, cos) = sin_cos_q30(by);
     let [sin, cos] = [sin, cos].map(|x| i128::from(x.to_bits()));
-    // Rounds to nearest. Both coordinates are below 2^38 in magnitude as bits.
+    // Rounds to nearest. The bits of both coordinates are below 2^38 in magnitude, so the products
+    // fit.
     let rotate = |x: i64, y: i64| {
         let [x, y] = [x, y].map(i128::from);
         [cos * x - sin * y, sin * x + cos * y].map(|sum| ((sum + (1 << 29)) >> 30) as i64)
@@ -246,7 +247,8 @@ mod tests {
     fn free_look() {
         let view = look("0,-3,0,0,0").unwrap();
         assert_eq!(view, spherical("3,-90,90").unwrap());
-        // Half a turn to the right, and a quarter turn about the direction of view.
+        // Half a turn to the right, and a quarter turn about the direction of view, give this
+        // camera.
         let turned = look("0,3,0,180,0,90").unwrap();
         let [v, n] = [turned.v(), turned.n()].map(|row| row.map(|c| c.to_num::<f64>()));
         assert_eq!((v, n), ([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]));

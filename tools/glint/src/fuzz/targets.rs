@@ -23,7 +23,7 @@ use glint_texture::example;
 use glint_texture::picture::Picture;
 use glint_texture::sheet::sheet;
 
-/// A parser of external bytes.
+/// A fuzz target: a parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// The sender and the receiver of an upload.
@@ -95,7 +95,7 @@ impl Target {
         match self {
             Self::Upload | Self::Host => transfer::repair(input),
             Self::Stl => {
-                // Sets the number of triangles to match the file's length.
+                // The number of triangles must match the file's length.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
                 if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
                     field.copy_from_slice(&count.to_le_bytes());
@@ -112,7 +112,7 @@ impl Target {
                 mesh::set_checksum(input);
             }
             Self::Replay => {
-                // Sets the number of samples to match the log's length.
+                // The number of samples must match the log's length.
                 let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&(samples as u32).to_le_bytes());
@@ -120,7 +120,7 @@ impl Target {
                 input.truncate(image::HEADER_BYTES + image::RECORD_BYTES * samples);
             }
             Self::WireframeWords => {
-                // Cuts the input at a word, and replaces its last word by the end of a program.
+                // A program consists of whole words, and its last word is the end of the program.
                 input.truncate(input.len() / WORD_BYTES * WORD_BYTES);
                 if let Some(last) = input.last_chunk_mut() {
                     *last = Instruction::End.encode();
@@ -168,7 +168,8 @@ impl Target {
     }
 }
 
-/// An additional file that an OBJ or glTF file names: a picture by its extension, or the file itself.
+/// A file that an OBJ or glTF file names: a picture if its extension is that of a picture,
+/// otherwise the input.
 fn beside(name: &str, input: &[u8]) -> Vec<u8> {
     if name.ends_with(".png") {
         example::small_png()
@@ -242,7 +243,8 @@ fn run_conversion(polygons: &Polygons) -> bool {
     }
 }
 
-/// Replays a parsed log with every option enabled: by its time stamps, and with two fixed sample periods.
+/// Replays a parsed log with every option enabled: with its time stamps, and with two fixed sample
+/// periods.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {

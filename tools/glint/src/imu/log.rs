@@ -23,11 +23,11 @@ const TIME: &str = "t_us";
 const TEMPERATURE: &str = "temp";
 const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
 /// Maximum number of columns in a header; real logs have fewer.
-const MOST_COLUMNS: usize = 64;
+const MAX_COLUMNS: usize = 64;
 
 /// The columns of a file.
 struct Header {
-    /// Index in the file of each of [`COLUMNS`].
+    /// For each of [`COLUMNS`], its index among the columns of the file.
     places: [Option<usize>; COLUMNS.len()],
     /// Number of columns in the file.
     count: usize,
@@ -92,8 +92,8 @@ impl Header {
         let mut count = 0;
         let mut ignored = Vec::new();
         for cell in cells(line) {
-            if count == MOST_COLUMNS {
-                let expected = format!("at most {MOST_COLUMNS} columns");
+            if count == MAX_COLUMNS {
+                let expected = format!("at most {MAX_COLUMNS} columns");
                 return Err(FormatError::new(line.place(), expected, "more"));
             }
             match COLUMNS.iter().position(|name| name.as_bytes() == cell) {
@@ -121,7 +121,7 @@ impl Header {
     }
 
     fn entry(&self, line: Line<'_>) -> Result<Entry, FormatError> {
-        let mut row = [&[][..]; MOST_COLUMNS];
+        let mut row = [&[][..]; MAX_COLUMNS];
         let mut found = 0;
         for cell in cells(line) {
             if let Some(place) = row.get_mut(found) {
