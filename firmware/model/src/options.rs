@@ -17,7 +17,7 @@ pub struct MeshOptions {
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
-    /// Whether triangles have their textures.
+    /// Whether the textures of the mesh are drawn.
     pub textures: bool,
 }
 

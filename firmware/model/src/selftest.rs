@@ -1,6 +1,6 @@
-//! Pictures of the self-test, and the checksums of their colours: the CRC-32 of the colours' bytes, row by row, the low byte first.
+//! Pictures of the self-test, and the checksums of their colours: the CRC-32 of the colours, row by row, the low byte of each colour first.
 //!
-//! The firmware draws each picture by the gateware, and compares its checksum with the model's checksum. A test of this crate
+//! The firmware draws each picture with the gateware, and compares its checksum with the model's checksum. A test of this crate
 //! computes and stores the checksums.
 
 mod checksums;
@@ -54,7 +54,7 @@ impl TestPicture {
         Self::Stereo,
     ];
 
-    /// Name for messages: the gateware block, and the feature of it that the picture needs.
+    /// Name for messages: the gateware block, and the feature of the block that the picture needs.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -13,7 +13,7 @@ use crate::triangle::ScreenVertex;
 pub const LINE_COLOUR: Rgb565 = Rgb565(0x07E0);
 
 /// Number of segments that are drawn between two calls of `progress`.
-const SEGMENTS_A_CALL: u32 = 16;
+const SEGMENTS_PER_CALL: u32 = 16;
 
 /// A program and the motion of its segments.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +67,7 @@ pub fn render_wireframe(
     let projection = Projection::new(subject.program.viewing(), size);
     let mut stats = WireframeStats::default();
     for segment in subject.program.segments() {
-        if stats.segments % SEGMENTS_A_CALL == 0 {
+        if stats.segments % SEGMENTS_PER_CALL == 0 {
             progress();
         }
         stats.segments += 1;

@@ -26,7 +26,7 @@ impl Ray {
     }
 }
 
-/// One of the two eyes of a stereo picture.
+/// An eye of a stereo picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The left eye, at eye − offset·u, where `eye` and `u` are fields of `Camera`, and `offset` of `Stereo`.
@@ -111,8 +111,7 @@ impl Camera {
 
     /// Makes a camera at `eye` that looks at `target`, with +z up.
     ///
-    /// `half_width` and `near` become the camera's fields of these names. If the line of sight is parallel to z, u and v
-    /// are NaN.
+    /// If the line of sight is parallel to z, u and v are NaN.
     #[must_use]
     pub fn looking(eye: Vector, target: Vector, half_width: f64, near: f64) -> Self {
         let n = normalised(subtract(target, eye));
@@ -148,13 +147,13 @@ impl Camera {
         }
     }
 
-    /// Converts the camera to a view. Rounds each number to the nearest number of its fixed-point format.
+    /// Converts the camera to a view. Each number is rounded to nearest in its fixed-point format.
     ///
     /// # Errors
     /// The errors of [`View::new_checked`].
     ///
     /// # Panics
-    /// When a number is outside the range of its format.
+    /// If a number is outside the range of its format.
     pub fn view(&self) -> Result<View, ViewError> {
         let row = |row: Vector| row.map(Q2_23::from_num);
         View::new_checked(

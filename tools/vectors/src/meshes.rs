@@ -115,8 +115,8 @@ pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
         .collect()
 }
 
-/// A white square from (−2, −2, 0) to (2, 2, 0) with a texture, or with two for its two halves, which have `repeats` repeats in a world
-/// unit.
+/// A white square from (−2, −2, 0) to (2, 2, 0) with one texture, or with a texture for each of its halves. A texture has `repeats` repeats
+/// per world unit.
 ///
 /// # Panics
 /// If the textures are too large for a mesh.

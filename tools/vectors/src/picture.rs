@@ -19,7 +19,7 @@ pub struct Picture {
     pub depth: Vec<u32>,
     /// The model's counts of triangles and pixels.
     pub stats: Stats,
-    /// The triangles that reached the walker (the stage that enumerates pixels), in drawing order.
+    /// The triangles that reached the walker (the stage that finds pixels), in drawing order.
     pub drawn: Vec<DrawnTriangle>,
 }
 

@@ -77,7 +77,7 @@ pub struct MeshSubject<'a> {
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
-    /// Whether triangles have their textures.
+    /// Whether the textures of the mesh are drawn.
     pub textures: bool,
 }
 
@@ -205,7 +205,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The mesh of a subject without objects, and the colour that replaces its own colours.
-    // Not inlined, so that `coloured_mesh`, which the firmware calls for each object of a frame, is short and loads no table.
+    // Not inlined, so that `coloured_mesh`, which the firmware calls for each object of a frame, is short and has no jump table.
     #[inline(never)]
     fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         let is_hidden = matches!(self, Self::Edges(_, Edges::Hidden));
@@ -289,7 +289,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The lighting of the meshes: the frame's, or for a mesh in a field that of the field's appearance.
+    /// The lighting of the meshes: the frame's lighting or, for a mesh in a field, the lighting of the field's appearance.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {

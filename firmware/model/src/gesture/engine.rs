@@ -38,7 +38,7 @@ pub enum Fault {
     Byte,
     /// The frame had too few or too many lines.
     Lines,
-    /// VSYNC came inside a line.
+    /// VSYNC became active inside a line.
     Cut,
     /// Pixels came faster than the engine can process them. This never happens in the model.
     Lost,
@@ -49,7 +49,7 @@ pub enum Fault {
 /// The engine's counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Whole frames.
+    /// Number of whole frames.
     pub frames: u32,
     /// Number of frames with a fault.
     pub frames_dropped: u32,

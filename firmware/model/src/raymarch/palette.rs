@@ -82,8 +82,8 @@ impl Palette {
     }
 
     /// Darkens narrow places: the share of light left is 255·h/(h + n), rounded down. For rays that march, h is 40 and n is the number of
-    /// steps. For rays by exits, which take far fewer steps, h is 6 and n the number of steps before the last one, which finds the hit:
-    /// a surface without a hole before it keeps its light.
+    /// steps. For rays by exits, which take far fewer steps, h is 6 and n is the number of steps before the last one:
+    /// a surface that the first step reaches keeps all of its light.
     #[must_use]
     pub fn with_occlusion(self, field: &Field) -> Self {
         let (half, last) = if Exits::draws(field) { (6, 1) } else { (40, 0) };

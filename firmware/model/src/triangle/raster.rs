@@ -167,7 +167,7 @@ impl Accumulation {
 /// Smooth shading: the colour comes from the planes of red, green and blue.
 struct Smooth {
     light: [Accumulation; 3],
-    /// The weight of all light; `None` if it is the depth of each pixel.
+    /// The common weight of the light; `None` if the depth of each pixel is its weight.
     weight: Option<u32>,
 }
 

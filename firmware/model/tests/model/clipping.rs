@@ -1,5 +1,5 @@
-//! Tests of the clipping of triangles that cross the near plane or leave the guard band: the remaining vertices, and the independence of
-//! the first vertex. `glint-reference` compares the pixels of clipped triangles with exact results.
+//! Tests of the clipping of triangles that cross the near plane or leave the guard band: the remaining vertices, and equal results for each
+//! first vertex. `glint-reference` compares the pixels of clipped triangles with exact results.
 
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::vertex::{CameraVertex, project, transform};

@@ -1,6 +1,6 @@
-//! Properties of rays by exits from the stiffest places in the stiffest directions.
+//! Properties of rays by exits with difficult origins and directions.
 //!
-//! Places are in units of 2^−12 field units, directions in units of 2^−24. Single rays, each with its outcome, are in
+//! Origins are in units of 2^−12 field units, directions in units of 2^−27. Single rays with their expected results are in
 //! tools/reference/stiff/rays.toml.
 
 use glint_core::camera::View;
@@ -24,7 +24,7 @@ fn end_of(exits: &Exits) -> End {
     exits.end(&exits.cones(), &exits.ray(0, 0, 0))
 }
 
-/// Random places and directions among the stiffest: on borders and beside them, with components of 0 and 1 ulp.
+/// A random difficult origin and direction: coordinates on borders and beside them, and components of 0 and 1 ulp.
 fn stiff(random: &mut Pcg64Mcg) -> ([i32; 3], [i32; 3]) {
     let place = [0; 3].map(|_| {
         let border = random.random_range(-60..60)
@@ -65,7 +65,7 @@ fn mirrored_rays_have_mirrored_ends() {
             let axis = random.random_range(0..3);
             let (mut there, mut towards) = (eye, direction);
             (there[axis], towards[axis]) = (-eye[axis], !direction[axis]);
-            // The place in the cell about the origin is from −32 to 32 units, without the upper end.
+            // A position in the cell about the origin is in [−32, 32) field units, so −32 has no mirror image.
             if field.contains(',') && there.map(|x| x.abs() & 0x3FFFF).contains(&0x20000) {
                 continue;
             }
@@ -110,7 +110,7 @@ fn an_octahedron_takes_one_evaluation() {
     assert!(hits > 200, "{hits}");
 }
 
-/// A ray through a pixel outside of a sphere's rectangle does not meet the sphere.
+/// A ray of a pixel outside of a sphere's rectangle does not meet the sphere.
 #[test]
 fn rectangles_hold_all_pixels_that_see_a_sphere() {
     let mut random = Pcg64Mcg::new(2);
@@ -192,7 +192,7 @@ fn codes_of_intervals_increase_and_return() {
     assert_eq!(sponge.code(81), 0b1_11_00_00_00_00_00);
 }
 
-/// A frame's constants for the rays of an eye, after a way through the words of a register block, make the same rays.
+/// The constants of an eye make the same rays after conversion to the codes of the registers and back.
 #[test]
 fn a_start_in_codes_makes_the_same_rays() {
     let mut random = Pcg64Mcg::new(3);

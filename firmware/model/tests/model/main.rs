@@ -1,4 +1,4 @@
-//! Tests of the model against f64, a plain rasterizer and stated pictures.
+//! Tests of the model against f64, a simple rasterizer and known pictures.
 //!
 //! All tests are in one program, to avoid linking one program per file.
 
@@ -50,7 +50,7 @@ fn applied(matrix: &Matrix, point: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| glint_vectors::math::dot(rows[i], point) + place[i])
 }
 
-/// Error of a place on the screen, in 1/256 pixel.
+/// Error of a position on the screen, in 1/256 pixel.
 fn error(found: ScreenVertex, [x, y, _]: [f64; 3]) -> f64 {
     let error = |found: i32, exact: f64| (f64::from(found) - 256.0 * exact).abs();
     error(found.x, x).max(error(found.y, y))

@@ -268,7 +268,7 @@ fn objects_against_f64() {
     assert!(count > 10_000 && halved > 100 && share <= 1.0 && depth <= 8.0);
 }
 
-/// A cube of side 1 covers the same square from every distance, and of two squares in line the nearer is visible.
+/// A cube of side 1 covers the same square from every distance, and of two cubes in line with the eye the nearer is visible.
 #[test]
 fn sizes_do_not_depend_on_the_distance() {
     let cube = Model::cube(8192);

@@ -52,7 +52,7 @@ fn a_sphere_is_a_disc_without_holes() {
 }
 
 /// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws the sphere with
-/// reversed windings: culling now removes its near side, so its far side is visible.
+/// reversed winding: culling now removes its near side, so its far side is visible.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -269,7 +269,7 @@ fn what_does_not_fit_is_refused() {
             pixels,
             pixels,
             7,
-            "scratch for 7 vertices: expected at least 8, as the largest chunk has",
+            "scratch for 7 vertices: expected at least 8, the number in the largest chunk",
         ),
     ] {
         assert_eq!(refuse(size, colours, depths, room), Err(text.to_owned()));

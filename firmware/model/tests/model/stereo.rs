@@ -122,7 +122,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
         let expected = left.iter().zip(&right);
         let expected = expected.map(|(&left, &right)| composed(tint, left, right));
         let expected = words(&expected.collect::<Vec<_>>());
-        // Tests also pictures that end within a cache line.
+        // Also tests pictures that end within a cache line.
         for pixels in [left.len(), 2 * 11] {
             let mut both = words(&left[..pixels]);
             let eyes = glint_model::Eyes { tint, ..eyes };

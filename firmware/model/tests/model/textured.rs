@@ -12,7 +12,7 @@ use glint_vectors::meshes::textured_square;
 use glint_vectors::triangles::{SIZE, random_triangle};
 use glint_vectors::{Camera, Picture, Random};
 
-/// The value of each texel is its place: the row in the high byte, the column in the low byte.
+/// A texture in which the value of each texel is its position: the row in the high byte, the column in the low byte.
 fn places(wrap: Wrap, filter: Filter) -> Source {
     Source {
         size_log2: [8, 8],
@@ -100,7 +100,7 @@ fn positions_and_levels_are_those_of_exact_perspective() {
             let exact_depth = blend(shares, weights);
             let depth = at(setup.depth).wrapping_add(1 << 13);
             let found = textured.places(depth, textured.axes.map(|axis| at(axis.plane)));
-            // The share of each coordinate, and how fast it changes to the right and down.
+            // The largest change of a coordinate per pixel, and the steepest plane.
             let (mut most, mut steepest) = (0.0_f64, 0.0_f64);
             for axis in 0..2 {
                 let values =
@@ -123,7 +123,7 @@ fn positions_and_levels_are_those_of_exact_perspective() {
                 }
             }
             let level = textured.level(&setup, depth, textured.axes.map(|axis| at(axis.plane)));
-            // Steps of more codes do not fit an accumulator.
+            // Larger steps do not fit an accumulator.
             if steepest > f64::from(1 << 17) {
                 continue;
             }
@@ -193,7 +193,7 @@ fn a_floor_has_the_texels_that_rays_hit() {
             let found = [colour & 0xFF, colour >> 8].map(f64::from);
             for axis in 0..2 {
                 let exact = hit[axis] * 0.5 * 256.0;
-                // The distance from the texel, which is 1 wide.
+                // The distance from the found texel, which has width 1.
                 let off = (exact - found[axis]).rem_euclid(256.0);
                 let off = if off > 128.0 {
                     256.0 - off
@@ -212,7 +212,7 @@ fn a_floor_has_the_texels_that_rays_hit() {
     }
 }
 
-/// Transparent texels leave the background and its depth.
+/// Transparent texels do not change the colour and depth of the background.
 #[test]
 fn cut_out_texels_leave_colour_and_depth() {
     let chess = (0..64).map(|i| if (i + i / 8) % 2 == 0 { 0xF800 } else { 0x07E0 });
@@ -242,7 +242,7 @@ fn cut_out_texels_leave_colour_and_depth() {
     assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
 }
 
-/// Full light does not change a colour, and no light is black; bilinear filtering of equal texels gives their colour.
+/// Full light does not change a colour, and no light gives black; bilinear filtering of equal texels gives their colour.
 #[test]
 fn colours_at_the_limits_are_exact() {
     for colour in (0..=u16::MAX).map(Rgb565) {
@@ -279,7 +279,7 @@ fn colours_at_the_limits_are_exact() {
     }
 }
 
-/// Between the middles of two texels the colours change evenly, over a side as well.
+/// Between the centres of two texels the colour changes linearly, also across the sides of the texture.
 #[test]
 fn bilinear_colours_are_between_their_texels() {
     for wrap in Wrap::ALL {
@@ -304,7 +304,7 @@ fn bilinear_colours_are_between_their_texels() {
     }
 }
 
-/// Any coordinates, accumulators and places give a colour without a panic, for textures of any size and kind.
+/// Any coordinates, accumulators and positions give a colour without a panic, for textures of any size and kind.
 #[test]
 fn anything_has_a_colour() {
     let mut random = Random(11);

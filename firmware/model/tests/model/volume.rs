@@ -127,7 +127,8 @@ fn vertices_against_f64() {
     assert!(worst <= 1.0, "{worst}");
 }
 
-/// Two triangles at an edge keep the same part of the edge, with the same end vertices: no pixel on the edge is lost or drawn twice.
+/// Two triangles that share an edge keep the same part of the edge, with the same end vertices: no pixel on the edge is lost or drawn
+/// twice.
 ///
 /// The environment variable `GLINT_PAIRS` sets the number of pairs.
 #[test]

@@ -94,7 +94,7 @@ fn both_accumulators_walk_alike() {
     }
 }
 
-/// The number of tested pixels exceeds that of covered pixels by at most a multiple of the triangle's extents, not of its bounding box's
+/// The number of tested pixels exceeds the number of covered pixels by at most a multiple of the triangle's width and height, not of its
 /// area.
 #[test]
 fn the_walker_does_not_look_through_the_box() {
