@@ -3,7 +3,8 @@
 use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
 use crate::scene;
-use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
+use glint_core::deviation::Deviation;
+use glint_core::flash::{Contents, EncodeError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::{Mesh, is_name};
 use glint_core::picture::{Backend, Size};
 use glint_scene::{Board, LineError, Reason, Scene, lines};
@@ -261,7 +262,7 @@ fn in_item(item: &Item, error: FormatError) -> FormatError {
     FormatError::whole(format!("{} {name}: {place}{expected}", kind.name()), found)
 }
 
-fn format_error(error: FlashError) -> FormatError {
+fn format_error(error: Deviation) -> FormatError {
     let mut found = String::new();
     // Writing to a `String` does not fail.
     let _ = error.write_found(&mut found);

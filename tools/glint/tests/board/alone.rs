@@ -6,15 +6,16 @@ use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 
-/// Maximum number of cycles of a command.
+/// Time-out of a command in clock cycles.
 pub const LIMIT: u64 = 60_000_000;
 
 /// Number of cycles per millisecond.
 pub const MS: u64 = 81_250;
-/// Time after which digits and LEDs show a new state; they change every half second.
+/// Time in cycles after which digits and LEDs show a new state, because they change every half
+/// second.
 pub const PANEL: u64 = 600 * MS;
 
-/// The built-in list.
+/// The scenes of the built-in list, in order.
 const SCENES: [&str; 5] = [
     "holoforge",
     "wireframe",
@@ -44,7 +45,7 @@ pub fn press(board: &mut EmulatedBoard, button: u8) {
     board.run(40 * MS);
 }
 
-/// The number of the demo's current scene, from 1, and the whole reply to `demo`.
+/// The number of the demo's current scene, counted from 1, and the whole reply to `demo`.
 pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     let answer = command(board, "demo");
     let line = answer.lines().find_map(|line| line.strip_prefix("scene "));
@@ -52,7 +53,7 @@ pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     (number.unwrap_or_else(|| panic!("{answer}")), answer)
 }
 
-/// Content of the four digits on the right.
+/// Segments of the four digits on the right.
 pub fn right(board: &EmulatedBoard) -> [u8; 4] {
     *board.digits().last_chunk().expect("eight digits")
 }

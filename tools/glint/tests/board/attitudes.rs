@@ -1,4 +1,4 @@
-//! Tests that the attitudes of logs from the board and from the model are bit-identical.
+//! Tests that a board and the model compute bit-identical attitudes from logs.
 
 use crate::common::{console, emulator, mesh, running_board};
 use glint::fuzz::Random;
@@ -8,8 +8,8 @@ use glint::render::Route;
 use glint::transfer;
 use glint_core::orientation::{Counts, Units};
 
-/// A log with events of every kind: rest, tumbling, coning, saturation of both sensors, shocks, and time stamps with jitter,
-/// repetitions, backward steps and a gap.
+/// A log with every kind of event: rest, tumbling, coning, saturation of both sensors, shocks, and
+/// time stamps with jitter, repetitions, backward steps and a gap.
 fn eventful_log(samples: usize) -> Vec<Entry> {
     let mut random = Random::new(1, 0);
     let mut t_us = 4_294_000_000;

@@ -21,7 +21,8 @@ fn a_field_by_the_cpu_is_the_models() {
     a_field_by(Backend::Cpu, "cpu");
 }
 
-/// Compares the first two lines of a frame, a cube that a box intersects, with the model's while the soft core draws the rest.
+/// Compares the first two lines of a frame with the model's while the soft core draws the rest. The
+/// frame shows a cube that intersects a box.
 #[test]
 fn the_cpu_draws_a_mesh_in_a_field() {
     const PIXELS: usize = 2 * 320;

@@ -27,7 +27,7 @@ fn flash(pieces: &[Piece]) -> Vec<u8> {
     encode(&[], &[0x13; 32], pieces).unwrap()
 }
 
-/// A newly started board with these bytes in its flash, and its output.
+/// Starts a board with these bytes in its flash, and returns the board and its output.
 fn powered_up(flash: Vec<u8>, prepare: impl FnOnce(&mut EmulatedBoard)) -> (EmulatedBoard, String) {
     let mut board = EmulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
     board.plug_flash(Flash::new(flash));
@@ -44,7 +44,7 @@ fn is_black(board: &mut EmulatedBoard) -> bool {
     board.capture().pixels.iter().all(|colour| *colour == 0)
 }
 
-/// Offset of an item's bytes.
+/// Offset of an item's bytes in the flash image.
 fn place(flash: &[u8], name: &str) -> usize {
     let image = glint_core::flash::Image::new_checked(flash).unwrap();
     let mut items = image.contents.items();
@@ -106,7 +106,8 @@ fn a_board_with_a_list_runs_alone() {
     assert_eq!(answer.matches("scene cubes ").count(), 1, "{answer}");
 }
 
-/// A board fits the camera of a scene without one to the mesh in its flash, as the host does.
+/// For a scene without a camera, a board computes the same camera from the mesh in its flash as the
+/// host.
 #[test]
 fn a_board_fits_the_camera_of_a_scene() {
     let text = "title = \"Fitted\"\nmodel = \"icosphere:2\"\nup = \"y\"\nfov = 40\nzoom = 1.5\n";
@@ -163,8 +164,8 @@ fn without_a_list_the_board_starts_as_without_a_flash() {
     }
 }
 
-/// Starts a board with a damaged flash: the board prints the error once, shows its number on the digits, and runs the built-in
-/// demo.
+/// Starts a board with a damaged flash, and checks that the board prints the error once, shows the
+/// number of the error on the digits, and runs the built-in demo.
 fn runs_the_built_in_demo(flash: Vec<u8>, number: u8, error: &str) {
     let (mut board, said) = powered_up(flash, |_| ());
     let line = format!("demo: error {number}: {error}");
@@ -201,14 +202,15 @@ fn the_built_in_demo_runs_without_valid_contents() {
     let start = place(&valid, "start");
     item[start] ^= 1;
     runs_the_built_in_demo(item, 2, "start: flash byte ");
-    // An interrupted write of the flash.
+    // The writing of the flash was interrupted.
     let mut cut = valid;
     cut.truncate(start);
     runs_the_built_in_demo(cut, 2, "start: flash byte ");
 }
 
-/// A board with the scenes `good`, `bad` and `also`: at the second scene it prints the error, shows its number on the digits, and keeps the
-/// previous picture. At the third scene it goes on.
+/// A board with the scenes `good`, `bad` and `also`. At the second scene it prints the error, shows
+/// the number of the error on the digits, and keeps the previous picture. It then shows the third
+/// scene.
 fn keeps_the_scene(pieces: &[Piece], blocks: u32, number: u8, error: &str) {
     let mut all = vec![
         piece(Kind::Scene, "good", "size 320 180\nfield menger:1\n"),
@@ -312,7 +314,7 @@ fn the_console_answers_beside_an_error() {
 fn a_board_with_mutated_contents_answers() {
     let inputs = Inputs::new(Target::Flash, 0xa10e);
     let mut alone = 0;
-    // An error of the demo may precede the reply, with its own prompt.
+    // An error of the demo and its prompt may precede the reply.
     let reply = |board: &mut EmulatedBoard, line: &str| {
         board.uart_write(format!("{line}\r").as_bytes());
         board.read_until("ok\r\nglint> ", LIMIT).unwrap()

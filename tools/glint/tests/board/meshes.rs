@@ -59,7 +59,8 @@ fn smooth_shading_is_the_models_on_every_backend() {
     }
 }
 
-/// The triangle engine draws textures under flat light, if the gateware supports them; otherwise the soft core does, with a note.
+/// The triangle engine draws textures with flat shading if the gateware supports textures.
+/// Otherwise the soft core draws them, and `stats` has a note.
 #[test]
 fn textures_are_the_models_on_every_backend() {
     let texture = texture::encode(&Source {
@@ -129,7 +130,8 @@ fn the_console_notes_a_fallback_once() {
     }
 }
 
-/// A patch that is seen from behind has a hint, on the console and in the statistics; with `cull off` or from the front it has none.
+/// For a patch that is seen from behind, the console and the statistics have a hint. With `cull
+/// off`, or from the front, there is no hint.
 #[test]
 fn a_mesh_seen_from_behind_has_a_hint() {
     const SIDE: usize = 40;
@@ -193,8 +195,9 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     }
 }
 
-/// A coloured directional light, a light at the camera, ambient light and a background, with each backend. The default is tested
-/// last: its commands remove light and background. The board draws each frame into both frame buffers.
+/// A coloured directional light, a light at the camera, ambient light and a background, with each
+/// backend. The default is tested last, because its commands must remove light and background. The
+/// board draws each frame into both frame buffers.
 #[test]
 fn light_and_background_of_meshes_are_the_models_on_every_backend() {
     let mut board = emulator();
@@ -266,7 +269,8 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
     let inside: View = view::parse(inside.as_bytes()).unwrap();
-    // The flag of each camera turns back-face culling on. A camera inside a mesh sees mostly back faces, so its flag is off.
+    // A flag with each camera turns back-face culling on. A camera inside a mesh sees mostly back
+    // faces, so its flag is off.
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut renderer = renderer(board).with_backend(Backend::Cpu);

@@ -1,4 +1,4 @@
-//! A board that keeps running, and the programs that use it in turn.
+//! A board that keeps running, and programs that use it one after another.
 
 use crate::common::{begin_upload, mesh, piped};
 use crate::serial_boot::{MUTE, printer};
@@ -68,13 +68,14 @@ impl Stay {
 
 impl Drop for Stay {
     fn drop(&mut self) {
-        // The program has already ended, unless the test failed.
+        // An error means that the program has already ended, as it does unless the test failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Begins an upload, and closes the port in the middle of the upload. Until then, no other program can use the port.
+/// Begins an upload, and closes the port in the middle of it. Before that, checks that no other
+/// program can use the port.
 fn upload_a_part(stay: &Stay, port: &Path, mesh: &[u8]) {
     let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
     let mut console = Console::new(&mut board);
@@ -111,7 +112,8 @@ fn programs_use_one_board_in_turn() {
     let info: serde_json::Value = serde_json::from_str(&info).unwrap();
     assert_eq!(info["triangles"], "320");
 
-    // The log contains all output of the board, and the session ends after a text or a time-out.
+    // The log contains all output of the board. The session ends with the text of `--until` or
+    // after the time-out.
     let log = stay.folder.join("log");
     if log.exists() {
         std::fs::remove_file(&log).unwrap();
@@ -150,7 +152,7 @@ fn programs_use_one_board_in_turn() {
     assert!(!port.is_symlink() && !stay.folder.join("ready").exists());
 }
 
-/// `--pty` replaces only links to pseudo-terminals, and at the end removes only its own link.
+/// `--pty` replaces only links to pseudo-terminals. At the end it removes only its own link.
 #[test]
 fn only_links_to_pseudo_terminals_are_replaced() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-links");
@@ -187,7 +189,7 @@ fn only_links_to_pseudo_terminals_are_replaced() {
         std::fs::read_to_string(folder.join("to-file")).unwrap(),
         "mine\n"
     );
-    // The link of a killed board.
+    // A killed board leaves its link behind.
     let folder = folder.join("folder");
     std::os::unix::fs::symlink("/dev/pts/999999", folder.join("port")).unwrap();
     let mut stay = Stay::start_with("board-links/folder", &[]);
@@ -198,7 +200,8 @@ fn only_links_to_pseudo_terminals_are_replaced() {
     assert_eq!(std::fs::read_link(folder.join("port")).unwrap(), other);
 }
 
-/// A firmware file without an end is rejected within bounded memory, and a signal ends the wait for a pipe.
+/// An endless firmware file is rejected within bounded memory, and a signal ends the wait for a
+/// pipe.
 #[test]
 fn firmware_of_devices_and_pipes() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-pipes");
@@ -262,7 +265,8 @@ fn a_board_starts_from_an_image() {
     let image = image.to_str().unwrap();
     make_image(&["--scene", "demo"], image);
     let stay = Stay::start_with("board-of-an-image", &["--flash", image]);
-    // A command that is sent before the firmware runs is lost, and repeated. The demo may already show any of its scenes.
+    // A command that is sent before the firmware runs is lost, and repeated. The demo may already
+    // show another of its scenes.
     let scenes = stay.succeed("console port --send scene", "");
     assert!(scenes.contains("scene start flash\n"), "{scenes}");
 }
@@ -308,7 +312,7 @@ fn end_by(signal: &str, child: &mut Child) {
 fn a_board_that_waits_for_a_program_can_always_be_flashed() {
     let stay = Stay::start_with("board-waits", &["--bios"]);
     let mut large = printer("Large program runs\n");
-    // Loading takes longer than this test runs.
+    // Loading this program takes longer than this test runs.
     large.resize(64 << 20, 0);
     std::fs::write(stay.folder.join("large.bin"), large).unwrap();
     let mut small = printer("Program runs\n");
@@ -320,7 +324,8 @@ fn a_board_that_waits_for_a_program_can_always_be_flashed() {
         .current_dir(&stay.folder)
         .spawn()
         .unwrap();
-    // The request comes after two seconds.
+    // The BIOS sends its request after two seconds, so the request has been waiting for three
+    // seconds.
     std::thread::sleep(Duration::from_secs(5));
     assert!(killed.try_wait().unwrap().is_none());
     end_by("TERM", &mut killed);

@@ -1,5 +1,5 @@
-//! Two eyes: pictures of meshes, edges, objects, and meshes in fields on the emulated board equal the model's, which are composed
-//! of two pictures for one eye.
+//! Stereo pictures of meshes, edges, objects, and meshes in fields on the emulated board equal the
+//! combination of the model's two pictures for one eye.
 
 use crate::common::{console, counts, drawn_alike, emulator, mesh, plain, renderer, two_objects};
 use glint::board::Board;
@@ -13,7 +13,7 @@ use glint_core::picture::{Backend, Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 
-/// The stereo picture composed of the pictures of both eyes.
+/// Combines the pictures of both eyes to a stereo picture.
 fn composed(eyes: &[Frame; 2], tint: Tint) -> Vec<u16> {
     let [left, right] = eyes.map(|frame| render::on_model(&frame).unwrap().image.colour);
     let grey = |pixel| u16::from(luminance(Rgb565(pixel).to_rgb888()));
@@ -70,7 +70,7 @@ fn two_eyes_are_the_models() {
         (Subject::Objects(&objects), outside, "0.1,2", gateware),
         (in_field, outside, "0.1,2,red-cyan", gateware),
         (in_field, outside, "0.3,1", cpu),
-        // Returns to one eye, and to a field without a mesh.
+        // The last cases return to one eye, and to a field without a mesh.
         (mesh(&sphere), outside, "", gateware),
         (Subject::Field(field), outside, "0.1,2", gateware),
     ];
@@ -139,7 +139,7 @@ fn no_picture_is_half_composed() {
     assert!(seen.iter().all(|&count| count > 60));
 }
 
-/// Subjects that cannot be drawn for two eyes, and the console's reply.
+/// Subjects that cannot be drawn for two eyes are refused by the console.
 #[test]
 fn a_wireframe_has_one_eye() {
     let mut board = emulator();

@@ -54,8 +54,8 @@ fn logs_of_a_gyroscope() {
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
 
-    // Twice the sample period and half the rate per count give an equal attitude. The gap of 10 ms becomes an ordinary step,
-    // because the period is fixed.
+    // Twice the sample period and half the rate per count give the same attitude. The gap of 10 ms
+    // becomes an ordinary step, because the period is fixed.
     let said = replay("turn.csv", "--dt-us 2000 --gyro-lsb 32.8 --no-tilt");
     assert!(
         said[0].starts_with("samples     1092 in 2.182 s: 1091 steps, 0 stale, "),
@@ -124,7 +124,7 @@ fn a_rest_of_zero_seconds_is_none() {
     assert!(error.contains("keep it still"), "{error}");
 }
 
-/// A clock of 32 bits that wraps loses nothing; a wrong time stamp and a gap are stated as warnings.
+/// No sample is lost when a 32-bit clock wraps. Warnings report a wrong time stamp and a gap.
 #[test]
 fn time_stamps_of_real_clocks() {
     let folder = folder("clocks");
@@ -135,7 +135,7 @@ fn time_stamps_of_real_clocks() {
         }
         std::fs::write(folder.join(name), log).unwrap();
     };
-    // Twelve samples at 90 °/s, whose microseconds wrap after the third.
+    // Twelve samples at 90 °/s. The time stamps wrap after the third sample.
     let wrapped: Vec<u64> = (0..12)
         .map(|i| (4_294_964_296 + 1000 * i) % (1 << 32))
         .collect();

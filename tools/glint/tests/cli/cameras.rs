@@ -16,7 +16,8 @@ fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
 #[test]
 fn the_whole_model_fills_four_fifths_of_the_height() {
     let folder = folder("framing");
-    // A sphere fills its bounding sphere; at another position and size the picture is identical.
+    // The camera fits a sphere exactly, so the picture does not depend on the sphere's position and
+    // size.
     for model in [
         "icosphere:20",
         "--object 'icosphere:20 scale 0.3 move 1,-1,0.5'",
@@ -36,7 +37,7 @@ fn the_whole_model_fills_four_fifths_of_the_height() {
             );
         }
     }
-    // Every model is completely in the picture.
+    // The picture shows every model completely.
     for model in ["cube", "gear", "teapot", "torus-knot", "sponge:2"] {
         let [[top, bottom], [left, right]] = extent(&drawn(&folder, &format!("render {model}")));
         assert!(
@@ -57,7 +58,7 @@ fn the_whole_model_fills_four_fifths_of_the_height() {
 #[test]
 fn the_axis_that_is_up() {
     let folder = folder("up");
-    // A column along y, and a column along z.
+    // One column along y, and one along z.
     let column = |to: [usize; 3]| {
         let line = |[x, y, z]: [f64; 3]| {
             let v = [x, y, z];

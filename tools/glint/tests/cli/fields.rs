@@ -30,7 +30,8 @@ fn fields_and_their_files() {
     assert_eq!(stats["evaluations_per_ray"], mean);
     assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
 
-    // The picture shows the box's front face in the colour of its normal, on a white background.
+    // The picture shows the box's front face, in the colour of the face's normal, on a white
+    // background.
     let depth = depths(&folder.join("a.f32"));
     for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
         assert!(
@@ -84,8 +85,8 @@ fn fields_and_their_files() {
     assert_ne!(sponge, render("menger:3", "--camera 3,30,60").0);
 }
 
-/// Draws a sphere of radius 1 as a mesh in a box as a field: the sphere protrudes from the box's faces, and the box's corners
-/// protrude from the sphere.
+/// Draws a mesh, a sphere of radius 1, in a field, a box: the sphere protrudes from the box's
+/// faces, and the box's corners protrude from the sphere.
 #[test]
 fn a_mesh_in_a_field() {
     let folder = folder("mesh-in-field");
@@ -156,7 +157,7 @@ fn warnings_of_pictures_that_show_nothing() {
         None => format!("{line}\n"),
     });
     std::fs::write(folder.join("room.obj"), inside_out.collect::<String>()).unwrap();
-    // A square, and a small triangle above it whose back is in view from above.
+    // A square, and a small triangle above it, whose back is visible from above.
     let two = format!("{SQUARE}v 0 0 .1\nv .2 0 .1\nv .2 .2 .1\nf 7 6 5\n");
     std::fs::write(folder.join("two.obj"), two).unwrap();
     for (arguments, expected) in [
@@ -181,8 +182,8 @@ fn warnings_of_pictures_that_show_nothing() {
     }
 }
 
-/// Rays that reach the step limit have the colour of the horizon, like sky and fog in the distance. They are counted; an option
-/// draws them in magenta.
+/// Rays that reach the step limit have the colour of the horizon, like sky and fog in the distance.
+/// The statistics count these rays, and an option draws them in magenta.
 #[test]
 fn undecided_rays_have_the_colour_of_the_horizon() {
     let folder = folder("undecided");

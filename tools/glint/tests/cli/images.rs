@@ -132,7 +132,7 @@ fn damaged_images_are_refused_with_the_place() {
     assert!(refused(&folder, "flash --spi bad.bin").contains("expected the CRC-32"));
 }
 
-/// Images with correct checksums whose scenes no board shows.
+/// Images with correct checksums are refused if no board can show their scenes.
 #[test]
 fn what_boards_cannot_show_is_refused() {
     let folder = folder("image-scenes");
@@ -207,8 +207,8 @@ fn flash(folder: &Path) -> (bool, String) {
     (output.status.success(), String::from_utf8(text).unwrap())
 }
 
-/// Without openFPGALoader, the error states how to install it. A substitute program records its arguments, because openFPGALoader
-/// itself requires a board.
+/// Without openFPGALoader, the error states how to install it. The test replaces openFPGALoader,
+/// which requires a board, by a script that records its arguments.
 #[test]
 fn an_image_without_a_bitstream_is_written_behind_its_slot() {
     let folder = folder("image-flash");

@@ -210,7 +210,7 @@ fn a_damaged_glm_is_refused() {
         bytes[at] ^= bit;
         bytes
     };
-    // Damages the colour of the first vertex, the checksum, and the format.
+    // Files with a damaged colour of the first vertex, a damaged checksum, and a damaged format.
     let files = [
         ("colour.glm", damaged(60, 4)),
         ("checksum.glm", damaged(25, 1)),

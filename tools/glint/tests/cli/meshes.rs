@@ -105,7 +105,8 @@ fn background_and_material_of_a_mesh() {
             assert_eq!(after, expected, "{text}");
         }
     }
-    // Each triangle is grey without the option, and has the material's ratio of red, green and blue with it.
+    // Without the option each triangle is grey. With the option it has the material's ratio of red,
+    // green and blue.
     let gold = render("--material gold");
     let lit = gold.chunks_exact(3).filter(|pixel| pixel[0] > 100);
     assert!(lit.clone().count() > 5_000);
@@ -146,7 +147,7 @@ fn supersampled_pictures() {
         let sum = of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1);
         assert_eq!(u32::from(found), (sum + 2) / 4);
     }
-    // A scene with a factor of four.
+    // A scene is supersampled by a factor of four.
     let scene = "render --scene cubes --size 320x180 --supersample 4";
     assert_eq!(drawn(&folder, scene).len(), 3 * 320 * 180);
     all_refused(

@@ -1,4 +1,4 @@
-//! Animations of a camera that goes around a model.
+//! Animations in which the camera turns around a model.
 
 use crate::common::{SQUARE, all_refused, drawn, folder, glint, refused, said, succeed};
 use std::fs::File;
@@ -48,7 +48,7 @@ fn both_forms_show_one_turn() {
     }
     // With at most 256 colours per frame, the GIF is exact.
     assert!(frames_of_gif(&folder.join("orbit.gif")) == (frames.clone(), 10));
-    // The turn begins with the camera of `glint render`.
+    // The animation begins with the camera of `glint render`.
     assert!(drawn(&folder, "render icosphere:2") == frames[0]);
     // Another axis, and another field of view.
     let quarters = "orbit cube --frames 4 --out a.png --up y --fov 30";
@@ -56,7 +56,7 @@ fn both_forms_show_one_turn() {
     assert_eq!(frames_of_png(&folder.join("a.png")).len(), 4);
 }
 
-/// The frames of a supersampled animation are supersampled pictures, of its size.
+/// The frames of a supersampled animation equal supersampled pictures of the same size.
 #[test]
 fn supersampled_animations() {
     let folder = folder("orbit-supersampled");
@@ -95,7 +95,7 @@ fn fields_and_scenes() {
         succeed(&folder, &format!("orbit --frames 4 --out a.png {subject}"));
         let frames = frames_of_png(&folder.join("a.png"));
         assert_eq!(frames.len(), 4);
-        // Some subjects have an identical picture after a quarter or half turn.
+        // Some subjects look the same after a quarter or half turn, so only one frame must differ.
         assert!(frames.iter().any(|frame| *frame != frames[0]), "{subject}");
         let first = drawn(&folder, &format!("render {subject}"));
         assert!(first == frames[0], "{subject}");

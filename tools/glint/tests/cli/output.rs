@@ -1,4 +1,5 @@
-//! Output files are written completely or not at all, never over an input, and are checked before the work begins.
+//! Output files are written completely or not at all, never replace an input, and are checked
+//! before the work begins.
 
 use crate::common::{SQUARE, VIEW, all_refused, folder, glint, refused, succeed, words};
 use glint_texture::example::small_png;
@@ -61,7 +62,7 @@ fn a_full_file_system_leaves_no_part_of_a_file() {
     assert_eq!(fs::read(folder.join("old.png")).unwrap(), b"before");
 }
 
-/// An error names its cause once, also of a reader that ends early.
+/// An error states its cause only once, also if the reader of a pipe ends early.
 #[test]
 fn a_closed_pipe_is_stated_once() {
     let folder = folder("closed-pipe");
@@ -159,7 +160,7 @@ fn an_extension_says_what_is_written() {
 #[test]
 fn an_output_is_checked_before_the_work() {
     let folder = folder("checked");
-    // The port does not exist: opening it would be a later error.
+    // The port does not exist, but this error would come later.
     for command in [
         "render cube --out gone/a.png",
         "render cube --out /dev/null --stats gone/a.json",

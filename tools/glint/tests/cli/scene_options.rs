@@ -35,8 +35,8 @@ fn scenes_that_cannot_be_shown() {
     assert!(!folder.join("a.png").exists());
 }
 
-/// A scene file without a camera has the picture of `glint render`: of the mesh in the folder of the scene file, with its axis up,
-/// the lens, and the material.
+/// The picture of a scene file without a camera equals the picture of `glint render` with the same
+/// options: the mesh comes from the folder of the scene file, and up axis, lens and material apply.
 #[test]
 fn scenes_of_meshes_are_those_of_render() {
     let folder = folder("scene-of-meshes");
@@ -108,7 +108,7 @@ fn scenes_of_meshes_are_those_of_render() {
         std::fs::read(folder.join("a.png")).unwrap()
     };
     assert!(orbit("--scene inner/2.toml") == orbit("inner/a.obj --fov 40 --zoom 1.5"));
-    // A generator has its name in any folder, unless the folder has such a file.
+    // The name of a generator is valid in any folder, unless the folder has a file with this name.
     let missing = "title = \"A\"\nmodel = \"b.obj\"\n";
     std::fs::write(inner.join("missing.toml"), missing).unwrap();
     assert_eq!(
@@ -119,7 +119,7 @@ fn scenes_of_meshes_are_those_of_render() {
     assert_eq!(output.status.code(), Some(2), "the output is an input");
 }
 
-/// All errors of a scene file have a line.
+/// Each error of a scene file is reported on its own line.
 #[test]
 fn all_errors_of_a_scene_file() {
     let folder = folder("scene-errors");
@@ -155,7 +155,7 @@ fn the_lens_of_a_scene() {
     assert!(narrow == render("narrow.toml --camera 4,30,70 --fov 30"));
 }
 
-/// An option that a scene also sets is rejected, not ignored.
+/// An option that sets a property of the scene is rejected, not ignored.
 #[test]
 fn options_that_a_scene_states() {
     let folder = folder("scene-options");
@@ -187,8 +187,8 @@ fn options_that_a_scene_states() {
     assert!(!folder.join("a.png").exists());
 }
 
-/// The key `stereo` of a scene has the effect of the option, for meshes, objects, and a mesh in a field; the depths are those of
-/// the left eye.
+/// The key `stereo` of a scene has the effect of the option for meshes, objects, and a mesh in a
+/// field. The depths are those of the left eye.
 #[test]
 fn two_eyes() {
     let folder = folder("scene-two-eyes");
@@ -227,7 +227,8 @@ fn two_eyes() {
 #[test]
 fn quality_of_a_scene() {
     let folder = folder("scene-quality");
-    // Its rays march: a quality sets a threshold too, and the pictures of two qualities differ at one size.
+    // The rays of this field march, so a quality also sets a threshold, and pictures of the same
+    // size differ between two qualities.
     const FIELD: &str =
         "title = \"A\"\nfield = \"smooth:0.3,box:1,1,0.2+sphere:0.7\"\ncamera = \"3 25 70\"\n";
     for (name, keys) in [
@@ -263,7 +264,7 @@ fn quality_of_a_scene() {
     assert!(error.contains("fast, balanced, exact"), "{error}");
 }
 
-/// The key and the option `prepass` are accepted without effect, and a note says so.
+/// The key and the option `prepass` are accepted, but have no effect, as a note says.
 #[test]
 fn a_prepass_has_no_effect() {
     const NOTE: &str =

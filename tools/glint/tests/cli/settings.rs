@@ -4,7 +4,7 @@ use crate::common::{all_refused, folder, glint, glint_in, report, said, succeed,
 use std::path::Path;
 use std::process::Command;
 
-/// The error of a command that must fail; the error has one line.
+/// Runs a command that must fail, and returns its error, which has one line.
 fn error(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> String {
     let output = glint_in(folder, arguments, variables);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -41,7 +41,7 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
         let start =
             format!("error: {expected}: expected `emulated`, `virtual` or a serial port, found: ");
         assert!(error.starts_with(&start), "{error}");
-        // The ports of this host, if any.
+        // The error lists the ports of this host, if any.
         assert!(error.contains("; this host has "), "{error}");
     }
     let slow = error(&folder, upload, &[("GLINT_BAUD", "slow")]);
@@ -67,8 +67,8 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     succeed(&folder, "model cube cube.obj");
 }
 
-/// Labels of errors and warnings have the colours of clap's labels on a terminal only. A standard error that accepts no output
-/// does not change the exit code.
+/// Only on a terminal do the labels of errors and warnings have the colours of clap's labels. A
+/// standard error that accepts no output does not change the exit code.
 #[test]
 fn colours() {
     let folder = folder("colours");
@@ -143,7 +143,7 @@ fn ports_are_listed() {
     let folder = folder("ports");
     let ports = report(&folder, "ports");
     let lines = succeed(&folder, "ports");
-    // Without a port the command also prints one line.
+    // Without any port the command prints one line, too.
     assert_eq!(
         lines.lines().count(),
         ports.as_array().unwrap().len().max(1)
@@ -227,7 +227,8 @@ fn a_baud_rate_is_one_of_a_serial_line() {
     );
 }
 
-/// A script from a device without an end is rejected within bounded memory; a pipe is read as its lines arrive.
+/// A script from an endless device is rejected within bounded memory. The lines of a pipe are
+/// executed as they arrive.
 #[test]
 fn scripts_of_devices_and_pipes() {
     let folder = folder("settings-scripts");
@@ -254,7 +255,8 @@ fn scripts_of_devices_and_pipes() {
     writer.join().unwrap().unwrap();
 }
 
-/// The help of `render` and `orbit` has groups; only the options of all commands are in none.
+/// The help of `render` and `orbit` groups the options. Only options that all commands have are
+/// outside of the groups.
 #[test]
 fn the_help_has_groups() {
     let folder = folder("settings-help");
@@ -297,7 +299,7 @@ fn the_help_has_groups() {
     }
 }
 
-/// Files that a board cannot run are rejected before it is opened.
+/// A program file that a board cannot run is rejected before the board is opened.
 #[test]
 fn only_programs_are_flashed() {
     let folder = folder("settings-programs");

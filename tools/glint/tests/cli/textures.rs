@@ -28,7 +28,7 @@ fn a_picture_becomes_a_texture_and_a_picture_of_its_levels() {
     let sheet = Picture::decode(&fs::read(folder.join("b.png")).unwrap()).unwrap();
     assert_eq!(sheet.size, [15, 8]);
     assert_eq!(sheet.texels[0][3], 0);
-    // A texture is kept, and reads differently by options.
+    // Converting a texture keeps it, and options change only its wrap modes and filter.
     succeed(&folder, "texture a.glt b.glt");
     let read = |name: &str| fs::read(folder.join(name)).unwrap();
     assert!(read("a.glt") == read("b.glt"));
@@ -118,7 +118,7 @@ fn textures_of_a_mesh() {
         text.contains("texture    'sub/a b.png': 8×8, rgb565, cut-out, 4 levels, 256 bytes, error"),
         "{text}"
     );
-    // The mesh in memory keeps its texture.
+    // A mesh in a board's memory layout keeps its texture.
     let report = report(&folder, "convert a.glm b.glm --keep-scale --keep-order");
     assert_eq!(report["textures"][0]["size"], serde_json::json!([8, 8]));
     let read = |name: &str| fs::read(folder.join(name)).unwrap();
@@ -131,7 +131,7 @@ fn textures_of_a_mesh() {
         text.contains("texture    1: 8×8, palette 256, cut-out"),
         "{text}"
     );
-    // Without the texture the mesh is that of the material's colour.
+    // Without the texture the mesh equals a mesh in the material's colour.
     succeed(&folder, "convert a.obj plain.glm --no-textures");
     fs::write(folder.join("a.mtl"), "newmtl a\nKd 1 0 0\n").unwrap();
     succeed(&folder, "convert a.obj b.glm");
@@ -148,7 +148,8 @@ fn textures_of_a_mesh() {
     assert!(!text.contains("textures"), "{text}");
 }
 
-/// Commands that take a model convert its textures by the options of `glint convert`, and print the same line.
+/// All commands that take a model have the texture options of `glint convert`, and print the same
+/// line.
 #[test]
 fn textures_where_a_model_is_taken() {
     let folder = folder("textures-taken");
@@ -182,7 +183,8 @@ fn textures_where_a_model_is_taken() {
         assert_eq!(json["textures"][0]["colours"], 16, "{command}");
         assert_eq!(line_of(&run("--no-textures")), None, "{command}");
     }
-    // The picture is that of the converted mesh; a mesh in memory keeps its texture, unless an option is given.
+    // The picture equals that of the converted mesh. A mesh in a board's memory layout keeps its
+    // texture unless an option is given.
     let picture = |arguments: &str| {
         let command = format!("render {arguments} --up y --out p.png");
         succeed(&folder, &command);

@@ -1,4 +1,5 @@
-//! Files with content that their format does not define are loaded, with a warning for each such content.
+//! Files with content that their format does not define are loaded, with a warning about this
+//! content.
 
 use crate::common::{SQUARE, folder, picture, said, succeed};
 use std::fs;

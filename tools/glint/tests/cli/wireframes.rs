@@ -44,10 +44,11 @@ fn programs_of_meshes() {
     std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
     for (model, segments) in [("cube", 12), ("square.obj", 4), ("icosphere:8", 1920)] {
         let text = succeed(&folder, &format!("wireframe make {model} --out a.wfb"));
-        let dropped = "dropped    0 edges without a length at 2^-11";
+        let dropped = "dropped    0 edges of length 0 after rounding to 2^-11";
         assert_eq!(text, format!("written    {segments} segments\n{dropped}\n"));
     }
-    // An STL shares no points: each of a cube's 12 triangles has its own points, so the 6 diagonals are edges too.
+    // The triangles of an STL do not share points. All 12 triangles of a cube count, so the 6
+    // diagonals are edges, too.
     succeed(&folder, "model cube cube.stl");
     let json = report(&folder, "wireframe make cube.stl --out a.wft");
     assert_eq!(json["segments"], 18);
@@ -123,7 +124,7 @@ fn pictures_after_keys() {
     let (text, small) = render("--press=up:300 --motion=accumulated --size=320x180");
     assert_eq!(small.len(), 3 * 320 * 180);
     assert!(
-        text.ends_with("note       61 steps would have left the range, and were left out\n"),
+        text.ends_with("note       61 steps were skipped, because coordinates would have left their range\n"),
         "{text}"
     );
     let (json, _) = render("--json");
