@@ -146,7 +146,7 @@ def cases(rates):
     return found
 
 
-# Scenes of fields that are drawn by exits: eyes, width and quality, required frames a second, and goal.
+# Scenes of fields that are drawn by exits: name, number of eyes, width of the picture, required frames a second, and goal.
 SCENES = [("cubes", 1, 640, 150, 190), ("poor-mans-vr", 2, 640, 180, 250), ("cubes", 1, 1280, 30, 60),
           ("menger", 1, 1280, 30, 60), ("mesh-in-field", 1, 1280, 30, 60), ("poor-mans-vr", 2, 1280, 30, 60)]
 

@@ -32,7 +32,7 @@ impl Method {
 pub struct Turned {
     /// Number of rotations.
     pub steps: u32,
-    /// Largest error of an entry.
+    /// Largest error of an entry of the matrix.
     pub error: f64,
     /// Largest relative change, by magnitude, of the length of an axis of the object.
     pub growth: f64,

@@ -84,7 +84,7 @@ pub struct Options {
     /// `menger:LEVELS`, `box`, `octahedron`, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`, `cone` [default: all; faces for a board with an FPGA]
     #[arg(long)]
     fields: Option<String>,
-    /// Evaluations of the field per clock: 1, 2 or 4 [default: those of the fields]
+    /// Evaluations of the field per clock: 1, 2 or 4 [default: depends on the fields]
     #[arg(long)]
     lanes: Option<String>,
     /// Frequency of the system clock in MHz, a multiple of 0.25 [default: the scenes' frequency, else 81.25, or 40 for the ulx3s]
@@ -108,37 +108,28 @@ impl Options {
         if !self.scene.is_empty() {
             let scenes = scenes::read(&self.scene)?;
             let mut needs = board.needs(&scenes);
-            let further = Block::ALL
-                .into_iter()
-                .filter(|block| self.blocks.iter().any(|name| name == block.name()));
-            needs.blocks.extend(further);
-            needs.geometry |= needs.blocks.contains(&Block::Line)
-                || self
-                    .blocks
-                    .iter()
-                    .any(|name| name == Block::Triangle.name());
+            let is_further = |block: &Block| self.blocks.iter().any(|name| name == block.name());
+            needs
+                .blocks
+                .extend(Block::ALL.into_iter().filter(is_further));
+            needs.geometry |= needs.blocks.contains(&Block::Line) || is_further(&Block::Triangle);
             needs.depths |= needs.blocks.contains(&Block::Triangle);
             arguments = needs.options();
-            clock = match clock {
-                None => scenes::clock(&scenes)?.map(|clock| clock.to_string()),
-                clock => clock,
-            };
-        }
-        if self.scene.is_empty() && !self.blocks.is_empty() {
+            if clock.is_none() {
+                clock = scenes::clock(&scenes)?.map(|clock| clock.to_string());
+            }
+        } else if !self.blocks.is_empty() {
             arguments.push("--blocks".to_owned());
             arguments.extend(self.blocks.iter().cloned());
         }
-        if self.smooth {
-            arguments.push("--smooth".to_owned());
-        }
-        if self.texture {
-            arguments.push("--texture".to_owned());
-        }
-        if self.no_geometry {
-            arguments.push("--no-geometry".to_owned());
-        }
-        if self.no_depths {
-            arguments.push("--no-depths".to_owned());
+        let flags = [
+            ("--smooth", self.smooth),
+            ("--texture", self.texture),
+            ("--no-geometry", self.no_geometry),
+            ("--no-depths", self.no_depths),
+        ];
+        for (name, _) in flags.into_iter().filter(|(_, is_set)| *is_set) {
+            arguments.push(name.to_owned());
         }
         let values = [
             ("--fields", &self.fields),
@@ -146,11 +137,9 @@ impl Options {
             ("--clock", &clock),
         ];
         for (name, value) in values {
-            arguments.extend(
-                value
-                    .iter()
-                    .flat_map(|value| [name.to_owned(), value.clone()]),
-            );
+            if let Some(value) = value {
+                arguments.extend([name.to_owned(), value.clone()]);
+            }
         }
         Ok(arguments)
     }
@@ -267,7 +256,7 @@ pub enum Library {
     Profiled,
     /// Little optimisation and no profile: a shorter build for a board that runs only a few frames.
     Quick,
-    /// With output of waveforms.
+    /// Writes waveforms, and is slower.
     Waveforms,
 }
 

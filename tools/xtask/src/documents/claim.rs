@@ -26,7 +26,7 @@ const UNITS: [&str; 11] = [
     r" ULP\b",
     r" °/h",
     r" (?:pixels? off|wrong pixels|wrong faces)",
-    // Ratio.
+    // Ratios.
     r"(?:(?: ?%| times|×|x) (?:fewer|less|more|faster|slower|smaller|larger|longer|shorter|as \w+)\b|x speed-up)",
 ];
 

@@ -2,8 +2,7 @@
 //! of the engines.
 
 use anyhow::{Context, Result, ensure};
-use glint::board::Board;
-use glint::board::{Simulation, Uart};
+use glint::board::{Board, Simulation, Uart};
 use glint::console::Console;
 use glint::gesture::{image_sensor, moving_hand};
 use glint::transfer::upload;
@@ -76,13 +75,10 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
     bench.across("camera after an orbit of 12 frames", 100, |board| {
         let before = view(board)?;
         command(board, "orbit 12")?;
-        let is_back = view(board)? == before;
-        Ok(if is_back {
-            "back at its start"
-        } else {
-            "elsewhere"
-        }
-        .to_owned())
+        Ok(match view(board)? == before {
+            true => "back at its start".to_owned(),
+            false => "elsewhere".to_owned(),
+        })
     })?;
     bench.same_answers("after 2^32 cycles", &answers)?;
     bench.across("samples of a calibration", 100, |board| {
@@ -323,30 +319,21 @@ impl Bench {
 
     /// Compares the firmware's clocks with the clock of the emulated board.
     fn clocks(&mut self, when: &str) -> Result<()> {
-        let shown: u64 = value(&mut self.board, "info uptime_ms", "uptime_ms")?;
-        let exact = self.milliseconds();
-        let what = "uptime_ms";
-        let near = |shown: u64| {
-            if exact.abs_diff(shown) <= 1 {
-                exact
-            } else {
-                shown
-            }
-        };
-        self.note(when, what, exact.to_string(), near(shown).to_string());
-        let blankings = self.board.inner().blankings() & u64::from(u32::MAX);
-        let shown: u64 = value(&mut self.board, "info video_frames", "video_frames")?;
-        let near = if blankings.abs_diff(shown) <= 1 {
-            blankings
-        } else {
-            shown
-        };
-        self.note(
-            when,
-            "video_frames",
-            blankings.to_string(),
-            near.to_string(),
-        );
+        let blankings = |bench: &mut Self| bench.board.inner().blankings() & u64::from(u32::MAX);
+        let clocks: [(&str, &dyn Fn(&mut Self) -> u64); 2] = [
+            ("uptime_ms", &Self::milliseconds),
+            ("video_frames", &blankings),
+        ];
+        for (key, clock) in clocks {
+            let shown: u64 = value(&mut self.board, &format!("info {key}"), key)?;
+            let exact = clock(self);
+            // The clock may have advanced since the reply.
+            let measured = match exact.abs_diff(shown) {
+                0 | 1 => exact,
+                _ => shown,
+            };
+            self.note(when, key, exact.to_string(), measured.to_string());
+        }
         Ok(())
     }
 }
