@@ -28,7 +28,7 @@ _io = [
         Subsignal("scl", Pins("C11")),
         Misc("PULLMODE=UP"), _3V3),
 
-    # An image sensor at the following pins of the header, GP1 to GN8: its clock is at a pin that reaches the FPGA's clock network.
+    # An image sensor at the following pins of the header, GP1 to GN8. Its clock uses a pin that is connected to the FPGA's clock network.
     ("camera", 0,
         Subsignal("pclk", Pins("A10")),
         Subsignal("xclk", Pins("A11"), Misc("DRIVE=4")),
@@ -61,7 +61,7 @@ _io = [
         Subsignal("dq", Pins("J16 L18 M18 N18 P18 T18 T17 U20 E19 D20 D19 C20 E18 F18 J18 J17")),
         Misc("SLEWRATE=FAST"), _3V3),
 
-    # High: the ESP32 on the board starts its own program, and does not wait for a download.
+    # A high level lets the ESP32 on the board start its own program instead of waiting for a download.
     ("wifi_gpio0", 0, Pins("L2"), _3V3),
 ]
 

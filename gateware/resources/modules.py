@@ -26,8 +26,8 @@ class Module:
         return {self.top: {}, **self.variants}
 
 
-# Video timing of a small picture: a frame takes about 1/200 of the time of a 1280x720 frame, but in the active part of a line a memory
-# word lasts for the same number of pixel clocks.
+# Video timing of a small picture. A frame takes about 1/200 of the time of a 1280x720 frame, but a memory word lasts for the same
+# number of pixel clocks.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
@@ -70,7 +70,7 @@ MODULES = [
     Module(top="texture_shader", measured=("texture_shader",)),
     Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),
     Module(top="colour_window"),
-    # A sensor's clock counts as stopped after 2^6 clocks.
+    # In the build gesture_engine_hasty, the sensor's clock counts as stopped after 2^6 clocks.
     Module(top="gesture_engine",
            variants={"gesture_engine_hasty": {"MOMENTS": 1, "TIMEOUT_BITS": 6}}, measured=("gesture_engine",)),
     Module(top="texture_filter"),

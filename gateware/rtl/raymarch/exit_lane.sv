@@ -34,7 +34,7 @@ module exit_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1,
     parameter bit          STEREO = 1'b1,
-    // Whether rays may meet spheres of a list. Each ray then has a limit of its own; otherwise `far_t` is the limit of every ray.
+    // Whether rays may meet spheres of a list. Each ray then has its own limit; otherwise `far_t` is the limit of all rays.
     parameter bit          ROUND  = 1'b0,
     // Whether there may be spheres of a lattice, with BOXES.
     parameter bit          LATTICE = 1'b0,
@@ -81,7 +81,7 @@ module exit_lane #(
     logic               is_lattice, meets_21, lands_22;
     exit_pkg::equation_t equation_22;
 
-    // An octahedron: whether the point is above the fourth slab, and whether the ray leads down along its axis.
+    // An octahedron: whether the point is above the fourth slab, and whether the ray's coordinate along its axis decreases.
     logic beyond_21, down_sum_22;
 
     // State of a ray: its T, the axis of the last plane that it has crossed, the number of its evaluations including this round,

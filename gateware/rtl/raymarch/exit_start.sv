@@ -109,7 +109,7 @@ module exit_start #(
         .clk, .exits(exit_18), .there(there_18), .choice(eye_18 ? choice[1] : choice[0]), .t(exit_20), .axis(axis_20), .crossed(crossed_20)
     );
 
-    // A ray that leads away, has left the solid, or leaves the prism beyond the far limit misses without an evaluation.
+    // A ray is a miss without an evaluation if it leads away from the solid, has left the solid, or leaves the prism beyond the far limit.
     logic [exit_pkg::T_BITS-1:0] exit_21, start_22;
     logic [1:0] axis_21, axis_22;
     logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_21, reached_22;

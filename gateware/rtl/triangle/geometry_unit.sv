@@ -25,8 +25,8 @@
 //
 // Without TRIANGLES, the units for triangles, from vertex_cache to setup, are not built, and each pass has the flag `lines`.
 //
-// With TEXTURE, the flag `textures` selects the textures of the mesh: the texture coordinates of a vertex are read beside the vertex, and
-// kept with it in the vertex_cache.
+// With TEXTURE, the flag `textures` selects the textures of the mesh: the texture coordinates of a vertex are read in parallel with the
+// vertex, and stored with it in the vertex_cache.
 //
 // The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading or textures), 3 per culled triangle, 6
 // per vertex that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH, 8 with TEXTURE) plus 2 clocks for each band of
@@ -217,7 +217,8 @@ module geometry_unit #(
         assign vertex = data[128 +: 128];
         assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
 
-        // Reads the texture coordinates of each fetched vertex, two vertices a word, beside the vertex.
+        // Reads the texture coordinates of each fetched vertex in parallel with the vertex. A word
+        // contains the coordinates of two vertices.
         logic [63:0] coordinates;
         logic        has_coordinates;
 
