@@ -230,32 +230,6 @@ impl Chip {
         self.answers = self.now + RESET_TIME;
     }
 
-    /// Whether the chip acknowledges `address`.
-    #[must_use]
-    pub fn answers(&self, address: u8) -> bool {
-        address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
-    }
-
-    /// Advances the time to `now`, in ns. A `now` before the current time has no effect.
-    pub fn advance(&mut self, now: u64) {
-        while let Some(time) = self.next
-            && time <= now
-        {
-            self.next = Some(time + self.period());
-            if self.fault != Some(Fault::Stalled) {
-                self.measure(time);
-            }
-        }
-        self.now = self.now.max(now);
-        self.refresh();
-    }
-
-    /// Notifies the chip of the start or end of a transfer; the data registers do not change during a transfer.
-    pub fn set_addressed(&mut self, is_addressed: bool) {
-        self.is_addressed = is_addressed;
-        self.refresh();
-    }
-
     /// Sample period in ns.
     #[must_use]
     pub fn period(&self) -> u64 {
@@ -394,15 +368,25 @@ impl Device for Chip {
     }
 
     fn advance(&mut self, now: u64) {
-        Self::advance(self, now);
+        while let Some(time) = self.next
+            && time <= now
+        {
+            self.next = Some(time + self.period());
+            if self.fault != Some(Fault::Stalled) {
+                self.measure(time);
+            }
+        }
+        self.now = self.now.max(now);
+        self.refresh();
     }
 
     fn set_addressed(&mut self, is_addressed: bool) {
-        Self::set_addressed(self, is_addressed);
+        self.is_addressed = is_addressed;
+        self.refresh();
     }
 
     fn answers(&self, address: u8) -> bool {
-        Self::answers(self, address)
+        address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
     }
 
     fn acknowledges(&self) -> bool {
