@@ -132,7 +132,7 @@ impl Uart for EmulatedBoard {
     /// Runs for at least `cycles` cycles; the last instruction may end later.
     fn run(&mut self, cycles: u64) {
         let end = self.cycles.saturating_add(cycles);
-        self.bus.devices.look();
+        self.bus.devices.update_lines();
         while self.cycles < end {
             let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
             let lines = self.bus.devices.interrupts();

@@ -336,8 +336,7 @@ impl I2c {
         match self.state {
             State::Failed => false,
             State::Idle => !self.commands.is_empty(),
-            State::Held | State::Set | State::High | State::Low => true,
-            State::Fall | State::Rise | State::Free => true,
+            _ => true,
         }
     }
 }
@@ -425,8 +424,7 @@ impl Device for I2c {
                 match self.state {
                     State::Idle => self.begin(round, true),
                     State::Failed => {}
-                    State::Held | State::Set | State::High | State::Low => self.fail(Error::Late),
-                    State::Fall | State::Rise | State::Free => self.fail(Error::Late),
+                    _ => self.fail(Error::Late),
                 }
             }
         }

@@ -4,7 +4,7 @@ use glint_core::field::MAX_SPHERES;
 use glint_model::raymarch::exits::{Cone, Cones};
 use litex_pac::raymarch::Solid;
 
-/// Number of registers for the constants of a cone.
+/// Number of words for the constants of a cone.
 const PLACES: usize = Cone::WORDS;
 
 /// The constants that writes to the registers have set, by eye and cone.

@@ -48,7 +48,7 @@ impl GeometryUnit {
         }
     }
 
-    /// Discards the output, so that the next pass cannot continue it.
+    /// Discards the output, so that the next pass starts with empty lists.
     pub const fn cancel(&mut self) {
         self.has_output = false;
     }

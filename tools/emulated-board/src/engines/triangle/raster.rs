@@ -256,7 +256,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Draws the list of a band of a set.
+    /// Draws the descriptors in one band's list of a set.
     fn draw_list(&mut self, set: &Set, band: u32, list_shift: u32, ram: &MainMemory) {
         let length = entry(ram, set.lists, band);
         self.counts.read += 1;
