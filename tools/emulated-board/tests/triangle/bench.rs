@@ -1,7 +1,7 @@
-//! A triangle engine with main memory, operated as the firmware does.
+//! A triangle engine with main memory, which the bench operates like the firmware.
 
 use emulated_board::{Device, MainMemory, TriangleEngine};
-use glint_core::camera::Projection;
+use glint_core::camera::{Projection, View};
 use glint_core::colour::Shading;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
@@ -321,10 +321,12 @@ pub fn geometry_flags(frame: &MeshSetup, options: &Options) -> Geometry {
 }
 
 /// Prepares a mesh for a frame of this mesh only.
-pub fn alone<'a>(mesh: &'a [u8], frame: MeshSetup, cull: bool) -> PreparedMesh<'a> {
+pub fn alone<'a>(mesh: &'a [u8], view: &View, size: Size, cull: bool) -> PreparedMesh<'a> {
+    let mesh = Mesh::new_checked(mesh).expect("a mesh");
+    let [width, height] = size.pixels();
     PreparedMesh {
-        mesh: Mesh::new_checked(mesh).expect("a mesh"),
-        frame,
+        mesh,
+        frame: MeshSetup::new(view, width, height, mesh.radius()).expect("a frame"),
         options: Options {
             cull,
             clear: glint_vectors::picture::CLEAR,
