@@ -220,7 +220,7 @@ impl VirtualBoard {
     /// Reads new serial output, video and the state of the digits from the SoC.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
-        self.digits.look(self.soc.cycles(), self.soc.digits());
+        self.digits.update(self.soc.cycles(), self.soc.digits());
         if self.monitor.is_on() {
             let monitor = &mut self.monitor;
             self.soc.video_take(|samples| monitor.watch(samples));

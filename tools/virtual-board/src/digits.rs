@@ -14,7 +14,7 @@ pub(crate) struct Digits {
 
 impl Digits {
     /// Processes the pins of both displays in a cycle: for each display its lit digits, one bit each, and its lit segments.
-    pub fn look(&mut self, cycle: u64, displays: [[u8; 2]; 2]) {
+    pub fn update(&mut self, cycle: u64, displays: [[u8; 2]; 2]) {
         for (digits, [lit, segments]) in self.digits.chunks_mut(4).zip(displays) {
             for (place, digit) in digits.iter_mut().enumerate() {
                 if lit >> place & 1 != 0 {
@@ -38,8 +38,8 @@ mod tests {
     #[test]
     fn a_digit_is_seen_until_it_was_dark_for_two_turns() {
         let mut digits = Digits::default();
-        digits.look(5, [[0b0001, 0x06], [0, 0x06]]);
-        digits.look(7, [[0, 0xff], [0b1000, 0xff]]);
+        digits.update(5, [[0b0001, 0x06], [0, 0x06]]);
+        digits.update(7, [[0, 0xff], [0b1000, 0xff]]);
         assert_eq!(digits.seen(8), [0x06, 0, 0, 0, 0, 0, 0, 0xff]);
         assert_eq!(digits.seen(5 + SEEN), [0, 0, 0, 0, 0, 0, 0, 0xff]);
         assert_eq!(digits.seen(7 + SEEN), [0; 8]);

@@ -99,10 +99,7 @@ impl<B: Uart + Send + 'static> Pty<B> {
     #[must_use]
     pub fn stop(mut self) -> B {
         self.tasks = None;
-        let thread = self
-            .thread
-            .take()
-            .expect("the thread runs until `stop`");
+        let thread = self.thread.take().expect("the thread runs until `stop`");
         thread
             .join()
             .expect("the virtual board's thread has panicked")
@@ -165,7 +162,7 @@ fn run<B: Uart>(
                     board.uart_write(&input[..count]);
                     watch(&input[..count], &[]);
                 }
-                Err(error) if is_passing(&error) => {}
+                Err(error) if is_temporary(&error) => {}
                 Err(error) => panic!("reading the virtual board's terminal: {error}"),
             }
         }
@@ -175,7 +172,7 @@ fn run<B: Uart>(
         board.uart_read(&mut output);
         match terminal.write(&output) {
             Ok(count) => drop(output.drain(..count)),
-            Err(error) if is_passing(&error) => {}
+            Err(error) if is_temporary(&error) => {}
             Err(error) => panic!("writing the virtual board's terminal: {error}"),
         }
         if output.len() > UNREAD {
@@ -185,7 +182,7 @@ fn run<B: Uart>(
 }
 
 /// Whether the error only means that no data can be transferred at present, so that the thread continues.
-fn is_passing(error: &io::Error) -> bool {
+fn is_temporary(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }
 
