@@ -27,7 +27,8 @@ impl Counters {
         }
     }
 
-    /// Adds the increments of the current clock; call it between [`Module::settle`] and [`Module::clock`].
+    /// Adds the increments of the current clock; call this method between [`Module::settle`] and
+    /// [`Module::clock`].
     pub fn sample(&mut self, module: &Module) {
         let events = module.get(self.events);
         if events == Bits::default() {

@@ -34,15 +34,7 @@ impl Memory {
     /// When the address is beyond the memory.
     #[must_use]
     pub fn word(&self, address: u32) -> Bits {
-        let bytes = self.words[address as usize];
-        Bits::from_words(
-            &bytes
-                .as_chunks()
-                .0
-                .iter()
-                .map(|&b| u32::from_le_bytes(b))
-                .collect::<Vec<_>>(),
-        )
+        Bits::from_bytes(&self.words[address as usize])
     }
 
     /// Writes the bytes of `data` whose `strobe` bits are set to word `address`.
@@ -71,8 +63,8 @@ impl Memory {
 /// Default latency of a read port: clocks from a command to its data.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a module's read port, the structs `NAME_read_request` and `NAME_read_answer`. The module must take each
-/// word in the clock in which the memory delivers it.
+/// The memory's side of a module's read port, which consists of the structs `NAME_read_request` and
+/// `NAME_read_answer`. The module must take each word in the clock in which the memory delivers it.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
@@ -131,8 +123,9 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a module's write port, the structs `NAME_write_request` and `NAME_write_answer`. The memory takes a
-/// command's data in any later clock, in which the data must be valid.
+/// The memory's side of a module's write port, which consists of the structs `NAME_write_request`
+/// and `NAME_write_answer`. The memory takes a command's data in any later clock; the data must be
+/// valid in that clock.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],

@@ -1,4 +1,6 @@
-//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, results of rays, and pixels.
+//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays,
+//! results of rays, and pixels. docs/raymarch.md explains the two kinds of rays: rays by exits, and
+//! marching rays.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{FixedCone, Solid, Surface, magnitude};
@@ -122,7 +124,7 @@ pub fn exit_ray(
     record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
     for axis in 0..3 {
         record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 5);
-        record.set(&format!("inverse[{axis}]"), reciprocal(beam.inverse[axis]));
+        record.set(&format!("inverse[{axis}]"), beam.inverse[axis].word());
     }
     if solid.rule.is_lattice() {
         set_length(&mut record, beam);
@@ -150,12 +152,6 @@ fn set_length(record: &mut Record, beam: &Beam) {
     let Inverse { mantissa, exponent } = beam.inverse_square;
     record.set("inverse_square.exponent", exponent + 2);
     record.set("inverse_square.mantissa", mantissa >> 4 & ((1 << 18) - 1));
-}
-
-/// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
-#[must_use]
-pub fn reciprocal(inverse: Inverse) -> u64 {
-    inverse.word().into()
 }
 
 /// Clears the members that have no meaning: the start of a ray that has ended, the sphere number of
@@ -292,15 +288,6 @@ impl End {
     }
 }
 
-/// The constants of a frame whose rays march.
-///
-/// # Panics
-/// If the rays of the frame go by exits.
-#[must_use]
-pub fn marching(setup: &FieldSetup) -> &Marching {
-    setup.marching().expect("marching rays")
-}
-
 fn solid(mut solid: Record, marching: &Marching) -> Record {
     let blend = marching.beside.blend;
     solid.set("blend_inverse", blend.inverse);
@@ -375,7 +362,7 @@ fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>;
 
 /// Drives the frame constants of a lane for marching rays.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
-    let marching = marching(setup);
+    let marching = setup.marching().expect("marching rays");
     let record = module
         .record("tuning")
         .with("cap", marching.cap)

@@ -30,12 +30,12 @@ pub struct Raymarcher {
 
 /// Cost of a frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Taken {
+pub struct FrameCost {
     /// Clocks from the start of the frame to its end.
     pub clocks: u64,
     /// Number of clocks in which a lane could accept a ray but none came, summed over the lanes.
     pub idle: u64,
-    /// Statistics of the model, which the module's counters confirm.
+    /// Statistics of the model, which the module's counters have matched.
     pub stats: FieldStats,
 }
 
@@ -94,7 +94,7 @@ impl Raymarcher {
         mut random: Option<&mut Random>,
         setup: &FieldSetup,
         palette: &Palette,
-    ) -> Taken {
+    ) -> FrameCost {
         self.set(setup, palette);
         let lines = band_rows(setup.width);
         let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
@@ -184,14 +184,14 @@ impl Raymarcher {
             "{:?} of {setup:?}",
             &COUNTERS[2..]
         );
-        Taken {
+        FrameCost {
             clocks,
             idle,
             stats,
         }
     }
     /// Draws a frame for a number of clocks, and cancels it.
-    pub fn give_up(&mut self, setup: &FieldSetup, clocks: u32) {
+    pub fn cancel(&mut self, setup: &FieldSetup, clocks: u32) {
         self.set(setup, &Palette::default());
         self.module.drive("band_open", 1);
         self.module.drive("group_ready", 1);
@@ -203,7 +203,7 @@ impl Raymarcher {
         self.counted = self.counted();
     }
 
-    /// Number of clocks so far in which a pixel waited to be taken.
+    /// Number of clocks so far in which the output of pixels was stalled.
     #[must_use]
     pub fn stalled(&self) -> u64 {
         self.counters.get("cycles_stalled")
