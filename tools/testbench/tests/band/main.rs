@@ -1,4 +1,5 @@
-//! Tests of the band buffer: its pixels equal the pixels of a plain depth test, and each flush writes the band's changed words in order.
+//! Tests of the band buffer: the pixels must equal those of a plain depth test, and each flush must
+//! write the band's changed words in order.
 
 mod bench;
 mod pixels;
@@ -336,8 +337,8 @@ fn a_restart_ends_whatever_goes_on() {
         println!("seed {seed}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
-        // The restart comes during the flush of a band and the drawing of the next band. With few rows, the clearing after the
-        // restart reaches the last drawn rows early.
+        // The restart happens while a band is flushed and the next band is drawn. With few rows,
+        // the clearing after the restart soon reaches the rows that were drawn last.
         let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);

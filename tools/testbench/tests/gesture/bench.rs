@@ -16,20 +16,22 @@ pub struct Clocks {
 }
 
 impl Clocks {
-    /// Periods in ps of the Urbana's system clock and of an image sensor that sends 640x480 pixels 60 times a second.
+    /// Periods, in ps, of the Urbana's system clock and of an image sensor that sends 640x480
+    /// pixels at 60 frames per second.
     pub const URBANA: Self = Self {
         sys: 12_308,
         camera: 20_400,
     };
 
-    /// An image sensor at twice the engine's clock: a pixel in each clock of the engine.
+    /// An image sensor with twice the engine's clock frequency: one pixel in each clock of the
+    /// engine.
     pub const TWICE: Self = Self {
         sys: 10_000,
         camera: 5_000,
     };
 }
 
-/// The build with short time-outs and with sums of products.
+/// The build with a short time-out for the sensor's clock, and with sums of products.
 pub const HASTY: &str = "gesture_engine_hasty";
 
 /// Settings that mark every pixel of a frame of this size as part of a hand.
@@ -71,7 +73,8 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins. The engine is enabled, and a frame can follow.
+    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins. The engine is
+    /// enabled and has seen a VSYNC, so a frame can follow.
     pub fn usual(clocks: Clocks, settings: Settings, seed: u64) -> Self {
         let mut bench = Self::new(HASTY, clocks, Polarity::default(), false, settings, seed);
         bench.begin();
@@ -149,7 +152,7 @@ impl Bench {
         bench
     }
 
-    /// Makes a bench whose camera sends nothing, not even a clock, and enables the engine.
+    /// Makes a bench whose camera sends neither frames nor a clock, and enables the engine.
     pub fn silent(name: &str) -> Self {
         let mut bench = Self::stopped(
             name,

@@ -1,4 +1,5 @@
-//! Tests with random frames, polarities, settings and faults, and at the frame rates that the engine must support.
+//! Tests with random frames, polarities, settings and faults, and tests at the frame rates that the
+//! engine must support.
 
 use glint_core::gesture::Region;
 use glint_model::gesture::{Channel, Polarity, Settings};
@@ -206,7 +207,8 @@ fn sums_of_the_largest_frame_fit() {
     );
 }
 
-/// A small picture of a frame of 640x480 is a mask of 160x120, or 40x30 colours; a larger picture is cut at the end of its memory.
+/// The small picture of a 640x480 frame is a mask of 160x120 bits, or 40x30 colours. A larger
+/// picture is truncated at the end of its memory.
 #[test]
 fn small_pictures() {
     let size = [640, 480];
@@ -224,7 +226,7 @@ fn small_pictures() {
         bench.request_snapshot(step, is_colour);
         bench.frame(&picture(&mut random, size), End::Vsync);
         bench.compare_snapshot();
-        // The snapshot is of the frame after the request, not of the frame in progress.
+        // The small picture shows the frame after the request, not the frame in progress.
         bench.frame(&picture(&mut random, size), End::Vsync);
         bench.compare_snapshot();
         assert_eq!(

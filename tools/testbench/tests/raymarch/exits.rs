@@ -8,11 +8,11 @@ use glint_core::field::{Field, Surface};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::State;
 use glint_model::raymarch::exits::{Exits, Inverse, Rule, Words};
-use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
+use glint_testbench::raymarch::{RayPlace, exit_ray, rule};
 use glint_testbench::{Bits, Layout, Module, Pipe, Record};
 use glint_vectors::Random;
 
-use crate::scenes::{ENDLESS_UNIONS, FIELDS, SPONGES, UNIONS, camera, size, stereo};
+use crate::scenes::{ENDLESS_UNIONS, FIELDS, SPONGES, STALLS, UNIONS, camera, exits, rays};
 
 /// Number of rays in a frame.
 const RAYS: usize = 2_000;
@@ -80,7 +80,7 @@ impl Seen {
         let (axis, is_positive) = (record.get("axis"), record.is_set("positive"));
         match rule {
             Rule::Octahedron => {
-                // As the function `octant` of exit_pkg.
+                // The same computation as the function `octant` of exit_pkg.
                 let negative = [1, 2, 4, 0][axis as usize];
                 Self::Octant(if is_positive { !negative & 7 } else { negative })
             }
@@ -292,12 +292,6 @@ impl Bench {
     }
 }
 
-/// Number of frames. The environment variable `GLINT_RTL_RAYS` sets the number of their rays,
-/// 150,000 by default.
-fn frames() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap()) / RAYS
-}
-
 #[test]
 fn reciprocals() {
     const LATENCY: usize = 12;
@@ -313,8 +307,8 @@ fn reciprocals() {
     module.settle();
     for clock in 0..numbers.len() + LATENCY {
         if let Some(&number) = clock.checked_sub(LATENCY).and_then(|i| numbers.get(i)) {
-            let expected = reciprocal(Inverse::of(2 * number + 1, &Words::CHOSEN));
-            assert_eq!(module.value(inverse), expected, "of {number:#x}");
+            let expected = Inverse::of(2 * number + 1, &Words::CHOSEN).word();
+            assert_eq!(module.value(inverse), u64::from(expected), "of {number:#x}");
         }
         let number = numbers.get(clock).copied().unwrap_or_default();
         module.set(magnitude, u64::from(number));
@@ -327,9 +321,8 @@ fn reciprocals() {
 
 fn random_rays(name: &str, fields: &[&str]) {
     let mut random = Random(7);
-    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
     let mut benches: Vec<Bench> = (1..)
-        .zip(shares)
+        .zip(STALLS)
         .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
     let layout = benches[0]
@@ -337,12 +330,8 @@ fn random_rays(name: &str, fields: &[&str]) {
         .module
         .packed_type("exit_pkg::ray_t")
         .clone();
-    for frame in 0..frames() {
-        let field = Field::parse(fields[frame % fields.len()]).expect("a field");
-        let stereo = random.coin().then(|| stereo(&mut random));
-        let (view, size) = (camera(&mut random), size(&mut random));
-        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
+    for frame in 0..rays() / RAYS {
+        let (exits, eyes) = exits(&mut random, fields[frame % fields.len()]);
         let rays = some_rays(&mut random, &layout, &exits, eyes, name == ALL, RAYS);
         benches[frame / fields.len() % 4].check(&exits, rays);
     }
@@ -367,7 +356,7 @@ fn stiff_rays(name: &str, fields: &[&str]) {
     let mut random = Random(9);
     let mut bench = Bench::new(name, 1, [0.0, 0.0]);
     let layout = bench.pipe.module.packed_type("exit_pkg::ray_t").clone();
-    for frame in 0..20 * frames() {
+    for frame in 0..20 * (rays() / RAYS) {
         let exits = stiff_frame(&mut random, fields[frame % fields.len()]);
         let rays = some_rays(&mut random, &layout, &exits, 1, name == ALL, 1);
         bench.check(&exits, rays);

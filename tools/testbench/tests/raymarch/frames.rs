@@ -1,7 +1,7 @@
 //! Tests of whole frames of the raymarcher.
 
 use glint_model::raymarch::{FieldSetup, Lights, Palette, Shine, State};
-use glint_testbench::{Raymarcher, Taken};
+use glint_testbench::{FrameCost, Raymarcher};
 use glint_vectors::Random;
 
 use crate::scenes::{
@@ -13,7 +13,7 @@ use crate::scenes::{
 const LANES: u64 = 4;
 
 /// The cost of a frame of the module `raymarcher_sponge`, as a text.
-fn busy(taken: &Taken) -> String {
+fn busy(taken: &FrameCost) -> String {
     let evaluations = taken.stats.evaluations as f64;
     format!(
         "{:.2} evaluations a ray, {:.4} a clock and lane, {} clocks, {} of lanes idle",
@@ -174,12 +174,12 @@ fn sponges_keep_the_lanes_busy() {
 }
 
 #[test]
-fn a_frame_given_up_leaves_nothing() {
+fn a_cancelled_frame_leaves_nothing() {
     let mut random = Random(11);
     let mut bench = Raymarcher::new("raymarcher", 3);
     for clocks in [1, 20, 500, 20_000] {
         let setup = setup(&mut random, &["cubes:2,0.5"]);
-        bench.give_up(&setup, clocks);
+        bench.cancel(&setup, clocks);
         let mut setup = setup;
         limit_steps(&mut setup, 8);
         bench.draw(Some(&mut random), &setup, &Palette::default());

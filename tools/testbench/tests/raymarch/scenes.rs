@@ -4,6 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
+use glint_model::raymarch::exits::{Exits, Words};
 use glint_model::raymarch::{FieldOptions, FieldSetup, Form, Light, Lights, Shine, Stereo, Tint};
 
 use glint_vectors::{Camera, Random};
@@ -176,6 +177,23 @@ fn sun(random: &mut Random) -> [i16; 3] {
         .direction()
         .map(|part| (part * 16384.0).round() as i16)
 }
+
+/// Makes random constants of rays by exits in a field; returns them, and the number of eyes.
+pub fn exits(random: &mut Random, field: &str) -> (Exits, usize) {
+    let field = Field::parse(field).expect("a field");
+    let stereo = random.coin().then(|| stereo(random));
+    let (view, size) = (camera(random), size(random));
+    let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
+    (exits, 1 + usize::from(stereo.is_some()))
+}
+
+/// Number of rays of a test. The environment variable `GLINT_RTL_RAYS` sets it, 150,000 by default.
+pub fn rays() -> usize {
+    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
+}
+
+/// Shares of stalls of the source and of the sink of a bench.
+pub const STALLS: [[f64; 2]; 4] = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
 
 /// Makes a random size of a picture.
 pub fn size(random: &mut Random) -> (u32, u32) {

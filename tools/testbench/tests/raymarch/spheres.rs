@@ -1,14 +1,13 @@
 //! Tests of the sphere unit: each pixel has the model's sphere and parameter, in order, under any
 //! backpressure, and takes at most one clock per cone.
 
-use glint_core::field::Field;
-use glint_model::raymarch::exits::{Cone, Exits, Linear, Words};
+use glint_model::raymarch::exits::{Cone, Exits, Linear};
 use glint_testbench::raymarch::set_cones;
 use glint_testbench::{Module, Sink, Stalls, step};
 use glint_vectors::Random;
 use glint_vectors::rays::{self, ONE};
 
-use crate::scenes::{ENDLESS_UNIONS, ROUND, UNIONS, camera, size, stereo};
+use crate::scenes::{self, ENDLESS_UNIONS, ROUND, UNIONS};
 
 /// The radius of `sphere:1`, with 12 fraction bits.
 const RADIUS: i32 = 81 << 11;
@@ -170,12 +169,6 @@ impl Bench {
     }
 }
 
-/// Number of frames. The environment variable `GLINT_RTL_RAYS` sets the number of their rays,
-/// 150,000 by default.
-fn frames() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap()) / 150
-}
-
 #[test]
 fn random_rays() {
     let one_eye = Bench::new("sphere_unit_one_eye", 9, 0.2);
@@ -207,12 +200,9 @@ fn random_frames(name: &str, mut one_eye: Bench, fields: &[&str]) {
         .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
     let (mut all_hits, mut all_discs) = (0, 0);
-    for frame in 0..frames() {
-        let field = Field::parse(fields[frame % fields.len()]).expect("a field");
-        let stereo = random.coin().then(|| stereo(&mut random));
-        let (view, size) = (camera(&mut random), size(&mut random));
-        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
+    let frames = scenes::rays() / 150;
+    for frame in 0..frames {
+        let (exits, eyes) = scenes::exits(&mut random, fields[frame % fields.len()]);
         let window = Window::draw(&mut random, &exits, eyes);
         let bench = match eyes {
             1 if random.coin() => &mut one_eye,
@@ -222,7 +212,7 @@ fn random_frames(name: &str, mut one_eye: Bench, fields: &[&str]) {
         all_hits += hits;
         all_discs += discs;
     }
-    let frames = frames() as u64;
+    let frames = frames as u64;
     assert!(
         all_hits > 10 * frames && all_discs > frames,
         "{all_hits}, {all_discs}"
@@ -234,11 +224,7 @@ fn lines_take_a_clock_for_each_cone() {
     let mut random = Random(12);
     let mut bench = Bench::new("sphere_unit", 1, 0.0);
     for frame in 0..40 {
-        let field = Field::parse(fields()[frame % fields().len()]).expect("a field");
-        let stereo = random.coin().then(|| stereo(&mut random));
-        let (view, size) = (camera(&mut random), size(&mut random));
-        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
+        let (exits, eyes) = scenes::exits(&mut random, fields()[frame % fields().len()]);
         let row = random.integer(0, i64::from(exits.height) - 2) as u32;
         let [clocks, cones, ..] = bench.check(&exits, Window::lines(&exits, row, 2), eyes);
         let cones_of = exits.cones();

@@ -103,17 +103,8 @@ impl Bench {
     }
 
     fn clock(&mut self, step: Option<Step>) {
-        let [
-            valid,
-            mask,
-            half,
-            last,
-            bilinear,
-            opaque,
-            texels,
-            neighbours,
-            weights,
-        ] = self.inputs;
+        let [valid, mask, half, last, bilinear, opaque, rest @ ..] = self.inputs;
+        let [texels, neighbours, weights] = rest;
         let module = &mut self.module;
         self.inside.pop_back();
         self.inside.push_front(step);
@@ -287,22 +278,10 @@ fn steps_keep_their_flags() {
                 Texels::Bilinear {
                     upper,
                     neighbours: [(); 2].map(|()| [random.random(); 4]),
-                    weights: random.random(),
+                    weights: [[(); 2]; 2].map(|pixel| pixel.map(|()| random.random_range(0..16))),
                 }
             } else {
                 Texels::Nearest(random.random())
-            };
-            let texels = match texels {
-                Texels::Bilinear {
-                    neighbours,
-                    weights,
-                    ..
-                } => Texels::Bilinear {
-                    upper,
-                    neighbours,
-                    weights: weights.map(|pixel: [u8; 2]| pixel.map(|weight| weight & 15)),
-                },
-                nearest @ Texels::Nearest(_) => nearest,
             };
             let mut step = step(texels, [FULL; 4]);
             step.mask = match (is_bilinear, upper) {

@@ -113,7 +113,7 @@ fn random_lists_with_random_stalls() {
         let stalls = [0.0, 0.2, 0.5, 0.7][seed as usize % 4];
         let smooth = seed % 3 == 0;
         let mut bench = if smooth {
-            Bench::smooth(seed, stalls)
+            Bench::of("smooth", seed, stalls)
         } else {
             Bench::new(seed, stalls)
         };
@@ -165,14 +165,8 @@ fn frames_after_each_other() {
             let expected = expected_on(clear, &mesh, &ahead(1.0, 0.1), size, false);
             if random.random_ratio(1, 8) {
                 bench.configure(&mesh, &expected);
-                bench.wait_for("status.ready");
-                bench.pulse("geometry_start");
-                bench.wait_for("status.geometry_done");
-                bench.pulse("raster_start");
-                for _ in 0..random.random_range(0..3000) {
-                    bench.clock();
-                }
-                bench.pulse("cancel");
+                bench.run_geometry();
+                bench.cancel_after("raster_start", random.random_range(0..3000));
             }
             bench.draw(&name, &mesh, &expected);
         }
@@ -275,11 +269,7 @@ fn a_cancelled_frame_leaves_a_working_engine() {
                 &mesh,
                 &expected,
             );
-            bench.pulse(port);
-            for _ in 0..clocks {
-                bench.clock();
-            }
-            bench.pulse("cancel");
+            bench.cancel_after(port, clocks);
             let busy = ["status.geometry_busy", "status.raster_busy"].map(|path| bench.read(path));
             assert_eq!(busy, [0, 0], "{port}: still busy after it was cancelled");
             bench.draw(
@@ -302,19 +292,17 @@ fn bad_meshes_and_full_lists_are_reported() {
         mesh[at..at + 4].copy_from_slice(&value.to_le_bytes());
         mesh
     };
-    for (name, mesh) in [
+    for (name, bad) in [
         ("no vertices", damaged(32, 0)),
         ("very many vertices", damaged(32, u32::MAX)),
         ("very many triangles", damaged(36, u32::MAX)),
         ("one triangle too many", damaged(36, 321)),
         ("cut short", mesh[..mesh.len() - 16].to_vec()),
     ] {
-        bench.configure(&mesh, &expected);
-        bench.wait_for("status.ready");
-        bench.pulse("geometry_start");
-        bench.wait_for("status.geometry_done");
+        bench.configure(&bad, &expected);
+        bench.run_geometry();
         assert_eq!(bench.read("status.mesh_error"), 1, "{name}");
-        bench.draw("a good mesh", &generated("icosphere:4"), &expected);
+        bench.draw("a good mesh", &mesh, &expected);
     }
     for (port, limit) in [
         ("geometry.descriptor_limit", 10),
@@ -324,8 +312,7 @@ fn bad_meshes_and_full_lists_are_reported() {
         bench.configure(&mesh, &expected);
         bench.wait_for("status.ready");
         bench.set(port, limit);
-        bench.pulse("geometry_start");
-        bench.wait_for("status.geometry_done");
+        bench.run_geometry();
         assert_eq!(bench.read("status.full"), 1, "{port} {limit}");
         bench.draw("with room", &mesh, &expected);
     }
@@ -379,7 +366,7 @@ fn a_sphere_is_drawn_fast() {
         let view = ahead(0.4781, 0.5);
         let (expected, mut bench) = if smooth {
             let expected = expected_smooth(&mesh, &view, size, true);
-            (expected, Bench::smooth(9, 0.0))
+            (expected, Bench::of("smooth", 9, 0.0))
         } else {
             let expected = expected(&mesh, &view, size, true);
             (expected, Bench::new(9, 0.0))

@@ -126,14 +126,9 @@ impl Bench {
         let module = &mut self.module;
         module.drive("number", i128::from(number));
         module.drive("sampler.format", i128::from(header.format));
-        for (axis, (side, wrap)) in [header.width_log2, header.height_log2]
-            .into_iter()
-            .zip(header.wrap)
-            .enumerate()
-        {
-            module.drive(&format!("sampler.side_log2[{axis}]"), i128::from(side));
-            module.drive(&format!("sampler.wrap[{axis}]"), i128::from(wrap));
-        }
+        let sides = [header.width_log2, header.height_log2];
+        module.drive_all("sampler.side_log2", sides);
+        module.drive_all("sampler.wrap", header.wrap);
         module.drive("sampler.last_level", i128::from(header.levels - 1));
         module.drive("sampler.bilinear", i128::from(header.filter));
         module.drive("sampler.cut_out", i128::from(header.cut_out));

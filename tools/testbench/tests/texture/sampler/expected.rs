@@ -2,8 +2,7 @@
 
 use glint_core::colour::Rgb565;
 use glint_core::texture::{Filter, Texture};
-use glint_model::triangle::quotient::CHANNEL_BITS;
-use glint_model::triangle::textured::sample;
+use glint_model::triangle::textured::{average, sample};
 
 /// One repeat of a texture, in the units of a position.
 pub const REPEAT: i64 = 1 << POSITION_BITS;
@@ -111,16 +110,8 @@ pub fn check_sample(texture: &Texture, level: u32, position: [i64; 2], texels: &
                 [r << 3, g << 2, b << 3]
             }
             Filter::Bilinear => {
-                let channels = texels
-                    .neighbours
-                    .map(|colour| Rgb565(colour).channels().map(u32::from));
-                [0, 1, 2].map(|channel: usize| {
-                    let [a, b, c, d] = channels.map(|texel| texel[channel]);
-                    let [x, y] = texels.weights.map(u32::from);
-                    let sum = (a * (16 - x) + b * x) * (16 - y) + (c * (16 - x) + d * x) * y;
-                    let bits = CHANNEL_BITS[channel];
-                    ((sum + (1 << (bits - 1))) >> bits) as u8
-                })
+                let neighbours = texels.neighbours.map(|colour| Rgb565(colour).channels());
+                average(neighbours, texels.weights.map(u32::from))
             }
         });
     assert_eq!(found, expected, "the model's sample at {position:?}");

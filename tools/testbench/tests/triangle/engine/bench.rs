@@ -89,45 +89,21 @@ pub struct Clocks {
 impl Bench {
     /// Creates a bench with the module for flat shading; each memory port stalls in the share `stalls` of the clocks.
     pub fn new(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine", Layout::FLAT, seed, stalls)
+        Self::with_module("triangle_engine", Layout::FLAT, seed, stalls)
     }
 
-    /// Creates a bench as [`new`](Self::new) does, with the module for flat and smooth shading.
-    pub fn smooth(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_smooth", Layout::SMOOTH, seed, stalls)
+    /// Creates a bench as [`new`](Self::new) does, with a variant of the module, such as `lines`:
+    /// the module `triangle_engine_lines`.
+    pub fn of(variant: &str, seed: u32, stalls: f64) -> Self {
+        let layout = match variant {
+            "smooth" => Layout::SMOOTH,
+            "texture" => Layout::TEXTURED,
+            _ => Layout::FLAT,
+        };
+        Self::with_module(&format!("triangle_engine_{variant}"), layout, seed, stalls)
     }
 
-    /// Creates a bench as [`new`](Self::new) does, with the module for triangles with textures.
-    pub fn textured(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_texture", Layout::TEXTURED, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for triangles and lines.
-    pub fn lines(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_lines", Layout::FLAT, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for lines without triangles and without the depth buffer.
-    pub fn lines_alone(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_lines_alone", Layout::FLAT, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for triangles without the geometry pass.
-    pub fn no_geometry(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_no_geometry", Layout::FLAT, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for fields without triangles.
-    pub fn fields_alone(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_fields_alone", Layout::FLAT, seed, stalls)
-    }
-
-    /// As [`fields_alone`](Self::fields_alone), without the depth buffer.
-    pub fn no_depths(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_no_depths", Layout::FLAT, seed, stalls)
-    }
-
-    fn of(name: &str, layout: Layout, seed: u32, stalls: f64) -> Self {
+    fn with_module(name: &str, layout: Layout, seed: u32, stalls: f64) -> Self {
         let module = Module::new(name, seed);
         let seed = u64::from(seed);
         Self {
@@ -209,6 +185,20 @@ impl Bench {
         self.set(port, 1);
         self.clock();
         self.set(port, 0);
+    }
+
+    /// Waits until the engine is ready, and runs the geometry pass; returns its number of clocks.
+    pub fn run_geometry(&mut self) -> u64 {
+        self.wait_for("status.ready");
+        self.pulse("geometry_start");
+        self.wait_for("status.geometry_done")
+    }
+
+    /// Starts a pass, and cancels it after `clocks` clocks.
+    pub fn cancel_after(&mut self, start: &str, clocks: u32) {
+        self.pulse(start);
+        (0..clocks).for_each(|_| self.clock());
+        self.pulse("cancel");
     }
 
     /// Sets the engine's parameters: mesh, frame constants, memory map.
@@ -303,13 +293,21 @@ impl Bench {
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
     }
 
+    /// Sets the sets that the raster pass draws: the number of descriptors of the first set, if it
+    /// is drawn, and of the second set, which is drawn if it is not empty.
+    pub fn set_sets(&mut self, first: Option<u64>, second: usize) {
+        let counts = [first.unwrap_or(0), second as u64];
+        self.module.drive_all("raster.count", counts);
+        self.set("raster_flags.first", u64::from(first.is_some()));
+        self.set("raster_flags.second", u64::from(second > 0));
+    }
+
     /// Draws a frame and compares it with the expected frame.
     pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
         self.configure(mesh, expected);
         self.wait_for("status.ready");
         let fetched = self.count("vertices");
-        self.pulse("geometry_start");
-        let geometry = self.wait_for("status.geometry_done");
+        let geometry = self.run_geometry();
         let fetches = vertex_cache::fetches(&Mesh::new_checked(mesh).expect("a valid mesh"));
         assert_eq!(
             self.count("vertices") - fetched,
@@ -337,16 +335,7 @@ impl Bench {
             .map(|(setup, colour)| (Descriptor::new(setup, *colour, None), setup.bounds))
             .collect();
         write_set(&mut self.memory, expected.size.0, &clipped, self.layout);
-        let counts = [
-            self.read("results.descriptor_count"),
-            expected.clipped.len() as u64,
-        ];
-        self.module.drive_all("raster.count", counts);
-        self.set("raster_flags.first", 1);
-        self.set(
-            "raster_flags.second",
-            u64::from(!expected.clipped.is_empty()),
-        );
+        self.set_sets(Some(self.read("results.descriptor_count")), clipped.len());
         self.pulse("raster_start");
         let (read, written) = (self.reads[2].given, self.frame_words());
         let raster = self.finish(name, expected);
@@ -377,25 +366,15 @@ impl Bench {
         self.set("geometry.first_texture", 4);
         let place = bytes(MESH) + offset(coordinates) as u64;
         self.set("geometry.coordinates", place);
-        self.wait_for("status.ready");
-        self.pulse("geometry_start");
-        let geometry = self.wait_for("status.geometry_done");
+        let geometry = self.run_geometry();
         let counts = ["status.mesh_error", "status.full"].map(|path| self.read(path));
         assert_eq!(counts, [0, 0], "{name}: error, full");
         write_set(&mut self.memory, expected.size.0, clipped, self.layout);
         let addresses = mesh
             .textures()
             .map(|texture| offset(texture.bytes()) as u64);
-        let table = [0; 5]
-            .into_iter()
-            .chain(addresses.map(|at| bytes(MESH) + at));
-        let table: Vec<u8> = table.flat_map(|at| (at as u32).to_le_bytes()).collect();
-        self.memory.write(TEXTURES, &table);
-        self.set("raster.textures", bytes(TEXTURES));
-        let counts = [self.read("results.descriptor_count"), clipped.len() as u64];
-        self.module.drive_all("raster.count", counts);
-        self.set("raster_flags.first", 1);
-        self.set("raster_flags.second", u64::from(!clipped.is_empty()));
+        self.write_table(addresses.map(|at| bytes(MESH) + at));
+        self.set_sets(Some(self.read("results.descriptor_count")), clipped.len());
         self.pulse("raster_start");
         [geometry, self.finish(name, expected)]
     }
@@ -425,10 +404,7 @@ impl Bench {
             self.memory.write(place, texture);
         }
         self.write_table(places.into_iter().map(bytes));
-        self.module
-            .drive_all("raster.count", [0, triangles.len() as u32]);
-        self.set("raster_flags.first", 0);
-        self.set("raster_flags.second", 1);
+        self.set_sets(None, triangles.len());
         self.wait_for("status.ready");
         self.pulse("raster_start");
         self.finish(name, expected)
@@ -474,9 +450,7 @@ impl Bench {
         }
         let behind = FRAMES[self.slot] + expected.size.0 * expected.size.1 / 8;
         self.memory.write(behind, &[0x77; 16 * BEHIND]);
-        self.set("raster.count[0]", descriptors.len() as u64 / 48);
-        self.set("raster_flags.first", 1);
-        self.set("raster_flags.second", 0);
+        self.set_sets(Some(descriptors.len() as u64 / 48), 0);
         self.wait_for("status.ready");
         self.pulse("raster_start");
         self.wait_for("status.raster_done");
