@@ -18,8 +18,6 @@ class ClockControl(LiteXModule):
     def __init__(self, working):
         self.accessed, self.enable = Signal(), Signal()
 
-        # # #
-
         awake, linger = Signal(), Signal(max=LINGER + 1)
         self.comb += [
             awake.eq(ResetSignal("sys") | working | self.accessed),

@@ -42,8 +42,6 @@ class Counters(LiteXModule):
             members[name] = Signal(bits, name=f"event_{name}")
         self.events = Struct("events_t", "Increment of each counter in this clock.", members)
 
-        # # #
-
         count = len(members)
         if count + _DELAY > LINGER:
             raise ValueError(f"{count} counters: expected at most {LINGER - _DELAY}, because the clock of an idle block stops")

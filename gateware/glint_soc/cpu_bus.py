@@ -25,8 +25,6 @@ class CpuBus(LiteXModule):
     def __init__(self, data, instructions):
         self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
 
-        # # #
-
         # High while a read of this bus is pending. The bus then still shows the read, which must not start again.
         reads_data, reads_instructions = Signal(), Signal()
         asks_data, asks_instructions, busy, bursts, more, free = (Signal() for _ in range(6))

@@ -26,8 +26,6 @@ class Digits(LiteXModule):
         self._left = Parameter(8 * DIGITS, name="left", description=text.format("left"))
         self._right = Parameter(8 * DIGITS, name="right", description=text.format("right"))
 
-        # # #
-
         count, place, lit = Signal(_SLOT_BITS + 3), Signal(3), Signal()
         digits, segments = Signal(2 * DIGITS), Signal(8)
         bytes_ = [register.storage[8 * k:][:8] for register in (self._left, self._right) for k in range(DIGITS)]

@@ -21,8 +21,6 @@ class FlashReader(LiteXModule):
     def __init__(self, platform, pads):
         self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
 
-        # # #
-
         address_bits = log2_int(FLASH_BYTES // 4)
         done, sclk, command, sending, lines = Signal(), Signal(), Signal(), Signal(), Signal(4)
         self.comb += bus.ack.eq(done & bus.cyc & bus.stb)

@@ -165,8 +165,6 @@ class GestureEngine(LiteXModule):
             "lines_malformed": "Lines with a wrong number of bytes, or cut off by VSYNC, in all frames.",
         })
 
-        # # #
-
         def span(register):
             return Struct("span_t", "First and last column, or first and last line, of a box or region.", {
                 name: getattr(register.fields, name) for name in ("first", "last")})

@@ -75,8 +75,6 @@ class I2CMaster(LiteXModule):
                                          "occurred.")
         self.ev.finalize()
 
-        # # #
-
         command = Struct("command_t", "A command.", {
             name: getattr(self._command.fields, name) for name in ("more", "operation", "argument")})
         self.package = Package("i2c", enumerations=[OPERATIONS, ERRORS], structs=[command])

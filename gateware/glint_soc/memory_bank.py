@@ -31,8 +31,6 @@ class MemoryBank(LiteXModule):
             raise ValueError(f"{geometry.colbits} bits of column: expected at most 10")
         self.cmd = cmd = stream.Endpoint(cmd_request_rw_layout(geometry.addressbits, geometry.bankbits))
 
-        # # #
-
         layout = [("we", 1), ("addr", address_bits), ("turns", 1)]
         self.queue = queue = stream.SyncFIFO(layout, settings.cmd_buffer_depth)
         self.request = request = stream.Buffer(layout)

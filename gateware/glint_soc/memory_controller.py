@@ -25,8 +25,6 @@ class _Controller(LiteXModule):
         self.dfi = dfi.Interface(geometry.addressbits, geometry.bankbits, phy.settings.nranks, phy.settings.dfi_databits,
                                  phy.settings.nphases)
 
-        # # #
-
         self.refresher = MemoryRefresher(settings, clk_freq)
         self.banks = [MemoryBank(number, self.interface.address_width, alignment, settings)
                       for number in range(2**geometry.bankbits)]

@@ -33,8 +33,6 @@ class MemoryInjector(LiteXModule):
         for number, injector in enumerate(injectors):
             setattr(self, f"pi{number}", injector)
 
-        # # #
-
         control = self._control.fields
         self.injects, self.words = Signal(), Signal(databits * nphases)
         self.comb += [self.injects.eq(~control.sel), self.words.eq(Cat(*(phase.wrdata for phase in injected.phases)))]

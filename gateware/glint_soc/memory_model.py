@@ -25,8 +25,6 @@ class MemoryModel(LiteXModule):
         geometry = module.geom_settings
         self.dfi = Interface(geometry.addressbits, geometry.bankbits, settings.nranks, settings.dfi_databits, settings.nphases)
 
-        # # #
-
         phases = self.dfi.phases
         width = settings.dfi_databits*settings.nphases
         columns_of_word = log2_int(width//data_width)

@@ -13,8 +13,6 @@ class _Interval(LiteXModule):
     def __init__(self, clocks):
         self.due, self.served = Signal(), Signal()
 
-        # # #
-
         left, is_last = Signal(max=clocks, reset=clocks - 1), Signal()
         self.sync += [
             is_last.eq(left == 1),
@@ -35,8 +33,6 @@ class MemoryRefresher(LiteXModule):
     def __init__(self, settings, clk_freq):
         timing = settings.timing
         self.cmd = cmd = stream.Endpoint(cmd_request_rw_layout(a=settings.geom.addressbits, ba=settings.geom.bankbits))
-
-        # # #
 
         self.refresh = refresh = _Interval(timing.tREFI)
         self.sequencer = sequencer = RefreshSequencer(cmd, timing.tRP, timing.tRFC)

@@ -73,8 +73,6 @@ class PassParameters(LiteXModule):
             for register in chain:
                 register.in_memory = True
 
-        # # #
-
         words = Memory(32, CSR_PAGING // 4)
         self._write, self._read = words.get_port(write_capable=True), words.get_port(mode=READ_FIRST)
         self.specials += words, self._write, self._read

@@ -249,8 +249,6 @@ class Raymarcher(LiteXModule):
             "undecided": "Undecided rays.",
         })
 
-        # # #
-
         enable, stereo = (getattr(self._control.fields, name) for name in ("enable", "stereo"))
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error

@@ -25,8 +25,6 @@ class RegisterBank(CSRBank):
         CSRBank.__init__(self, description, 1, access, paging, ordering)
         self.bus, self.addressed = bus, Signal()
 
-        # # #
-
         number, in_window = Signal(log2_int(paging // 4)), Signal()
         self.comb += [
             in_window.eq(bus.adr[len(number):] == address),
@@ -57,8 +55,6 @@ class RegisterBridge(LiteXModule):
 
     def __init__(self, bus_wishbone=None, bus_csr=None, register=True):
         self.wishbone, self.csr = bus_wishbone or wishbone.Interface(), bus_csr or Interface(data_width=32)
-
-        # # #
 
         self.comb += [
             self.csr.adr.eq(self.wishbone.adr),

@@ -77,8 +77,6 @@ class Scanout(LiteXModule):
         })
         self.counters = ["frame_count", "underflow_count", *self.growing.registers]
 
-        # # #
-
         enabled, fetching, error = Signal(), Signal(), Signal(2)
         scale_current = Signal(3)
         cmd_addr = Signal(_WORD_ADDRESS_BITS)

@@ -233,8 +233,6 @@ class TriangleEngine(LiteXModule):
         self._colour = Parameter(16, name="colour", description="Colour instead of those of the mesh, with `recolour` in "
                                  "`geometry`, RGB565.")
 
-        # # #
-
         recovering = Signal()
         self.clock_control = ClockControl(
             recovering | self._control.fields.cancel | self._status.fields.geometry_busy | self._status.fields.raster_busy)

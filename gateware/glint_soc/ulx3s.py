@@ -42,8 +42,6 @@ class CRG(LiteXModule):
         self.cd_pix = ClockDomain()
         self.cd_pix5x = ClockDomain()
 
-        # # #
-
         self.sys_pll = sys_pll = _PLL()
         sys_pll.register_clkin(platform.request("clk25"), _CLK25_FREQ)
         sys_pll.create_clkout(self.cd_sys, sys_clk_freq, margin=0, with_reset=False)

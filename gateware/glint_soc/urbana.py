@@ -51,8 +51,6 @@ class CRG(LiteXModule):
         self.cd_pix = ClockDomain()
         self.cd_pix5x = ClockDomain()
 
-        # # #
-
         # A clock region has one MMCM, and the pin reaches only the MMCM and the PLL of its own region directly: Vivado rejects a second
         # MMCM at the pin with error [Place 30-575]. A global buffer reaches the MMCMs and PLLs of all regions.
         clk100 = Signal()

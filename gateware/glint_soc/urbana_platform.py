@@ -64,14 +64,10 @@ _io = [
         IOStandard("LVCMOS33")),
 
     ("hdmi_out", 0,
-        Subsignal("clk_p", Pins("U16")),
-        Subsignal("clk_n", Pins("V17")),
-        Subsignal("data0_p", Pins("U17")),
-        Subsignal("data0_n", Pins("U18")),
-        Subsignal("data1_p", Pins("R16")),
-        Subsignal("data1_n", Pins("R17")),
-        Subsignal("data2_p", Pins("R14")),
-        Subsignal("data2_n", Pins("T14")),
+        Subsignal("clk_p", Pins("U16")), Subsignal("clk_n", Pins("V17")),
+        Subsignal("data0_p", Pins("U17")), Subsignal("data0_n", Pins("U18")),
+        Subsignal("data1_p", Pins("R16")), Subsignal("data1_n", Pins("R17")),
+        Subsignal("data2_p", Pins("R14")), Subsignal("data2_n", Pins("T14")),
         IOStandard("TMDS_33")),
 
     # The memory is DDR3L, 1 Gbit, 16 bits wide. Its chip select is tied low on the board.

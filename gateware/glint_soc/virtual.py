@@ -80,8 +80,6 @@ class CRG(LiteXModule):
         self.cd_pix = ClockDomain()
         self.cd_por = ClockDomain(reset_less=True)
 
-        # # #
-
         power_on = Signal(reset=1)
         restart = Signal()
         self.comb += [

@@ -27,8 +27,6 @@ class _DfiPins(LiteXModule):
         geometry = module.geom_settings
         self.dfi = Interface(geometry.addressbits, geometry.bankbits, settings.nranks, settings.dfi_databits, settings.nphases)
 
-        # # #
-
         for number, phase in enumerate(self.dfi.phases):
             signals = [(name, getattr(phase, name)) for name, *_ in phase.layout]
             platform.add_extension([("dfi", number, *(Subsignal(name, Pins(len(signal))) for name, signal in signals))])
