@@ -68,7 +68,10 @@ impl Bench {
             clk,
             lines: if sending { sent } else { 0xf },
         });
-        assert!(!(sending && self.way.is_some()), "both drive the lines");
+        assert!(
+            !(sending && self.way.is_some()),
+            "flash and reader drive the lines at the same time"
+        );
         let level = answer.unwrap_or_else(|| self.rng.random::<u8>() & 0xf);
         self.module.set(lines, u64::from(level));
         self.module.clock();
@@ -79,7 +82,7 @@ impl Bench {
                     self.idle_clocks >= 3,
                     "STARTUPE2 drops the first three clocks"
                 );
-                assert!(!clk && !rises, "the clock moves with CS#");
+                assert!(!clk && !rises, "the clock has an edge together with CS#");
             }
             self.idle_clocks = 0;
         }

@@ -181,7 +181,7 @@ impl Bench {
         let ended = self.ended;
         self.push(commands);
         self.finish();
-        assert_eq!(self.ended, ended + 1, "one event for each end");
+        assert_eq!(self.ended, ended + 1, "one event per transfer");
         self.failure()
     }
 

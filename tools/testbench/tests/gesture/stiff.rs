@@ -199,7 +199,11 @@ fn spoilt(spoil: impl Fn(&mut Picture) -> End) -> String {
         bench.frame(&hand, End::Vsync);
     }
     let fault = told(&mut bench);
-    assert_eq!(bench.module.read("results.sum_x"), kept, "the results stay");
+    assert_eq!(
+        bench.module.read("results.sum_x"),
+        kept,
+        "the results must not change"
+    );
     bench.frame(&hand, End::Vsync);
     format!("{fault}; then {}", told(&mut bench))
 }

@@ -308,7 +308,11 @@ fn reciprocals() {
     for clock in 0..numbers.len() + LATENCY {
         if let Some(&number) = clock.checked_sub(LATENCY).and_then(|i| numbers.get(i)) {
             let expected = Inverse::of(2 * number + 1, &Words::CHOSEN).word();
-            assert_eq!(module.value(inverse), u64::from(expected), "of {number:#x}");
+            assert_eq!(
+                module.value(inverse),
+                u64::from(expected),
+                "reciprocal of {number:#x}"
+            );
         }
         let number = numbers.get(clock).copied().unwrap_or_default();
         module.set(magnitude, u64::from(number));

@@ -308,7 +308,7 @@ impl Bench {
         let counted = self.module.value(self.ports.underflows);
         assert_eq!(
             counted, late,
-            "numbers of underflows and of late picture lines"
+            "number of underflows, expected the number of late lines"
         );
     }
 

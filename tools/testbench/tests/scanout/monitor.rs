@@ -54,7 +54,7 @@ impl Monitor {
         }
     }
 
-    /// Loses synchronisation until the next vsync.
+    /// Drops the synchronisation; the next vsync restores it.
     pub fn reset(&mut self) {
         self.position = None;
         self.line.clear();

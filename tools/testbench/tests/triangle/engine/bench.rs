@@ -323,7 +323,10 @@ impl Bench {
         .map(|path| self.read(path));
         let stats = &expected.stats;
         let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
-        assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
+        assert_eq!(
+            counts, wanted,
+            "{name}: mesh_error, full, triangles, exceptions"
+        );
 
         self.draw_lists(name, expected, geometry)
     }
@@ -368,7 +371,7 @@ impl Bench {
         self.set("geometry.coordinates", place);
         let geometry = self.run_geometry();
         let counts = ["status.mesh_error", "status.full"].map(|path| self.read(path));
-        assert_eq!(counts, [0, 0], "{name}: error, full");
+        assert_eq!(counts, [0, 0], "{name}: mesh_error, full");
         write_set(&mut self.memory, expected.size.0, clipped, self.layout);
         let addresses = mesh
             .textures()
@@ -421,7 +424,7 @@ impl Bench {
     pub fn finish(&mut self, name: &str, expected: &Expected) -> u64 {
         let clocks = self.wait_for("status.raster_done");
         self.left[self.slot] = Some((expected.size, expected.options.clear));
-        assert_eq!(self.read("status.list_error"), 0, "{name}: the lists");
+        assert_eq!(self.read("status.list_error"), 0, "{name}: list_error");
         self.compare(name, expected);
         clocks
     }

@@ -82,7 +82,7 @@ impl Bench {
     pub fn gather(&mut self, name: &str, gathered: &mut Gathered) -> u64 {
         let clocks = self.run_geometry();
         let errors = ["status.mesh_error", "status.full"].map(|path| self.read(path));
-        assert_eq!(errors, [0; 2], "{name}: error, full");
+        assert_eq!(errors, [0; 2], "{name}: mesh_error, full");
         self.set("geometry_flags.lines", 0);
 
         let first = gathered.descriptors.len() as u32 / 3;
