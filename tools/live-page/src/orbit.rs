@@ -179,7 +179,7 @@ mod tests {
             dot(eye, eye).sqrt()
         };
         assert!((far(100.0) - 3.0).abs() < 1e-6);
-        assert!((far(0.01) - LEAST).abs() < 1e-6);
+        assert!((far(0.01) - NEAREST).abs() < 1e-6);
         for pitch in [9.0, -9.0] {
             let drag = Drag {
                 turn: [0.3, pitch],

@@ -405,17 +405,12 @@ mod tests {
         polygons
     }
 
-    const KEEP: Options = Options {
-        keep_scale: true,
-        keep_order: false,
-        fix_winding: false,
-        textures: TextureOptions {
-            left_out: false,
-            format: None,
-            largest_side: 1024,
-            filter: None,
-        },
-    };
+    fn keep() -> Options {
+        Options {
+            keep_scale: true,
+            ..Options::default()
+        }
+    }
 
     #[test]
     fn scaled_to_the_unit_box() {
@@ -435,14 +430,8 @@ mod tests {
             (report.vertices, report.triangles, report.error_max),
             (3, 1, 0.0)
         );
-        let mesh = glm::check(&bytes).unwrap();
-        let positions: Vec<[i16; 3]> = mesh
-            .chunks()
-            .next()
-            .unwrap()
-            .vertices()
-            .map(|v| v.position)
-            .collect();
+        let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
+        let positions: Vec<[i16; 3]> = chunk.vertices().map(|v| v.position).collect();
         assert_eq!(
             positions,
             [[-8192, -4096, 0], [8192, -4096, 0], [-8192, 4096, 0]]
@@ -451,23 +440,12 @@ mod tests {
 
     #[test]
     fn kept_scale_is_refused_where_it_does_not_fit() {
-        let fits = 2.0 - 1.0 / ONE;
-        assert!(
-            convert(
-                &soup(
-                    &[[-2.0, 0.0, 0.0], [fits, 0.0, 0.0], [0.0, 1.0, 0.0]],
-                    &[&[0, 1, 2]]
-                ),
-                KEEP
-            )
-            .is_ok()
-        );
-        let beyond = soup(
-            &[[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            &[&[0, 1, 2]],
-        );
-        let error = convert(&beyond, KEEP).unwrap_err();
-        assert_eq!(error.found, "point 1 at (2, 0, 0)");
+        let triangle = |x: f64| {
+            let points = [[-2.0, 0.0, 0.0], [x, 0.0, 0.0], [0.0, 1.0, 0.0]];
+            convert(&soup(&points, &[&[0, 1, 2]]), keep())
+        };
+        assert!(triangle(2.0 - 1.0 / ONE).is_ok());
+        assert_eq!(triangle(2.0).unwrap_err().found, "point 1 at (2, 0, 0)");
     }
 
     #[test]
@@ -480,15 +458,18 @@ mod tests {
             [tiny, 0.0, 0.0],
             [0.5, 0.0, 0.0],
         ];
-        let (_, report) =
-            convert(&soup(&points, &[&[0, 1, 2], &[0, 3, 2], &[0, 4, 1]]), KEEP).unwrap();
+        let (_, report) = convert(
+            &soup(&points, &[&[0, 1, 2], &[0, 3, 2], &[0, 4, 1]]),
+            keep(),
+        )
+        .unwrap();
         assert_eq!(
             (report.triangles, report.degenerate, report.vertices),
             (1, 2, 3)
         );
         assert!((report.error_max_lsb - 0.2).abs() < 1e-9);
         assert!((report.error_rms_lsb - 0.2 / 5f64.sqrt()).abs() < 1e-9);
-        let error = convert(&soup(&points, &[&[0, 3, 2]]), KEEP).unwrap_err();
+        let error = convert(&soup(&points, &[&[0, 3, 2]]), keep()).unwrap_err();
         assert_eq!(error.found, "only degenerate ones (1)");
     }
 
@@ -537,24 +518,20 @@ mod tests {
         }
         // The smallest positive number, and the largest number.
         for size in [f64::from_bits(1), f64::MAX] {
-            let polygons = soup(
-                &[[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]],
-                &[&[0, 1, 2]],
-            );
-            assert_eq!(
-                convert(&polygons, Options::default()).unwrap().1.triangles,
-                1
-            );
+            let points = [[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]];
+            let polygons = soup(&points, &[&[0, 1, 2]]);
+            let (_, report) = convert(&polygons, Options::default()).unwrap();
+            assert_eq!(report.triangles, 1);
         }
     }
 
     #[test]
     fn no_extent() {
-        let error = convert(&soup(&[[1.0; 3]; 3], &[&[0, 1, 2]]), Options::default()).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "expected a mesh with an extent, found extent 0e0"
-        );
+        let polygons = soup(&[[1.0; 3]; 3], &[&[0, 1, 2]]);
+        let error = convert(&polygons, Options::default())
+            .unwrap_err()
+            .to_string();
+        assert_eq!(error, "expected a mesh with an extent, found extent 0e0");
     }
 
     #[test]
@@ -573,7 +550,7 @@ mod tests {
             ],
             &[&[0, 1, 4, 2], &[0, 2, 5, 3], &[0, 3, 6, 1]],
         );
-        let (bytes, _) = convert(&polygons, KEEP).unwrap();
+        let (bytes, _) = convert(&polygons, keep()).unwrap();
         let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
         let corner = chunk.vertices().find(|v| v.position == [0; 3]).unwrap();
         let diagonal = (ONE / 3f64.sqrt() + 0.5).floor() as i16;
@@ -592,25 +569,16 @@ mod tests {
         );
         polygons.faces[0].colour = Some(Rgb8([255, 0, 0]));
         let colours = |polygons: &Polygons| -> (Vec<u16>, u32) {
-            let (bytes, report) = convert(polygons, KEEP).unwrap();
+            let (bytes, report) = convert(polygons, keep()).unwrap();
             let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
-            (
-                chunk.triangles().map(|t| t.colour.0).collect(),
-                report.vertices,
-            )
+            let colours = chunk.triangles().map(|t| t.colour.0);
+            (colours.collect(), report.vertices)
         };
         let default = Rgb565::from_rgb888(Rgb8::DEFAULT.0).0;
         // Points between faces of different colours become two vertices each.
         assert_eq!(colours(&polygons), (vec![0xf800, default], 6));
-        polygons.point_colours = vec![
-            Rgb8([0, 0, 255]),
-            Rgb8([0, 0, 255]),
-            Rgb8([0, 255, 255]),
-            Rgb8([0, 255, 255]),
-        ];
-        assert_eq!(
-            colours(&polygons),
-            (vec![0xf800, Rgb565::from_rgb888([0, 170, 255]).0], 4)
-        );
+        polygons.point_colours = [0, 0, 255, 255].map(|green| Rgb8([0, green, 255])).into();
+        let mean = Rgb565::from_rgb888([0, 170, 255]).0;
+        assert_eq!(colours(&polygons), (vec![0xf800, mean], 4));
     }
 }

@@ -355,6 +355,13 @@ mod tests {
         })
     }
 
+    fn cut_out() -> Options {
+        Options {
+            cutoff: Some(0.5),
+            ..Options::default()
+        }
+    }
+
     #[test]
     fn sides_become_the_nearest_powers_of_two() {
         for (side, largest, power) in [
@@ -389,16 +396,10 @@ mod tests {
             assert_eq!(texture.size_log2().map(|side| 1 << side), expected);
             assert_eq!((report.size, report.levels), (expected, levels));
             assert_eq!(report.bytes, bytes.len());
-            let resized = if size == expected {
-                vec![]
-            } else {
-                let [width, height] = size;
-                let [to_width, to_height] = expected;
-                vec![format!(
-                    "resized from {width}×{height} to {to_width}×{to_height}"
-                )]
-            };
-            assert_eq!(report.remarks, resized);
+            let [[width, height], [to_width, to_height]] = [size, expected];
+            let resized = format!("resized from {width}×{height} to {to_width}×{to_height}");
+            let remarks: &[String] = if size == expected { &[] } else { &[resized] };
+            assert_eq!(report.remarks, remarks);
             let stated = TextureHeader::from_bytes(bytes.first_chunk().unwrap()).checksum;
             assert_eq!(stated, checksum(&bytes));
         }
@@ -457,11 +458,11 @@ mod tests {
         let holes = Picture::drawn([16, 16], |x, y| {
             [(16 * x) as u8, (16 * y) as u8, 0, opacity(x)]
         });
+        let clear = Picture::drawn([8, 8], |_, _| [1, 2, 3, 0]);
         for format in Format::ALL {
             let options = Options {
                 format,
-                cutoff: Some(0.5),
-                ..Options::default()
+                ..cut_out()
             };
             let (bytes, report) = convert(&holes, &options).unwrap();
             assert!(report.cut_out);
@@ -472,24 +473,10 @@ mod tests {
                     assert_eq!(colour.is_some(), x % 4 < 2, "{format:?} {x} {y}");
                 }
             }
-            let opaque = Options {
-                cutoff: None,
-                ..options
-            };
-            assert!(!convert(&holes, &opaque).unwrap().1.cut_out);
-            let zero = Options {
-                cutoff: Some(0.0),
-                ..options
-            };
-            assert!(!convert(&holes, &zero).unwrap().1.cut_out);
-        }
-        let clear = Picture::drawn([8, 8], |_, _| [1, 2, 3, 0]);
-        for format in Format::ALL {
-            let options = Options {
-                format,
-                cutoff: Some(0.5),
-                ..Options::default()
-            };
+            for cutoff in [None, Some(0.0)] {
+                let opaque = Options { cutoff, ..options };
+                assert!(!convert(&holes, &opaque).unwrap().1.cut_out);
+            }
             let (_, report) = convert(&clear, &options).unwrap();
             assert_eq!(report.remarks, ["each texel is transparent"]);
             assert_eq!((report.error_rms, report.error_max), (0.0, 0.0));
@@ -501,12 +488,8 @@ mod tests {
         // Thin bars in one direction, dots, and texels with the same opacity.
         let bars = |x: u32, _: u32| x.is_multiple_of(5);
         let dots = |x: u32, y: u32| (x * x + 3 * y * y + x * y) % 7 < 2;
-        let options = Options {
-            cutoff: Some(0.5),
-            ..Options::default()
-        };
         let shares = |picture: &Picture| -> Vec<f64> {
-            let (bytes, _) = convert(picture, &options).unwrap();
+            let (bytes, _) = convert(picture, &cut_out()).unwrap();
             let texture = Texture::new_checked(&bytes).unwrap();
             let share = |level| {
                 let [width, height] = texture.level_log2(level).map(|side| 1 << side);
@@ -524,14 +507,10 @@ mod tests {
                 assert!((share - found[0]).abs() <= 0.5 / texels, "{found:?}");
             }
         }
-        assert_eq!(
-            shares(&Picture::drawn([8, 8], |_, _| [9, 9, 9, 100])),
-            [0.0; 4]
-        );
-        assert_eq!(
-            shares(&Picture::drawn([8, 8], |_, _| [9, 9, 9, 200])),
-            [1.0; 4]
-        );
+        for (opacity, share) in [(100, 0.0), (200, 1.0)] {
+            let even = Picture::drawn([8, 8], |_, _| [9, 9, 9, opacity]);
+            assert_eq!(shares(&even), [share; 4]);
+        }
     }
 
     #[test]
@@ -545,21 +524,11 @@ mod tests {
             size: [256, 256],
             texels: texels.collect(),
         };
-        let options = Options {
-            cutoff: Some(0.5),
-            ..Options::default()
-        };
-        let (bytes, _) = convert(&all, &options).unwrap();
+        let (bytes, _) = convert(&all, &cut_out()).unwrap();
         let texture = Texture::new_checked(&bytes).unwrap();
-        let mut transparent = Vec::new();
-        for y in 0..256 {
-            for x in 0..256 {
-                if texture.colour(0, [x, y]).is_none() {
-                    transparent.push([x, y]);
-                }
-            }
-        }
-        assert_eq!(transparent, [[0, 128]]);
+        let places = (0..256).flat_map(|y| (0..256).map(move |x| [x, y]));
+        let transparent = places.filter(|&place| texture.colour(0, place).is_none());
+        assert_eq!(transparent.collect::<Vec<_>>(), [[0, 128]]);
     }
 
     #[test]

@@ -371,10 +371,8 @@ mod tests {
         for point in [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] {
             polygons.add_point(point, Location::Whole).unwrap();
         }
-        for coordinates in coordinates {
-            polygons
-                .add_coordinates(coordinates, Location::Whole)
-                .unwrap();
+        for place in coordinates {
+            polygons.add_coordinates(place, Location::Whole).unwrap();
         }
         let number = polygons.add_texture(texture).unwrap();
         for corners in [[0, 1, 2], [0, 2, 3]] {
@@ -411,40 +409,24 @@ mod tests {
         found.sort_unstable();
         assert_eq!(found, [[0, 0], [0, one], [one, 0], [one, one]]);
         let chunk = mesh.chunks().next().unwrap();
-        assert!(
-            chunk
-                .triangles()
-                .all(|t| t.texture == 1 && t.colour == Rgb565::WHITE)
-        );
+        let mut triangles = chunk.triangles();
+        assert!(triangles.all(|t| t.texture == 1 && t.colour == Rgb565::WHITE));
         assert!(chunk.vertices().all(|v| v.colour == Rgb565::WHITE));
-        let [found] = &mesh.textures().collect::<Vec<_>>()[..] else {
-            panic!("one texture");
-        };
-        assert_eq!(found.colour(0, [0, 0]), None);
-        assert_eq!(
-            found.colour(0, [1, 0]),
-            Some(Rgb565::from_rgb888([4, 255, 0]))
-        );
-        let [stated] = &report.textures[..] else {
-            panic!("one report");
-        };
-        assert_eq!(
-            (stated.name.as_str(), stated.report.size),
-            ("'a.png'", [8, 8])
-        );
+        let found: Vec<_> = mesh.textures().collect();
+        assert_eq!((found.len(), found[0].colour(0, [0, 0])), (1, None));
+        let opaque = Rgb565::from_rgb888([4, 255, 0]);
+        assert_eq!(found[0].colour(0, [1, 0]), Some(opaque));
+        let stated = &report.textures[0];
+        assert_eq!((report.textures.len(), stated.report.size), (1, [8; 2]));
+        assert_eq!(stated.name, "'a.png'");
         assert_eq!(report.bytes, bytes.len());
     }
 
     #[test]
     fn without_textures_the_mesh_is_as_before() {
         let file = png(0);
-        let left_out = Options {
-            textures: TextureOptions {
-                left_out: true,
-                ..TextureOptions::default()
-            },
-            ..Options::default()
-        };
+        let mut left_out = Options::default();
+        left_out.textures.left_out = true;
         let textured = square(UNIT, texture(&file, Wrap::Repeat));
         let mut plain = textured.clone();
         plain.faces.iter_mut().for_each(|face| face.texture = 0);
@@ -455,13 +437,9 @@ mod tests {
         let broken = square(UNIT, texture(&Arc::new(file[..40].to_vec()), Wrap::Repeat));
         let (bytes, report) = convert(&broken, Options::default()).unwrap();
         assert!(bytes == expected);
-        let [remark] = &report.remarks[..] else {
-            panic!("one remark");
-        };
-        assert!(
-            remark.starts_with("texture 'a.png': expected a PNG file without damage, found "),
-            "{remark}"
-        );
+        let start = "texture 'a.png': expected a PNG file without damage, found ";
+        assert_eq!(report.remarks.len(), 1);
+        assert!(report.remarks[0].starts_with(start), "{report:?}");
         let mut partly = textured.clone();
         for corner in &mut partly.corners {
             corner.coordinates = Corner::NO_COORDINATES;
@@ -496,8 +474,7 @@ mod tests {
             assert_eq!(found(1e9 + 1.0, wrap), (one, vec![]));
         }
         assert_eq!(found(-0.25, Wrap::Clamp), (-one / 4, vec![]));
-        let limited =
-            "2 faces have texture coordinates beyond 32768 repeats, which are clamped";
+        let limited = "2 faces have texture coordinates beyond 32768 repeats, which are clamped";
         assert_eq!(found(1e9, Wrap::Clamp), (i32::MAX, vec![limited.into()]));
     }
 
@@ -515,11 +492,9 @@ mod tests {
     #[test]
     fn vertices_are_split_where_coordinates_differ() {
         let mut polygons = square(UNIT, texture(&png(255), Wrap::Repeat));
-        let seam = polygons
-            .add_coordinates([0.5, 0.5], Location::Whole)
-            .unwrap();
+        let seam = polygons.add_coordinates([0.5, 0.5], Location::Whole);
         // This corner belongs to both triangles.
-        polygons.corners[0].coordinates = seam;
+        polygons.corners[0].coordinates = seam.unwrap();
         let (_, report) = convert(&polygons, Options::default()).unwrap();
         assert_eq!(report.vertices, 5);
         polygons.faces[0].texture = 0;
@@ -536,14 +511,9 @@ mod tests {
         let (kept, report) = convert(&again, Options::default()).unwrap();
         assert!(kept == bytes);
         assert_eq!(report.textures[0].name, "1");
-        let smaller = Options {
-            textures: TextureOptions {
-                format: Some(Format::Palette16),
-                filter: Some(Filter::Bilinear),
-                ..TextureOptions::default()
-            },
-            ..Options::default()
-        };
+        let mut smaller = Options::default();
+        smaller.textures.format = Some(Format::Palette16);
+        smaller.textures.filter = Some(Filter::Bilinear);
         for polygons in [polygons, again] {
             let (bytes, _) = convert(&polygons, smaller).unwrap();
             let mesh = glm::check(&bytes).unwrap();

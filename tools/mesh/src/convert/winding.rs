@@ -271,28 +271,16 @@ mod tests {
 
     #[test]
     fn closed_meshes_are_restored() {
-        for name in [
-            "cube",
-            "icosphere:8",
-            "torus-knot",
-            "gear",
-            "teapot",
-            "sponge:2",
-            "scan:8",
-        ] {
+        for name in "cube icosphere:8 torus-knot gear teapot sponge:2 scan:8".split(' ') {
             let whole = generate::named(name).unwrap();
             for seed in [1, 1000, 77_777] {
                 let mut polygons = whole.clone();
                 let count = turn_some(&mut polygons, seed);
                 repair(&mut polygons);
                 assert!(polygons.corners == whole.corners, "{name}");
-                assert_eq!(
-                    polygons.remarks[0],
-                    format!(
-                        "winding: {count} of {} faces reversed",
-                        whole.faces.len()
-                    )
-                );
+                let faces = whole.faces.len();
+                let remark = format!("winding: {count} of {faces} faces reversed");
+                assert_eq!(polygons.remarks[0], remark);
             }
             // All faces are reversed.
             let mut polygons = whole.clone();
@@ -309,15 +297,12 @@ mod tests {
         let whole = generate::named("icosphere:4").unwrap();
         let mut apart = Polygons::default();
         for face in &whole.faces {
-            let corners = whole.corners_of(face).iter();
-            let corners: Vec<Corner> = corners
-                .map(|&corner| {
-                    apart
-                        .add_point(whole.point(corner), Location::Whole)
-                        .map(Corner::at)
-                        .unwrap()
-                })
-                .collect();
+            let points = whole
+                .corners_of(face)
+                .iter()
+                .map(|&corner| whole.point(corner));
+            let points = points.map(|point| apart.add_point(point, Location::Whole).unwrap());
+            let corners: Vec<Corner> = points.map(Corner::at).collect();
             apart.add_face(&corners, None, Location::Whole).unwrap();
         }
         let expected = apart.corners.clone();
@@ -329,27 +314,18 @@ mod tests {
     #[test]
     fn parts_are_repaired_apart() {
         // Two tetrahedra that share an edge, far from the origin; the faces of the second are reversed.
-        let at = |x: f64, y: f64, z: f64| [1e6 + x, y, z];
-        let mut polygons = strip(
-            &[
-                at(0., 0., 0.),
-                at(0., 0., 1.),
-                at(1., 0., 0.),
-                at(0., 1., 0.),
-                at(-1., 0., 0.),
-                at(0., -1., 0.),
-            ],
-            &[
-                [0, 2, 1],
-                [0, 1, 3],
-                [0, 3, 2],
-                [1, 2, 3],
-                [0, 1, 4],
-                [0, 5, 1],
-                [0, 4, 5],
-                [1, 5, 4],
-            ],
-        );
+        let [near, x, far] = [1e6 - 1.0, 1e6, 1e6 + 1.0];
+        let edge = [[x, 0.0, 0.0], [x, 0.0, 1.0]];
+        let sides = [
+            [far, 0.0, 0.0],
+            [x, 1.0, 0.0],
+            [near, 0.0, 0.0],
+            [x, -1.0, 0.0],
+        ];
+        let first = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let second = [[0, 1, 4], [0, 5, 1], [0, 4, 5], [1, 5, 4]];
+        let points = [&edge[..], &sides].concat();
+        let mut polygons = strip(&points, &[first, second].concat());
         let before = polygons.corners.clone();
         repair(&mut polygons);
         assert_eq!(polygons.corners[..12], before[..12]);
@@ -365,22 +341,14 @@ mod tests {
 
     #[test]
     fn an_open_mesh_keeps_the_side_of_most_faces() {
-        let points = [
-            [0., 0., 0.],
-            [1., 0., 0.],
-            [1., 1., 0.],
-            [0., 1., 0.],
-            [2., 0., 0.],
-        ];
+        let places = [(0., 0.), (1., 0.), (1., 1.), (0., 1.), (2., 0.)];
+        let points = places.map(|(x, y)| [x, y, 0.0]);
         let mut polygons = strip(&points, &[[0, 1, 2], [0, 3, 2], [1, 4, 2]]);
         repair(&mut polygons);
         let corners: Vec<u32> = polygons.corners.iter().map(|corner| corner.point).collect();
         assert_eq!(corners, [0, 1, 2, 0, 2, 3, 1, 4, 2]);
-        assert!(
-            polygons.remarks[1].starts_with("winding: 1 open parts"),
-            "{:?}",
-            polygons.remarks
-        );
+        let remark = &polygons.remarks[1];
+        assert!(remark.starts_with("winding: 1 open parts"), "{remark}");
     }
 
     #[test]

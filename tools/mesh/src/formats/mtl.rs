@@ -152,22 +152,18 @@ mod tests {
     #[test]
     fn colours() {
         let mut materials = HashMap::new();
-        let ignored = parse(
-            b"# c\nnewmtl a\n Kd 1 0.5 0\nnewmtl b\nKd 1\nnewmtl c\nKd spectral x.rfl\n",
-            &mut materials,
-        )
-        .unwrap();
-        assert_eq!(ignored, Ignored::default());
+        let text = b"# c\nnewmtl a\n Kd 1 0.5 0\nnewmtl b\nKd 1\nnewmtl c\nKd spectral x.rfl\n";
+        let ignored = parse(text, &mut materials);
+        assert_eq!(ignored, Ok(Ignored::default()));
         let colour = |name: &[u8]| materials.get(name).and_then(|material| material.colour);
         assert_eq!(colour(b"a"), Some(Rgb8([255, 128, 0])));
         assert_eq!(colour(b"b"), Some(Rgb8::WHITE));
         assert_eq!(materials.len(), 2);
-        assert_eq!(
-            parse(b"\nKd 1 1 1", &mut materials)
-                .unwrap_err()
-                .to_string(),
-            "line 2: expected newmtl before the first Kd, found none"
-        );
+        let error = parse(b"\nKd 1 1 1", &mut materials)
+            .unwrap_err()
+            .to_string();
+        let expected = "line 2: expected newmtl before the first Kd, found none";
+        assert_eq!(error, expected);
         assert!(parse(b"newmtl a\nKd x", &mut materials).is_err());
     }
 

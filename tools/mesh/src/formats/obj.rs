@@ -468,6 +468,7 @@ fn integer(word: &[u8]) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::text::rows;
 
     fn read(text: &str) -> Result<Polygons, ObjError> {
         parse(text.as_bytes(), &mut |name| {
@@ -488,11 +489,8 @@ mod tests {
     fn polygons_and_negative_indices() {
         let polygons = read(&format!("{SQUARE}f 1 2 3 4\nf -4// -3//\\\n -2//\n")).unwrap();
         let points = |i: usize| -> Vec<u32> {
-            polygons
-                .corners_of(&polygons.faces[i])
-                .iter()
-                .map(|c| c.point)
-                .collect()
+            let corners = polygons.corners_of(&polygons.faces[i]).iter();
+            corners.map(|corner| corner.point).collect()
         };
         assert_eq!(points(0), [0, 1, 2, 3]);
         assert_eq!(points(1), [0, 1, 2]);
@@ -519,13 +517,9 @@ mod tests {
         let text = format!(
             "{SQUARE}vt 0 0\nvt 1 0\nl 1 2\np 1\nl 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1\nf 1 2 3\n"
         );
-        assert_eq!(
-            read(&text).unwrap().remarks,
-            [
-                "points and lines are ignored",
-                "curves and free-form surfaces are ignored",
-            ]
-        );
+        let points = "points and lines are ignored";
+        let curves = "curves and free-form surfaces are ignored";
+        assert_eq!(read(&text).unwrap().remarks, [points, curves]);
     }
 
     #[test]
@@ -542,23 +536,17 @@ mod tests {
             ]
         );
         let polygons = read(&format!("{SQUARE}f 1 2 3\nf 1\n")).unwrap();
-        assert_eq!(
-            polygons.remarks,
-            ["line 6: a face of fewer than three corners is skipped"]
-        );
+        let remark = "line 6: a face of fewer than three corners is skipped";
+        assert_eq!(polygons.remarks, [remark]);
     }
 
     #[test]
     fn colours_to_1_and_to_255() {
         for (one, half) in [("1", "0.5"), ("255", "127.5")] {
-            let polygons = read(&format!(
-                "v 0 0 0 {one} 0 0\nv 1 0 0 0 {half} 0 1\nv 0 1 0\nf 1 2 3"
-            ))
-            .unwrap();
-            assert_eq!(
-                polygons.point_colours,
-                [Rgb8([255, 0, 0]), Rgb8([0, 128, 0]), Rgb8::DEFAULT]
-            );
+            let text = format!("v 0 0 0 {one} 0 0\nv 1 0 0 0 {half} 0 1\nv 0 1 0\nf 1 2 3");
+            let colours = read(&text).unwrap().point_colours;
+            let expected = [Rgb8([255, 0, 0]), Rgb8([0, 128, 0]), Rgb8::DEFAULT];
+            assert_eq!(colours, expected);
         }
     }
 
@@ -570,25 +558,20 @@ mod tests {
             assert_eq!(polygons.normals, [[0.0; 3], [0.0, 0.0, 1.0]], "{word}");
         }
         let colours = "v 0 0 0 nan 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 -nan(ind)\nf 1 2 3\n";
-        assert_eq!(
-            read(colours).unwrap().point_colours,
-            [Rgb8::DEFAULT, Rgb8([255, 0, 0]), Rgb8::DEFAULT]
-        );
+        let expected = [Rgb8::DEFAULT, Rgb8([255, 0, 0]), Rgb8::DEFAULT];
+        assert_eq!(read(colours).unwrap().point_colours, expected);
     }
 
     #[test]
     fn materials() {
-        let polygons = read(&format!(
-            "mtllib a b.mtl\n{SQUARE}usemtl red #1\nf 1 2 3 # c\nusemtl none\nf 1 2 3\n"
-        ))
-        .unwrap();
+        let faces = "usemtl red #1\nf 1 2 3 # c\nusemtl none\nf 1 2 3\n";
+        let polygons = read(&format!("mtllib a b.mtl\n{SQUARE}{faces}")).unwrap();
         assert_eq!(polygons.faces[0].colour, Some(Rgb8([255, 0, 0])));
         assert_eq!(polygons.faces[1].colour, None);
         assert!(polygons.remarks.is_empty());
-        let polygons = parse(
-            format!("mtllib b\n{SQUARE}f 1 2 3\n").as_bytes(),
-            &mut |_| Some(b"newmtl b\nmap_Kd -s 2 b.png\nd 0.5\nKe 1 1 1\n".to_vec()),
-        );
+        let text = format!("mtllib b\n{SQUARE}f 1 2 3\n");
+        let mtl = b"newmtl b\nmap_Kd -s 2 b.png\nd 0.5\nKe 1 1 1\n";
+        let polygons = parse(text.as_bytes(), &mut |_| Some(mtl.to_vec()));
         assert_eq!(
             polygons.unwrap().remarks,
             [
@@ -624,19 +607,15 @@ mod tests {
         let faces = polygons.faces.iter();
         let faces: Vec<_> = faces.map(|face| (face.texture, face.colour)).collect();
         let [black, red, green] = [[0, 0, 0], [255, 0, 0], [0, 255, 0]].map(|rgb| Some(Rgb8(rgb)));
-        assert_eq!(
-            faces,
-            [(1, None), (2, green), (0, red), (0, black), (1, None)]
-        );
+        let expected = [(1, None), (2, green), (0, red), (0, black), (1, None)];
+        assert_eq!(faces, expected);
         let wraps = polygons.textures.iter().map(|one| one.sampler.wrap[0]);
         assert_eq!(wraps.collect::<Vec<_>>(), [Wrap::Repeat, Wrap::Clamp]);
         let coordinates: Vec<u32> = polygons.corners.iter().map(|c| c.coordinates).collect();
         let none = Corner::NO_COORDINATES;
         assert_eq!(coordinates[..6], [0, 1, 2, 0, 1, 2]);
-        assert_eq!(
-            coordinates[6..],
-            [[none; 6], [0, none, none, 0, 0, 0]].as_flattened()[..9]
-        );
+        assert_eq!(coordinates[6..12], [none; 6]);
+        assert_eq!(coordinates[12..], [0, none, none]);
         assert_eq!(
             polygons.remarks,
             [
@@ -650,16 +629,12 @@ mod tests {
     fn texture_coordinates_that_are_no_numbers() {
         let text = format!("{SQUARE}vt nan 0\nvt 0 inf\nvt 1e300 -1e300\nf 1 2 3\n");
         let polygons = read(&text).unwrap();
-        assert_eq!(
-            polygons.coordinates,
-            [[0.0, 1.0], [0.0, 0.0], [1e300, 1e300]]
-        );
+        let expected = [[0.0, 1.0], [0.0, 0.0], [1e300, 1e300]];
+        assert_eq!(polygons.coordinates, expected);
         let remark = "line 5: 2 texture coordinates are not finite: they become 0";
         assert_eq!(polygons.remarks, [remark]);
-        assert_eq!(
-            error("vt\n"),
-            "line 1: expected one to three texture coordinates, found none"
-        );
+        let expected = "line 1: expected one to three texture coordinates, found none";
+        assert_eq!(error("vt\n"), expected);
         assert_eq!(error("vt 0 x\n"), "line 1: expected a number, found 'x'");
     }
 
@@ -668,19 +643,15 @@ mod tests {
         let names: Vec<String> = (0..256).map(|i| format!("m{i}")).collect();
         let material = |name: &String| format!("newmtl {name}\nmap_Kd {name}.png\n");
         let mtl: String = names.iter().map(material).collect();
-        let uses: String = names
-            .iter()
-            .map(|name| format!("usemtl {name}\nf 1 2 3\n"))
-            .collect();
+        let uses = names.iter().map(|name| format!("usemtl {name}\nf 1 2 3\n"));
+        let uses: String = uses.collect();
         let text = format!("mtllib m\n{SQUARE}{uses}");
         let parsed = parse(text.as_bytes(), &mut |_| Some(mtl.clone().into_bytes()));
         let Err(ObjError::Obj(error)) = parsed else {
             panic!("256 textures are refused");
         };
-        assert_eq!(
-            error.to_string(),
-            "expected at most 255 textures, found more"
-        );
+        let error = error.to_string();
+        assert_eq!(error, "expected at most 255 textures, found more");
     }
 
     #[test]
@@ -700,23 +671,16 @@ mod tests {
             v 0 0 0; f 1/x 1 1 → line 2: expected a texture index in a corner v, v/vt, v//vn or v/vt/vn, found '1/x'
             v 0 0 0 1 2 → line 1: expected three colour components, found 2
         ";
-        for case in cases.lines().filter(|case| case.contains('→')) {
-            let (text, message) = case.split_once('→').unwrap();
-            let text = text.trim().replace("; ", "\n") + "\n";
-            assert_eq!(error(&text), message.trim(), "{text:?}");
+        for [text, message] in rows(cases) {
+            let text = text.replace("; ", "\n") + "\n";
+            assert_eq!(error(&text), message, "{text:?}");
         }
         assert_eq!(error(""), "expected at least one face, found none");
-        assert_eq!(
-            error("\x7fELF\0\n"),
-            "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'"
-        );
-        assert_eq!(
-            error(&format!("v {}\n", " ".repeat(1 << 20))),
-            "line 1: expected a line of at most 65536 bytes, found a longer one"
-        );
-        assert_eq!(
-            error(&"f \\\n".repeat(1 << 20)),
-            "line 1: expected a continued line of at most 65536 bytes, found a longer one"
-        );
+        let elf = "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'";
+        assert_eq!(error("\x7fELF\0\n"), elf);
+        let long = "line 1: expected a line of at most 65536 bytes, found a longer one";
+        assert_eq!(error(&format!("v {}\n", " ".repeat(1 << 20))), long);
+        let long = "line 1: expected a continued line of at most 65536 bytes, found a longer one";
+        assert_eq!(error(&"f \\\n".repeat(1 << 20)), long);
     }
 }

@@ -244,6 +244,7 @@ fn expect(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::text::rows;
 
     const FACET: &str = "facet normal nan 0 1\n outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\n";
 
@@ -296,22 +297,16 @@ mod tests {
         let long = format!("solid {}", FACET.replace('\n', " ").repeat(2000));
         let polygons = parse(long.as_bytes()).unwrap();
         assert_eq!(polygons.faces.len(), 2000);
-        assert_eq!(
-            polygons.remarks,
-            ["endsolid is missing at the end: the file may be cut off"]
-        );
+        let remark = "endsolid is missing at the end: the file may be cut off";
+        assert_eq!(polygons.remarks, [remark]);
         let unclosed = format!("solid a\n{FACET}solid b\n{FACET}endsolid b\n");
         assert_eq!(parse(unclosed.as_bytes()).unwrap().faces.len(), 2);
     }
 
     #[test]
     fn binary_that_calls_itself_solid() {
-        let polygons = parse(&binary(
-            b"solid really",
-            2,
-            &[(CORNERS, 0), (CORNERS, 0x7fff)],
-        ))
-        .unwrap();
+        let triangles = [(CORNERS, 0), (CORNERS, 0x7fff)];
+        let polygons = parse(&binary(b"solid really", 2, &triangles)).unwrap();
         assert_eq!(polygons.faces.len(), 2);
         assert_eq!(polygons.faces[1].colour, None);
     }
@@ -320,76 +315,48 @@ mod tests {
     fn colours() {
         let red_high = parse(&binary(b"", 1, &[(CORNERS, 0x8000 | 31 << 10 | 16)])).unwrap();
         assert_eq!(red_high.faces[0].colour, Some(Rgb8([255, 0, 132])));
-        let magics = parse(&binary(
-            b"COLOR=\x01\x02\x03\xff",
-            2,
-            &[(CORNERS, 31), (CORNERS, 0x8000)],
-        ))
-        .unwrap();
+        let triangles = [(CORNERS, 31), (CORNERS, 0x8000)];
+        let magics = parse(&binary(b"COLOR=\x01\x02\x03\xff", 2, &triangles)).unwrap();
         assert_eq!(magics.faces[0].colour, Some(Rgb8([255, 0, 0])));
         assert_eq!(magics.faces[1].colour, Some(Rgb8([1, 2, 3])));
     }
 
     #[test]
     fn errors_name_their_place() {
-        let nan = {
-            let mut c = CORNERS;
-            c[4] = f32::NAN;
-            c
-        };
-        let cases: [(Vec<u8>, &str); 12] = [
+        let mut nan = CORNERS;
+        nan[4] = f32::NAN;
+        let binaries = [
             (
-                vec![],
-                "expected an STL (solid …, or a binary header of 84 bytes), found ''",
+                binary(b"", 1 << 31, &[(CORNERS, 0)]),
+                "expected a binary STL of 2147483648 triangles to be 107374182484 bytes (or an ASCII one to start with solid), found 134",
             ),
             (
                 binary(b"", 0, &[]),
                 "expected at least one face, found none",
             ),
             (
-                binary(b"", 1 << 31, &[(CORNERS, 0)]),
-                "expected a binary STL of 2147483648 triangles to be 107374182484 bytes (or an ASCII one to start with solid), found 134",
-            ),
-            (
                 binary(b"", 1, &[(nan, 0)]),
                 "byte 112: expected a finite number, found NaN",
             ),
-            (
-                b"solid\n".to_vec(),
-                "expected at least one face, found none",
-            ),
-            (
-                b"solid\nfacet normal 0 0\n".to_vec(),
-                "line 2: expected outer loop, found the end of the file",
-            ),
-            (
-                b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(),
-                "line 4: expected three numbers of a vertex, found 2",
-            ),
-            (
-                b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3 4\n".to_vec(),
-                "line 4: expected vertex x y z, found '4'",
-            ),
-            (
-                b"solid\nendsolid\nfacet".to_vec(),
-                "line 3: expected outer loop, found the end of the file",
-            ),
-            (
-                b"solid\nfacet normal x y z".to_vec(),
-                "line 2: expected outer loop, found 'x'",
-            ),
-            (
-                b"solid\nfacets".to_vec(),
-                "line 2: expected facet, or endsolid, found 'facets'",
-            ),
-            (
-                b"solid\nfacet outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 end facet"
-                    .to_vec(),
-                "line 2: expected endloop, found 'end'",
-            ),
         ];
-        for (file, message) in cases {
+        for (file, message) in binaries {
             assert_eq!(parse(&file).unwrap_err().to_string(), message);
+        }
+        // The lines of a file, separated by `;`, and the expected error.
+        let cases = "
+            → expected an STL (solid …, or a binary header of 84 bytes), found ''
+            solid; → expected at least one face, found none
+            solid; facet normal 0 0; → line 2: expected outer loop, found the end of the file
+            solid; facet normal 0 0 1; outer loop; vertex 1 2; → line 4: expected three numbers of a vertex, found 2
+            solid; facet normal 0 0 1; outer loop; vertex 1 2 3 4; → line 4: expected vertex x y z, found '4'
+            solid; endsolid; facet → line 3: expected outer loop, found the end of the file
+            solid; facet normal x y z → line 2: expected outer loop, found 'x'
+            solid; facets → line 2: expected facet, or endsolid, found 'facets'
+            solid; facet outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 end facet → line 2: expected endloop, found 'end'
+        ";
+        for [text, message] in rows(cases) {
+            let error = parse(text.replace(';', "\n").as_bytes()).unwrap_err();
+            assert_eq!(error.to_string(), message);
         }
     }
 }
