@@ -105,7 +105,7 @@ impl Gesture {
         }
     }
 
-    /// Sets up the image sensor for a size, which takes some 50 ms, and lets the hand steer the camera.
+    /// Sets up the image sensor for a size, which takes about 50 ms, and lets the hand steer the camera.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.
@@ -122,7 +122,7 @@ impl Gesture {
         started
     }
 
-    /// The active image sensor. If none is active, sets the sensor up, which takes some 50 ms, and turns it off again.
+    /// The active image sensor. If none is active, sets the sensor up, which takes about 50 ms, and turns it off again.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.

@@ -159,7 +159,7 @@ impl MainLoop {
     }
 
     /// Executes the line that the terminal has received, if it is complete and can be executed now: the gateware has drawn its frame, and
-    /// the job has ended, or the line ends it.
+    /// the job has ended, or the line ends the job.
     fn answer(&mut self) -> Turn {
         let is_free = self.job.as_ref().is_none_or(Job::ends_by_line);
         if !is_free || self.machine.renderer.is_busy() {
@@ -317,7 +317,7 @@ impl MainLoop {
             return Turn::worked(renderer.is_ready());
         };
         picture.set_drawn(drawn, scene, models);
-        // During a job the line carries its reply, which states the reason itself.
+        // During a job the serial line carries the job's reply, which states the reason itself.
         if job.is_none()
             && let Some(note) = picture.take_note()
         {

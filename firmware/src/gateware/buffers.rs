@@ -179,8 +179,8 @@ impl TextureTable {
         self.count = 0;
     }
 
-    /// The textures of a mesh for its geometry pass, which the table takes if they are new; `None` for a mesh without textures or
-    /// coordinates.
+    /// Adds the textures of a mesh to the table if they are new, and returns them for the geometry pass;
+    /// `None` for a mesh without textures or coordinates.
     ///
     /// # Errors
     /// The table is full.
@@ -201,7 +201,7 @@ impl TextureTable {
         }))
     }
 
-    /// The number of a texture, which the table takes if it is new; `None` if the table is full.
+    /// The number of a texture, which is added to the table if it is new; `None` if the table is full.
     pub fn number(&mut self, texture: &Texture) -> Option<u8> {
         let address = address(texture.bytes());
         let known = self.addresses.get(1..=self.count).unwrap_or_default();

@@ -359,5 +359,5 @@ fn unsupported(frame: &Frame) -> Option<Unsupported> {
     });
     let mut objects = frame.subject.objects().unwrap_or_default().iter();
     let mut normals = || objects.position(|object| object.placement.normals().is_some());
-    lacking.or_else(|| normals().map(|index| Unsupported::Normals { object: index + 1 }))
+    lacking.or_else(|| normals().map(|index| Unsupported::Normals(index + 1)))
 }

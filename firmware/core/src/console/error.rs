@@ -79,11 +79,7 @@ impl<'a> ParseError<'a> {
     pub fn value(&self) -> Option<impl Display + 'a> {
         match self.0 {
             ParseErrorKind::Value { error, .. } => Some(error),
-            ParseErrorKind::Unknown { .. }
-            | ParseErrorKind::LeftOut { .. }
-            | ParseErrorKind::Missing { .. }
-            | ParseErrorKind::Word { .. }
-            | ParseErrorKind::Surplus { .. } => None,
+            _ => None,
         }
     }
 }

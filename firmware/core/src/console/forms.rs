@@ -62,7 +62,8 @@ pub enum Order {
     Fit,
 }
 
-/// Makes a key that has the command's name, whose command is executed at this position, and an example of its value.
+/// Makes a key with the command's name: its position in the order of execution, and an example of its
+/// value.
 pub const fn key(order: Order, example: &'static str) -> Forms {
     Forms {
         key: None,

@@ -2,7 +2,8 @@
 //!
 //! Faces perpendicular to the axes have only six directions, so their six lit colours are computed once per frame, and no
 //! lighting is computed per pixel. Spheres are lit per pixel, and meshes per triangle or vertex, in `glint-model` and in the
-//! gateware. Light depends only on the angles between the normal, the direction to the light and that to the camera, and on shadows.
+//! gateware. Light depends only on the angles between
+//! the normal, the direction to the light and the direction to the camera, and on shadows.
 
 use core::fmt;
 
@@ -99,7 +100,7 @@ impl Light {
     /// # Errors
     /// The text has another form, or the direction is 0.
     pub fn parse(text: &str) -> Result<Self, LightError<'_>> {
-        let form = LightError::Form { text };
+        let form = LightError::Form(text);
         let mut words = text.split(',');
         let mut direction = [Q32_32::ZERO; 3];
         let is_at_camera = words.clone().next() == Some(CAMERA);
@@ -171,11 +172,8 @@ pub fn parse_rgb(text: &str) -> Option<Rgb> {
 /// Reason why a text is not the text form of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightError<'a> {
-    /// The text does not have the form that `FORM` states.
-    Form {
-        /// The text.
-        text: &'a str,
-    },
+    /// This text does not have the form that `FORM` states.
+    Form(&'a str),
     /// All components of the direction are 0.
     Nowhere,
 }
@@ -183,7 +181,7 @@ pub enum LightError<'a> {
 impl fmt::Display for LightError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Form { text } => write!(f, "{text}: expected {FORM}"),
+            Self::Form(text) => write!(f, "{text}: expected {FORM}"),
             Self::Nowhere => f.write_str("direction 0,0,0: expected a non-zero direction"),
         }
     }
@@ -363,7 +361,7 @@ impl Highlight {
         54 * self.exponent as u16 + 40
     }
 
-    /// The highlight's colour where it is brightest, from that of the light. Rounded to nearest.
+    /// The colour at the centre of the highlight, from the colour of the light, rounded to nearest.
     pub fn colour(self, light: Rgb) -> Rgb {
         light.map(|part| ((u32::from(part) * u32::from(self.strength) + 500) / 1_000) as u8)
     }

@@ -78,7 +78,7 @@ impl Union {
             // The sphere of a lattice takes a place in the list.
             let most = MAX_SPHERES - usize::from(first.is_round());
             if list.count > most {
-                return Err(FieldError::Spheres { most });
+                return Err(FieldError::Spheres(most));
             }
             let height = list.cone.map(|cone| 2 * cone.half);
             let largest = (list.list.iter().take(list.count))

@@ -152,7 +152,7 @@ fn lights_and_colours_are_read() {
         "cameras",
     ] {
         let error = Light::parse(text).expect_err(text);
-        assert_eq!(error, LightError::Form { text });
+        assert_eq!(error, LightError::Form(text));
         assert_eq!(
             error.to_string(),
             format!("{text}: expected X,Y,Z[,RRGGBB] or camera[,RRGGBB]")

@@ -91,7 +91,7 @@ pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
 pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     Mesh::new_checked(bytes).map_err(|error| {
         let found = match error.expected {
-            glint_core::mesh::Expected::Magic => {
+            glint_core::deviation::Expected::Magic(_) => {
                 format!("'{}'", error.found.to_le_bytes().escape_ascii())
             }
             _ => error.found.to_string(),

@@ -3,10 +3,10 @@
 use alloc::vec::Vec;
 
 use super::{
-    BLOCK_BYTES, Format, MAGIC, SIDES_LOG2, Sampler, Texture, TextureError, TextureHeader,
-    checksum, texel_bit,
+    BLOCK_BYTES, Format, MAGIC, SIDES_LOG2, Sampler, Texture, TextureHeader, checksum, texel_bit,
 };
 use crate::colour::Rgb565;
+use crate::deviation::Deviation;
 
 /// The contents of a texture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -28,8 +28,8 @@ pub struct Source {
 /// Encodes a texture.
 ///
 /// # Errors
-/// A size, a key or a number of levels is out of range: those of [`Texture::new_checked`].
-pub fn encode(source: &Source) -> Result<Vec<u8>, TextureError> {
+/// A size, the key or the number of levels is out of range: [`Texture::new_checked`] rejects it.
+pub fn encode(source: &Source) -> Result<Vec<u8>, Deviation> {
     let (format, [width_log2, height_log2]) = (source.format, source.size_log2);
     let Sampler { wrap, filter } = source.sampler;
     let header = TextureHeader {
