@@ -74,7 +74,7 @@ impl Clock {
         self.frequency.milliseconds(self.cycles())
     }
 
-    /// Returns the point in time at the duration `span` from now.
+    /// Returns the point in time that is `span` from now.
     #[must_use]
     pub fn after(self, span: Duration) -> Deadline {
         self.after_cycles(self.frequency.cycles(span))

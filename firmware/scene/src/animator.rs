@@ -13,7 +13,7 @@ pub struct Animator {
     animation: Animation,
     /// Time of the board at which the animation started.
     start: U32_32,
-    /// Time since then to which the scene has moved.
+    /// Time since the start to which the scene has moved.
     last: U32_32,
 }
 

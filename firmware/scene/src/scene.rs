@@ -130,7 +130,7 @@ impl PlacedMesh {
         self.place.matrix = turned.unwrap_or(self.place.matrix);
     }
 
-    /// Makes the present placement the start of the next turn of an animation.
+    /// Makes the current placement the start of the next turn of an animation.
     const fn settle(&mut self) {
         self.start = self.place.matrix;
         self.turned = Turns(0);

@@ -12,16 +12,16 @@ pub enum Move {
     Previous,
 }
 
-/// The present scene of a list, and the end of its time. Times are in milliseconds since start.
+/// The current scene of a list, and the end of its time. Times are in milliseconds since start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Demo {
     /// Number of scenes; 0 while the demo is off.
     count: usize,
-    /// Index of the present scene.
+    /// Index of the current scene.
     number: usize,
-    /// Whether the present scene must still be shown.
+    /// Whether the current scene must still be shown.
     is_due: bool,
-    /// Time at which the present scene ends.
+    /// Time at which the current scene ends.
     end: u64,
     is_held: bool,
 }
@@ -49,7 +49,7 @@ impl Demo {
         self.count > 0
     }
 
-    /// Index of the present scene, from 0; `None` while the demo is off.
+    /// Index of the current scene, from 0; `None` while the demo is off.
     pub fn number(&self) -> Option<usize> {
         self.is_on().then_some(self.number)
     }

@@ -31,7 +31,8 @@ impl Rate {
     /// The angle after `time` seconds: the product, rounded to nearest, modulo one turn. It is computed from the total time, so errors do
     /// not add up: up to a year it differs by at most one unit of [`Turns`] from the exact angle.
     pub const fn angle(self, time: U32_32) -> Turns {
-        // Turns a second with 62 fraction bits, of degrees with 32: a factor of 2^30/360 = 2^27/45. At most 2^62 in magnitude.
+        // From degrees a second with 32 fraction bits to turns a second with 62 fraction bits: times
+        // 2^30/360 = 2^27/45. The result is at most 2^62 in magnitude.
         let degrees = self.0.to_bits();
         let turns = ((degrees / 45) << 27) + ((degrees % 45) << 27) / 45;
         // A product has 94 fraction bits, an angle 32; the conversion to 32 bits drops the whole turns.

@@ -59,7 +59,7 @@ mod tests {
             state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1_442_695_040_888_963_407);
-            // The highest bits are the most random ones, and are often all 0 or all 1.
+            // Random numbers of all lengths.
             state.rotate_right(29) >> (state >> 58)
         };
         for _ in 0..1_000_000 {

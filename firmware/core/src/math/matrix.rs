@@ -286,7 +286,8 @@ impl Matrix {
 /// 2^62.
 const LEAD: u32 = 44;
 
-/// Largest error of a squared length and of a scalar product of rows of a rotation, in units of 2^−48: entries with errors of 4 units.
+/// Largest accepted error of a squared length and of a scalar product of rows of a rotation, in units of
+/// 2^−48. It allows errors of 4 units in the entries.
 const ROTATION_SLACK: i64 = 1 << 27;
 /// Largest accepted change of a shape by rounding errors, in units of 2^−24, for a column of a length below 1.
 const SHAPE_SLACK: i64 = 4;

@@ -50,7 +50,7 @@ impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     }
 }
 
-/// State of the last or present calibration. `Going` contains the calibration in progress and its number of samples so far.
+/// State of the last or current calibration. `Going` contains the calibration in progress and its number of samples so far.
 #[derive(Clone, Copy, Debug)]
 enum Calibrating<E> {
     Never,
@@ -210,7 +210,7 @@ impl<E: Copy> Imu<E> {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Turns the camera about the vertical to the heading 0. From then on the sensor's present attitude corresponds to this
+    /// Turns the camera about the vertical axis to the heading 0. From then on the sensor's current attitude corresponds to this
     /// heading.
     pub fn recentre(&mut self) {
         self.steering.recentre();

@@ -51,7 +51,8 @@ const COLOURS: [Rgb565; 16] = [
     Rgb565::from_rgb888([0xFF, 0xF4, 0xA8]),
 ];
 
-/// The colour of a texel: on the left of the side with a brace, on the right of the side with a star.
+/// The colour of a texel. The left half of the texture is the side with a brace, the right half the side
+/// with a star.
 pub fn texel([x, y]: [u32; 2]) -> Rgb565 {
     let colour = COLOURS.get(place(x, y));
     colour.copied().unwrap_or_default()

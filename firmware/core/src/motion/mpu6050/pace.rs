@@ -2,7 +2,7 @@
 
 /// A model of the sensor's clock, which computes the times at which samples were measured.
 ///
-/// A new sample was measured between the previous read and the present read, and at most a period before the present read. The
+/// A new sample was measured between the previous read and the current read, and at most a period before the current read. The
 /// sample period is not a multiple of the read period, so the reads drift relative to the samples, and from time to time the
 /// interval begins or ends close to the sample's time. The clock predicts the time of each sample. A prediction outside the
 /// interval is moved to the nearer end of the interval.

@@ -50,7 +50,7 @@ impl Integrator {
         self.rounded = attitude;
     }
 
-    /// Drops the earlier rates and continues from `rate` (in 1/256 LSB) with the present attitude.
+    /// Drops the earlier rates and continues from `rate` (in 1/256 LSB) with the current attitude.
     pub fn restart(&mut self, rate: [i32; 3]) {
         self.history.start(rate);
     }
@@ -135,7 +135,7 @@ impl Integrator {
     // Inlined in the code that runs for every sample; `turn_far` contains a second copy.
     #[inline(always)]
     fn turn_part(&mut self, half: [i64; 3]) {
-        // h with 32 fraction bits, rounded down, in 32-bit words as all of the following numbers.
+        // h with 32 fraction bits, rounded down, in 32-bit words like all of the following numbers.
         let short = half.map(|x| (((x >> 32) as i32) << 16) | (x as u32 >> 16).cast_signed());
         // `square` is |h|² with 32 fraction bits, rounded down; each of its three addends is below 2^26.
         let square = short

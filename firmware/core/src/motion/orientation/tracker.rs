@@ -41,7 +41,7 @@ pub struct Counts {
 const LARGEST_BIAS: i32 = 1 << 30;
 
 /// Number of successive stale samples, each later than the one before, after which the clock counts as restarted. A few samples out
-/// of order are no restart.
+/// of order do not count as a restart.
 const RESTART: u8 = 4;
 
 /// The samples since the last step whose times do not follow it. They show whether single times were
@@ -108,7 +108,7 @@ impl Tracker {
         self.resting = Some(resting);
     }
 
-    /// Present bias of the gyroscope in 1/256 LSB.
+    /// Current bias of the gyroscope in 1/256 LSB.
     pub const fn bias(&self) -> [i32; 3] {
         self.bias
     }
@@ -220,7 +220,7 @@ impl Tracker {
         if since > u64::from(LONGEST_STEP) {
             detour.before = None;
         }
-        // The steps since the gap have integrated their time.
+        // The time of the steps since the gap has been integrated.
         let before = detour.before;
         let before = before.map(|(before, age)| (before.wrapping_add(since), age));
         if let Some((before, age)) = before
