@@ -30,7 +30,7 @@ pub fn start(
     mut clock: Clock,
 ) -> Result<Model, SetUpError> {
     engine.set_power(false);
-    // Longer than the shortest reset that every supported chip accepts.
+    // Longer than the minimum reset pulse of every supported chip.
     clock.delay_ms(1);
     engine.set_power(true);
     clock.delay_ms(RESET_TIME);

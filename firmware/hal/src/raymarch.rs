@@ -60,7 +60,7 @@ pub struct Start {
 /// The constants that depend on how rays find the solid.
 #[derive(Clone, Copy)]
 pub enum Form<'a> {
-    /// Rays leave empty prisms.
+    /// Rays step to the exits of empty prisms.
     Exits {
         /// Coordinates of planes of the solid.
         borders: [i32; 3],

@@ -268,7 +268,7 @@ impl GeometryPasses {
         stats.drawn = drawn;
     }
 
-    /// Makes the descriptors and lists of all meshes by the CPU.
+    /// Makes the descriptors and lists of all meshes on the CPU.
     ///
     /// Not inlined, because few frames need it.
     #[inline(never)]

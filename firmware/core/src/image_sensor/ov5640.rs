@@ -2,7 +2,7 @@
 
 use super::step::SetupStep::{self, Check, Wait, Write};
 
-/// Selects the clock of the pin, resets all registers, and puts the chip to sleep for the set-up.
+/// Selects the external clock XCLK, resets all registers, and puts the chip to sleep for the set-up.
 pub const RESET: &[SetupStep] = &[
     Write(0x3103, 0x11),
     Write(0x3008, 0x82),
