@@ -117,22 +117,18 @@ impl fmt::Display for RenderError {
                     "{name} buffer of {found} pixels: expected {expected}, the picture's width times its height"
                 )
             }
-            Self::Scratch { expected, found } => {
-                write!(
-                    f,
-                    "scratch for {found} vertices: expected at least {expected}, the number in the largest chunk"
-                )
-            }
+            Self::Scratch { expected, found } => write!(
+                f,
+                "scratch for {found} vertices: expected at least {expected}, the number in the largest chunk"
+            ),
             Self::Edges { triangles } => write!(
                 f,
                 "edges of {triangles} triangles: expected fewer triangles, to fit the memory for edges"
             ),
-            Self::Eye([x, y, z]) => {
-                write!(
-                    f,
-                    "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
-                )
-            }
+            Self::Eye([x, y, z]) => write!(
+                f,
+                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
+            ),
             Self::Near { near, least } => write!(
                 f,
                 "near {near}: expected at least {least} for a mesh of this size in a picture of this width and field of view"

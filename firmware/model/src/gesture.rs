@@ -46,7 +46,6 @@ impl Channel {
 ///
 /// Full-range luma and chroma of ITU-R BT.601, with factors of 10 fraction bits, rounded to nearest, ties down. All channels fit in 8
 /// bits, because the factors of luma add up to 1 and the factors of chroma to 0, and a chroma's positive factor is 1/2.
-#[must_use]
 pub const fn channels(colour: Rgb565) -> [u8; 6] {
     let [r, g, b] = colour.to_rgb888();
     let [red, green, blue] = [r as i32, g as i32, b as i32];
@@ -74,7 +73,6 @@ impl Settings {
     pub const MAX_SIZE: [u16; 2] = [1280, 720];
 
     /// Whether a pixel is marked.
-    #[must_use]
     pub const fn marks(&self, colour: Rgb565) -> bool {
         let channels = channels(colour);
         let [(a, window_a), (b, window_b)] = self.windows;

@@ -64,7 +64,6 @@ impl Segment {
     const END: usize = segment_end::BITS / 32;
 
     /// The segment in memory (docs/formats/line.md, "Segments in memory").
-    #[must_use]
     pub const fn words(&self) -> [u32; Self::WORDS] {
         let (w, bias) = match self.depth {
             LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
@@ -80,7 +79,6 @@ impl Segment {
 
     /// The segment with these [`words`](Self::words) in memory. Bits outside of the fields have no effect. A segment without a depth test
     /// is read as a segment with a depth test that draws the same pixels.
-    #[must_use]
     pub fn from_words(words: [u32; Self::WORDS]) -> Self {
         let [first, second] = [0, segment_end::BITS].map(|start| {
             let end = ScreenVertex {
@@ -98,7 +96,6 @@ impl Segment {
     }
 
     /// The header of a chunk with one vertex and `segments` segments, and the vertex. Together they are as long as a segment.
-    #[must_use]
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
     }

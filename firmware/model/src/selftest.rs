@@ -55,7 +55,6 @@ impl TestPicture {
     ];
 
     /// Name for messages: the gateware block, and the feature of the block that the picture needs.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Triangle => "triangle flat",
@@ -69,7 +68,6 @@ impl TestPicture {
     }
 
     /// Whether this build of the firmware includes the code that draws the picture.
-    #[must_use]
     pub const fn is_built(self) -> bool {
         match self {
             Self::Triangle | Self::Smooth => MESH.is_built,
@@ -81,7 +79,6 @@ impl TestPicture {
     }
 
     /// The stored checksum of the colours.
-    #[must_use]
     pub const fn stored(self) -> u32 {
         checksums::STORED[self as usize]
     }
@@ -135,7 +132,7 @@ impl TestPicture {
         match self {
             Self::Triangle => Some(Shading::Flat),
             Self::Smooth => Some(Shading::Smooth),
-            Self::Line | Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => None,
+            _ => None,
         }
     }
 
@@ -145,7 +142,7 @@ impl TestPicture {
             Self::Sponge => Some("menger:3"),
             Self::Cubes | Self::Stereo => Some("cubes:2,0.4"),
             Self::Spheres => Some("spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35"),
-            Self::Triangle | Self::Smooth | Self::Line => None,
+            _ => None,
         }
     }
 }

@@ -26,7 +26,6 @@ pub struct WireframeSubject<'a> {
 
 impl WireframeSubject<'_> {
     /// The line of a segment of the program, drawn without a depth test; `None` if no part of it is on the screen.
-    #[must_use]
     pub fn line(&self, projection: &Projection, segment: Segment) -> Option<line::Segment> {
         let ends = projection.line(self.pose.segment(segment))?;
         Some(line::Segment {

@@ -197,7 +197,7 @@ fn split(memory: &mut [u32], triangles: u32) -> Option<(&mut [Sides], &mut [u32]
     Some((sides.as_chunks_mut().0, rest))
 }
 
-/// The results of `of` for the indices of a triangle's vertices. In a checked mesh all indices are valid.
+/// The results of `of` for the vertex indices of a triangle; `None` for an invalid index, which a checked mesh does not have.
 fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T; 3]> {
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| of(usize::from(i))) else {
         return None;

@@ -148,7 +148,7 @@ impl FrameConstants {
             Subject::Mesh(subject) | Subject::Edges(subject, _) if MESH.is_built => {
                 let mesh = self.mesh.get_or_insert_default();
                 mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
-                mesh.set_clip(subject.clip)?;
+                mesh.volume = mesh.volume_of(subject.clip)?;
             }
             Subject::Field(subject) if FIELD.is_built => {
                 self.mesh = None;
@@ -173,12 +173,7 @@ impl FrameConstants {
                 camera.set_depths(depths(objects, camera));
             }
             // A wireframe, or a subject that this build does not support.
-            Subject::Wireframe(_)
-            | Subject::Mesh(_)
-            | Subject::Edges(..)
-            | Subject::Field(_)
-            | Subject::MeshInField(..)
-            | Subject::Objects(_) => self.mesh = None,
+            _ => self.mesh = None,
         }
         let lighting = frame.mesh_lighting();
         if MESH.is_built

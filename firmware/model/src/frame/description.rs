@@ -13,6 +13,7 @@ use glint_core::picture::{Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 
+use crate::options::MeshOptions;
 use crate::raymarch::FieldOptions;
 use crate::triangle::{Clip, MeshLight, Options, Placement};
 use crate::wireframe::WireframeSubject;
@@ -113,21 +114,14 @@ impl<'a> MeshSubject<'a> {
         TEXTURE.is_built && self.textures && self.mesh.has_textures()
     }
 
-    /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
+    /// A mesh with [`MeshOptions::DEFAULT`].
     pub const fn new(mesh: Mesh<'a>) -> Self {
-        Self {
-            mesh,
-            cull: true,
-            shading: Shading::Flat,
-            clip: Clip::Guard,
-            winding: Winding::Mesh,
-            textures: true,
-        }
+        MeshOptions::DEFAULT.subject(mesh)
     }
 }
 
 impl<'a> Subject<'a> {
-    /// A mesh with the default options of [`MeshSubject::new`].
+    /// A mesh with [`MeshOptions::DEFAULT`].
     pub const fn mesh(mesh: Mesh<'a>) -> Self {
         Self::Mesh(MeshSubject::new(mesh))
     }
@@ -149,12 +143,7 @@ impl<'a> Subject<'a> {
             {
                 Some(mesh)
             }
-            Self::Mesh(_)
-            | Self::Edges(..)
-            | Self::MeshInField(..)
-            | Self::Field(_)
-            | Self::Objects(_)
-            | Self::Wireframe(_) => None,
+            _ => None,
         }
     }
 
@@ -162,12 +151,7 @@ impl<'a> Subject<'a> {
     pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
         match self {
             Self::Objects(objects) if OBJECT.is_built => Some(objects),
-            Self::Objects(_)
-            | Self::Mesh(_)
-            | Self::Edges(..)
-            | Self::Field(_)
-            | Self::MeshInField(..)
-            | Self::Wireframe(_) => None,
+            _ => None,
         }
     }
 
@@ -195,12 +179,7 @@ impl<'a> Subject<'a> {
                 let object = objects.get(number)?;
                 Some((&object.subject, object.colour))
             }
-            Self::Objects(_)
-            | Self::Mesh(_)
-            | Self::Edges(..)
-            | Self::Field(_)
-            | Self::MeshInField(..)
-            | Self::Wireframe(_) => self.coloured_part().filter(|_| number == 0),
+            _ => self.coloured_part().filter(|_| number == 0),
         }
     }
 
@@ -236,12 +215,7 @@ impl<'a> Subject<'a> {
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
             Self::Field(field) | Self::MeshInField(_, field) if FIELD.is_built => Some(field),
-            Self::Field(_)
-            | Self::MeshInField(..)
-            | Self::Mesh(_)
-            | Self::Edges(..)
-            | Self::Objects(_)
-            | Self::Wireframe(_) => None,
+            _ => None,
         }
     }
 }
@@ -295,12 +269,7 @@ impl<'a> Frame<'a> {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {
                 field.appearance.mesh_lighting()
             }
-            Subject::MeshInField(..)
-            | Subject::Mesh(_)
-            | Subject::Edges(..)
-            | Subject::Field(_)
-            | Subject::Objects(_)
-            | Subject::Wireframe(_) => self.lighting,
+            _ => self.lighting,
         }
     }
 }

@@ -18,7 +18,6 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Creates an empty picture. `step` is at most 5.
-    #[must_use]
     pub const fn new(step: u8, is_colour: bool) -> Self {
         Self {
             step,
@@ -31,13 +30,11 @@ impl Snapshot {
     }
 
     /// The words: RGB565 colours, or marks packed 16 per word, the first mark in the highest bit.
-    #[must_use]
     pub fn words(&self) -> &[u16] {
         &self.words
     }
 
     /// The number of the frame that it shows; whole frames are counted from 1.
-    #[must_use]
     pub const fn frame(&self) -> u32 {
         self.frame
     }

@@ -27,7 +27,7 @@ pub struct Marching {
     pub beside: Beside,
     /// Threshold: a ray hits if the distance is below `threshold` + T·2^−`footprint`. In field units, 12 fraction bits, below 2^16.
     pub threshold: u32,
-    /// Exponent of the part of the threshold that grows with T, 7 to 22: that of the options plus the exponent e of D.
+    /// Exponent of the part of the threshold that grows with T, 7 to 22: the exponent of the options plus the exponent e of D.
     pub footprint: u32,
     /// Step limit, 1 to 1023: a ray ends undecided after this number of evaluations.
     pub cap: u32,

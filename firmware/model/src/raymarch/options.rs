@@ -44,7 +44,7 @@ impl Default for Tuning {
 const MARK: [u8; 3] = [255, 0, 255];
 
 /// Options for drawing a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FieldOptions {
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
@@ -101,18 +101,6 @@ impl FieldOptions {
                 .map(Light::direction),
             fog,
             tuning: Tuning::of(quality),
-        }
-    }
-}
-
-impl Default for FieldOptions {
-    fn default() -> Self {
-        Self {
-            stereo: None,
-            tuning: Tuning::default(),
-            palette: Palette::default(),
-            sun: None,
-            fog: U4_28::ZERO,
         }
     }
 }

@@ -27,7 +27,7 @@ pub struct Ray {
     pub direction: [i32; 3],
     /// Parameter T at the start of the ray, u14.10, rounded down: where it enters the bounding box, or at the near plane.
     pub start: u32,
-    /// Whether the ray misses because it meets the bounding box nowhere before the far limit. Its start then has no meaning.
+    /// Whether the ray misses because it does not meet the bounding box before the far limit. Its start then has no meaning.
     pub is_over: bool,
     /// Change of T per distance: a lower bound of 1/|D|, u3.14.
     pub pace: u32,

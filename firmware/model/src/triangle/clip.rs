@@ -18,7 +18,7 @@ pub const MAX_VERTICES: usize = 28;
 
 /// A vertex that the clipper interpolates. It is a trait, so that the code for triangles without textures interpolates no texture
 /// coordinates.
-pub trait Cut: Copy {
+pub trait Cut: Copy + Default {
     /// Its position and light.
     fn vertex(&self) -> &CameraVertex;
     /// The vertex at `part`/`whole` of the way to `other`; `vertex` is the position and light of the result.
@@ -60,17 +60,9 @@ impl Cut for TexturedVertex {
 }
 
 /// A triangle after clipping: a polygon.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Polygon<C = CameraVertex> {
     vertices: Vec<C, MAX_VERTICES>,
-}
-
-impl<C> Default for Polygon<C> {
-    fn default() -> Self {
-        Self {
-            vertices: Vec::new(),
-        }
-    }
 }
 
 impl<C: Cut> Polygon<C> {

@@ -5,11 +5,11 @@ use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
-use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::setup::Plane;
 use glint_model::triangle::textured::{Textured, flat_light, lit, sample};
 use glint_model::{Frame, MeshSubject, Subject};
 use glint_vectors::meshes::textured_square;
-use glint_vectors::triangles::{SIZE, random_triangle};
+use glint_vectors::triangles::{SIZE, random_triangle, set_up};
 use glint_vectors::{Camera, Picture, Random};
 
 /// A texture in which the value of each texel is its position: the row in the high byte, the column in the low byte.
@@ -60,17 +60,14 @@ fn positions_and_levels_are_those_of_exact_perspective() {
             vertex.w =
                 random.integer(least * 64, (least * 64 * 8).min(((1 << 18) - 4) * 64)) as u32;
         }
-        let Some(triangle) = Oriented::new(vertices) else {
+        let Some((triangle, setup)) = set_up(vertices, SIZE) else {
             continue;
         };
-        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
-            continue;
-        };
+        let bounds = setup.bounds;
         let range = 1 << random.integer(8, 18);
         let place = random.integer(-(1 << 24), 1 << 24);
         let coordinates =
             [(); 3].map(|()| [(); 2].map(|()| (place + random.integer(0, range)) as i32));
-        let setup = Setup::new(&triangle, bounds);
         let textured = Textured::new(texture, &triangle, &setup, &coordinates, [0; 3], false);
         let corners = triangle.vertices.map(|v| [v.x, v.y].map(f64::from));
         let doubled = triangle.doubled_area as f64;
@@ -78,15 +75,10 @@ fn positions_and_levels_are_those_of_exact_perspective() {
         for _ in 0..20 {
             let column = random.integer(bounds.left.into(), i64::from(bounds.right) - 1) as i32;
             let row = random.integer(bounds.top.into(), i64::from(bounds.bottom) - 1) as i32;
-            let at = |plane: glint_model::triangle::setup::Plane| {
-                plane
-                    .start
-                    .wrapping_add(
-                        plane
-                            .step_x
-                            .wrapping_mul((column - setup.start_column) as u32),
-                    )
-                    .wrapping_add(plane.step_y.wrapping_mul((row - bounds.top) as u32))
+            let [right, down] = [column - setup.start_column, row - bounds.top].map(|x| x as u32);
+            let at = |plane: Plane| {
+                let in_row = plane.start.wrapping_add(plane.step_y.wrapping_mul(down));
+                in_row.wrapping_add(plane.step_x.wrapping_mul(right))
             };
             let point = [column, row].map(|x| f64::from(256 * x + 128));
             let opposite = |i: usize| {
@@ -128,14 +120,9 @@ fn positions_and_levels_are_those_of_exact_perspective() {
                 continue;
             }
             let apart = most / f64::from(1 << level);
-            assert!(
-                apart < 1.5 * 9.0 / 8.0 || level == 10,
-                "level {level}: {apart}"
-            );
-            assert!(
-                apart > 0.75 * 7.0 / 8.0 || level == 0,
-                "level {level}: {apart}"
-            );
+            let fits = apart < 1.5 * 9.0 / 8.0 || level == 10;
+            let is_finest = apart > 0.75 * 7.0 / 8.0 || level == 0;
+            assert!(fits && is_finest, "level {level}: {apart}");
             pixels += 1;
         }
     }
@@ -162,13 +149,11 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
     }
 }
 
-/// The texels of a floor that passes under the camera, clipped and not, are those that exact rays hit.
+/// A floor under the camera, with and without clipped triangles, shows the texels that exact rays hit.
 #[test]
 fn a_floor_has_the_texels_that_rays_hit() {
-    let bytes = textured_square(
-        &[encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap()],
-        0.5,
-    );
+    let texture = encode(&places(Wrap::Repeat, Filter::Nearest));
+    let bytes = textured_square(&[texture.unwrap()], 0.5);
     let mesh = Mesh::new_checked(&bytes).unwrap();
     for (eye, shading) in [
         ([0.3, -0.4, 0.3], Shading::Flat),
@@ -224,11 +209,8 @@ fn cut_out_texels_leave_colour_and_depth() {
     });
     let bytes = textured_square(&[texture.unwrap()], 0.25);
     let camera = Camera::looking([0.0, -0.01, 2.5], [0.0; 3], 0.7, 0.1);
-    let picture = Picture::of_frame(&frame(
-        Mesh::new_checked(&bytes).unwrap(),
-        &camera,
-        Shading::Flat,
-    ));
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let picture = Picture::of_frame(&frame(mesh, &camera, Shading::Flat));
     let mut counts = [0_u32; 2];
     for (&colour, &code) in picture.colour.iter().zip(&picture.depth) {
         match colour {
@@ -289,11 +271,8 @@ fn bilinear_colours_are_between_their_texels() {
         for place in 0..16 {
             let at = 256 * 5 + 128 + 16 * place;
             let [_, _, blue] = sample(&texture, 0, [at, 128]).unwrap();
-            assert_eq!(
-                i64::from(blue),
-                (16 * 5 * 8 + 8 * place + 8) / 16,
-                "{wrap:?} {place}"
-            );
+            let expected = (16 * 5 * 8 + 8 * place + 8) / 16;
+            assert_eq!(i64::from(blue), expected, "{wrap:?} {place}");
         }
         let [_, _, left] = sample(&texture, 0, [0, 128]).unwrap();
         let expected = match wrap {
@@ -324,10 +303,7 @@ fn anything_has_a_colour() {
         });
         let bytes = bytes.unwrap();
         let texture = Texture::new_checked(&bytes).unwrap();
-        let Some(triangle) = Oriented::new(random_triangle(&mut random)) else {
-            continue;
-        };
-        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+        let Some((triangle, setup)) = set_up(random_triangle(&mut random), SIZE) else {
             continue;
         };
         let coordinates = [(); 3].map(|()| {
@@ -337,16 +313,8 @@ fn anything_has_a_colour() {
                 _ => random.bits() as i32,
             })
         });
-        let setup = Setup::new(&triangle, bounds);
-        let is_linear = random.coin();
-        let textured = Textured::new(
-            texture,
-            &triangle,
-            &setup,
-            &coordinates,
-            [255; 3],
-            is_linear,
-        );
+        let (light, is_linear) = ([255; 3], random.coin());
+        let textured = Textured::new(texture, &triangle, &setup, &coordinates, light, is_linear);
         for _ in 0..20 {
             let (depth, values) = (any(&mut random), [(); 2].map(|()| any(&mut random)));
             let level = textured.level(&setup, depth, values);

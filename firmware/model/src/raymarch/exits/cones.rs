@@ -116,7 +116,7 @@ pub enum ConeKind {
 }
 
 impl ConeKind {
-    /// All kinds by their number in the gateware; unused numbers are those of spheres.
+    /// All kinds, by their number in the gateware; unused numbers act as spheres.
     pub(super) const ALL: [Self; 8] = [
         Self::Sphere,
         Self::Base,
@@ -251,7 +251,7 @@ impl Sight {
             return false;
         }
         let forward = unit(q.map(|part| -i64::from(part)));
-        // If the direction does not change along a row, or changes towards the centre, this is any perpendicular axis.
+        // Any axis perpendicular to `forward` if the direction does not change along a row, or changes towards the centre.
         let b = perpendicular(&forward, &self.directions[1]);
         let a = perpendicular(&b, &forward);
         // Quotients and roots are computed as products with reciprocal square roots.

@@ -91,7 +91,7 @@ pub struct Solid {
     pub side: [i64; AXES],
 }
 
-/// The place of a point in a solid.
+/// Where a point is, relative to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In the solid.
@@ -130,7 +130,7 @@ pub enum Exit {
     First,
     /// The second of three: the ray is in one of three prisms while it is in two of the intervals.
     Second,
-    /// The last: each interval alone is empty.
+    /// The last: the ray is in a prism while it is in any of the intervals.
     Last,
 }
 
@@ -196,7 +196,7 @@ impl Solid {
         })
     }
 
-    /// The place of a point with these intervals.
+    /// Where a point with these intervals is.
     pub(super) fn place(&self, k: &[i32; AXES]) -> Place {
         match self.rule {
             Rule::Box => outside(k, 1, 0..3).unwrap_or(Place::Solid),
@@ -286,7 +286,7 @@ fn prism(exit: Exit, border: impl Fn(usize) -> Option<Border>) -> Prism {
     }
 }
 
-/// The place of a point outside a box, `None` inside. `above` is the first interval above the box.
+/// Where a point outside of a box is; `None` for a point inside. `above` is the first interval above the box.
 fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
     if axes.clone().any(|axis| k[axis] >= above) {
         return Some(Place::Gone);
@@ -298,7 +298,7 @@ fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
     })
 }
 
-/// The place of a point in the cube about a sponge.
+/// The empty prism of a point in the cube about a sponge.
 ///
 /// The sponge is the intersection of three extruded Sierpinski carpets: a point is outside if two of its digits are 1 at some level. It is
 /// then in a prism between the borders of the two cells, which goes through the whole sponge along the third axis. With three such digits

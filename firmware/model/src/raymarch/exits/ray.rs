@@ -118,7 +118,7 @@ impl Exits {
             start: Way {
                 t: self.near,
                 face: 2,
-                // An octahedron's fourth slab has no interval below.
+                // A lane needs no border of an octahedron's fourth slab, so no ray is below the slab.
                 reached: [i32::MIN, i32::MIN, i32::MIN, 0],
             },
             is_away: false,

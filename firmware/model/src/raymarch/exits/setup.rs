@@ -122,7 +122,7 @@ pub struct Exits {
     pub near: i64,
     /// Largest parameter of a hit.
     pub far: i64,
-    /// The flat solid or the lattice; `None` for a list of spheres alone.
+    /// The flat solid or the lattice; `None` if there is only a list of spheres.
     pub solid: Option<Solid>,
     /// The rays to the first light; `None` without shadows.
     pub sun: Option<Sun>,
@@ -167,7 +167,7 @@ impl Exits {
         let eye = |i: usize| {
             let eye = Eye::at(views[i].eye().map(|x| units(x, scale) as i32), &solid);
             Eye {
-                // Only spheres of a list need the position in the world, so only builds with such spheres reduce it to a cell themselves.
+                // Only spheres of a list need the position in the world, so only gateware with such spheres reduces it to a cell.
                 origin: match field.is_repeated_union() {
                     true => eye.origin,
                     false => eye.place(),
