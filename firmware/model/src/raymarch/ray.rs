@@ -156,7 +156,7 @@ fn pace(direction: [i32; 3]) -> u32 {
 
 /// As [`pace`], from all bits of the direction, so that the pace does not jump between neighbouring pixels. Only the CPU draws such fields.
 fn long_pace(direction: [i32; 3]) -> u32 {
-    // With 34 fraction bits.
+    // The squares have 34 fraction bits.
     let squares = direction.map(|part| (u64::from(magnitude(part)) + 1).pow(2));
     let square: u64 = squares.iter().sum();
     ((1_u64 << 62) / square).isqrt() as u32

@@ -146,7 +146,7 @@ pub struct PreparedMesh<'a> {
     pub mesh: Mesh<'a>,
     /// The frame constants of the mesh.
     pub frame: MeshSetup,
-    /// Options of drawing the mesh. `clear` has no effect.
+    /// Options for drawing the mesh. `clear` has no effect.
     pub options: Options<'a>,
 }
 

@@ -100,7 +100,7 @@ fn bands_leave_a_line_as_it_is() {
     }
 }
 
-/// Outside of the format of positions there is no line.
+/// A segment with an end point outside of the format of positions has no line.
 #[test]
 fn positions_have_a_range() {
     let (low, high) = (-(1 << 19), (1 << 19) - 1);

@@ -88,7 +88,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
     let mesh = mesh_of(&Model::sphere(0.5, 12));
     let (separation, columns) = (0.1, 16);
     let camera = Camera::looking([1.0, -2.0, 0.8], [0.0; 3], 0.5, 0.1);
-    // 16 of the 160 pixels of half a picture.
+    // A shift of 16 of the 160 pixels of half a picture.
     let zero = separation / (camera.half_width * f64::from(columns) / 160.0);
     let view = camera.rounded();
     let stereo = stereo(separation, zero);
@@ -130,7 +130,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
     }
 }
 
-/// Makes a picture from words of two pixels.
+/// Packs pixels into words of two pixels.
 fn words(pixels: &[u16]) -> Vec<u32> {
     let pairs = pixels.as_chunks().0.iter();
     pairs

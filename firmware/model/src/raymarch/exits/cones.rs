@@ -348,7 +348,7 @@ impl Sight {
 pub(super) struct Function<'a> {
     pub axis: &'a Vector,
     pub factor: Scaled,
-    /// 30 fraction bits.
+    /// The offset, with 30 fraction bits.
     pub offset: i64,
 }
 

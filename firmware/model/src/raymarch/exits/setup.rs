@@ -124,7 +124,7 @@ pub struct Exits {
     pub far: i64,
     /// The flat solid or the lattice; `None` if there is only a list of spheres.
     pub solid: Option<Solid>,
-    /// The rays to the first light; `None` without shadows.
+    /// The shadow rays to the first light; `None` without shadows.
     pub sun: Option<Sun>,
     /// The spheres: first the sphere of a lattice, if any, then the spheres of a list.
     pub spheres: FixedSpheres,

@@ -119,7 +119,7 @@ impl Exits {
         (t >= self.near).then_some(t)
     }
 
-    /// The parameter with a divisor of 22 fraction bits.
+    /// The parameter at a hit: the distance of the cone divided by `divisor`, which has 22 fraction bits.
     fn parameter(&self, cone: &Cone, divisor: i64) -> i64 {
         // The divisor exceeds 24 bits only for invalid constants.
         let inverse = Inverse::of(((divisor as u32 & 0xFF_FFFF) << 1 | 1) << 3, &self.words);

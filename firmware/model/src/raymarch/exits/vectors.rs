@@ -41,7 +41,7 @@ fn shortest_axis(vector: &Vector) -> Vector {
     [0, 1, 2].map(|i: usize| i32::from(i == axis))
 }
 
-/// [`nearest`], not inlined.
+/// [`nearest`], as a function that is not inlined.
 #[inline(never)]
 pub(super) const fn rounded(x: i64, bits: i32) -> i64 {
     nearest(x, bits)
@@ -100,7 +100,7 @@ impl Scaled {
     /// The reciprocal of the square root of x·2^`exponent`, x at least 1 and the exponent even. Its relative error is at most 5·10^−9.
     #[inline(never)]
     pub(super) fn inverse_root(x: u64, exponent: i32) -> Self {
-        // From 1 to below 4 with 30 fraction bits, times 2^(32 − shift).
+        // The argument is in [1, 4), with 30 fraction bits: x is this integer times 2^(32 − shift).
         let shift = (64 - bits(x)) & !1;
         let root = inverse_root::<2>((x << shift >> 32) as u32);
         Self {
