@@ -101,7 +101,10 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
         bench.board.inner().plug(resting_sensor());
         bench.run(1_000);
         bench.same_answers("after 24 h", &answers)?;
-        bench.clocks("after 24 h")?;
+        bench.clock("after 24 h", "uptime_ms", Bench::milliseconds)?;
+        bench.clock("after 24 h", "video_frames", |bench| {
+            bench.board.inner().blankings() & u64::from(u32::MAX)
+        })?;
         bench.hand()?;
     }
     bench.bar.finish_and_clear();
@@ -317,23 +320,16 @@ impl Bench {
         Ok(())
     }
 
-    /// Compares the firmware's clocks with the clock of the emulated board.
-    fn clocks(&mut self, when: &str) -> Result<()> {
-        let blankings = |bench: &mut Self| bench.board.inner().blankings() & u64::from(u32::MAX);
-        let clocks: [(&str, &dyn Fn(&mut Self) -> u64); 2] = [
-            ("uptime_ms", &Self::milliseconds),
-            ("video_frames", &blankings),
-        ];
-        for (key, clock) in clocks {
-            let shown: u64 = value(&mut self.board, &format!("info {key}"), key)?;
-            let exact = clock(self);
-            // The clock may have advanced since the reply.
-            let measured = match exact.abs_diff(shown) {
-                0 | 1 => exact,
-                _ => shown,
-            };
-            self.note(when, key, exact.to_string(), measured.to_string());
-        }
+    /// Compares a clock of the firmware, printed by `info KEY`, with the clock `exact` of the emulated board.
+    fn clock(&mut self, when: &str, key: &str, exact: fn(&mut Self) -> u64) -> Result<()> {
+        let shown: u64 = value(&mut self.board, &format!("info {key}"), key)?;
+        let exact = exact(self);
+        // The clock may have advanced since the reply.
+        let measured = match exact.abs_diff(shown) {
+            0 | 1 => exact,
+            _ => shown,
+        };
+        self.note(when, key, exact.to_string(), measured.to_string());
         Ok(())
     }
 }
