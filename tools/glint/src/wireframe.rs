@@ -403,38 +403,26 @@ mod tests {
         let made = make(polygons, None, &usual()).unwrap();
         let program = check(&made.bytes).unwrap();
         let point = |x: i16, y: i16, z: i16| [x, y, z].map(Q5_11::from_num);
-        assert!(
-            program
-                .segments()
-                .flatten()
-                .any(|end| end == point(0, 3, -2))
-        );
+        let mut ends = program.segments().flatten();
+        assert!(ends.any(|end| end == point(0, 3, -2)));
     }
 
     #[test]
     fn refused_programs_of_meshes() {
-        let refused = |name: &str, extent, viewing: &Viewing| {
-            make(generate::named(name).unwrap(), extent, viewing)
-                .err()
-                .unwrap()
-                .to_string()
+        let refused = |name: &str, extent: f64, viewing: &Viewing| {
+            let made = make(generate::named(name).unwrap(), Some(extent), viewing);
+            made.err().unwrap().to_string()
         };
-        assert_eq!(
-            refused("icosphere:64", Some(4.0), &usual()),
-            "expected a mesh of at most 65535 edges, found 122880"
-        );
-        assert_eq!(
-            refused("cube", Some(32.0), &usual()),
-            "expected coordinates from -16 to 15.9995, found 16"
-        );
         let low = Viewing {
             plane: Q5_11::lit("8"),
             ..usual()
         };
-        assert_eq!(
-            refused("cube", Some(4.0), &low),
-            "expected a z of the eye above that of the view plane, 8, found 8"
-        );
+        let edges = "expected a mesh of at most 65535 edges, found 122880";
+        assert_eq!(refused("icosphere:64", 4.0, &usual()), edges);
+        let range = "expected coordinates from -16 to 15.9995, found 16";
+        assert_eq!(refused("cube", 32.0, &usual()), range);
+        let plane = "expected a z of the eye above that of the view plane, 8, found 8";
+        assert_eq!(refused("cube", 4.0, &low), plane);
     }
 
     #[test]
@@ -484,21 +472,10 @@ mod tests {
             ]
         );
         assert_eq!(script("up:100000").unwrap().len(), 100_000);
-        for text in [
-            "",
-            "up,",
-            "jump",
-            "up:x",
-            "up:-1",
-            "rotate:2",
-            "up:100001",
-            "up,up:100000",
-        ] {
+        for text in " up, jump up:x up:-1 rotate:2 up:100001 up,up:100000".split(' ') {
             let error = script(text).unwrap_err().to_string();
-            assert!(
-                error.starts_with("expected ") && error.contains(", found '"),
-                "{error}"
-            );
+            let is_line = error.starts_with("expected ") && error.contains(", found '");
+            assert!(is_line, "{error}");
         }
     }
 }

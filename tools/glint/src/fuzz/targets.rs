@@ -199,10 +199,8 @@ fn run_texture(input: &[u8]) -> bool {
     match converted {
         Ok((bytes, report)) => {
             let texture = Texture::new_checked(&bytes);
-            assert!(
-                texture.is_ok_and(|texture| !sheet(&texture).texels.is_empty()),
-                "a conversion gives a valid texture"
-            );
+            let is_valid = texture.is_ok_and(|texture| !sheet(&texture).texels.is_empty());
+            assert!(is_valid, "a conversion gives a valid texture");
             assert!(report.error_rms <= report.error_max && report.error_max <= 255.0);
             true
         }
@@ -228,15 +226,10 @@ fn run_conversion(polygons: &Polygons) -> bool {
     let _ = convert::convert(polygons, keep_scale);
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
-            assert!(
-                report.error_max_lsb <= 0.87,
-                "the rounding is to nearest: {}",
-                report.error_max_lsb
-            );
-            assert!(
-                glm::check_file(&mesh).is_ok(),
-                "a conversion gives a valid mesh"
-            );
+            let error = report.error_max_lsb;
+            assert!(error <= 0.87, "the rounding is to nearest: {error}");
+            let is_valid = glm::check_file(&mesh).is_ok();
+            assert!(is_valid, "a conversion gives a valid mesh");
             true
         }
         Err(_) => false,
@@ -256,10 +249,8 @@ fn run_replay(entries: &[log::Entry]) {
         };
         let replay = |options| replay::on_model(replay::prepare(entries, options)?);
         let replayed = replay(&options);
-        assert!(
-            replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
-            "without a calibration every log is replayed"
-        );
+        let is_whole = replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len());
+        assert!(is_whole, "without a calibration every log is replayed");
         // A calibration fails for a log that is not at rest, so the result may be an error.
         let _ = replay(&replay::Options {
             still: Some(u64::MAX),
@@ -283,10 +274,8 @@ fn run_scene(input: &[u8]) -> bool {
         Err(error) => {
             let error = error.to_string();
             let mut lines = error.lines();
-            assert!(
-                lines.all(|line| line.starts_with("scene.toml: ")),
-                "{error}"
-            );
+            let is_located = lines.all(|line| line.starts_with("scene.toml: "));
+            assert!(is_located, "{error}");
             false
         }
     }
@@ -299,10 +288,8 @@ fn run_image(input: &[u8]) -> bool {
         Ok(counts) => {
             let mut records = image[image::HEADER_BYTES..].as_chunks().0.iter();
             assert!(counts.steps < records.len() as u64);
-            assert!(
-                records.all(|record| image::attitude(image::from_bytes(record)).is_some()),
-                "every attitude has length 1"
-            );
+            let is_unit = |record| image::attitude(image::from_bytes(record)).is_some();
+            assert!(records.all(is_unit), "every attitude has length 1");
             true
         }
         Err(error) => {
@@ -327,22 +314,15 @@ fn run_program(form: Form, input: &[u8]) -> bool {
     for (number, key) in Key::ALL.into_iter().cycle().take(20).enumerate() {
         motion.apply(key.step(number % 3 > 0));
     }
-    let lines: String = program
-        .instructions()
-        .map(|line| format!("{line}\n"))
-        .collect();
+    let lines = wireframe::text(&program);
     assert!(assemble(&lines).is_ok(), "the text form is valid too");
-    let (pose, projection) = (
-        motion.pose(),
-        Projection::new(program.viewing(), Size::W1280),
-    );
+    let pose = motion.pose();
+    let projection = Projection::new(program.viewing(), Size::W1280);
     for segment in program.segments() {
         if let Some(line) = projection.line(pose.segment(segment)) {
-            let ends = line.as_flattened();
-            assert!(
-                ends.iter().all(|x| x.abs() <= GUARD),
-                "a line is within the guard band"
-            );
+            let mut ends = line.as_flattened().iter();
+            let is_within = ends.all(|x| x.abs() <= GUARD);
+            assert!(is_within, "a line is within the guard band");
         }
     }
     true
@@ -372,16 +352,15 @@ fn run_console(input: &[u8]) -> bool {
                 Ok(_) => accepted = true,
                 Err(error) => {
                     let _ = write!(text, "{error}");
-                    assert!(
-                        !text.contains(['\r', '\n']),
-                        "an error is one line: {text:?}"
-                    );
+                    let is_line = !text.contains(['\r', '\n']);
+                    assert!(is_line, "an error is one line: {text:?}");
                 }
             }
             text.clear();
         }
+        let is_short = echo.len() < 4096 && echo.is_ascii();
         assert!(
-            echo.len() < 4096 && echo.is_ascii(),
+            is_short,
             "a byte echoes less than a screen of ASCII: {echo:?}"
         );
         echo.clear();

@@ -190,29 +190,16 @@ mod tests {
     #[test]
     fn errors_name_their_place() {
         let header = "t_us,ax,ay,az,gx,gy,gz\n";
-        for (text, message) in [
-            (
-                "",
-                "expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file",
-            ),
-            (
-                "\n \n",
-                "expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file",
-            ),
-            (header, "expected at least one sample, found none"),
-            (
-                "t_us,ax,ay,az,gx,gy\n",
-                "line 1: expected a column gz, found 't_us,ax,ay,az,gx,gy'",
-            ),
-            (
-                "t_us,ax,ay,az,gx,gy,gz,ax\n",
-                "line 1: expected one column ax, found two",
-            ),
-            (
-                "1,2,3,4,5,6,7\n",
-                "line 1: expected a column t_us, found '1,2,3,4,5,6,7'",
-            ),
-        ] {
+        let cases = "
+            → expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file
+            ; ; → expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file
+            t_us,ax,ay,az,gx,gy,gz; → expected at least one sample, found none
+            t_us,ax,ay,az,gx,gy; → line 1: expected a column gz, found 't_us,ax,ay,az,gx,gy'
+            t_us,ax,ay,az,gx,gy,gz,ax; → line 1: expected one column ax, found two
+            1,2,3,4,5,6,7; → line 1: expected a column t_us, found '1,2,3,4,5,6,7'
+        ";
+        for case in cases.lines().filter_map(|case| case.split_once('→')) {
+            let (text, message) = (case.0.trim().replace(';', "\n"), case.1.trim());
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);
         }
         let rows = "

@@ -287,6 +287,15 @@ mod tests {
         on_model(prepare(entries, options)?)
     }
 
+    /// Numbers of integrated, stale and gap samples.
+    fn counts(replayed: &Replayed) -> [u64; 3] {
+        [
+            replayed.counts.steps,
+            replayed.counts.stale,
+            replayed.counts.gaps,
+        ]
+    }
+
     fn yaw(attitude: Quaternion) -> f64 {
         attitude.angles().yaw.to_signed_degrees().to_num()
     }
@@ -308,8 +317,7 @@ mod tests {
         for (yaw, expected) in yaws.iter().zip([0.0, 1.0, 1.0, 2.0, 2.0, 3.0]) {
             assert!((yaw - expected).abs() < 1e-6, "{yaws:?}");
         }
-        let counts = replayed.counts;
-        assert_eq!((counts.steps, counts.stale, counts.gaps), (3, 1, 1));
+        assert_eq!(counts(&replayed), [3, 1, 1]);
     }
 
     /// The 32-bit clock wraps after three samples, and all steps are integrated.
@@ -319,38 +327,29 @@ mod tests {
         let stamps = [end - 3000, end - 2000, end - 1000, 0, 1000, 2000, 3000];
         let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
         assert!((yaw(replayed.attitudes[6]) - 0.6).abs() < 1e-6);
-        let counts = replayed.counts;
-        assert_eq!((counts.steps, counts.stale, counts.gaps), (6, 0, 0));
+        assert_eq!(counts(&replayed), [6, 0, 0]);
     }
 
-    /// One wrong time stamp in a log of a thousand samples, also during the calibration, affects no
-    /// other sample.
+    /// One wrong time stamp, or two successive ones, in a log of a thousand samples affect only their
+    /// own samples.
     #[test]
-    fn one_wrong_stamp_is_one_sample() {
-        for wrong in [0, 7, 50_000_000_000, u64::MAX] {
+    fn wrong_stamps_affect_only_their_samples() {
+        let cases = [
+            &[0][..],
+            &[7],
+            &[50_000_000_000],
+            &[u64::MAX],
+            &[90_000_000, 95_000_000],
+            &[95_000_000, 90_000_000],
+            &[90_000_000, 90_001_000],
+        ];
+        for wrong in cases {
             let mut stamps: Vec<u64> = (0..1000).map(|i| 9_000_000 + i * 1000).collect();
-            stamps[500] = wrong;
+            stamps[500..][..wrong.len()].copy_from_slice(wrong);
             let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
             assert!((yaw(replayed.attitudes[999]) - 99.9).abs() < 1e-3);
-            let counts = replayed.counts;
-            assert_eq!((counts.steps, counts.stale, counts.gaps), (998, 1, 0));
-        }
-    }
-
-    /// Two successive wrong time stamps affect only their two samples.
-    #[test]
-    fn two_wrong_stamps_are_two_samples() {
-        for wrong in [
-            [90_000_000, 95_000_000],
-            [95_000_000, 90_000_000],
-            [90_000_000, 90_001_000],
-        ] {
-            let mut stamps: Vec<u64> = (0..1000).map(|i| 9_000_000 + i * 1000).collect();
-            stamps[500..502].copy_from_slice(&wrong);
-            let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
-            assert!((yaw(replayed.attitudes[999]) - 99.9).abs() < 1e-3);
-            let counts = replayed.counts;
-            assert_eq!((counts.steps, counts.stale, counts.gaps), (997, 2, 0));
+            let stale = wrong.len() as u64;
+            assert_eq!(counts(&replayed), [999 - stale, stale, 0]);
         }
     }
 
@@ -360,8 +359,7 @@ mod tests {
         let stamps: Vec<u64> = (0..500).chain(0..500).map(|i| i * 1000).collect();
         let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
         assert!((yaw(replayed.attitudes[999]) - 99.8).abs() < 1e-3);
-        let counts = replayed.counts;
-        assert_eq!((counts.steps, counts.stale, counts.gaps), (998, 0, 1));
+        assert_eq!(counts(&replayed), [998, 0, 1]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Tests of a board without a host: the demo, buttons, switches, LEDs and digits.
 
+use crate::common::assert_has;
 use glint::board::{EmulatedBoard, built_firmware};
 use glint::board::{Simulation, Uart};
 use glint_core::console::PROMPT;
@@ -73,15 +74,11 @@ fn scenes_take_turns() {
         let (found, answer) = turn(&mut board);
         let name = SCENES[number - 1];
         assert_eq!(found, number);
-        assert!(
-            answer.contains(&format!("scene {number} of 5 {name}\r\n")),
-            "{answer}"
-        );
-        assert!(answer.contains("demo on\r\n"), "{answer}");
+        assert_has(&answer, &format!("scene {number} of 5 {name}\r\n"));
+        assert_has(&answer, "demo on\r\n");
         board.run(TURN_MS * MS);
     }
-    let answer = command(&mut board, "info scene");
-    assert!(answer.contains("scene wireframe"), "{answer}");
+    assert_has(&command(&mut board, "info scene"), "scene wireframe");
 }
 
 #[test]
@@ -99,10 +96,7 @@ fn commands_that_set_the_picture_stop_the_demo() {
     ] {
         let answer = command(&mut board, line);
         assert!(answer.contains(line), "{answer}");
-        assert!(
-            command(&mut board, "demo").contains("demo on\r\n"),
-            "after {line}"
-        );
+        assert_has(&command(&mut board, "demo"), "demo on\r\n");
     }
     for line in [
         "scene menger",
@@ -110,15 +104,11 @@ fn commands_that_set_the_picture_stop_the_demo() {
         "size 320 180",
         "light 1,2,3",
     ] {
-        assert!(
-            command(&mut board, line).ends_with("ok\r\nglint> "),
-            "{line}"
-        );
-        let answer = command(&mut board, "demo");
-        assert!(answer.contains("demo off\r\nok"), "{answer} after {line}");
-        assert!(
-            command(&mut board, "demo next").contains("error: demo: off, expected `demo on` first")
-        );
+        let answer = command(&mut board, line);
+        assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
+        assert_has(&command(&mut board, "demo"), "demo off\r\nok");
+        let refused = "error: demo: off, expected `demo on` first";
+        assert_has(&command(&mut board, "demo next"), refused);
         command(&mut board, "demo on");
     }
     command(&mut board, "demo off");
@@ -181,11 +171,8 @@ fn switches_turn_the_overlay_on_and_give_the_buttons_to_the_scene() {
 fn leds_and_digits_show_the_state() {
     let mut board = started();
     board.run(PANEL);
-    assert_eq!(
-        board.leds() & !1,
-        0,
-        "without the demo only the first LED blinks"
-    );
+    // Without the demo only the first LED blinks.
+    assert_eq!(board.leds() & !1, 0);
     assert_eq!(right(&board), [0; 4]);
     command(&mut board, "demo on");
     board.run(100 * MS);

@@ -179,6 +179,12 @@ pub fn timeless(stats: Stats) -> Stats {
     }
 }
 
+/// Checks that a text contains another text.
+#[track_caller]
+pub fn assert_has(text: &str, part: &str) {
+    assert!(text.contains(part), "expected {part}, found {text}");
+}
+
 /// The first word of the value that `info` prints for `key`.
 pub fn info<T: std::str::FromStr>(console: &mut Console<impl Board>, key: &str) -> T {
     let lines = console.command(&format!("info {key}")).unwrap();

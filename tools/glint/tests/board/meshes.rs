@@ -1,8 +1,8 @@
 //! Pictures and depths of meshes are bit-identical to the model's: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
-    drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer, running_board,
-    timeless,
+    assert_has, drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer,
+    running_board, timeless,
 };
 use glint::board::{Board, SimulatedBoard, Simulation};
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject};
@@ -39,23 +39,16 @@ fn smooth_shading_is_the_models_on_every_backend() {
         renderer.set_backend(backend);
         let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "smooth");
         let notes = renderer.console().command("stats").unwrap();
-        let fell_back = notes
-            .iter()
-            .any(|line| line == &format!("fallback {NO_SMOOTH}"));
+        let fell_back = notes.contains(&format!("fallback {NO_SMOOTH}"));
         assert_eq!(fell_back, capability == Shading::Flat, "{notes:#?}");
         let json = renderer.console().command("stats json").unwrap().concat();
-        assert_eq!(
-            json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#)),
-            fell_back
-        );
+        let in_json = json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#));
+        assert_eq!(in_json, fell_back);
         let by_cpu = fell_back || backend.is_some();
         let by = if by_cpu { "cpu" } else { "gateware" };
         assert_eq!(stats.backend.as_deref(), Some(by));
         let info = renderer.console().command("info").unwrap();
-        assert!(
-            info.iter().any(|line| line == "shading smooth"),
-            "{info:#?}"
-        );
+        assert!(info.contains(&"shading smooth".into()), "{info:#?}");
     }
 }
 
@@ -121,11 +114,8 @@ fn the_console_notes_a_fallback_once() {
         ("shading smooth", true),
     ] {
         let text = said(command);
-        assert_eq!(
-            text.matches(&note).count(),
-            usize::from(is_noted),
-            "{text:?}"
-        );
+        let notes = text.matches(&note).count();
+        assert_eq!(notes, usize::from(is_noted), "{text:?}");
         assert!(text.ends_with("glint> "), "{text:?}");
     }
 }
@@ -173,10 +163,7 @@ fn a_mesh_seen_from_behind_has_a_hint() {
         board.read(&mut bytes, 50).unwrap();
     }
     let text = String::from_utf8(bytes).unwrap();
-    assert!(
-        text.contains("note: 0 of 3200 triangles are drawn"),
-        "{text:?}"
-    );
+    assert_has(&text, "note: 0 of 3200 triangles are drawn");
 }
 
 /// After a change of the camera, drawing a mesh takes few cycles of the soft core in addition to the engine's passes.
@@ -283,11 +270,8 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
         let frame = Frame::new(subject, view, size);
         let [found, expected] = drawn_alike(&mut renderer, &frame, &format!("camera {number}"));
         assert_eq!(timeless(found.stats), expected.stats, "camera {number}");
-        let triangles = expected.stats.triangles();
-        assert!(
-            number < 2 || triangles.triangles_clipped > 0,
-            "nothing was clipped"
-        );
+        let clipped = expected.stats.triangles().triangles_clipped;
+        assert!(number < 2 || clipped > 0, "nothing was clipped");
         let shown = renderer.board().inner().monitor_frame(4).unwrap();
         assert!(
             shown == expected.image.colour,
@@ -322,10 +306,8 @@ fn the_monitor_shows_the_larger_sizes() {
         let frame = mesh_frame(&mesh, "2,30,60", size);
         renderer.show(&frame).unwrap();
         let expected = render::on_model(&frame).unwrap().image;
-        assert!(
-            renderer.board().inner().monitor_frame(scale).unwrap() == expected.colour,
-            "{size:?}"
-        );
+        let shown = renderer.board().inner().monitor_frame(scale).unwrap();
+        assert!(shown == expected.colour, "{size:?}");
     }
 }
 

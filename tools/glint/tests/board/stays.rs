@@ -1,6 +1,6 @@
 //! A board that keeps running, and programs that use it one after another.
 
-use crate::common::{begin_upload, mesh, piped};
+use crate::common::{assert_has, begin_upload, mesh, piped};
 use crate::serial_boot::{MUTE, printer};
 use crate::terminal::{Terminal, patience};
 use glint::board::Uart;
@@ -39,10 +39,8 @@ impl Stay {
             .unwrap();
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         let port = lines.next().unwrap().unwrap();
-        assert_eq!(
-            std::fs::read_link(folder.join("port")).unwrap(),
-            Path::new(&port)
-        );
+        let target = std::fs::read_link(folder.join("port"));
+        assert_eq!(target.unwrap(), Path::new(&port));
         Self { child, folder }
     }
 
@@ -100,10 +98,8 @@ fn programs_use_one_board_in_turn() {
     upload_a_part(&stay, &port, &mesh("icosphere:4"));
     let script = "# the model\n\ninfo triangles\n";
     std::fs::write(stay.folder.join("script"), script).unwrap();
-    assert_eq!(
-        stay.succeed("console port --file script", ""),
-        "triangles 20\n"
-    );
+    let reply = stay.succeed("console port --file script", "");
+    assert_eq!(reply, "triangles 20\n");
     upload_a_part(&stay, &port, &mesh("icosphere:4"));
     stay.succeed("upload icosphere:4 --board port", "");
     let pipe = stay.succeed("console port", "info triangles\n");
@@ -121,18 +117,13 @@ fn programs_use_one_board_in_turn() {
     let until = "console port --send 'leds 5' --until 'glint> ' --log log";
     let said = stay.succeed(until, "");
     let log = std::fs::read_to_string(&log).unwrap();
-    assert!(
-        log.contains("leds 5\r\n") && log.ends_with(&said),
-        "{log:?}"
-    );
-    assert!(log.contains("glint> "), "{log:?}");
+    assert!(log.ends_with(&said), "{log:?}");
+    assert_has(&log, "leds 5\r\n");
+    assert_has(&log, "glint> ");
     let output = stay.glint("console port --send info --until never --timeout 1", "");
     assert_eq!(output.status.code(), Some(1));
     let error = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        error.starts_with("error: --until: expected 'never' in time, found '"),
-        "{error}"
-    );
+    assert_has(&error, "error: --until: expected 'never' in time, found '");
 
     let litex_term = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/litex_term");
     let mut terminal = Terminal::start(&litex_term, &[port.to_str().unwrap()]);
@@ -185,10 +176,8 @@ fn only_links_to_pseudo_terminals_are_replaced() {
         assert_eq!(String::from_utf8(output.stderr).unwrap(), expected);
         assert!(folder.join(name).symlink_metadata().is_ok() && !folder.join("ready").exists());
     }
-    assert_eq!(
-        std::fs::read_to_string(folder.join("to-file")).unwrap(),
-        "mine\n"
-    );
+    let file = std::fs::read_to_string(folder.join("to-file"));
+    assert_eq!(file.unwrap(), "mine\n");
     // A killed board leaves its link behind.
     let folder = folder.join("folder");
     std::os::unix::fs::symlink("/dev/pts/999999", folder.join("port")).unwrap();
@@ -212,30 +201,18 @@ fn firmware_of_devices_and_pipes() {
         ["flash", "--board=emulated"],
         ["board", "--flash"],
     ] {
+        let limited = "ulimit -v 800000; exec \"$0\" \"$@\"";
         let output = Command::new("sh")
-            .args([
-                "-c",
-                "ulimit -v 800000; exec \"$0\" \"$@\"",
-                env!("CARGO_BIN_EXE_glint"),
-            ])
+            .args(["-c", limited, env!("CARGO_BIN_EXE_glint")])
             .args([command, option, "/dev/zero"])
             .output()
             .unwrap();
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(
-            error.starts_with("error: /dev/zero: expected at most "),
-            "{error}"
-        );
+        assert_has(&error, "error: /dev/zero: expected at most ");
     }
-    let pipe = folder.join("pipe");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .unwrap()
-            .success()
-    );
+    let made = Command::new("mkfifo").arg(folder.join("pipe")).status();
+    assert!(made.unwrap().success());
     for option in ["--firmware", "--flash"] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(["board", "--pty", "port", option, "pipe"])
@@ -268,7 +245,7 @@ fn a_board_starts_from_an_image() {
     // A command that is sent before the firmware runs is lost, and repeated. The demo may already
     // show another of its scenes.
     let scenes = stay.succeed("console port --send scene", "");
-    assert!(scenes.contains("scene start flash\n"), "{scenes}");
+    assert_has(&scenes, "scene start flash\n");
 }
 
 /// The step `the board starts` ends at the prompt of the BIOS, or of the firmware from the flash, and shows the board's cycles.

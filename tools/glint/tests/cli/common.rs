@@ -80,18 +80,37 @@ pub fn drawn(folder: &Path, command: &str) -> Vec<u8> {
     picture(&folder.join("a.png"))
 }
 
-/// Runs a command on input that it must reject; returns its error, which has one line.
-pub fn refused(folder: &Path, command: &str) -> String {
+/// Checks that a text contains another text.
+#[track_caller]
+pub fn assert_has(text: &str, part: &str) {
+    assert!(text.contains(part), "{text}");
+}
+
+/// Runs a command that must fail with this exit code; returns its standard error.
+pub fn failed(folder: &Path, command: &str, code: i32) -> String {
     let output = glint(folder, command);
     let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{command}: {error}");
-    assert_eq!(error.lines().count(), 1, "{command}: {error}");
+    assert_eq!(output.status.code(), Some(code), "{command}: {error}");
     assert!(output.stdout.is_empty(), "{command}");
-    assert!(
-        error.contains("expected ") && error.contains("found "),
-        "{command}: {error}"
-    );
+    error
+}
+
+/// Runs a command on input that it must reject; returns its error, which has one line.
+pub fn refused(folder: &Path, command: &str) -> String {
+    let error = failed(folder, command, 2);
+    assert_eq!(error.lines().count(), 1, "{command}: {error}");
+    assert_has(&error, "expected ");
+    assert_has(&error, "found ");
     error.trim_end().to_owned()
+}
+
+/// The rows of a table; `→` separates the `N` cells of a row.
+pub fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    let rows = table.lines().filter(|row| !row.trim().is_empty());
+    rows.map(|row| {
+        let cells: Vec<_> = row.split('→').map(str::trim).collect();
+        cells.try_into().unwrap_or_else(|_| panic!("{row}"))
+    })
 }
 
 /// Runs commands that must be rejected. Each command is a line, and its error is the next line; `…` stands for any text at the
