@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::{Bits, Module, Port, Stalls};
 
-/// Contents of the memory, in words of 16 bytes.
+/// Contents of the memory, in words of 16 bytes. Methods panic for addresses beyond the memory.
 pub struct Memory {
     words: Vec<[u8; 16]>,
 }
@@ -19,9 +19,6 @@ impl Memory {
     }
 
     /// Writes bytes from the start of word `address` on.
-    ///
-    /// # Panics
-    /// When the bytes do not end within the memory.
     pub fn write(&mut self, address: u32, bytes: &[u8]) {
         for (i, chunk) in bytes.chunks(16).enumerate() {
             self.words[address as usize + i][..chunk.len()].copy_from_slice(chunk);
@@ -29,18 +26,12 @@ impl Memory {
     }
 
     /// Returns word `address`.
-    ///
-    /// # Panics
-    /// When the address is beyond the memory.
     #[must_use]
     pub fn word(&self, address: u32) -> Bits {
         Bits::from_bytes(&self.words[address as usize])
     }
 
     /// Writes the bytes of `data` whose `strobe` bits are set to word `address`.
-    ///
-    /// # Panics
-    /// When the address is beyond the memory.
     pub fn store(&mut self, address: u32, data: Bits, strobe: u16) {
         for (i, byte) in self.words[address as usize].iter_mut().enumerate() {
             if strobe >> i & 1 == 1 {
@@ -50,9 +41,6 @@ impl Memory {
     }
 
     /// Returns entry `index` of an array of 32-bit entries that starts at word `address`.
-    ///
-    /// # Panics
-    /// When the address is beyond the memory.
     #[must_use]
     pub fn entry(&self, address: u32, index: u32) -> u32 {
         self.word(address + index / 4)
