@@ -130,7 +130,35 @@ impl CommandError<'_> {
             Self::Blocks(..) => 5,
             Self::Features(_) | Self::LeftOut(_) => 6,
             Self::Line(..) => 7,
-            _ => 8,
+            Self::Parse(..)
+            | Self::Overlong
+            | Self::View(..)
+            | Self::Key(..)
+            | Self::Setting(..)
+            | Self::NoField
+            | Self::FieldShown
+            | Self::Engine(..)
+            | Self::Unload(..)
+            | Self::Transfer(..)
+            | Self::Mesh(..)
+            | Self::Program(..)
+            | Self::NoWireframe
+            | Self::Reach
+            | Self::Render(..)
+            | Self::NoFrame
+            | Self::Kernel(..)
+            | Self::SelfTest(..)
+            | Self::Calibration(..)
+            | Self::Sensor(..)
+            | Self::NoGesture
+            | Self::GestureOff
+            | Self::ImageSensor(..)
+            | Self::NoSensorFrame
+            | Self::HandColour(..)
+            | Self::Log(..)
+            | Self::DemoOff
+            | Self::NoReplay
+            | Self::Mismatch => 8,
         }
     }
 

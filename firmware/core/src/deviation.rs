@@ -113,7 +113,13 @@ impl Deviation {
             Expected::Magic(_) => write!(f, "\"{}\"", found.to_le_bytes().escape_ascii()),
             Expected::Crc32(_) => write!(f, "{found:#010x}"),
             Expected::Content(_) => write!(f, "{found:#04x}"),
-            _ => write!(f, "{found}"),
+            Expected::Exactly(..)
+            | Expected::OneOr(..)
+            | Expected::AtLeast(..)
+            | Expected::AtMost(..)
+            | Expected::Within(..)
+            | Expected::Below(..)
+            | Expected::MultipleOf(..) => write!(f, "{found}"),
         }
     }
 }

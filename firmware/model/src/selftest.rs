@@ -132,7 +132,7 @@ impl TestPicture {
         match self {
             Self::Triangle => Some(Shading::Flat),
             Self::Smooth => Some(Shading::Smooth),
-            _ => None,
+            Self::Line | Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => None,
         }
     }
 
@@ -142,7 +142,7 @@ impl TestPicture {
             Self::Sponge => Some("menger:3"),
             Self::Cubes | Self::Stereo => Some("cubes:2,0.4"),
             Self::Spheres => Some("spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35"),
-            _ => None,
+            Self::Triangle | Self::Smooth | Self::Line => None,
         }
     }
 }

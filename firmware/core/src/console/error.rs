@@ -79,7 +79,11 @@ impl<'a> ParseError<'a> {
     pub fn value(&self) -> Option<impl Display + 'a> {
         match self.0 {
             ParseErrorKind::Value { error, .. } => Some(error),
-            _ => None,
+            ParseErrorKind::Unknown { .. }
+            | ParseErrorKind::LeftOut { .. }
+            | ParseErrorKind::Missing { .. }
+            | ParseErrorKind::Word { .. }
+            | ParseErrorKind::Surplus { .. } => None,
         }
     }
 }

@@ -173,7 +173,12 @@ impl FrameConstants {
                 camera.set_depths(depths(objects, camera));
             }
             // A wireframe, or a subject that this build does not support.
-            _ => self.mesh = None,
+            Subject::Wireframe(_)
+            | Subject::Mesh(_)
+            | Subject::Edges(..)
+            | Subject::Field(_)
+            | Subject::MeshInField(..)
+            | Subject::Objects(_) => self.mesh = None,
         }
         let lighting = frame.mesh_lighting();
         if MESH.is_built

@@ -143,7 +143,12 @@ impl<'a> Subject<'a> {
             {
                 Some(mesh)
             }
-            _ => None,
+            Self::Mesh(_)
+            | Self::Edges(..)
+            | Self::MeshInField(..)
+            | Self::Field(_)
+            | Self::Objects(_)
+            | Self::Wireframe(_) => None,
         }
     }
 
@@ -151,7 +156,12 @@ impl<'a> Subject<'a> {
     pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
         match self {
             Self::Objects(objects) if OBJECT.is_built => Some(objects),
-            _ => None,
+            Self::Mesh(_)
+            | Self::Edges(..)
+            | Self::MeshInField(..)
+            | Self::Field(_)
+            | Self::Objects(_)
+            | Self::Wireframe(_) => None,
         }
     }
 
@@ -179,7 +189,12 @@ impl<'a> Subject<'a> {
                 let object = objects.get(number)?;
                 Some((&object.subject, object.colour))
             }
-            _ => self.coloured_part().filter(|_| number == 0),
+            Self::Mesh(_)
+            | Self::Edges(..)
+            | Self::MeshInField(..)
+            | Self::Field(_)
+            | Self::Objects(_)
+            | Self::Wireframe(_) => self.coloured_part().filter(|_| number == 0),
         }
     }
 
@@ -215,7 +230,12 @@ impl<'a> Subject<'a> {
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
             Self::Field(field) | Self::MeshInField(_, field) if FIELD.is_built => Some(field),
-            _ => None,
+            Self::Mesh(_)
+            | Self::Edges(..)
+            | Self::MeshInField(..)
+            | Self::Field(_)
+            | Self::Objects(_)
+            | Self::Wireframe(_) => None,
         }
     }
 }
@@ -269,7 +289,12 @@ impl<'a> Frame<'a> {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {
                 field.appearance.mesh_lighting()
             }
-            _ => self.lighting,
+            Subject::Mesh(_)
+            | Subject::Edges(..)
+            | Subject::MeshInField(..)
+            | Subject::Field(_)
+            | Subject::Objects(_)
+            | Subject::Wireframe(_) => self.lighting,
         }
     }
 }

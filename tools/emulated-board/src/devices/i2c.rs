@@ -336,7 +336,8 @@ impl I2c {
         match self.state {
             State::Failed => false,
             State::Idle => !self.commands.is_empty(),
-            _ => true,
+            State::Held | State::Set | State::High | State::Low => true,
+            State::Fall | State::Rise | State::Free => true,
         }
     }
 }
@@ -424,7 +425,8 @@ impl Device for I2c {
                 match self.state {
                     State::Idle => self.begin(round, true),
                     State::Failed => {}
-                    _ => self.fail(Error::Late),
+                    State::Held | State::Set | State::High | State::Low => self.fail(Error::Late),
+                    State::Fall | State::Rise | State::Free => self.fail(Error::Late),
                 }
             }
         }
