@@ -15,7 +15,7 @@ pub struct Loan {
     bytes: &'static mut [u8],
     /// The part of the bytes that is used.
     part: Range<usize>,
-    /// The region of the lending arena; `NONE` for memory of no arena.
+    /// The region in the arena that lent the memory; `NONE` for memory outside of arenas.
     region: Region,
 }
 
@@ -27,7 +27,7 @@ impl Default for Loan {
 }
 
 impl Loan {
-    /// A loan of memory that belongs to no arena.
+    /// A loan of memory outside of arenas.
     pub const fn new(bytes: &'static mut [u8]) -> Self {
         Self {
             part: 0..bytes.len(),

@@ -1,8 +1,8 @@
 //! The demo: a board without a host shows the scenes of a list in turn.
 
 use glint_core::demo::{Demo as Turns, Move};
+use glint_core::deviation::Deviation;
 use glint_core::feature::DEMO;
-use glint_core::flash::FlashError;
 
 use crate::job::Orbit;
 use crate::scenes::{Library, List, built_in_list};
@@ -43,7 +43,7 @@ impl Default for Demo {
 impl Demo {
     /// Starts the demo after reset, if the flash has a list or damaged contents. Returns the error of damaged contents or of a damaged
     /// list, and the name of the damaged part.
-    pub fn power_up(&mut self, library: &Library) -> Option<(&'static str, FlashError)> {
+    pub fn power_up(&mut self, library: &Library) -> Option<(&'static str, Deviation)> {
         if let Some(error) = library.error() {
             self.start(library);
             self.error = Some(CONTENTS);

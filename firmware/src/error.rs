@@ -5,10 +5,9 @@ use core::fmt::{self, Display};
 use glint_core::block::Block;
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
+use glint_core::deviation::Deviation;
 use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD, WIREFRAME};
-use glint_core::flash::FlashError;
 use glint_core::gesture::ColourError;
-use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
@@ -38,19 +37,9 @@ pub enum CommandError<'l> {
     /// The name is not a mesh or a scene.
     Scene(&'l str),
     /// The scene, list or mesh of this name in the flash is damaged.
-    Flash {
-        /// The name.
-        name: &'l str,
-        /// The deviation from the format.
-        error: FlashError,
-    },
-    /// The text of a scene in the flash has an invalid line.
-    Line {
-        /// The scene.
-        name: &'l str,
-        /// The first invalid line.
-        error: LineError<'static>,
-    },
+    Flash(&'l str, Deviation),
+    /// The text of the scene of this name in the flash has an invalid line.
+    Line(&'l str, LineError<'static>),
     /// A scene shows a mesh that the board does not have.
     NoMesh {
         /// The scene.
@@ -58,25 +47,12 @@ pub enum CommandError<'l> {
         /// The mesh.
         mesh: &'l str,
     },
-    /// A mesh of the flash is invalid.
-    FlashMesh {
-        /// The mesh.
-        name: &'l str,
-        /// The deviation from the format.
-        error: MeshError,
-    },
-    /// The gateware lacks blocks that a scene needs.
-    Blocks {
-        /// The scene.
-        name: &'l str,
-        /// The missing blocks, one bit each.
-        lacks: u32,
-    },
-    /// This build lacks parts of the firmware that a scene needs.
-    Features {
-        /// The scene.
-        built_in: &'static BuiltIn,
-    },
+    /// The mesh of this name in the flash is invalid.
+    FlashMesh(&'l str, Deviation),
+    /// The gateware lacks these blocks, one bit each, which the scene of this name needs.
+    Blocks(&'l str, u32),
+    /// This build lacks parts of the firmware that this scene needs.
+    Features(&'static BuiltIn),
     /// An option of the scene cannot be set.
     Setting(SettingError<'l>),
     /// `bench field` needs a shown field.
@@ -95,23 +71,14 @@ pub enum CommandError<'l> {
         free: usize,
     },
     /// A mesh cannot be uploaded under this name.
-    MeshName {
-        /// The name.
-        name: &'l str,
-        /// The reason.
-        error: NameError,
-    },
-    /// A mesh cannot be removed.
-    Unload {
-        /// The name.
-        name: &'l str,
-        /// The number, from 1, of the object that uses the mesh; `None` for an unknown name.
-        object: Option<u32>,
-    },
+    MeshName(&'l str, NameError),
+    /// The mesh of this name cannot be removed, because the object with this number, from 1, uses it;
+    /// `None` if no uploaded mesh has the name.
+    Unload(&'l str, Option<u32>),
     /// A transfer failed.
     Transfer(Failure),
     /// The upload is not a mesh, or one of too many triangles.
-    Mesh(MeshError),
+    Mesh(Deviation),
     /// The upload is not a wireframe program.
     Program(ProgramError<'static>),
     /// A key of the wireframe was pressed while no wireframe is shown.
@@ -122,13 +89,8 @@ pub enum CommandError<'l> {
     Render(DrawError),
     /// No frame has been drawn yet.
     NoFrame,
-    /// `bench` has no kernel of this name.
-    Kernel {
-        /// Name in the command.
-        name: &'l str,
-        /// Names of the existing kernels.
-        expected: &'static [&'static str],
-    },
+    /// `bench` has no kernel of this name, but kernels of these names.
+    Kernel(&'l str, &'static [&'static str]),
     /// The number of self-tests that failed.
     SelfTest(u32),
     /// The calibration of the sensor failed.
@@ -159,41 +121,41 @@ impl CommandError<'_> {
     /// The error number that the digits show if the demo cannot show a scene (docs/boards.md).
     pub const fn number(&self) -> u8 {
         match self {
-            Self::Flash { .. } => 2,
+            Self::Flash(..) => 2,
             Self::Scene(_) => 3,
             Self::NoMesh { .. }
-            | Self::FlashMesh { .. }
+            | Self::FlashMesh(..)
             | Self::TooLong { .. }
-            | Self::MeshName { .. } => 4,
-            Self::Blocks { .. } => 5,
-            Self::Features { .. } | Self::LeftOut(_) => 6,
-            Self::Line { .. } => 7,
-            Self::Parse(_)
+            | Self::MeshName(..) => 4,
+            Self::Blocks(..) => 5,
+            Self::Features(_) | Self::LeftOut(_) => 6,
+            Self::Line(..) => 7,
+            Self::Parse(..)
             | Self::Overlong
-            | Self::View(_)
-            | Self::Key(_)
-            | Self::Setting(_)
+            | Self::View(..)
+            | Self::Key(..)
+            | Self::Setting(..)
             | Self::NoField
             | Self::FieldShown
-            | Self::Engine(_)
-            | Self::Unload { .. }
-            | Self::Transfer(_)
-            | Self::Mesh(_)
-            | Self::Program(_)
+            | Self::Engine(..)
+            | Self::Unload(..)
+            | Self::Transfer(..)
+            | Self::Mesh(..)
+            | Self::Program(..)
             | Self::NoWireframe
             | Self::Reach
-            | Self::Render(_)
+            | Self::Render(..)
             | Self::NoFrame
-            | Self::Kernel { .. }
-            | Self::SelfTest(_)
-            | Self::Calibration(_)
-            | Self::Sensor(_)
+            | Self::Kernel(..)
+            | Self::SelfTest(..)
+            | Self::Calibration(..)
+            | Self::Sensor(..)
             | Self::NoGesture
             | Self::GestureOff
-            | Self::ImageSensor(_)
+            | Self::ImageSensor(..)
             | Self::NoSensorFrame
-            | Self::HandColour(_)
-            | Self::Log(_)
+            | Self::HandColour(..)
+            | Self::Log(..)
             | Self::DemoOff
             | Self::NoReplay
             | Self::Mismatch => 8,
@@ -233,27 +195,27 @@ impl Display for CommandError<'_> {
                 names.try_for_each(|name| write!(f, " {name} or"))?;
                 f.write_str(" an uploaded mesh, `scene` lists them")
             }
-            Self::Flash { name, error } => DEMO.when_built(|| write!(f, "{name}: {error}")),
-            Self::Line { name, error } => DEMO.when_built(|| write!(f, "scene {name}: {error}")),
+            Self::Flash(name, error) => DEMO.when_built(|| write!(f, "{name}: {error}")),
+            Self::Line(name, error) => DEMO.when_built(|| write!(f, "scene {name}: {error}")),
             Self::NoMesh { name, mesh } => write!(
                 f,
                 "scene {name}: no mesh `{mesh}`, expected a built-in one, or one of the flash"
             ),
-            Self::FlashMesh { name, error } => {
+            Self::FlashMesh(name, error) => {
                 DEMO.when_built(|| write!(f, "mesh {name} of the flash: {error}"))
             }
-            Self::Blocks { name, lacks } => {
+            Self::Blocks(name, lacks) => {
                 write!(f, "scene {name}: this gateware lacks")?;
                 let mut lacks = Block::of_bits(*lacks);
                 lacks.try_for_each(|block| write!(f, " {block}"))?;
-                write!(f, ", expected that of `cargo xtask gateware --scene {name}`")
+                write!(f, ", expected a build by `cargo xtask gateware --scene {name}`")
             }
-            Self::Features { built_in } => {
+            Self::Features(built_in) => {
                 let name = built_in.name;
                 write!(f, "scene {name}: this firmware lacks")?;
                 let mut lacks = built_in.lacks_features();
                 lacks.try_for_each(|feature| write!(f, " {}", feature.name))?;
-                write!(f, ", expected that of `cargo xtask firmware --scene {name}`")
+                write!(f, ", expected a build by `cargo xtask firmware --scene {name}`")
             }
             Self::Setting(error) => error.fmt(f),
             Self::NoField => {
@@ -267,7 +229,7 @@ impl Display for CommandError<'_> {
                 f,
                 "{name} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of a mesh"
             ),
-            Self::MeshName { name, error } => {
+            Self::MeshName(name, error) => {
                 write!(f, "load `{name}`: ")?;
                 match error {
                     NameError::Scene => f.write_str("the name of a scene, expected another name"),
@@ -277,14 +239,11 @@ impl Display for CommandError<'_> {
                     ),
                 }
             }
-            Self::Unload { name, object: None } => write!(
+            Self::Unload(name, None) => write!(
                 f,
                 "unload `{name}`: expected an uploaded mesh, `models` lists them"
             ),
-            Self::Unload {
-                name,
-                object: Some(number),
-            } => write!(
+            Self::Unload(name, Some(number)) => write!(
                 f,
                 "unload `{name}`: the mesh of object {number}, expected `object remove {number}` first"
             ),
@@ -295,11 +254,11 @@ impl Display for CommandError<'_> {
                 "press: no wireframe shown, expected `program` first",
             ),
             Self::Reach => {
-                f.write_str("press: the wireframe is 16 from its start, expected another key")
+                f.write_str("press: the wireframe would be more than 16 from its start, expected another key")
             }
             Self::Render(error) => write!(f, "render: {error}"),
             Self::NoFrame => f.write_str("stats: no frame drawn, expected `render` first"),
-            Self::Kernel { name, expected } => {
+            Self::Kernel(name, expected) => {
                 write!(f, "bench `{name}`: expected one of")?;
                 expected
                     .iter()
@@ -314,7 +273,7 @@ impl Display for CommandError<'_> {
             }
             Self::ImageSensor(error) => GESTURE.when_built(|| write!(f, "gesture: {error}")),
             Self::NoSensorFrame => f.write_str(
-                "gesture: no whole frame came within 500 ms, `gesture` shows what the image sensor sends",
+                "gesture: no whole frame within 500 ms, `gesture` shows what the image sensor sends",
             ),
             Self::HandColour(error) => GESTURE.when_built(|| write!(f, "gesture calibrate: {error}")),
             Self::Log(error) => REPLAY.when_built(|| write!(f, "replay: {error}")),

@@ -56,13 +56,13 @@ pub struct Cycles {
 }
 
 /// Time between two checks of an active image sensor.
-const LOOK: Duration = Duration::from_millis(50);
+const CHECK_PERIOD: Duration = Duration::from_millis(50);
 /// Time to the next check after a failed set-up: set-ups of a damaged sensor block the main loop for at most a tenth of the time.
 const PAUSE: Duration = Duration::from_millis(500);
 
 /// Periodic check of an active image sensor, which may be unplugged and lose its registers.
 struct Watch {
-    look: Deadline,
+    next_check: Deadline,
     /// Counts of whole and of dropped frames at the last check.
     frames: [u32; 2],
 }
@@ -105,7 +105,7 @@ impl Gesture {
         }
     }
 
-    /// Sets up the image sensor for a size, which takes some 50 ms, and lets the hand steer the camera.
+    /// Sets up the image sensor for a size, which takes about 50 ms, and lets the hand steer the camera.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.
@@ -117,12 +117,12 @@ impl Gesture {
         let started = engine::start(&mut self.engine, size, self.clock);
         self.sensor = Some(started);
         if started.is_ok() {
-            self.look_after(LOOK);
+            self.schedule_check(CHECK_PERIOD);
         }
         started
     }
 
-    /// The active image sensor. If none is active, sets the sensor up, which takes some 50 ms, and turns it off again.
+    /// The active image sensor. If none is active, sets the sensor up, which takes about 50 ms, and turns it off again.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.
@@ -135,10 +135,10 @@ impl Gesture {
     }
 
     /// Schedules the next check of the image sensor for the time `span` from now.
-    fn look_after(&mut self, span: Duration) {
+    fn schedule_check(&mut self, span: Duration) {
         let counters = self.engine.counters();
         self.watch = Some(Watch {
-            look: self.clock.after(span),
+            next_check: self.clock.after(span),
             frames: [counters.frames, counters.frames_dropped],
         });
     }
@@ -149,10 +149,10 @@ impl Gesture {
     #[cold]
     #[inline(never)]
     fn watch(&mut self) {
-        let Some(Watch { look, frames }) = &self.watch else {
+        let Some(Watch { next_check, frames }) = &self.watch else {
             return;
         };
-        if !look.passed() {
+        if !next_check.passed() {
             return;
         }
         let counters = self.engine.counters();
@@ -169,15 +169,15 @@ impl Gesture {
             }
             Some(Err(_)) | None => Some(engine::find(&mut self.engine, self.clock)),
         };
-        let mut pause = LOOK;
+        let mut pause = CHECK_PERIOD;
         if let Some(found) = found {
             self.sensor = Some(found.and_then(|_| {
                 let started = engine::start(&mut self.engine, self.size, self.clock);
-                pause = if started.is_ok() { LOOK } else { PAUSE };
+                pause = if started.is_ok() { CHECK_PERIOD } else { PAUSE };
                 started
             }));
         }
-        self.look_after(pause);
+        self.schedule_check(pause);
     }
 
     /// Turns the image sensor off; the camera stays.

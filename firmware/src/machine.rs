@@ -56,7 +56,7 @@ pub struct Devices {
     pub leds: OutputPort<u16>,
     /// The displays of digits.
     pub digits: Digits,
-    /// Time until which the digits keep the pattern of the self-test.
+    /// Time until which the digits show the pattern of the self-test.
     pub tests_digits: Option<Deadline>,
     /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken it.
     pub i2c: Option<I2c>,

@@ -27,7 +27,6 @@ mod commands;
 mod cube;
 mod demo;
 mod error;
-mod format;
 mod gateware;
 mod gesture;
 mod indicators;

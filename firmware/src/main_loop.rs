@@ -40,7 +40,7 @@ const RECENTRE: u8 = 1 << 3;
 
 /// The tasks in the order of their turns.
 const TASKS: [fn(&mut MainLoop) -> Turn; 12] = [
-    // Comes first after an interrupt, because the gateware waits between the passes of a frame.
+    // First, because after an interrupt the gateware waits for the next pass of its frame.
     MainLoop::draw,
     MainLoop::poll_job,
     MainLoop::run_demo,
@@ -159,7 +159,7 @@ impl MainLoop {
     }
 
     /// Executes the line that the terminal has received, if it is complete and can be executed now: the gateware has drawn its frame, and
-    /// the job has ended, or the line ends it.
+    /// the job has ended, or the line ends the job.
     fn answer(&mut self) -> Turn {
         let is_free = self.job.as_ref().is_none_or(Job::ends_by_line);
         if !is_free || self.machine.renderer.is_busy() {
@@ -246,8 +246,8 @@ impl MainLoop {
         Turn::Again
     }
 
-    /// Moves the scene by its animation to the time of the frame that begins now. A command that waits for a picture gets the scene as it
-    /// was. The azimuth rests while sensor, hand or `orbit` move the camera.
+    /// Moves the scene by its animation to the time of the frame that begins now. A command that waits for a picture gets the unmoved
+    /// scene. The azimuth is constant while sensor, hand or `orbit` move the camera.
     fn animate(&mut self) {
         let machine = &mut self.machine;
         let is_awaited = self.job.as_ref().is_some_and(Job::awaits_picture);
@@ -317,7 +317,7 @@ impl MainLoop {
             return Turn::worked(renderer.is_ready());
         };
         picture.set_drawn(drawn, scene, models);
-        // During a job the line carries its reply, which states the reason itself.
+        // During a job the serial line carries the job's reply, which states the reason itself.
         if job.is_none()
             && let Some(note) = picture.take_note()
         {

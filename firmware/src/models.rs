@@ -3,7 +3,8 @@
 use core::slice;
 
 use glint_core::allocator::Region;
-use glint_core::mesh::{Mesh, MeshError};
+use glint_core::deviation::Deviation;
+use glint_core::mesh::Mesh;
 use glint_core::shape::Shape;
 use glint_core::wireframe::{Program, ProgramError};
 use glint_model::Frame;
@@ -46,8 +47,8 @@ pub struct Models {
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
     objects: Objects,
-    /// The mesh of the scene of the last [`update`](Models::update): a frame is made at each step of its drawing, and to find a mesh by
-    /// its name takes a thousand clock cycles.
+    /// The mesh of the scene of the last [`update`](Models::update). The mesh is stored, because finding it
+    /// by its name takes a thousand clock cycles, and every step of drawing a frame needs it.
     shown: Mesh<'static>,
     revision: u32,
     /// Largest number of triangles of an uploaded mesh.
@@ -59,14 +60,14 @@ impl Models {
     /// normals, `cube_program` is the built-in wireframe program, and `most_triangles` the largest number of triangles of an uploaded mesh.
     ///
     /// # Errors
-    /// [`MeshError`] for a damaged cube.
+    /// [`Deviation`] for a damaged cube.
     pub fn new(
         arena: Arena,
         shapes: &'static mut [u8],
         turned: Arena,
         cube_program: Program<'static>,
         most_triangles: u32,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self, Deviation> {
         let shapes = Shapes::new(shapes)?;
         Ok(Self {
             arena,
@@ -206,8 +207,8 @@ impl Models {
     /// progress.
     ///
     /// # Errors
-    /// [`MeshError`] for an invalid mesh, or one of too many triangles; then nothing changes, and the memory is given back.
-    pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), MeshError> {
+    /// [`Deviation`] for an invalid mesh, or one of too many triangles; then nothing changes, and the memory is given back.
+    pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), Deviation> {
         let length = loan.as_ref().len();
         let region = self.arena.keep_lent(loan);
         let mesh = Mesh::new_checked(self.lasting(region, length));

@@ -57,11 +57,11 @@ pub fn leds(demo: &Demo, blinks: bool) -> u16 {
 
 /// Segments of the digits: frames per second at the left, and at the right the number of the demo's scene, alternating with the number of
 /// the last error.
-pub fn digits(demo: &Demo, rate: Option<u64>, errors_turn: bool) -> [u8; 8] {
+pub fn digits(demo: &Demo, rate: Option<u64>, shows_error: bool) -> [u8; 8] {
     let left = rate.map(Display::number).unwrap_or_default();
     let number = demo.turns.number().map(|number| number as u64 + 1);
     let right = match (number, demo.error()) {
-        (number, Some(error)) if errors_turn || number.is_none() => Display::error(error),
+        (number, Some(error)) if shows_error || number.is_none() => Display::error(error),
         (Some(number), _) => Display::number(number),
         (None, _) => Display::default(),
     };

@@ -36,7 +36,7 @@ impl Drawn {
         }
     }
 
-    /// Frame rate: the number of such frames per second.
+    /// Frame rate: the number of frames per second at this frame's drawing time.
     pub fn rate(&self, frequency: Frequency) -> u64 {
         u64::from(frequency.hertz()) / self.cycles.max(1)
     }

@@ -75,8 +75,8 @@ impl Replay {
     /// Replays the next samples of the log in `memory`.
     pub fn advance(&mut self, memory: &mut [u8]) {
         let records = memory.get_mut(self.range()).unwrap_or_default();
-        // The cast is possible, because the memory is aligned and header and records are whole words. The values are right,
-        // because this core is little-endian like the log.
+        // The cast does not fail, because the memory is aligned, and header and records are whole words. The
+        // core and the log are both little-endian.
         let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
         let end = self.samples.min(self.done + SLICE);
         let records = records.get_mut(self.done..end).unwrap_or_default();

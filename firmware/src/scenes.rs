@@ -5,8 +5,9 @@ mod content;
 #[rustfmt::skip]
 mod table;
 
+use glint_core::deviation::{Deviation, Expected};
 use glint_core::feature::DEMO;
-use glint_core::flash::{Contents, Expected, FlashError, Item, Kind};
+use glint_core::flash::{Contents, Item, Kind};
 
 pub use built_in::BuiltIn;
 pub use content::{Content, List};
@@ -36,7 +37,7 @@ impl SceneItem {
     ///
     /// # Errors
     /// The flash is damaged.
-    pub fn content(&self) -> Result<Content, FlashError> {
+    pub fn content(&self) -> Result<Content, Deviation> {
         match self {
             Self::Flash(item) if item.kind == Kind::List => {
                 Ok(Content::Scenes(List::Flash(item.text()?)))
@@ -59,7 +60,7 @@ pub fn built_in_list() -> List {
 #[derive(Clone, Copy, Default)]
 pub struct Library {
     contents: Option<Contents<'static>>,
-    error: Option<FlashError>,
+    error: Option<Deviation>,
 }
 
 impl Library {
@@ -69,7 +70,7 @@ impl Library {
         let flash = flash.filter(|_| DEMO.is_built);
         let (contents, error) = match flash.map(Contents::new_checked) {
             Some(Ok(contents)) => (Some(contents), None),
-            Some(Err(FlashError {
+            Some(Err(Deviation {
                 expected: Expected::Magic(_),
                 ..
             }))
@@ -80,7 +81,7 @@ impl Library {
     }
 
     /// The reason why the contents of the flash are not used.
-    pub const fn error(&self) -> Option<FlashError> {
+    pub const fn error(&self) -> Option<Deviation> {
         self.error
     }
 

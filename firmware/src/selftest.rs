@@ -34,7 +34,7 @@ const LOOK: Duration = Duration::from_secs(3);
 pub enum Verdict {
     /// The part is present and works.
     Passed,
-    /// The part shows a text, which only a person can see.
+    /// The part shows a text, which a person must check.
     Shows(&'static str),
     /// The part is missing in the board, the gateware or the firmware.
     Absent,
@@ -95,7 +95,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Identity => f.write_str("build ids of firmware and gateware differ"),
-            Self::Stopped => f.write_str("the counter stands still"),
+            Self::Stopped => f.write_str("the counter does not advance"),
             Self::Memory {
                 address,
                 expected,
@@ -107,7 +107,7 @@ impl fmt::Display for Failure {
             Self::Flash(lines) => lines.fmt(f),
             Self::Blanking => write!(
                 f,
-                "no vertical blanking for {} ms, expected one each 17 ms",
+                "no vertical blanking for {} ms, expected one every 17 ms",
                 whole_millis(BLANKING)
             ),
             Self::Underflows(count) => write!(f, "{count} underflows since reset, expected none"),
@@ -218,7 +218,7 @@ fn flash(bytes: Option<&[u8]>) -> Verdict {
     }
 }
 
-/// Shows another digit at each place, for a person who compares them with the text.
+/// Shows a different digit at each position. A person compares them with the printed text.
 fn digits(machine: &mut Machine) -> Verdict {
     let Some(devices) = &mut machine.devices else {
         return Verdict::Absent;

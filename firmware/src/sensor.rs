@@ -25,7 +25,7 @@ pub type SensorError = Error<i2c::BusError>;
 /// Reason why a calibration failed.
 pub type CalibrationError = glint_core::imu::CalibrationError<i2c::BusError>;
 
-/// An event of the stream: the sensor has started, or there is a sample with its time, or an error.
+/// An event of the stream: a start of the sensor, a sample with its time, or an error.
 enum Event {
     Start(Identity),
     Sample(u64, Measurement),

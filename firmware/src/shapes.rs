@@ -2,7 +2,8 @@
 
 use core::mem;
 
-use glint_core::mesh::{Mesh, MeshError};
+use glint_core::deviation::Deviation;
+use glint_core::mesh::Mesh;
 use glint_core::shape::{MAX_BYTES, Shape};
 use glint_scene::CUBE;
 
@@ -19,8 +20,8 @@ impl Shapes {
     /// The built-in meshes, with `memory` for the shapes, aligned to 16 bytes.
     ///
     /// # Errors
-    /// [`MeshError`] for a damaged cube.
-    pub fn new(memory: &'static mut [u8]) -> Result<Self, MeshError> {
+    /// [`Deviation`] for a damaged cube.
+    pub fn new(memory: &'static mut [u8]) -> Result<Self, Deviation> {
         Ok(Self {
             cube: Mesh::new_checked(&cube::BYTES)?,
             shapes: [None; Shape::ALL.len()],

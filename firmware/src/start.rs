@@ -4,9 +4,9 @@ use core::fmt::{self, Write as _};
 
 use glint_core::block::Block;
 use glint_core::camera::ViewError;
+use glint_core::deviation::Deviation;
 use glint_core::feature::{FIELD, GESTURE, MESH, WIREFRAME};
 use glint_core::flash::CONTENTS;
-use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
 use glint_hal::digits::Digits;
@@ -55,7 +55,7 @@ pub enum StartError {
     /// The uptime counter does not advance.
     Clock(Stopped),
     /// The built-in cube is not a valid mesh.
-    Cube(MeshError),
+    Cube(Deviation),
     /// The built-in program is not a valid wireframe program.
     Program(ProgramError<'static>),
     /// The initial camera is out of range.

@@ -1,12 +1,12 @@
-"""A step from the files of a board with an ECP5 FPGA to its bitstream: `python -m ecp5 STEP FOLDER`.
+"""One build step for a board with an ECP5 FPGA, from LiteX's files to the bitstream: `python -m ecp5 STEP FOLDER`.
 
-FOLDER is what `python -m glint_soc` has written. The steps, one after the other:
+FOLDER is the output folder of `python -m glint_soc`. The steps, in this order:
 
     synthesis      FOLDER/gateware/NAME.v, .ys ──▶ FOLDER/ecp5/netlist.json
     route          netlist.json, NAME.lpf      ──▶ FOLDER/ecp5/routed.config, report.json
     bitstream      routed.config               ──▶ FOLDER/NAME.bit, FOLDER/bitstream.txt
 
-`pack` in place of `route` and `bitstream` counts what the netlist takes of the FPGA, even if that is more than it has:
+`pack`, instead of `route` and `bitstream`, counts the FPGA cells that the netlist needs, even if the FPGA has fewer:
 
     pack           netlist.json                ──▶ FOLDER/ecp5/cells.json
 
@@ -57,7 +57,7 @@ class Build:
 
     @property
     def products(self):
-        """Files that are kept."""
+        """The final files, which are kept after a build."""
         return self.folder / f"{self.name}.bit", self.folder / "bitstream.txt"
 
     def synthesis(self):

@@ -7,7 +7,7 @@ import json
 
 
 class Netlist:
-    """The design of one file."""
+    """The design in one JSON file."""
 
     def __init__(self, path):
         self._design = json.loads(path.read_text())
@@ -20,8 +20,8 @@ class Netlist:
     def take_logic_off_resets(self):
         """Connects LUTs to the input of a reset's global buffer instead of its output.
 
-        A global buffer reaches the resets of flip-flops by dedicated wires. To reach a LUT, nextpnr uses ordinary wires, and it
-        routes them before any other net: these wires may be the only ones that another net can take.
+        A global buffer reaches the reset inputs of flip-flops through dedicated wires. To reach a LUT, nextpnr uses ordinary
+        wires, which it routes before any other net. These wires may be the only ones that another net can use.
         """
         for buffer in [cell for cell in self._cells.values() if cell["type"] == "DCCA"]:
             source, output = (buffer["connections"][port] for port in ("CLKI", "CLKO"))

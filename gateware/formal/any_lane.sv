@@ -1,5 +1,5 @@
-// Stand-in for the module exit_lane in proofs: a lane of rays to the light, in which up to two rays stay for any time. A ray hits the solid if
-// the lowest bit of its load is set.
+// Stand-in for the module exit_lane in proofs: a lane for rays to the light, which holds up to two rays for an arbitrary time. A ray hits
+// the solid if the lowest bit of `in_carried` is set.
 
 `default_nettype none
 

@@ -1,8 +1,9 @@
-// Stand-ins for the modules exit_borders and exit_choice in proofs: an arbitrary solid and arbitrary exits, at which a ray takes at most
-// two evaluations.
+// Stand-ins for the modules exit_borders and exit_choice in proofs: an arbitrary solid and arbitrary exits, with at most two evaluations
+// per ray.
 //
-// The first evaluation returns any outcome. If the ray goes on, it crosses a plane perpendicular to x, and the second evaluation ends it:
-// with a hit if the ray came with the lowest digit of `reached` set. The bit before this digit is set in the next interval.
+// The first evaluation has an arbitrary outcome. If the ray continues, it crosses a plane perpendicular to x, and the second evaluation
+// ends it, with a hit if the lowest digit of `reached` was set when the ray entered. The bit above this digit is set in the next
+// interval, and marks the second evaluation.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
-// Stand-ins for the tables of the raymarcher, for its depth codes, and for its reciprocals and quotients, in proofs. They return arbitrary results, so properties
-// proven with them hold for all contents.
+// Stand-ins for the tables, the depth codes, the reciprocals and the quotients of the raymarcher in proofs. They return arbitrary results,
+// so properties proven with them hold for all contents.
 
 `default_nettype none
 

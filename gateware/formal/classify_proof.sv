@@ -1,6 +1,6 @@
-// Proof that `classify` outputs each triangle once, as a regular triangle, as an exception or as off screen, in order, with its own fields
-// and number. A triangle at the input waits for at most 3 clocks, not counting clocks in which a triangle waits at an output for its
-// consumer.
+// Proof that `classify` outputs each triangle once, as a regular triangle, as an exception or as a dropped triangle, in order, with its
+// own fields and number. A triangle at the input waits for at most 3 clocks, not counting clocks in which a triangle waits at an output
+// for its consumer.
 
 `default_nettype none
 

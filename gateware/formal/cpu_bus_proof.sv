@@ -1,7 +1,7 @@
 // Proof of the stage between the CPU's two buses and the shared bus, for any requests, and for a slave that answers at any time. A model
-// stores the pending request. One clock after a request is taken, the bus shows it unchanged, and its words in order if it is a burst. Each
-// word of a read goes to the bus that asked for it. A write is acknowledged once, in the clock in which it is taken. Data go before
-// instructions, and no clock passes between two requests.
+// stores the pending request. One clock after a request is accepted, the shared bus carries it unchanged, and the words of a burst in
+// order. Each word of a read goes to the bus that requested it. A write is acknowledged once, in the clock in which it is accepted. The
+// data bus has priority over the instruction bus, and no clock is lost between two requests.
 
 `default_nettype none
 
@@ -10,7 +10,7 @@ module cpu_bus_proof #(
     localparam int unsigned INSTRUCTIONS = 1
 ) (
     input wire              clk,
-    // Requests of both buses of the CPU: whether there is one, whether it is a burst, its address, and what a write has.
+    // Requests of both buses of the CPU: whether a request is present, whether it is a burst, its address, and the data of a write.
     input wire [1:0]        cyc,
     input wire [1:0]        burst,
     input wire [1:0][29:0]  start,
@@ -43,7 +43,7 @@ module cpu_bus_proof #(
         .bus_cyc, .bus_stb, .bus_we, .bus_adr, .bus_dat_w, .bus_sel, .bus_cti, .bus_ack(answers), .bus_dat_r(dat_r)
     );
 
-    // The pending request. `word` is the number of its words that were answered.
+    // The pending request. `word` is the number of its words that have been answered.
     logic        pending, from, is_write, is_burst;
     logic [29:0] place;
     logic [31:0] written;
@@ -57,7 +57,7 @@ module cpu_bus_proof #(
         is_last = !is_burst || word == '1;
         done    = pending && answers && is_last;
         for (int i = 0; i < 2; i++) begin
-            // A bus shows its read until the last word of it has come.
+            // A bus holds its read request until the last word has arrived.
             asks[i] = cyc[i] && !(pending && !is_write && from == 1'(i));
             adr[i]  = {start[i][29:3], burst[i] ? (asks[i] ? 3'd0 : word) : start[i][2:0]};
             cti[i]  = burst[i] && adr[i][2:0] != '1 ? 3'b010 : burst[i] ? 3'b111 : 3'b000;

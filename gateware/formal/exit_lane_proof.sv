@@ -2,9 +2,9 @@
 // back-pressure.
 //
 // The proof tracks one arbitrary ray. The column of a ray, which does not affect the results of a lane, is its number. The solid is
-// arbitrary, but a ray takes at most two rounds (evaluations). A ray has a limit, a start and a tag, which come back if all memories of the
-// ring stay in step with its slots: the limit as T of a miss and as the sphere, the start as T of a hit in the first round, and the tag as
-// the outcome of the second round.
+// arbitrary, but a ray takes at most two rounds (evaluations). Each ray enters with a limit, a start and a tag. They appear unchanged in
+// the ray's end if all memories of the ring are read with the correct slot: the limit as T of a miss and as the sphere, the start as T of a
+// hit in the first round, and the tag as the outcome of the second round.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // Proof of exit_shadow, which finds shadows on faces, for any ends, any lane of rays to the light, and any back-pressure.
 //
-// The proof tracks one arbitrary end. The column of an end is its number, and its height has the number too. Rays to the light hit the solid
-// as the stand-in of the lane decides, by the lowest bit of the height.
+// The proof tracks one arbitrary end. The column of an end is its number, and its height includes this number. The stand-in for the lane
+// decides by the lowest bit of the height whether a ray to the light hits the solid.
 
 `default_nettype none
 
@@ -28,7 +28,7 @@ module exit_shadow_proof (
 
     raymarch_registers_pkg::shadow_t shadow;
 
-    // A light from above: faces with a positive normal need a ray.
+    // The light is above: only hits on faces with a positive normal need a ray to the light.
     always_comb begin
         in_end          = '0;
         in_end.place    = exit_pkg::PLACE_BITS'(came);

@@ -11,7 +11,7 @@ from ports import add_ports, members
 
 
 class _CpuBus(Module):
-    """A stage of the class `cpu_bus` between the buses of the CPU and the shared one."""
+    """The class `cpu_bus` between the buses of the CPU and the shared bus."""
 
     def __init__(self, cpu_bus):
         data, instructions = (wishbone.Interface(data_width=32, address_width=32, addressing="word") for _ in range(2))
@@ -24,8 +24,8 @@ class _CpuBus(Module):
 
 
 class _Crossbar(Module):
-    """A crossbar of the class `crossbar` between three ports (both ways, read, write) and two banks. Its ports have an element
-    for each port or bank. An address is {row, bank, column} of 1, 1 and 3 bits."""
+    """A crossbar of the class `crossbar` between three ports (read and write, read only, write only) and two banks. The
+    module's ports have an element for each of these ports or banks. An address is {row, bank, column} of 1, 1 and 3 bits."""
 
     def __init__(self, crossbar):
         self.submodules.crossbar, controller, ports = connect(
@@ -60,7 +60,7 @@ _MODULES = {"memory_crossbar": (_Crossbar, "MemoryCrossbar"), "cpu_bus": (_CpuBu
 def write(source, folder):
     """Writes the module in the file `source`, one of `_MODULES` or a mutation of it, as Verilog to `folder`, and returns the path."""
     ports, name = _MODULES[source.stem]
-    # The name puts a mutation into the package too, so that it finds the modules that it imports.
+    # This module name makes relative imports work for mutated copies outside of the package too.
     module = ports(runpy.run_path(str(source), run_name=f"glint_soc.{source.stem}")[name])
     path = folder / f"{source.stem}.v"
     path.write_text(str(verilog.convert(module, module.ios, name=source.stem)))

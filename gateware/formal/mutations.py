@@ -1,6 +1,7 @@
 """Mutations: textual changes of modules, each with the property that must detect it."""
 
 from dataclasses import dataclass
+from functools import partial
 
 
 @dataclass(frozen=True)
@@ -14,129 +15,37 @@ class Mutation:
     fails: str
 
 
-def _skid(old, new, fails):
-    return Mutation("skid_buffer.sv", old, new, fails)
-
-
-def _fifo(old, new, fails):
-    return Mutation("fifo.sv", old, new, fails)
-
-
-def _crossing(old, new, fails):
-    return Mutation("cdc_fifo.sv", old, new, fails)
-
-
-def _capture(old, new, fails):
-    return Mutation("camera_capture.sv", old, new, fails)
-
-
-def _queue(old, new, fails):
-    return Mutation("pipeline_fifo.sv", old, new, fails)
-
-
-def _held(old, new, fails):
-    return Mutation("held_register.sv", old, new, fails)
-
-
-def _flush(old, new, fails):
-    return Mutation("band_flush.sv", old, new, fails)
-
-
-def _read(old, new, fails):
-    return Mutation("read_port.sv", old, new, fails)
-
-
-def _write(old, new, fails):
-    return Mutation("write_port.sv", old, new, fails)
-
-
-def _extents(old, new, fails):
-    return Mutation("band_extents.sv", old, new, fails)
-
-
-def _pipe(old, new, fails):
-    return Mutation("band_pipe.sv", old, new, fails)
-
-
-def _cull(old, new, fails):
-    return Mutation("cull.sv", old, new, fails)
-
-
-def _classify(old, new, fails):
-    return Mutation("classify.sv", old, new, fails)
-
-
-def _line_setup(old, new, fails):
-    return Mutation("line_setup.sv", old, new, fails)
-
-
-def _line_raster(old, new, fails):
-    return Mutation("line_raster.sv", old, new, fails)
-
-
-def _setup(old, new, fails):
-    return Mutation("setup.sv", old, new, fails)
-
-
-def _entry(old, new, fails):
-    return Mutation("band_entry.sv", old, new, fails)
-
-
-def _walker(old, new, fails):
-    return Mutation("walker.sv", old, new, fails)
-
-
-def _lanes(old, new, fails):
-    return Mutation("lanes.sv", old, new, fails)
-
-
-def _credit(old, new, fails):
-    return Mutation("credit_fifo.sv", old, new, fails)
-
-
-def _generator(old, new, fails):
-    return Mutation("ray_generator.sv", old, new, fails)
-
-
-def _pixels(old, new, fails):
-    return Mutation("ray_pixels.sv", old, new, fails)
-
-
-def _start(old, new, fails):
-    return Mutation("exit_start.sv", old, new, fails)
-
-
-def _smooth(old, new, fails):
-    return Mutation("smooth_shader.sv", old, new, fails)
-
-
-def _steps(old, new, fails):
-    return Mutation("texture_queue.sv", old, new, fails)
-
-
-def _cpu_bus(old, new, fails):
-    return Mutation("cpu_bus.py", old, new, fails)
-
-
-def _crossbar(old, new, fails):
-    return Mutation("memory_crossbar.py", old, new, fails)
-
-
-def _paint(old, new, fails):
-    return Mutation("ray_paint.sv", old, new, fails)
-
-
-def _ring(old, new, fails):
-    return Mutation("ring_lane.sv", old, new, fails)
-
-
-def _shadow(old, new, fails):
-    return Mutation("exit_shadow.sv", old, new, fails)
-
-
-def _exits(old, new, fails):
-    return Mutation("exit_lane.sv", old, new, fails)
-
+_skid = partial(Mutation, "skid_buffer.sv")
+_fifo = partial(Mutation, "fifo.sv")
+_crossing = partial(Mutation, "cdc_fifo.sv")
+_capture = partial(Mutation, "camera_capture.sv")
+_queue = partial(Mutation, "pipeline_fifo.sv")
+_held = partial(Mutation, "held_register.sv")
+_flush = partial(Mutation, "band_flush.sv")
+_read = partial(Mutation, "read_port.sv")
+_write = partial(Mutation, "write_port.sv")
+_extents = partial(Mutation, "band_extents.sv")
+_pipe = partial(Mutation, "band_pipe.sv")
+_cull = partial(Mutation, "cull.sv")
+_classify = partial(Mutation, "classify.sv")
+_line_setup = partial(Mutation, "line_setup.sv")
+_line_raster = partial(Mutation, "line_raster.sv")
+_setup = partial(Mutation, "setup.sv")
+_entry = partial(Mutation, "band_entry.sv")
+_walker = partial(Mutation, "walker.sv")
+_lanes = partial(Mutation, "lanes.sv")
+_credit = partial(Mutation, "credit_fifo.sv")
+_generator = partial(Mutation, "ray_generator.sv")
+_pixels = partial(Mutation, "ray_pixels.sv")
+_start = partial(Mutation, "exit_start.sv")
+_smooth = partial(Mutation, "smooth_shader.sv")
+_steps = partial(Mutation, "texture_queue.sv")
+_cpu_bus = partial(Mutation, "cpu_bus.py")
+_crossbar = partial(Mutation, "memory_crossbar.py")
+_paint = partial(Mutation, "ray_paint.sv")
+_ring = partial(Mutation, "ring_lane.sv")
+_shadow = partial(Mutation, "exit_shadow.sv")
+_exits = partial(Mutation, "exit_lane.sv")
 
 _FIFO = [
     _fifo("DIRECT || stored ||", "DIRECT || stored && in_valid ||", "order.shown_in_time"),
@@ -257,8 +166,8 @@ MUTATIONS = {
         _ring("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "takes_again"),
         _ring("in_ray.place, in_ray.height,", "in_ray.place, ~in_ray.height,", "as_it_came"),
         _ring("steps_now + 10'd1 >= tuning.cap", "steps_now >= tuning.cap", "counts_steps"),
-        Mutation("fifo.sv", "stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
-        Mutation("fifo.sv", "load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
+        _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
     ],
     "exit_lane": [
         _exits("again || enter}", "again || in_valid}", "none_made_up"),
@@ -275,8 +184,8 @@ MUTATIONS = {
         _exits("reached[slot_8])", "reached[slot_12])", "tag_in_step"),
         _exits("followed[slot_12] <=", "followed[slot_13] <=", "tag_in_step"),
         _exits("+ 8'(again || !in_ray.over);", "+ 8'd1;", "counts_steps"),
-        Mutation("fifo.sv", "stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
-        Mutation("fifo.sv", "load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
+        _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
     ],
     "exit_shadow": [
         _shadow("in_end.hit && !in_end.round", "in_end.hit", "in_the_shade"),
@@ -324,8 +233,8 @@ MUTATIONS = {
         _write("gathered >= COUNT_BITS'(BURST) || hurry", "hurry", "full_goes"),
     ],
     "band_extents": [
-        Mutation("skid_buffer.sv", "!in_ready || !out_ready && out_valid;", "!in_ready;", "spans.valid_stays"),
-        Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
+        _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "spans.valid_stays"),
+        _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
         # Fault: the module ignores a line's extent in the last frame, or takes it from the other frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),

@@ -34,19 +34,20 @@ _AT_A_TIME = 2
 
 
 
-# Engines of bounded model checking. The solver on bits needs a third of the time for most proofs. The solver on words names the failed
-# properties, and reaches cover statements. Its option `--stbv` represents the state as bit vectors, the only form that Bitwuzla accepts.
+# Engines of bounded model checking. For most proofs the solver on bits needs a third of the time of the solver on words. Only the solver
+# on words reports the failed properties and supports cover statements. Its option `--stbv` represents the state as bit vectors, the only
+# form that Bitwuzla accepts.
 _BITS = "abc bmc3"
 _WORDS = "smtbmc --stbv --nomem --nopresat bitwuzla"
 
 
 @dataclass(frozen=True)
 class Proof:
-    """A proof: its top module with the properties, the number of clocks after reset that it covers, its stand-ins, and the names of
-    modules that are written in Python (see `generated`).
+    """A proof. `top` is the module with the properties, `depth` the number of clocks after reset that the proof covers, `stand_ins`
+    are files with replacements for modules, and `programs` the modules that are written in Python (see `generated`).
 
-    `engine` checks the assertions. With `has_clocks`, clocks tick in any order and have both edges, and the depth is a number of steps: an
-    edge takes one.
+    `engine` checks the assertions. With `has_clocks`, the edges of several clocks occur in any order, and the depth is a number of steps,
+    one for each edge.
     """
 
     name: str
@@ -111,15 +112,15 @@ PROOFS = [
 _STAND_INS = {name for proof in PROOFS for name in proof.stand_ins}
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
-# Yosys removes, across modules, logic on which no property depends, and memory bits to which only one value is written, as if they had
-# this value initially. Other undefined values stay arbitrary. This makes `cdc_fifo` slower, so proofs with several clocks are not
-# flattened.
+# Flattening lets Yosys remove logic on which no property depends, across modules, and memory bits that are only ever written with one
+# value, as if this were their initial value. Other undefined values stay arbitrary. Flattening makes `cdc_fifo` slower, so proofs with
+# several clocks are not flattened.
 _FLATTENED = """flatten
 opt -keepdc
 opt_mem
 opt_clean"""
 
-# For the solver on bits, which has no undefined value: each may be any value.
+# The solver on bits has no undefined values: each becomes an arbitrary value.
 _DEFINED = """techmap t:$shiftx
 opt -keepdc
 setundef -anyseq"""
@@ -235,7 +236,7 @@ def mutate(proofs):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--mutations", dest="action", action="store_const", const=mutate, default=prove,
-                        help="break the modules on purpose instead")
+                        help="check that each property fails for a module with a fault")
     parser.add_argument("names", nargs="*", metavar="NAME", help="proofs: " + ", ".join(proof.name for proof in PROOFS))
     arguments = parser.parse_args()
     unknown = set(arguments.names) - {proof.name for proof in PROOFS}

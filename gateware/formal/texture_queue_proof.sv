@@ -1,6 +1,6 @@
 // Proof of the queue of texture steps, for steps with any misses, at any distance, and words of memory at any time. Steps are numbered.
-// Each step is read once, in order, with its own fields and places. Before, and after the step in front of it was read, each block that it
-// missed is filled with two words: so no block is replaced before the steps that were looked up earlier have read it. Every wait is
+// Each step is read once, in order, with its own fields and places. Each block that the step missed is filled with two words after the
+// previous step is read and before this step is read, so no block is replaced before all earlier steps have read it. Every wait is
 // bounded. To keep the proof short, the queue holds fewer steps than in the sampler.
 
 `default_nettype none
@@ -24,7 +24,7 @@ module texture_queue_proof (
     logic [2:0]           sends = '0;
     logic [2:0][BITS-1:0] numbers;
     logic [3:0]           missed [0:2**BITS-1];
-    // Of the step at the head: classes that are filled, and whether a class is half filled.
+    // For the step at the head of the queue: the classes whose blocks are filled, and whether a block is half filled.
     logic [3:0]           done = '0, left, lowest;
     logic                 half = 1'b0;
     logic [1:0]           waits = '0, refused = '0;

@@ -37,8 +37,8 @@ def main():
                         help="omit the geometry pass of the triangle engine: the CPU makes the descriptors of meshes")
     parser.add_argument("--no-depths", dest="depths", action="store_false",
                         help="omit the depth buffer, which a build without `triangle` does not need for pictures")
-    parser.add_argument("--fields", help="build of the raymarcher, or a list of its features, see `raymarch.build` (default: all; "
-                                         "for a board with an FPGA: faces)")
+    parser.add_argument("--fields", help="build of the raymarcher, or a list of its features (`raymarch.build`; default: all; "
+                                         "for the urbana and the ulx3s: faces)")
     parser.add_argument("--lanes", type=int, choices=[1, 2, 4], help="lanes of the raymarcher (default: those of its build)")
     parser.add_argument("--clock", type=float, metavar="MHZ",
                         help="frequency of the system clock, a multiple of 0.25 (default: the board's)")
@@ -47,7 +47,7 @@ def main():
     # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
-    # LiteX asks git for LiteX's own version. Without this limit git would return the version of this project.
+    # LiteX runs git to find LiteX's own version. Without this limit, git would find the repository of this project instead.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
     full = packages.full_soc()
@@ -75,7 +75,7 @@ def main():
         # The FPGA tools run separately: through `gateware/ecp5`, or by hand on a computer with the vendor's tools.
         compile_gateware=False)
     builder.build()
-    # The file contains the build time, so equal SoCs would give different files.
+    # This file contains the build time, so it would differ between builds of equal SoCs.
     (output / "csr.csv").unlink()
 
 

@@ -4,20 +4,19 @@ from litex.gen import LiteXModule
 from migen import If, ResetSignal, Signal
 
 LINGER = 31
-"""Number of clocks after a block's last work: more than the latency from an event to its counter, and through a register bank."""
+"""Number of clocks for which the clock of an idle block continues. It exceeds the latency from an event to its counter, and the
+latency of a register bank."""
 
 
 class ClockControl(LiteXModule):
-    """Control of the clock of a block, its registers included.
+    """Enables the clock of a block and of its registers.
 
-    `working`: the block computes, or its pins may change its state. `accessed`: the register bus shows an address of the block; the SoC
-    drives this input. While `enable` is low, the clock of the block's domain `sys` may stop.
+    `working` is high while the block computes or while its pins may change its state. `accessed` is high while the register bus shows
+    an address of the block; the SoC drives this input. While `enable` is low, the clock of the block's domain `sys` may stop.
     """
 
     def __init__(self, working):
         self.accessed, self.enable = Signal(), Signal()
-
-        # # #
 
         awake, linger = Signal(), Signal(max=LINGER + 1)
         self.comb += [

@@ -40,7 +40,7 @@ class Size:
 
 
 SIZES = (Size(320, 180, 45), Size(640, 360, 24), Size(1280, 720, 12))
-"""Picture sizes by code. Each has twice the width and height of the previous one; the last one is the size of the screen."""
+"""Picture sizes by code. Each size has twice the width and height of the previous size. The last size is that of the screen."""
 
 GROUP = 8
 """Number of neighbouring pixels of a line in a group, which is one 128-bit word of a frame and one row of the band buffer."""

@@ -1,8 +1,8 @@
 """Free-running counters of a block, each declared by one line of the block's description.
 
-The RTL reports events in one packed struct `events_t`. It has a member for each counter, with the counter's name: the growth of
-the counter in this clock. A module sets the members that it counts and leaves all other members 0; its parent ORs the structs of
-its parts.
+The RTL reports events in one packed struct `events_t`. It has a member for each counter, with the counter's name: the increment
+of the counter in this clock. A module sets the members of its own events and leaves all other members 0; the parent module
+combines the structs of its submodules with OR.
 """
 
 from litex.gen import LiteXModule
@@ -18,14 +18,14 @@ _DELAY = 3
 
 
 class Counters(LiteXModule):
-    """The counters of `block`: their registers, which follow the registers that the block has so far, and their accumulators.
+    """The counters of `block`: their registers, which are added after the block's existing registers, and their accumulators.
 
-    `counters` maps each name to its text, or to a tuple of the text and the number of bits of the largest growth in a clock, if
-    that is more than 1. The RTL must drive `events`. Differences of two readings are modulo 2^32; a reset does not clear a
-    counter. A counter follows its event by at most three clocks more than there are counters.
+    `counters` maps each name to its text, or to a tuple of the text and the width in bits of the increment, if that is more
+    than 1. The RTL must drive `events`. Differences of two readings are modulo 2^32; a reset does not clear a counter. The
+    latency from an event to its counter is at most the number of counters plus three clocks.
 
-    The counters are words of one LUT memory. A small register for each counter adds up the growth between two turns of this
-    counter, and one adder for all counters adds it to the word whose turn it is:
+    The counters are words of one LUT memory. A small register for each counter accumulates the increments between two turns
+    of the counter. In each turn, one adder, shared by all counters, adds this register to the counter's word:
 
         events ─▶ steps ─▶ grown[turn] ─▶ + ─▶ words[turn]
                                           ▲        │
@@ -41,8 +41,6 @@ class Counters(LiteXModule):
             setattr(block, f"_{name}", self.registers[name])
             members[name] = Signal(bits, name=f"event_{name}")
         self.events = Struct("events_t", "Increment of each counter in this clock.", members)
-
-        # # #
 
         count = len(members)
         if count + _DELAY > LINGER:

@@ -1,4 +1,4 @@
-"""The stage between the CPU's two buses and the shared bus: one request at a time, in flip-flops."""
+"""Arbiter between the CPU's two buses and the shared bus, which registers one request at a time."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
@@ -10,23 +10,22 @@ LINE_WORDS = 8
 
 
 class CpuBus(LiteXModule):
-    """Passes the requests of `data` and `instructions`, Wishbone buses of the CPU, to `bus`, those of data first.
+    """Passes requests of the CPU's Wishbone buses `data` and `instructions` to `bus`; `data` has priority.
 
         data ─────────┐   ┌───────────────────────────┐
                       ├──▶│ request, in flip-flops    ├──▶ bus ─▶ address decoder ─▶ memories, registers
         instructions ─┘   └───────────────────────────┘
                ◀──────────────── acknowledgement, data of reads
 
-    A request reaches `bus` one clock after the CPU shows it. A write is acknowledged when it is stored here; it takes effect before
-    each later request. A burst counts its own address, so only the first of its words takes the additional clock.
+    A request reaches `bus` one clock after the CPU issues it. A write is acknowledged when it is stored in these flip-flops, and
+    takes effect before all later requests. The address of a burst is incremented here, so only the first word of a burst takes the
+    additional clock.
     """
 
     def __init__(self, data, instructions):
         self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
 
-        # # #
-
-        # Set while a read of the data or instruction bus is pending. That bus then still shows this read.
+        # High while a read of this bus is pending. The bus then still shows the read, which must not start again.
         reads_data, reads_instructions = Signal(), Signal()
         asks_data, asks_instructions, busy, bursts, more, free = (Signal() for _ in range(6))
         word = bus.adr[:log2_int(LINE_WORDS)]

@@ -13,11 +13,11 @@ _DARK_BITS = 9
 
 
 class Digits(LiteXModule):
-    """Lights the eight digits one after another: those of the left display from left to right, then those of the right one.
+    """Lights the eight digits one after another: first those of the left display, from left to right, then those of the right display.
 
-    A digit has 2^13 clocks, so at 81.25 MHz each one is lit 1,240 times a second. In the first 2^9 of them no digit is lit, because the
-    transistors that select a digit turn off slowly. `pads` has for each display the pins that select a digit, the leftmost first, and
-    those of the segments; all are active low.
+    A digit has 2^13 clocks, so at 81.25 MHz each one is lit 1,240 times a second. In the first 2^9 of these clocks no digit is lit,
+    because the transistors that select a digit turn off slowly. For each display `pads` has the pins that select a digit, the leftmost
+    digit first, and the pins of the segments; all are active low.
     """
 
     def __init__(self, pads):
@@ -25,8 +25,6 @@ class Digits(LiteXModule):
                 "segments a to g, bit 7 the point.")
         self._left = Parameter(8 * DIGITS, name="left", description=text.format("left"))
         self._right = Parameter(8 * DIGITS, name="right", description=text.format("right"))
-
-        # # #
 
         count, place, lit = Signal(_SLOT_BITS + 3), Signal(3), Signal()
         digits, segments = Signal(2 * DIGITS), Signal(8)

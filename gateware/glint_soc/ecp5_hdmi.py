@@ -7,7 +7,7 @@ from migen import Cat, ClockSignal, If, Signal
 
 
 class Serializer(LiteXModule):
-    """Sends ten-bit `words`, one a clock of the domain `pix`, as `pairs` of bits, one a clock of `pix5x`, the lowest bits first.
+    """Sends ten-bit `words`, one per clock of the domain `pix`, as `pairs` of bits, one pair per clock of `pix5x`, the lowest bits first.
 
     `pix5x` has five times the frequency of `pix` and comes from the same PLL. LiteX's serializer has a FIFO and a gearbox, whose
     paths are too long for `pix5x` in a full FPGA.
@@ -23,14 +23,14 @@ class Serializer(LiteXModule):
         self.sync.pix += toggle.eq(~toggle)
         self.sync.pix5x += [seen.eq(Cat(toggle, seen[0])), load.eq(seen[0] ^ seen[1])]
         for word in words:
-            # Each channel has its own shift register, because the outputs are far from each other and from the other logic.
+            # Each channel has its own shift register, because the output pins are far apart and far from the other logic.
             bits, pair = Signal(10), Signal(2)
             self.sync.pix5x += [If(load, bits.eq(word)).Else(bits.eq(bits[2:])), pair.eq(bits[:2])]
             self.pairs.append(pair)
 
 
 class Ecp5HDMI(LiteXModule):
-    """Sends `video` (`VIDEO_LAYOUT` of the scan-out), one pixel a clock of the domain `pix`, to `pads`, the positive pins of the
+    """Sends `video` (`VIDEO_LAYOUT` of the scan-out), one pixel per clock of the domain `pix`, to `pads`, the positive pins of the
     TMDS pairs. `sync_low` inverts both syncs."""
 
     def __init__(self, video, pads, sync_low):

@@ -1,7 +1,7 @@
-"""The flat fields of the raymarcher, with one description for each.
+"""Descriptions of the flat fields of the raymarcher, one for each.
 
 `cargo xtask pac` generates `rtl/raymarch/fields_pkg.sv` (masks) from the descriptions. They also determine the values of `solid.kind` and
-the bits of `caps.flat`, with the PAC and the driver's checks; the builds; and the variants that are tested and whose size is measured.
+the bits of `caps.flat` (and with them the PAC and the checks of the driver), the builds, and the variants that are tested and measured.
 docs/adding-a-field.md lists the steps to add a field.
 """
 
@@ -15,9 +15,10 @@ from .rtl import RTL
 class FlatField:
     """A flat field.
 
-    `text` is the plural of the fields that use it, for error messages. With `marches`, fillets join it with spheres, and the module
-    `field_NAME` computes its distance. With `octants`, faces are perpendicular to the diagonals (±1, ±1, ±1), and `surface` is
-    {z, y, x}, 1 where the normal is positive. Otherwise faces are perpendicular to the axes, and `surface` is {axis, positive}.
+    `text` names the fields that use it, in the plural, for error messages. A field with `marches` can be joined with spheres by
+    fillets, and the module `field_NAME` computes its distance. With `octants`, faces are perpendicular to the diagonals (±1, ±1,
+    ±1), and `surface` is {z, y, x}, where a bit is 1 if that component of the normal is positive. Otherwise faces are perpendicular
+    to the axes, and `surface` is {axis, positive}.
     """
 
     name: str
@@ -31,7 +32,7 @@ FLAT_FIELDS = (
     FlatField("box", "boxes, cubes and planes", marches=True),
     FlatField("octahedron", "octahedra", octants=True),
 )
-"""All flat fields, by their numbers in `solid.kind`. Field 0 is the sponge; the build sets its number of levels."""
+"""All flat fields, by their numbers in `solid.kind`. Field 0 is the sponge; the number of its levels is a separate build option."""
 
 NAMES = tuple(flat.name for flat in FLAT_FIELDS)
 
@@ -58,7 +59,8 @@ def files():
     """Returns the text of each generated file, by path."""
     return {RTL / "raymarch" / "fields_pkg.sv": package("fields_pkg", "fields.py", "Masks of flat fields.", [
         "\n".join([
-            number("ALL", mask(NAMES), "All fields, those whose faces are perpendicular to the diagonals, and those that fillets join with spheres."),
+            number("ALL", mask(NAMES), "Masks of all fields, of fields with faces perpendicular to the diagonals, and of fields that "
+                                       "fillets can join with spheres."),
             number("OCTANTS", mask(flat.name for flat in FLAT_FIELDS if flat.octants)),
             number("MARCHED", mask(flat.name for flat in FLAT_FIELDS if flat.marches)),
             *(number(flat.name.upper(), 1 << field, "Mask of each field." if field == 0 else "")

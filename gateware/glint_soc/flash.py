@@ -10,17 +10,16 @@ from .rtl import add_sources
 
 
 class FlashReader(LiteXModule):
-    """Wishbone slave with the words of the flash on `pads`. A write has no effect.
+    """Wishbone slave that reads words of the flash on `pads`. Writes have no effect.
 
-    `pads` has `cs_n`, and either `reset_n` and `dq`, the four data lines of an FPGA of the 7 series whose configuration has loaded from
-    this flash, or the clock and the data lines in both directions (the virtual board). Lines that the reader does not send on are high:
-    a flash that is not yet set to four data lines takes a low level on them as hold or as write protection.
+    `pads` has `cs_n` and one of two sets of pins. On a 7-series FPGA that is configured from this flash these are `reset_n` and the
+    four data lines `dq`; on the virtual board, the clock and separate data lines for each direction. Lines that do not carry a bit are
+    driven or pulled high: a flash that is not yet switched to four data lines interprets a low level on them as hold or as write
+    protection.
     """
 
     def __init__(self, platform, pads):
         self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
-
-        # # #
 
         address_bits = log2_int(FLASH_BYTES // 4)
         done, sclk, command, sending, lines = Signal(), Signal(), Signal(), Signal(), Signal(4)

@@ -25,7 +25,7 @@ PIXEL_CLOCK = 66e6
 SNAPSHOT_WORDS = 2048
 
 _PRODUCT_BITS = 40
-"""Bits of the sums of products."""
+"""Width of the sums of products in bits."""
 
 CHANNELS = Enumeration("channel", "Channels of a pixel, 8 bits each.", {
     "red": "red",
@@ -50,14 +50,14 @@ FAULTS = Enumeration("fault", "Faults of a frame.", {
 def _range(name, text, unit):
     return Parameter(name=name, fields=[
         CSRField("first", size=11, offset=0, description=f"First {unit}."),
-        CSRField("last", size=11, offset=16, description=f"Last {unit}, which belongs to the region."),
+        CSRField("last", size=11, offset=16, description=f"Last {unit} of the region."),
     ], description=text)
 
 
 def _window(name, channel):
     return Parameter(name=name, fields=[
-        CSRField("lower", size=8, offset=0, description="Least value in the window."),
-        CSRField("upper", size=8, offset=8, description="Greatest value in the window."),
+        CSRField("lower", size=8, offset=0, description="Smallest value in the window."),
+        CSRField("upper", size=8, offset=8, description="Largest value in the window."),
         CSRField("channel", size=CHANNELS.bits, offset=16, values=CHANNELS.values, description="Channel of the pixel."),
     ], description=f"{channel} window of the hand's colour: a pixel is marked if its channels are in both windows.")
 
@@ -68,50 +68,50 @@ def clock_divider(sys_clk_freq):
 
 
 class GestureEngine(LiteXModule):
-    """Takes the frames of the image sensor on `pads`. `moments` builds the sums of products.
+    """Receives the frames of the image sensor on `pads`. `moments` adds the sums of products to the build.
 
-    `pads` has `pclk`, `href`, `vsync`, `d` and `xclk`; `reset_n` and `power_down` where the adapter has them; and the wires of the
-    camera's bus, as `scl` and `sda` or for a harness as `scl_in`, `scl_out`, `sda_in`, `sda_out`.
+    `pads` has `pclk`, `href`, `vsync`, `d` and `xclk`; `reset_n` and `power_down` if the adapter has these pins; and the wires of
+    the camera's bus: `scl` and `sda`, or for a test harness `scl_in`, `scl_out`, `sda_in` and `sda_out`.
     """
 
     def __init__(self, platform, pads, sys_clk_freq, moments=False):
         divider = clock_divider(sys_clk_freq)
-        # The boards constrain the sensor's clock.
+        # The board's SoC adds a timing constraint for this clock.
         self.pclk = pads.pclk
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`GEST` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("width", size=11, offset=0, reset=MAX_WIDTH, description="Most pixels of a line."),
-            CSRField("height", size=10, offset=12, reset=MAX_HEIGHT, description="Most lines of a frame."),
-            CSRField("clock_divider", size=4, offset=24, reset=divider, description="The sensor's input clock is the system clock "
-                     "divided by this."),
-            CSRField("moments", offset=28, reset=int(moments), description="The sums of products are built."),
+            CSRField("width", size=11, offset=0, reset=MAX_WIDTH, description="Largest number of pixels in a line."),
+            CSRField("height", size=10, offset=12, reset=MAX_HEIGHT, description="Largest number of lines in a frame."),
+            CSRField("clock_divider", size=4, offset=24, reset=divider, description="Divider: the sensor's input clock is the system clock "
+                     "divided by this number."),
+            CSRField("moments", offset=28, reset=int(moments), description="The build has the sums of products."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("enable", offset=0, description="Take frames. The first one begins at the next VSYNC."),
+            CSRField("enable", offset=0, description="Process frames. The first frame begins at the next VSYNC."),
             CSRField("vsync_low", offset=1, description="VSYNC is low between frames, and high during a frame."),
             CSRField("href_low", offset=2, description="HREF is low during a line."),
-            CSRField("swap", offset=3, description="The first byte of a pixel is the low one."),
+            CSRField("swap", offset=3, description="The first byte of a pixel is the low byte."),
             CSRField("falling", offset=4, description="Sample the pins at the falling edge of the sensor's clock."),
         ], description="Operation. Software changes the fields other than `enable` while `enable` is 0.")
         self._camera = CSRStorage(name="camera", fields=[
             CSRField("clock", offset=0, description="Drive the sensor's input clock."),
-            CSRField("reset", offset=1, reset=1, description="Hold the image sensor in reset, where the adapter has this pin."),
-            CSRField("power_down", offset=2, reset=1, description="Power the image sensor down, where the adapter has this pin."),
+            CSRField("reset", offset=1, reset=1, description="Hold the image sensor in reset, if the adapter has this pin."),
+            CSRField("power_down", offset=2, reset=1, description="Power the image sensor down, if the adapter has this pin."),
             CSRField("scl", offset=8, reset=1, description="SCL of the sensor's bus: 0 pulls the wire low, 1 releases it."),
-            CSRField("sda", offset=9, reset=1, description="SDA of the sensor's bus, in the same way."),
+            CSRField("sda", offset=9, reset=1, description="SDA of the sensor's bus: 0 pulls the wire low, 1 releases it."),
         ], description="Pins of the image sensor. Software moves the wires of its bus (SCCB).")
         self._size = Parameter(name="size", fields=[
             CSRField("width", size=11, offset=0, description="Pixels of a line, 1 to 1280."),
             CSRField("height", size=10, offset=16, description="Lines of a frame, 1 to 720."),
-        ], description="Size of a whole frame. This register and those of windows, region and run are taken at the start of "
-                       "each frame.")
+        ], description="Size of a whole frame. This register and the registers of windows, region and run are sampled at the "
+                       "start of each frame.")
         self._window_a = _window("window_a", "First")
         self._window_b = _window("window_b", "Second")
         self._region_x = _range("region_x", "Columns of the region: pixels outside do not count.", "column")
         self._region_y = _range("region_y", "Lines of the region.", "line")
-        self._least_run = Parameter(4, name="least_run", description="A marked pixel counts if it is one of at least this many in "
-                                    "a row, in the region. 0 is 1.")
+        self._least_run = Parameter(4, name="least_run", description="A marked pixel counts if it is in the region and in a run of "
+                                    "at least this many marked pixels. 0 has the effect of 1.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("running", offset=0, description="The sensor's clock has ticked in the last 4096 clocks."),
             CSRField("waiting", offset=1, description="Enabled, and no frame has begun yet."),
@@ -124,46 +124,46 @@ class GestureEngine(LiteXModule):
         self._seen = CSRStatus(name="seen", fields=[
             CSRField("pixels", size=11, offset=0, description="Pixels of the last line."),
             CSRField("lines", size=11, offset=16, description="Lines of the last frame, whole or not."),
-        ], description="What the image sensor sends. A count stays at its largest value.")
+        ], description="Counts of received lines and pixels. The counts saturate.")
         self.ev = EventManager()
         self.ev.frame = EventSourcePulse(name="frame", description="The results of a whole frame are in the registers.")
         self.ev.finalize()
-        self._sequence = CSRStatus(16, name="sequence", description="Whole frames since reset, modulo 2^16. Results are of one "
-                                   "frame if this number is the same before and after reading them.")
-        self._count = CSRStatus(20, name="count", description="Pixels that count.")
-        self._sum_x = CSRStatus(30, name="sum_x", description="Sum of their columns, the first column is 0.")
-        self._sum_y = CSRStatus(29, name="sum_y", description="Sum of their lines, the first line is 0.")
+        self._sequence = CSRStatus(16, name="sequence", description="Whole frames since reset, modulo 2^16. If this number is the "
+                                   "same before and after reading the results, they belong to one frame.")
+        self._count = CSRStatus(20, name="count", description="Number of counted pixels: marked, in the region, and in a run of the "
+                                "required length.")
+        self._sum_x = CSRStatus(30, name="sum_x", description="Sum of the columns of the counted pixels; the first column is 0.")
+        self._sum_y = CSRStatus(29, name="sum_y", description="Sum of the lines of the counted pixels; the first line is 0.")
         boxes = [CSRStatus(name=f"box_{axis}", fields=[
-            CSRField("first", size=11, offset=0, description=f"Least {unit}; 2047 without a pixel."),
-            CSRField("last", size=11, offset=16, description=f"Greatest {unit}; 0 without a pixel."),
-        ], description=f"{unit.capitalize()}s of the box around them.") for axis, unit in (("x", "column"), ("y", "line"))]
+            CSRField("first", size=11, offset=0, description=f"Smallest {unit}; 2047 without a counted pixel."),
+            CSRField("last", size=11, offset=16, description=f"Largest {unit}; 0 without a counted pixel."),
+        ], description=f"{unit.capitalize()}s of the bounding box of the counted pixels.") for axis, unit in (("x", "column"), ("y", "line"))]
         self._box_x, self._box_y = boxes
-        sums = [CSRStatus(64, name=f"sum_{product}", description=f"Sum of {text}; 0 if it is not built (`moments`).")
-                for product, text in (("xx", "the squares of their columns"), ("xy", "their columns times their lines"),
-                                      ("yy", "the squares of their lines"))]
+        sums = [CSRStatus(64, name=f"sum_{product}", description=f"Sum of {text}; 0 in a build without `moments` in `caps`.")
+                for product, text in (("xx", "the squares of the columns of the counted pixels"),
+                                      ("xy", "the products of their columns and lines"),
+                                      ("yy", "the squares of the lines of the counted pixels"))]
         self._sum_xx, self._sum_xy, self._sum_yy = sums
         self._snapshot = CSRStorage(name="snapshot", fields=[
-            CSRField("step", size=3, offset=0, description="Keep every 2^step-th pixel of every 2^step-th line, 0 to 5."),
-            CSRField("colour", offset=3, description="Keep RGB565 colours, one a word. Otherwise marks before region and run, 16 a "
-                     "word, the first in the highest bit."),
-            CSRField("start", offset=8, pulse=True, description="Write 1 to keep a picture of the next whole frame."),
+            CSRField("step", size=3, offset=0, description="Store every 2^step-th pixel of every 2^step-th line, 0 to 5."),
+            CSRField("colour", offset=3, description="1: store RGB565 colours, one per word. 0: store marks, before the tests of region and "
+                     "run, 16 per word, the first in the highest bit."),
+            CSRField("start", offset=8, pulse=True, description="Write 1 to store a small picture of the next whole frame."),
         ], description="Small picture of one frame.")
         self._snapshot_state = CSRStatus(name="snapshot_state", fields=[
-            CSRField("words", size=12, offset=0, description="Words kept, valid with `ready`."),
+            CSRField("words", size=12, offset=0, description="Number of stored words, valid with `ready`."),
             CSRField("ready", offset=12, description="The picture is complete."),
-            CSRField("sequence", size=16, offset=16, description="`sequence` of its frame."),
+            CSRField("sequence", size=16, offset=16, description="Value of the register `sequence` for the frame of the picture."),
         ], description="State of the small picture.")
-        self._snapshot_place = Parameter(11, name="snapshot_place", description="Word of the small picture to read next.")
-        self._snapshot_word = CSRStatus(16, name="snapshot_word", description="Word of the small picture. A read moves on to the "
+        self._snapshot_place = Parameter(11, name="snapshot_place", description="Number of the word of the small picture to read next.")
+        self._snapshot_word = CSRStatus(16, name="snapshot_word", description="Word of the small picture. A read advances to the "
                                         "next word.")
         self.constants = {"snapshot_words": (SNAPSHOT_WORDS, "Words of the memory for a small picture.")}
         self.counters = Counters(self, {
             "frames": "Whole frames.",
-            "frames_dropped": "Frames with a fault, which leave the results as they are.",
-            "lines_malformed": "Lines with a wrong number of bytes, or cut by VSYNC, in all frames.",
+            "frames_dropped": "Frames with a fault, which do not change the results.",
+            "lines_malformed": "Lines with a wrong number of bytes, or cut off by VSYNC, in all frames.",
         })
-
-        # # #
 
         def span(register):
             return Struct("span_t", "First and last column, or first and last line, of a box or region.", {
@@ -219,7 +219,7 @@ class GestureEngine(LiteXModule):
             self.counters.events])
 
         wires = {name: Signal() for name in ("scl", "sda")}
-        # A high PCLK shows that the image sensor runs.
+        # A high PCLK may mean that the image sensor runs.
         camera, state = self._camera.fields, self._status.fields
         self.clock_control = ClockControl(
             control.enable | state.running | state.waiting | pads.pclk | camera.clock | ~camera.scl | ~camera.sda)

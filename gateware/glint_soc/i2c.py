@@ -39,40 +39,41 @@ class I2CMaster(LiteXModule):
 
     def __init__(self, platform, pads, sys_clk_freq):
         self._command = CSRStorage(name="command", fields=[
-            CSRField("argument", size=8, offset=0, description="Byte to send (`write`), or bytes to receive less one (`read`)."),
+            CSRField("argument", size=8, offset=0, description="Byte to send (`write`), or number of bytes to receive minus 1 (`read`)."),
             CSRField("operation", size=OPERATIONS.bits, offset=8, values=OPERATIONS.values, description="Operation."),
-            CSRField("more", offset=10, description="A `read` acknowledges its last byte too: another `read` follows."),
-        ], description=f"A write appends a command to the queue of {COMMANDS + 1}. A full queue drops the command, see `room`.")
+            CSRField("more", offset=10, description="A `read` also acknowledges its last byte, because another `read` follows."),
+        ], description=f"A write appends a command to the queue of {COMMANDS + 1} commands. A full queue drops the command, see `room`.")
         self._answer = CSRStatus(name="answer", fields=[
             CSRField("byte", size=8, offset=0, description="Received byte."),
             CSRField("valid", offset=8, description="`byte` is valid."),
-        ], description=f"A read removes the next byte from the queue of {ANSWERS + 1}. The master waits while the queue is full.")
+        ], description=f"A read removes the next byte from the queue of {ANSWERS + 1} bytes. The master waits while the queue is full.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("clear", offset=0, pulse=True, description="Write 1 to release the wires, empty both queues and clear the error."),
         ], description="Operation.")
         self._rounds = CSRStorage(name="rounds", fields=[
-            CSRField("period", size=24, offset=0, description="Clock cycles between the starts of two rounds, less one."),
-            CSRField("batch", size=4, offset=24, description="Rounds per interrupt, less one."),
-            CSRField("repeats", offset=31, description="Repeat the commands in the queue, first one period after this write."),
-        ], description="Rounds: one transaction, repeated at a steady pace. Its commands are queued before the first round.")
+            CSRField("period", size=24, offset=0, description="Clock cycles between the starts of two rounds, minus 1."),
+            CSRField("batch", size=4, offset=24, description="Rounds per interrupt, minus 1."),
+            CSRField("repeats", offset=31, description="Repeat the commands in the queue. The first round begins one period after "
+                     "this write."),
+        ], description="A round is one execution of a transaction that is repeated periodically. Its commands are queued before the first "
+                       "round.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("scl", offset=0, description="State of the SCL wire."),
             CSRField("sda", offset=1, description="State of the SDA wire."),
-            CSRField("room", offset=2, description="The queue has room for a command."),
+            CSRField("room", offset=2, description="The command queue is not full."),
             CSRField("busy", offset=3, description="A transaction runs, or commands are queued."),
             CSRField("failed", offset=4, description="An error has ended the transaction; commands wait for `clear`."),
             CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="Error."),
         ], description="State.")
         # A queue holds one entry more than its FIFO, because of the output register.
         self.constants = {
-            "command_places": (COMMANDS + 1, "Places in the queue of commands."),
-            "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),
+            "command_places": (COMMANDS + 1, "Capacity of the queue of commands."),
+            "answer_places": (ANSWERS + 1, "Capacity of the queue of received bytes."),
         }
         self.ev = EventManager()
-        self.ev.ended = EventSourcePulse(name="ended", description="End of a transaction, or of the last round of a batch, or an error.")
+        self.ev.ended = EventSourcePulse(name="ended", description="A transaction or the last round of a batch has ended, or an error has "
+                                         "occurred.")
         self.ev.finalize()
-
-        # # #
 
         command = Struct("command_t", "A command.", {
             name: getattr(self._command.fields, name) for name in ("more", "operation", "argument")})

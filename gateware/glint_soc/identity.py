@@ -9,7 +9,7 @@ from .register_map import OPTIONAL_BLOCKS
 class Identity(LiteXModule):
     """Constant registers: the build id, the blocks that this build has, its clock frequency and the size of its memory.
 
-    The parent states the memory by `add_main_ram`.
+    The parent module sets the memory size by `add_main_ram`.
     """
 
     def __init__(self, build_id, blocks, sys_clk_freq):

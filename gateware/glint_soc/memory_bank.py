@@ -1,4 +1,4 @@
-"""Bank of the memory: the commands that its requests need, in time for the memory."""
+"""Bank machine of the memory controller: converts requests to memory commands and keeps the timing between them."""
 
 import math
 
@@ -9,18 +9,18 @@ from migen import FSM, Cat, If, Mux, NextState, Record, Replicate, Signal
 
 
 class MemoryBank(LiteXModule):
-    """Replaces LiteDRAM's bank machine `number`: takes requests, and gives the commands that they need.
+    """Replaces LiteDRAM's bank machine `number`: accepts requests, and issues the commands that they need.
 
-    LiteDRAM's machine compares the row of a request with the open row in the clock in which it gives the command, and with the row of
-    the next request for the automatic precharge. Here a request is compared with the one before when it comes, and keeps the result:
-    `turns`, whether it is for another row.
+    LiteDRAM's machine compares the row of a request in the clock of its command: with the open row, and, for the automatic precharge,
+    with the row of the next request. Here a request is compared with the previous request when it arrives, and the result is stored
+    with it: `turns` is high if the request is for another row.
 
         requests ─▶ another row than before? ─┬─────────────────────┬─▶ request ─▶ commands
                                               └─▶ queue ────────────┘
                                                     └─▶ next turns: precharge
 
-    Latency: a request waits in the queue only while there is another one. A request without others before it, and in the open row, has
-    its command one clock after it came, one clock earlier than from LiteDRAM.
+    Latency: a request waits in the queue only if an earlier request is pending. Without an earlier request and with its row open, the
+    command of a request follows one clock after the request, one clock earlier than in LiteDRAM.
     """
 
     def __init__(self, number, address_bits, alignment, settings):
@@ -30,8 +30,6 @@ class MemoryBank(LiteXModule):
         if geometry.colbits > 10:
             raise ValueError(f"{geometry.colbits} bits of column: expected at most 10")
         self.cmd = cmd = stream.Endpoint(cmd_request_rw_layout(geometry.addressbits, geometry.bankbits))
-
-        # # #
 
         layout = [("we", 1), ("addr", address_bits), ("turns", 1)]
         self.queue = queue = stream.SyncFIFO(layout, settings.cmd_buffer_depth)
@@ -53,7 +51,7 @@ class MemoryBank(LiteXModule):
         ]
         self.sync += If(req.valid, newest.eq(req.addr[columns:]))
 
-        # `row_hit`: the open row is that of the request.
+        # `row_hit` is high if the open row is the row of the request.
         row_opened, row_hit, row_open, row_close, ends_row = (Signal() for _ in range(5))
         gets_request, shows_row = Signal(), Signal()
         address = request.source.addr

@@ -13,18 +13,18 @@ _BUS_BITS = 32
 class MemoryBridge(LiteXModule):
     """Wishbone slave of 32 bits over a native LiteDRAM port of 32, 64 or 128 bits.
 
-    Reads: an incrementing burst (the CPU's line fill) asks for all words of the port from its first one to the end of 32
-    aligned bytes, and is then served a word of 32 bits a cycle. Any other read asks for one word of the port. Words
-    that were read are dropped at the end of the burst, so that no data older than the burst are ever served: the next
-    line fill sees what DMA has written.
+    Reads: an incrementing burst (the CPU's line fill) requests all words of the port from its first word to the end of
+    an aligned block of 32 bytes, and is then served one 32-bit word per cycle. Any other read requests one word of the
+    port. Words that the burst has not used are discarded at its end, so no data older than a burst are ever served: the
+    next line fill sees the data that DMA has written.
 
     Writes: a write is acknowledged in the cycle after the controller has taken its command, which fixes its order among
-    all accesses to the same bank. Its data are stored in that cycle too, before the controller asks for them, which takes at least
-    two cycles. A word takes two cycles if the memory keeps up. A port with a converter takes a command before the controller
-    does (`early`). Then a write is acknowledged when its data have been taken, which fixes the order too.
+    all accesses to the same bank. Its data are stored in that cycle too. The controller requests them at least two cycles after
+    the command. A write takes two cycles unless the memory is slower. A port with a width converter accepts a command before the
+    controller does (`early`). A write is then acknowledged when its data have been taken, which also fixes the order.
 
-    A command is withdrawn only if the bus gives up its access before memory has taken the command, which the CPU never does.
-    LiteX's own converter makes one access to memory for each 32-bit word, one after the other.
+    A command is withdrawn only if the bus cancels its access before memory has accepted the command, which the CPU never
+    does. LiteX's own converter makes a separate access to memory for each 32-bit word.
     """
 
     def __init__(self, bus, port, base_address, early=False):
@@ -43,8 +43,8 @@ class MemoryBridge(LiteXModule):
 
         # Holds write data from the cycle after the acceptance of their command until the controller requests the data.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", len(beat))], depth=8)
-        # FIFO for all words of a cache line, because the controller sends them without back-pressure. A word that comes while it is
-        # empty can be taken at once.
+        # FIFO for all words of a cache line, because the controller sends them without back-pressure. If the FIFO is empty, an
+        # arriving word bypasses it.
         self.reads = reads = stream.SyncFIFO([("data", port.data_width)], depth=line)
         there, takes = Signal(), Signal()
         self.comb += [
@@ -72,7 +72,7 @@ class MemoryBridge(LiteXModule):
         # The bus ended the burst before all commands of its line were taken.
         given_up = Signal()
 
-        # Number of requested port words that have not been taken.
+        # Number of port words that were requested and not yet taken.
         owed = Signal(max=line + 1)
         asked = Signal()
         taken = Signal()
@@ -128,8 +128,8 @@ class MemoryBridge(LiteXModule):
         fsm.act("SERVE",
             bus.ack.eq(bus.cyc & bus.stb & ~bus.we & there),
             If(bus.ack,
-                # Takes the port word when the bus gets the last of the word's 32-bit parts, or when the burst ends.
-                # After the last requested word, the bus needs a new request.
+                # Takes the port word when the bus receives the last 32-bit part of the word, or when the burst
+                # ends. After the last requested word, a new request is needed.
                 takes.eq(~more | (beat == words - 1)),
                 If(~more | ((beat == words - 1) & (owed == 1)),
                     NextState("DROP"),

@@ -1,4 +1,4 @@
-"""Memory controller: LiteDRAM's, with banks, a refresher and a crossbar whose paths are short."""
+"""Memory controller: LiteDRAM's controller with replacements for bank machines, refresher and crossbar, which have shorter paths."""
 
 from litedram.common import LiteDRAMInterface, burst_lengths
 from litedram.core.controller import ControllerSettings
@@ -14,7 +14,7 @@ from .memory_refresh import MemoryRefresher
 
 
 class _Controller(LiteXModule):
-    """Replaces `LiteDRAMController`, whose members it has as far as LiteX, the crossbar and the BIOS read them."""
+    """Replaces `LiteDRAMController`. It has those members of that class that LiteX, the crossbar and the BIOS use."""
 
     def __init__(self, phy, module, clk_freq, settings):
         geometry, burst = module.geom_settings, burst_lengths[phy.settings.memtype]
@@ -24,8 +24,6 @@ class _Controller(LiteXModule):
         self.interface = LiteDRAMInterface(alignment, settings)
         self.dfi = dfi.Interface(geometry.addressbits, geometry.bankbits, phy.settings.nranks, phy.settings.dfi_databits,
                                  phy.settings.nphases)
-
-        # # #
 
         self.refresher = MemoryRefresher(settings, clk_freq)
         self.banks = [MemoryBank(number, self.interface.address_width, alignment, settings)
@@ -37,10 +35,11 @@ class _Controller(LiteXModule):
 
 
 class MemoryController(LiteXModule):
-    """Replaces `LiteDRAMCore`: registers by which the BIOS initialises the memory `module` behind `phy`, controller and crossbar.
+    """Replaces `LiteDRAMCore`: the controller and crossbar of the memory `module` behind `phy`, and the registers through which
+    the BIOS initialises the memory.
 
-    With longer runs of reads and writes than LiteDRAM's 32 and 16, memory switches less often between reads and writes, which takes
-    a dozen clocks each time.
+    Read and write runs are limited to 64 and 128 clocks instead of LiteDRAM's 32 and 16, because each switch between reads and
+    writes takes a dozen clocks.
     """
 
     def __init__(self, phy, module, clk_freq):

@@ -11,7 +11,8 @@ from .delay import delayed
 
 
 def _select(index, values):
-    """Returns the value of the number `index`, by a tree of multiplexers: synthesis makes more of a selection with many cases."""
+    """Returns element `index` of `values` through a tree of multiplexers, because synthesis needs more LUTs for a selection with
+    many cases."""
     half = 2 ** (len(values) - 1).bit_length() // 2
     if len(values) == 1:
         return values[0]
@@ -19,10 +20,10 @@ def _select(index, values):
 
 
 class MemoryCrossbar(LiteDRAMCrossbar):
-    """Replaces LiteDRAM's crossbar, whose ports it offers (`get_port`).
+    """Replaces LiteDRAM's crossbar, and has the same interface for ports (`get_port`).
 
-    LiteDRAM's crossbar has an arbiter and a multiplexer of all ports for each bank. Memory takes one command a clock in the end,
-    so here one arbiter passes one command a clock to the queues of the bank machines:
+    LiteDRAM's crossbar has, for each bank, an arbiter and a multiplexer of all ports. Because memory accepts only one command
+    per clock, this crossbar has a single arbiter, which passes one command per clock to the queues of the bank machines:
 
         ports ─▶ requests ─▶ turn ─▶ command ─▶ queues of the bank machines
                     ▲                                     │
@@ -30,13 +31,14 @@ class MemoryCrossbar(LiteDRAMCrossbar):
                         of each port                      │
         ports ◀── delays as long as those of the data ◀───┘
 
-    Data of a port come and go in the order of its commands. So a port uses one bank at a time, and a bank serves one port at a
-    time. A port changes to another bank when all its commands are done, and keeps its bank until then and while it has commands
-    for it, as in LiteDRAM. A bank executes its commands in the order in which they were taken from the ports.
+    The data of a port are in the order of its commands. A port therefore uses one bank at a time, and a bank serves one port at
+    a time. A port keeps its bank until all its commands are done and it has no further command for this bank, as in LiteDRAM;
+    then it may change to another bank. A bank executes its commands in the order in which they were taken from the ports.
 
-    Latency: none from a port to the queue, one clock for a port that asks anew. `cmd.ready` follows from `cmd.addr` and registers.
+    Latency from a port to the queue: 0 clocks, or one clock for a port that has just begun to request. `cmd.ready` depends
+    combinationally on `cmd.addr` and on registers.
 
-    `injector`, if there is one, has words that are written in place of those of the ports while its `injects` is high.
+    While `injects` of the optional `injector` is high, its `words` are written instead of the ports' data.
     """
 
     def __init__(self, controller, injector=None):

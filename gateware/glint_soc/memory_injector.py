@@ -1,4 +1,4 @@
-"""Commands of the CPU to the memory, for its initialisation."""
+"""Memory commands of the CPU, for the initialisation of the memory."""
 
 from litedram.dfii import PhaseInjector
 from litedram.phy.dfi import Interface
@@ -9,12 +9,12 @@ from migen.genlib.record import DIR_M_TO_S
 
 
 class MemoryInjector(LiteXModule):
-    """Replaces LiteDRAM's `DFIInjector`, whose registers it has: `master`, the PHY, gets the commands of `slave`, the controller, or those
-    of the registers.
+    """Replaces LiteDRAM's `DFIInjector`, and has the same registers: `master`, the PHY, receives the commands of `slave`, the controller,
+    or of the registers.
 
-    LiteDRAM selects data in both directions too, and masks those that are not selected. Here data of reads go to both sides, of which one
-    has the valid bit. Data of writes come from `slave` alone: the crossbar, which selects a port's data anyway, sends `words` while
-    `injects` is high.
+    LiteDRAM's module also multiplexes the data in both directions, and masks the data that are not selected. In this module read data go
+    to both sides, and only the selected side receives the valid bit. Write data come only from `slave`: while `injects` is high, the
+    crossbar, which selects a port's data anyway, sends `words` instead.
     """
 
     def __init__(self, addressbits, bankbits, databits, nphases):
@@ -32,8 +32,6 @@ class MemoryInjector(LiteXModule):
         injectors = [PhaseInjector(phase) for phase in injected.phases]
         for number, injector in enumerate(injectors):
             setattr(self, f"pi{number}", injector)
-
-        # # #
 
         control = self._control.fields
         self.injects, self.words = Signal(), Signal(databits * nphases)

@@ -12,11 +12,11 @@ _ACTIVATE, _READ, _WRITE = 0b110, 0b101, 0b001
 
 
 class MemoryModel(LiteXModule):
-    """Memory behind the DFI port `dfi`, with the phases and latencies of LiteDRAM's own model of a PHY.
+    """Memory behind the DFI port `dfi`, with the phases and latencies of LiteDRAM's PHY model.
 
-    That model has a memory with its data path for each bank. This one has a single memory, which makes the virtual board faster and whose
-    words lie in the order of their addresses: row, bank, column. It relies on the controller in two ways: a cycle has at most one
-    command of each kind, and a bank is open when a row of it is read or written.
+    LiteDRAM's model has a separate memory and data path for each bank. This model has a single memory, which makes the simulation faster,
+    with the words in the order of their addresses: row, bank, column. It makes two assumptions about the controller: a cycle has at most
+    one command of each kind, and the row of a bank is open when the bank is read or written.
     """
 
     def __init__(self, module, data_width, clk_freq):
@@ -24,8 +24,6 @@ class MemoryModel(LiteXModule):
         self.settings = settings = get_sdram_phy_settings(module.memtype, data_width, clk_freq)
         geometry = module.geom_settings
         self.dfi = Interface(geometry.addressbits, geometry.bankbits, settings.nranks, settings.dfi_databits, settings.nphases)
-
-        # # #
 
         phases = self.dfi.phases
         width = settings.dfi_databits*settings.nphases
@@ -40,7 +38,7 @@ class MemoryModel(LiteXModule):
         self.comb += [opening.adr.eq(activated_bank), opening.dat_w.eq(activated_row), opening.we.eq(activate)]
 
         def address(bank, column):
-            """The address of a word in the open row of its bank."""
+            """Returns the address of a word in the open row of its bank."""
             row = rows.get_port(async_read=True)
             self.specials += row
             self.comb += row.adr.eq(bank)

@@ -1,4 +1,4 @@
-"""Refresh of the memory, whose timers decide a clock ahead."""
+"""Refresh of the memory, with timers that are computed one clock ahead."""
 
 from litedram.common import cmd_request_rw_layout
 from litedram.core.refresher import RefreshSequencer, ZQCSExecuter
@@ -8,12 +8,10 @@ from migen import FSM, If, NextState, NextValue, Signal
 
 
 class _Interval(LiteXModule):
-    """Asks for something once every `clocks`: `due` is high from then on until `served`."""
+    """Periodic request: `due` rises once every `clocks` clocks, and stays high until `served`."""
 
     def __init__(self, clocks):
         self.due, self.served = Signal(), Signal()
-
-        # # #
 
         left, is_last = Signal(max=clocks, reset=clocks - 1), Signal()
         self.sync += [
@@ -24,18 +22,17 @@ class _Interval(LiteXModule):
 
 
 class MemoryRefresher(LiteXModule):
-    """Replaces LiteDRAM's refresher, whose commands it sends: a refresh every tREFI, and after one refresh a second a
-    calibration of the output impedance (ZQCS).
+    """Replaces LiteDRAM's refresher: sends a refresh every tREFI, and once a second, after a refresh, a calibration
+    of the output impedance (ZQCS).
 
-    LiteDRAM's timers show the end of an interval for a single clock, as a comparison of the count. The calibration is looked at only
-    when a refresh ends, so there it is nearly always missed. Here a flip-flop keeps each request, and flip-flops drive `cmd`.
+    LiteDRAM's timers signal the end of an interval for a single clock, from a comparison of the count. The calibration timer is only
+    checked when a refresh ends, so LiteDRAM misses nearly all calibrations. Here a flip-flop holds each request until it is served,
+    and `cmd` is driven by flip-flops.
     """
 
     def __init__(self, settings, clk_freq):
         timing = settings.timing
         self.cmd = cmd = stream.Endpoint(cmd_request_rw_layout(a=settings.geom.addressbits, ba=settings.geom.bankbits))
-
-        # # #
 
         self.refresh = refresh = _Interval(timing.tREFI)
         self.sequencer = sequencer = RefreshSequencer(cmd, timing.tRP, timing.tRFC)

@@ -1,9 +1,10 @@
-"""The register access crate of the firmware and the page docs/registers.md, printed from the SoC with all blocks.
+"""The register access crate of the firmware and the page docs/registers.md, generated from the SoC with all blocks.
 
-The templates are in the folder `templates`. A block (a `LiteXModule` with registers) may have two attributes beside its registers:
+The templates are in the folder `templates`. A block (a `LiteXModule` with registers) may have two attributes in addition to its registers:
 
-* `counters`: its free-running counters, an object with `registers` by name, or the names alone; shown in this order;
-* `constants`: numbers that software relies on, name to (value, text).
+* `counters`: its free-running counters in the order of the output: an object whose `registers` are a dictionary by
+name, or a list of names;
+* `constants`: numbers that software uses, as a dictionary of name to (value, text).
 """
 
 import json
@@ -24,10 +25,10 @@ _EVENTS = {
     "ev_pending": "Events that have occurred; writing a 1 clears an event.",
     "ev_enable": "Events that raise the interrupt.",
 }
-"""Descriptions of the registers of an event manager: LiteX's describe the last event only."""
+"""Descriptions of the registers of an event manager, because LiteX's descriptions only describe the last event."""
 
 _KEYWORDS = {"in", "loop", "mod", "type", "use"}
-"""Keywords of Rust among the names in the gateware: they cannot be names of functions."""
+"""Names in the gateware that are keywords of Rust, and therefore cannot be names of functions."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Register:
-    """A register of one 32-bit word, or of two with the high word first. `fields` is empty for a plain number."""
+    """A register of one 32-bit word, or of two words, the high word first. `fields` is empty for a plain number."""
 
     name: str
     offset: int
@@ -73,7 +74,7 @@ class Register:
 
     @property
     def words(self):
-        """Number of its words."""
+        """Number of words of the register."""
         return -(-self.width // _WORD)
 
 
@@ -110,8 +111,8 @@ class Peripheral:
 
     @property
     def enumerations(self):
-        """The enumerations by the width and the values of their fields. The name of each is made of the last words that the names
-        of its fields have in common."""
+        """The enumerations, by the width and the values of their fields. The name of an enumeration consists of the last words
+        that the names of its fields have in common."""
         shared = {}
         for register in self.registers:
             for field in register.fields:
@@ -201,7 +202,7 @@ def _integer(width):
 def files(soc):
     """Returns the texts of the generated files of a finalized SoC, by path."""
     peripherals = [peripheral(name, getattr(soc, name, None), region, soc.irq.locs.get(name)) for name, region in soc.csr.regions.items()]
-    # The peripherals have the interrupt numbers, and the settings of the BIOS's memory test differ between boards.
+    # The interrupt numbers are part of the peripherals instead, and the settings of the BIOS's memory test differ between boards.
     constants = {name.lower(): value for name, value in soc.constants.items()
                  if isinstance(value, int) and name != "BUILD_ID" and not re.match("MEMTEST_|.*_INTERRUPT$", name)}
     contents = {

@@ -1,4 +1,4 @@
-"""Writes the files that follow from the descriptions of blocks, records and shared numbers: `python -m glint_soc.packages`."""
+"""Writes the files that are generated from the descriptions of blocks, records and shared constants: `python -m glint_soc.packages`."""
 
 import argparse
 import logging
@@ -19,7 +19,7 @@ def full_soc():
     """Returns the finalized SoC with all blocks."""
     soc = VirtualSoC(0, OPTIONAL_BLOCKS)
     soc.finalize()
-    # The addresses of the registers follow only now.
+    # The build id needs the addresses of the registers, which LiteX assigns in `finalize`.
     soc.identity.build_id.status.reset = Constant(register_map.build_id(soc))
     return soc
 

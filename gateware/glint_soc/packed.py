@@ -1,7 +1,7 @@
-"""Packed structs that a block's description and its RTL share, connected by the names of their members.
+"""Packed structs of the ports between a block's LiteX description and its RTL, whose members are connected by name.
 
 A description builds each `Struct` from the signals of its registers. `Package` writes the SystemVerilog type of each struct
-to a package in the block's RTL folder, so that positions and widths of members are never written by hand.
+to a package in the block's RTL folder, so positions and widths of members are never written by hand.
 `cargo xtask pac` writes the packages of all blocks.
 """
 
@@ -113,8 +113,8 @@ class Package:
 
 
 def package(name, source, text, parts):
-    """Returns the text of a SystemVerilog package that `source`, a file of this folder, describes: `parts` with an empty line
-    between them. `text` is its comment."""
+    """Returns the text of a SystemVerilog package with `parts`, separated by empty lines. `text` is its comment, and `source`
+    the file of this folder from which it is generated."""
     return "\n".join([
         generated("//", source),
         *(f"//{line}" for line in lines_of(text)),

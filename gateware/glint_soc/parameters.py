@@ -18,13 +18,13 @@ _LOADS = 128
 class Parameter(CSRStorage):
     """A register of up to 32 bits that the CPU writes and that reads as 0.
 
-    Reading back would cost a LUT for every three bits in the multiplexer of the block's registers. The content is not reset:
+    Read access would take a LUT for every three bits in the read multiplexer of the block. The content has no reset:
     software writes it before the gateware uses it.
     """
 
     def __init__(self, *arguments, description, **options):
         super().__init__(*arguments, description=f"{description} Reads as 0.", reset_less=True, **options)
-        # Whether the register is a word of a `PassParameters`, which then sets `storage`.
+        # Whether the register is stored in the memory of a `PassParameters` object, which then drives `storage`.
         self.in_memory = False
 
     def do_finalize(self, busword, ordering):
@@ -37,8 +37,8 @@ class Parameter(CSRStorage):
 
 
 def without_reading(storage):
-    """Returns a register in place of the `CSRStorage` of a LiteX core: with the same content at the same address, but it reads
-    as 0."""
+    """Returns a replacement for a `CSRStorage` of a LiteX core. The replacement has the same content and address, but reads as
+    0."""
     register = Parameter(storage.size, name=storage.name, description=f"{storage.description.removesuffix('.')}.")
     register.storage, register.re = storage.storage, storage.re
     if hasattr(storage, "fields"):
@@ -49,7 +49,7 @@ def without_reading(storage):
 
 
 class PassParameters(LiteXModule):
-    """The parameters of the passes of a block: registers that software may write at any time, and copies that hold during a pass.
+    """The parameters of the passes of a block: registers that software may write at any time, and copies that are constant during a pass.
 
     Each of `passes` lists the `Parameter`s of one pass. `load[k]` (one clock) requests the copies of pass k. `loading[k]` is high
     from the next clock until they are complete: one register is copied in a clock, one pass after another. `copies[k]` maps the
@@ -73,8 +73,6 @@ class PassParameters(LiteXModule):
             for register in chain:
                 register.in_memory = True
 
-        # # #
-
         words = Memory(32, CSR_PAGING // 4)
         self._write, self._read = words.get_port(write_capable=True), words.get_port(mode=READ_FIRST)
         self.specials += words, self._write, self._read
@@ -94,7 +92,8 @@ class PassParameters(LiteXModule):
             loads = _LOADS
             for copy, wider in pairwise([*copies.values(), self._read.dat_r]):
                 if loads + len(copy) > _LOADS:
-                    # Another `moving[k]`. It depends on itself, because synthesis would otherwise merge it with flip-flops of equal input.
+                    # A duplicate of `moving[k]`. It depends on itself, because synthesis would otherwise merge flip-flops with equal
+                    # inputs.
                     moves, loads = Signal(name=f"moves_{k}", reset_less=True, attr={"keep"}), 0
                     self.sync += moves.eq(reading[k] & (moves | ~moving[k]))
                 loads += len(copy)

@@ -35,9 +35,10 @@ INTERVAL_BITS = 13
 
 @dataclass(frozen=True)
 class Fields:
-    """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
-    include the sponge if it has levels), spheres of a list, spheres of a lattice, fillets between spheres and flat fields, two eyes,
-    colours of spheres by their normals, a highlight on spheres, shadows on faces, a solid cone in builds with spheres of a list."""
+    """Build options of a raymarcher: `lanes`, the number of lanes (1, 2 or 4); `levels` of the sponge (0 to 6); `flat`, the names of
+    the flat fields, including the sponge if it has levels; `round`, spheres of a list; `lattice`, spheres of a lattice; `blend`,
+    fillets between spheres and flat fields; `stereo`, two eyes; `normals`, colours of spheres by their normals; `highlight` on
+    spheres; `shadow` on faces; `cone`, a solid cone, which needs `round`."""
 
     lanes: int = 2
     levels: int = 6
@@ -75,14 +76,15 @@ BUILDS = {
     "faces": Fields(levels=4, flat=("menger", "box"), **_FACES_ALONE),
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), **_FACES_ALONE),
 }
-"""Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
+"""Builds of the raymarcher by name: one with all features, two with fewer features, and one for the sponge alone with twice as
+many lanes."""
 
 _FEATURES = {"spheres": "round", "lattice": "lattice", "fillets": "blend", "stereo": "stereo", "normals": "normals", "highlight": "highlight",
              "shadow": "shadow", "cone": "cone"}
 
 
 def build(text, lanes=None):
-    """Returns the build options that `text` names, with the number of `lanes` if it is given.
+    """Returns the build options that `text` names. `lanes`, if given, replaces the number of lanes of the build.
 
     `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
     fields, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`, `cone`.
@@ -124,25 +126,25 @@ class Raymarcher(LiteXModule):
             CSRField("shadow", offset=15, reset=int(fields.shadow), description="Shadows on faces."),
             CSRField("flat", size=8, offset=16, reset=mask(fields.flat), description="Bit k is set if the flat field of kind k in "
                                                            "`solid` is built."),
-        ], description="What this block can do.")
+        ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("enable", offset=0, description="Draws the field in every raster pass, after the triangles."),
             CSRField("stereo", size=2, offset=1, values=[
-                ("0", "mono", "one eye"), ("1", "red_blue", "the left eye red, the right one blue, green the smaller of both"),
-                ("2", "red_cyan", "the left eye red, the right one green and blue")],
+                ("0", "mono", "one eye"), ("1", "red_blue", "left eye red, right eye blue, green is the smaller of both"),
+                ("2", "red_cyan", "left eye red, right eye green and blue")],
                 description="Number of eyes, and their colours."),
         ], description="Operation. All registers of this block must hold during a raster pass.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("busy", offset=0, description="A field is being drawn."),
-            CSRField("error", size=2, offset=4, values=_ERRORS, description="Feature that the registers request and this build "
-                     "lacks. Frames are then drawn without the field."),
+            CSRField("error", size=2, offset=4, values=_ERRORS, description="Feature that the registers request and that this build "
+                     "does not have. Frames are then drawn without the field."),
         ], description="State.")
         self.ev = EventManager()
         self.ev.field = EventSourcePulse(name="field", description="The field of a frame has been drawn.")
         self.ev.finalize()
 
         self._solid = Parameter(name="solid", fields=[
-            CSRField("levels", size=6, offset=1, description="Levels of the sponge in use, the first level in bit 0; 0 for a box."),
+            CSRField("levels", size=6, offset=1, description="Mask of the sponge levels in use, the first level in bit 0; 0 for a box."),
             CSRField("is_round", offset=13, description="The field has spheres."),
             CSRField("spheres_repeated", offset=15, description="The first sphere repeats every 64 field units along each axis."),
             CSRField("last_sphere", size=3, offset=16, description="Number of the last sphere; 0 without spheres."),
@@ -150,20 +152,20 @@ class Raymarcher(LiteXModule):
             CSRField("kind", size=KIND_BITS, offset=22,
                      values=[(str(number), flat.name, flat.text) for number, flat in enumerate(FLAT_FIELDS)],
                      description="Kind of the flat field."),
-            CSRField("last_cone_left", size=4, offset=24, description="By exits, number of the left eye's last cone."),
-            CSRField("last_cone_right", size=4, offset=28, description="By exits, number of the right eye's last cone."),
+            CSRField("last_cone_left", size=4, offset=24, description="For rays by exits, number of the last cone of the left eye."),
+            CSRField("last_cone_right", size=4, offset=28, description="For rays by exits, number of the last cone of the right eye."),
         ], description="The solid, and the number of spheres and lights.")
         self._exits = Parameter(name="exits", fields=[
-            CSRField("enable", offset=0, description="Rays leave empty prisms; otherwise they march by distances from the bounding box on."),
+            CSRField("enable", offset=0, description="1: rays by exits. 0: marching rays, which start at the bounding box."),
             CSRField("rule", size=2, offset=1, values=_RULES, description="The solid; `box` for marching rays."),
-            CSRField("depth", size=3, offset=4, description="Levels of the sponge; 1 for spheres in place of cubes, and for an octahedron."),
+            CSRField("depth", size=3, offset=4, description="Levels of the sponge; 1 for spheres instead of cubes, and for an octahedron."),
             *(CSRField(f"{eye}_exit", size=2, offset=8 + 2 * number, values=_EXITS,
-                       description=f"By which of its planes a ray leaves the prism around the {eye} eye.")
+                       description=f"Plane through which a ray leaves the prism around the {eye} eye: the order among its planes.")
               for number, eye in enumerate(("left", "right"))),
             CSRField("shadow", offset=12, description="Faces of a sponge and of repeated boxes may be in the shadow of the first light."),
-        ], description="The solid whose empty prisms rays leave: for marching rays the bounding box.")
-        border = [self._register(f"border_{axis}", 22, f"By exits, the coordinate of a plane perpendicular to {axis}, s9.12: the lower plane "
-                                 "of a box and of a sponge, the upper one of planes, and that of the cube after the middle one of cubes.")
+        ], description="The solid for rays by exits; for marching rays, the bounding box.")
+        border = [self._register(f"border_{axis}", 22, f"For rays by exits, the coordinate of a plane perpendicular to {axis}, s9.12: the "
+                                 "lower plane of a box or sponge, the upper plane of `planes`, or the lower plane of the cube after the middle cube.")
                   for axis in "xyz"]
         box_half = [self._register(f"half_{axis}", 22, f"Half the side along {axis}, u10.12: of the solid, of a repeated cube, or, for marching "
                                    "rays, of the sponge's smallest solid cubes.") for axis in "xyz"]
@@ -180,15 +182,15 @@ class Raymarcher(LiteXModule):
             for axis in "xyz":
                 origins.append(self._register(f"origin_{eye}_{axis}", 25, f"Position of the {eye} eye, {axis}, s13.12."))
                 first.append(self._register(f"first_{eye}_{axis}", 32, f"D of the {eye} eye's first ray, {axis}, s2.30."))
-                nexts.append(self._register(f"next_{eye}_{axis}", 29, f"Intervals above the planes of the prism around the {eye} eye "
+                nexts.append(self._register(f"next_{eye}_{axis}", 29, f"Intervals above the planes that bound the prism around the {eye} eye "
                                             f"along {axis} (rtl/raymarch/exit_pkg.sv): along the axis in bits 0 to 12, along the "
                                             "mirrored axis in bits 16 to 28."))
             for way, text in (("", ""), ("mirrored_", "mirrored ")):
                 for axis in "xyz":
                     starts.append(self._register(f"start_{eye}_{way}{axis}", 28, "Plane of the empty prism around the "
                                                  f"{eye} eye along the {text}{axis} axis: its distance in bits 0 to 24, u12.12; "
-                                                 "bit 25 is set if there is one, bit 26 if a ray along this axis leads away from the solid, bit "
-                                                 "27 if it has left the solid beyond the plane."))
+                                                 "bit 25 is set if there is such a plane, bit 26 if a ray along this axis leads away from the "
+                                                 "solid, bit 27 if a ray beyond the plane has left the solid."))
                 sums.append(self._register(f"start_{eye}_{way}sum", 27, f"The same along the {text}fourth axis of an octahedron, without "
                                            "bit 27."))
         bounds = [self._register(f"bounds_{axis}", 21, f"For marching rays, half the side of the bounding box along {axis}, u9.12.")
@@ -199,16 +201,17 @@ class Raymarcher(LiteXModule):
             CSRField("mantissa", size=17, offset=0, description="Mantissa, 2^16 to 2^17 - 1."),
             CSRField("exponent", size=6, offset=17, description="Exponent, two's complement."),
         ], description="Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent.")
-        palette = [self._register(f"colour_{number}", 24, f"Colour of {what}: red in bits 0 to 7, green, blue.")
+        palette = [self._register(f"colour_{number}", 24, f"Colour of {what}: red in bits 0 to 7, green in bits 8 to 15, blue in "
+                                  "bits 16 to 23.")
                    for number, what in enumerate([*(f"faces whose normal points {way} {axis}" for axis in "xyz"
                                                     for way in ("against", "along")), "undecided rays", "the zenith"])]
         self._horizon = Parameter(24, name="horizon", description="Colour of the horizon, and of the fog.")
         self._fog_shift = Parameter(3, name="fog_shift", description="Exponent of the depth step of the fog: an entry covers "
                                      "2^fog_shift field units times 2^e.")
         self._table = Parameter(name="table", fields=[
-            CSRField("part", size=8, offset=0, description="Share, of 255."),
-            CSRField("entry", size=9, offset=8, description="0 to 255: share hidden by fog, by depth. 256 to 511: share of light "
-                     "left, by evaluations."),
+            CSRField("part", size=8, offset=0, description="Share, in 255ths."),
+            CSRField("entry", size=9, offset=8, description="0 to 255: share hidden by fog, by depth. 256 to 511: remaining share of "
+                     "light, by number of evaluations."),
         ], description="Writing sets an entry of the tables of fog and light.")
 
         self._sphere = Parameter(name="sphere", fields=[
@@ -219,16 +222,18 @@ class Raymarcher(LiteXModule):
                      "the constants 0 to 4. 16 + 4i + 0, 1, 2: direction to light i, s1.16. 16 + 4i + 3: colour of light i. 32, 33: "
                      "colours of the faces 6 and 7 of a field with eight faces. 34, 35, 36: direction of the highlight, halfway to "
                      "light 0 and to the camera, s1.16. 37: bit 0 is set if colours of spheres depend on their normals, bit 1 if there are "
-                     "lights, which must be set without bit 0, bit 2 if there is a highlight; bits 8 to 20 have its steepness, u5.8. 38: its colour. "
-                     "39: bit 4 is set if the list has a solid cone, and bits 0 to 3 have the exponent of its light; 52, 53: x of the direction of the "
-                     "x axis and z of that of the z axis for the light on a cone, s1.16 (docs/formats/raymarch.md). "
-                     "40, 41, 42: colours of faces perpendicular to x, y, z that are turned to light 0 and in its shadow. 43, 44, 45: direction "
+                     "lights (required if bit 0 is clear), bit 2 if there is a highlight; bits 8 to 20 are the steepness of the highlight, "
+                     "u5.8. 38: its colour. 39: bit 4 is set if the list includes a solid cone, and bits 0 to 3 are the exponent of the "
+                     "light on it; 52, 53: component x of the direction for the x axis and component z of the direction for the z axis, "
+                     "s1.16, for the light on a cone (docs/formats/raymarch.md). "
+                     "40, 41, 42: colours of faces perpendicular to x, y, z that face light 0 and are in its shadow. 43, 44, 45: direction "
                      "to light 0, s1.14, for shadows. 46, 47, 48: the lowest 24 bits of the reciprocals of half its components "
                      "(rtl/raymarch/exit_pkg.sv). 49, 50, 51: their highest 8 bits."),
         ], description="Writing sets a constant of spheres, lights or faces.")
 
         self._cone_address = Parameter(9, name="cone_address", description="Address of the next write to `cone_value`: the eye in bit 8, the "
-                                       "number of a cone in bits 4 to 7, and of its constant in bits 0 to 3 (rtl/raymarch/sphere_unit.sv).")
+                                       "number of the cone in bits 4 to 7, the number of the constant in bits 0 to 3 "
+                                       "(rtl/raymarch/sphere_unit.sv).")
         self._cone_value = Parameter(32, name="cone_value", description="Writing sets a constant of the cone in which an eye sees a sphere, "
                                      "and increases the address by 1.")
 
@@ -236,15 +241,13 @@ class Raymarcher(LiteXModule):
             "cycles_busy": "Clock cycles in which a field was drawn.",
             "cycles_stalled": "Clock cycles in which a ray waited because no end of a ray was taken.",
             "items_in": "Rays.",
-            "items_out": "Pixels given to the band buffer, counted for each eye.",
-            "cycles_idle": ("Clock cycles, summed over the lanes, in which a lane had room for a ray and no ray came.", 3),
+            "items_out": "Pixels sent to the band buffer, counted for each eye.",
+            "cycles_idle": ("Clock cycles, summed over the lanes, in which a lane had a free slot and no ray arrived.", 3),
             "evaluations": ("Evaluations of the field: occupied slots of the lanes.", 3),
             "hits": "Rays that hit.",
             "misses": "Rays that missed.",
             "undecided": "Undecided rays.",
         })
-
-        # # #
 
         enable, stereo = (getattr(self._control.fields, name) for name in ("enable", "stereo"))
         busy, was_busy = self._status.fields.busy, Signal()
@@ -253,8 +256,7 @@ class Raymarcher(LiteXModule):
         shadow, shadow_colours = self._shadow(fields, exits.shadow)
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
         cone_write, cone_address = self._cones(fields)
-        # Kind 0, the sponge, is accepted by every build: without levels it is an empty field, which a frame of spheres alone
-        # selects.
+        # Every build accepts kind 0, the sponge: without levels it is an empty field, which frames with only spheres select.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
         no_rays = ~exits.enable & int(not fields.has_marching)
@@ -276,7 +278,7 @@ class Raymarcher(LiteXModule):
             "zenith": palette[7].storage, "undecided": palette[6].storage,
             "faces": [*_contents(palette[:6]), *self._octants(fields)], "shadows": shadow_colours})
         self.package = Package("raymarch", structs=[constants, sphere, lights, shadow, limits, colours, self.counters.events])
-        # The registers that this build reads, without registers whose writes take effect at once.
+        # The registers that this build uses, except registers whose writes take effect at once.
         eyes = 2 if fields.stereo else 1
         registers = [*box_half, self._far, self._near, *origins[:3*eyes], *first[:3*eyes], *across, *down, *border, *starts[:6*eyes], *nexts[:3*eyes],
                      self._depth_scale, *palette, self._horizon, self._fog_shift]
@@ -391,8 +393,8 @@ class Raymarcher(LiteXModule):
         return write, entry[:3], sphere, lights, blend
 
     def _shadow(self, fields, enable):
-        """Decodes writes to the register `sphere` for shadows. Returns the rays to the light and the colours of faces in the shadow; constants
-        in builds without shadows."""
+        """Decodes writes to the register `sphere` for shadows. Returns the struct of the rays to the light, and the colours of faces in the
+        shadow; both are constants in builds without shadows."""
         colours, directions = [Signal(24) for _ in range(3)], [Signal(16) for _ in range(3)]
         low, high = [Signal(24) for _ in range(3)], [Signal(8) for _ in range(3)]
         if fields.shadow:

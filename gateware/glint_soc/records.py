@@ -20,7 +20,7 @@ from .rtl import CORE, ROOT, RTL
 class Field:
     """A field of a record: `count` neighbouring elements of `bits` bits each, which may be records.
 
-    `rust` is a type of glint-core that has the number, for a field of whole bytes. Fields with the name `reserved` are 0.
+    `rust` is the type of glint-core that wraps the number in Rust, for a field of whole bytes. Fields named `reserved` are 0.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Field:
 
     @property
     def width(self):
-        """Bits of all elements."""
+        """Size of all elements in bits."""
         return self.bits * self.count
 
 
@@ -41,8 +41,8 @@ class Field:
 class Record:
     """A record: its fields, the lowest bits first.
 
-    A record of `bytes` has fields of whole bytes and becomes a struct in Rust; the fields of any other become constants. `rtl` is the
-    name of its type in SystemVerilog, if the gateware reads it.
+    A record with `bytes` consists of whole bytes and becomes a struct in Rust; for any other record, Rust has a constant for each
+    field. `rtl` is the name of the record's type in SystemVerilog, if the gateware reads it.
     """
 
     name: str
@@ -53,12 +53,12 @@ class Record:
 
     @property
     def bits(self):
-        """Bits of the record."""
+        """Size of the record in bits."""
         return sum(field.width for field in self.fields)
 
     @property
     def size(self):
-        """Bytes of the record."""
+        """Size of the record in bytes."""
         return self.bits // 8
 
     def places(self):
@@ -81,7 +81,7 @@ _COLOUR = Field("colour", 16, "RGB565", rust="Rgb565")
 
 HEADER = Record("MeshHeader", "Header of a mesh.", (
     Field("magic", 8, "`GLM2`", count=4),
-    Field("length", 32, "length of the whole in bytes"),
+    Field("length", 32, "length of the whole mesh in bytes"),
     Field("chunks", 32, "number of chunks, at least 1"),
     Field("vertices", 32, "number of vertices in all chunks"),
     Field("triangles", 32, "number of triangles in all chunks"),
@@ -103,18 +103,18 @@ VERTEX = Record("Vertex", "Vertex of a mesh.", (
 TRIANGLE = Record("Triangle", "Triangle of a mesh.", (
     Field("indices", 16, "numbers of the vertices in the chunk, counter-clockwise seen from outside", count=3),
     _COLOUR, _vector("normal", "normal of the face"),
-    Field("texture", 8, "number of its texture among those of the mesh, from 1; 0: none"), _reserved(8),
+    Field("texture", 8, "number of its texture in the mesh, from 1; 0: none"), _reserved(8),
 ), rtl="triangle_t")
 
 TEXTURE = Record("TextureHeader", "Header of a texture.", (
     Field("magic", 8, "`GLT1`", count=4),
-    Field("length", 32, "length of the whole in bytes"),
+    Field("length", 32, "length of the whole texture in bytes"),
     Field("checksum", 32, "CRC-32 of all other bytes"),
     Field("width_log2", 8, "base-2 logarithm of the width, 3 to 10"),
     Field("height_log2", 8, "base-2 logarithm of the height, 3 to 10"),
     Field("levels", 8, "number of mip levels: 1, or down to a side of 1 in both directions"),
     Field("format", 8, "texels: 0 RGB565, 1 indices of 256 colours, 2 indices of 16 colours"),
-    Field("wrap", 8, "beyond the sides, across and down: 0 repeat, 1 mirror, 2 clamp", count=2),
+    Field("wrap", 8, "wrapping across and down: 0 repeat, 1 mirror, 2 clamp", count=2),
     Field("filter", 8, "0: the nearest texel; 1: bilinear"),
     Field("cut_out", 8, "1: texels with the value of `key` are transparent"),
     Field("key", 16, "value of a transparent texel: a colour or an index"),
@@ -130,11 +130,11 @@ ATTRIBUTES = (
 """Elements of the optional attributes of a mesh's vertices, in the order of their bits in the mesh's header."""
 
 FIRST_ATTRIBUTE = 4
-"""Number of the bit of the first optional attribute. The bits before it stand for the attributes that every mesh has in its records:
-positions, faces, normals and colours. They are 0."""
+"""Number of the bit of the first optional attribute. The lower bits are 0; they belong to attributes that every mesh has in its
+records: positions, faces, normals and colours."""
 
 TEXTURES_BIT = 31
-"""Number of the bit of `attributes` that a mesh with textures sets. The textures follow the arrays of its attributes."""
+"""Number of the bit of `attributes` that is set in a mesh with textures. The textures follow the arrays of its attributes."""
 
 SEGMENT_END = Record("segment_end", "End point of a segment.", (
     Field("x", 20, "x, s12.8"), _reserved(12), Field("y", 20, "y, s12.8"), _reserved(12),
@@ -166,16 +166,16 @@ DESCRIPTOR = Record("descriptor", "Triangle after the setup, three words of 16 b
     Field("colour", 16, "colour, RGB565, after shading"),
 ), rtl="descriptor_t", bytes=False)
 
-PLANES = Record("planes", "Planes of light of a triangle, in three words behind its descriptor and its texture.", (
+PLANES = Record("planes", "Planes of light of a triangle, in the three words after its descriptor.", (
     Field("light", PLANE.bits, "of red, green and blue", count=3, record=PLANE),
     Field("smooth", 1, "1: smooth; 0: flat, in the colour of the descriptor"),
 ), rtl="planes_t", bytes=False)
 
-TEXTURE_PLANES = Record("texture_planes", "Texture of a triangle, in the two words behind its descriptor.", (
+TEXTURE_PLANES = Record("texture_planes", "Texture of a triangle, in the two words after its descriptor.", (
     Field("planes", PLANE.bits, "of s and t", count=2, record=PLANE),
     Field("light", 8, "of red, green and blue under flat shading, u0.8", count=3),
     Field("range", 4, "base-2 logarithms of the ranges of s and t, in repeats", count=2),
-    Field("periods", 4, "what clamped coordinates s and t are relative to, s4, in units of two repeats", count=2),
+    Field("periods", 4, "base of clamped coordinates s and t, s4, in units of two repeats", count=2),
     Field("texture", 8, "number of its texture in the frame's table, from 1; 0: none"),
     Field("linear", 1, "1: orthographic projection"),
 ), rtl="texture_planes_t", bytes=False)
@@ -187,9 +187,9 @@ PIECE = Record("piece", "Piece of a line.", (
     Field("column", 11, "column of the first pixel"),
     Field("row", 10, "row of the first pixel"),
     Field("count", 12, "pixels to the end of the line"),
-    Field("error", 21, "error of the second pixel, s21; from 0 on, the way to it has a step along the minor axis"),
-    Field("minor", 20, "increment of the error for one pixel without such a step"),
-    Field("fall", 21, "increment of the error for one pixel with such a step, s21: minor − major"),
+    Field("error", 21, "error of the second pixel, s21; if at least 0, the step to this pixel also moves along the minor axis"),
+    Field("minor", 20, "increment of the error for a pixel without a step along the minor axis"),
+    Field("fall", 21, "increment of the error for a pixel with such a step, s21: minor − major"),
     Field("depth", 34, "depth accumulator of the first pixel, with the bias and half a code, s20.14"),
     Field("depth_step", 34, "increment of the depth for one pixel, s20.14"),
     _COLOUR,
@@ -229,10 +229,10 @@ RECORDS = (HEADER, CHUNK, VERTEX, TRIANGLE, *ATTRIBUTES, TEXTURE, SEGMENT_END, S
            TEXTURE_PLANES, PIECE, STORED_PIECE, FLASH_HEADER, FLASH_ENTRY, FIRMWARE_HEADER)
 
 LIGHT_BYTES = -(-PLANES.bits // 128) * 16
-"""Bytes of the planes of light behind a descriptor."""
+"""Size in bytes of the planes of light after a descriptor."""
 
 TEXTURE_BYTES = -(-TEXTURE_PLANES.bits // 128) * 16
-"""Bytes of the texture behind a descriptor."""
+"""Size in bytes of the texture after a descriptor."""
 
 PIECE_MARK = 3
 
@@ -256,8 +256,8 @@ def _package():
 
 
 def _struct(record):
-    """Returns the type of a record. Records within it are vectors: Yosys reads an array of structs as a narrower type, without a
-    message."""
+    """Returns the type of a record. Nested records become vectors, because Yosys reads an array of structs as a narrower type,
+    without a warning."""
     members = {}
     for at, field in reversed(list(record.places())):
         name = f"reserved_{at}" if field.name == "reserved" else field.name
@@ -278,10 +278,10 @@ use core::ops::Range;
 use crate::bits::Bits;
 use crate::colour::Rgb565;
 
-/// Bytes of a word of memory. Every record begins at a multiple of it, or of its own size if that is smaller.
+/// Size of a memory word in bytes. Every record begins at a multiple of this size, or of its own size if that is smaller.
 pub const WORD: usize = {WORD_BYTES};
 
-/// The mark of a piece of a line that is stored as a descriptor.
+/// Value of `mark` in a piece of a line, which is stored in place of a descriptor.
 pub const PIECE_MARK: u64 = {PIECE_MARK};
 
 /// The bit in [`MeshHeader::attributes`] of a mesh with textures, which follow the arrays of its attributes.
@@ -297,12 +297,12 @@ impl Attribute {{
     /// All attributes, by their numbers.
     pub const ALL: [Self; {len(names)}] = [{", ".join(f"Self::{name}" for name in names)}];
 
-    /// The attribute's bit in the header.
+    /// Returns the attribute's bit in the header, as a mask.
     pub const fn bit(self) -> u32 {{
         1 << self as u32
     }}
 
-    /// Bytes of an element, the attribute of one vertex.
+    /// Returns the size in bytes of an element, the attribute of one vertex.
     pub const fn bytes(self) -> usize {{
         match self {{
 {sizes}
@@ -310,8 +310,8 @@ impl Attribute {{
     }}
 }}
 
-/// The bytes of a field that begins at byte `at` of a record.
-// As an array: from single bytes the compiler makes more instructions.
+/// Returns the bytes of the field at byte `at` of a record.
+// Reads an array, because the compiler generates more instructions for single bytes.
 const fn field<const N: usize>(record: &[u8], at: usize) -> [u8; N] {{
     match record.split_at(at).1.first_chunk() {{
         Some(bytes) => *bytes,
@@ -323,11 +323,11 @@ const fn field<const N: usize>(record: &[u8], at: usize) -> [u8; N] {{
 
 
 def _rust_struct(record):
-    """Returns a record of bytes: a struct with the functions to read and to write it, and with the places of its fields."""
+    """Returns the Rust struct of a record with `bytes`, with functions to read and write it, and with the byte ranges of its fields."""
     fields, places, reads, writes, used = [], [], [], [], set()
     for at, field in record.places():
         start, size, end = at // 8, field.bits // 8, (at + field.width) // 8
-        places.append(f"    /// Place of the field `{field.name}`.\n"
+        places.append(f"    /// Byte range of the field `{field.name}`.\n"
                       f"    pub const {field.name.upper()}: Range<usize> = {start}..{end};")
         if field.name == "reserved":
             continue
@@ -353,18 +353,18 @@ pub struct {record.name} {{
 }}
 
 impl {record.name} {{
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = {record.size};
 {lines(places)}
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {{
         Self {{
 {lines(reads)}
         }}
     }}
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {{
 {lines(writes)}
         [{made}]
@@ -374,8 +374,8 @@ impl {record.name} {{
 
 
 def _rust_fields(record):
-    """Returns the places of the fields of a record of bits, as a module."""
-    constants = [f"    /// Bits of the record.\n    pub const BITS: usize = {record.bits};"]
+    """Returns a Rust module with the bit positions of the fields of a record without `bytes`."""
+    constants = [f"    /// Size of the record in bits.\n    pub const BITS: usize = {record.bits};"]
     for at, field in record.places():
         inner = list(field.record.places()) if field.record else [(0, field)]
         for offset, part in inner:
@@ -411,17 +411,17 @@ def _page():
     return "\n".join([
         generated("<!--", "records.py") + " -->", "",
         "# Records", "",
-        "The fields of the records that gateware, firmware and host exchange in memory and in files. All are little-endian: bit 0 is the",
-        "lowest of the first byte. RTL takes the fields by name from `records_pkg`, Rust from `glint_core::records`.",
+        "The fields of the records that gateware, firmware and host exchange in memory and in files. All fields are little-endian: bit 0 is the",
+        "lowest bit of the first byte. RTL uses the fields by name from `records_pkg`, Rust from `glint_core::records`.",
         "The other [pages](README.md) explain the values and how records follow each other.", "",
         "\n".join(sections),
         "## Optional attributes", "",
-        "Of the vertices of a mesh: the bits of `attributes` in the header of the mesh.", "",
+        "Attributes of the vertices of a mesh, with their bits in the field `attributes` of the mesh's header.", "",
         "| bit | attribute | element |", "|---|---|---|",
         f"| 0–{FIRST_ATTRIBUTE - 1} | positions, faces, normals, colours | in the records of every mesh; the bits are 0 |", *attributes,
         f"| {TEXTURES_BIT} | textures | [those of the mesh](texture.md), after the arrays of the attributes |", "",
         "## Bands", "",
-        "Horizontal strips of a picture, in which it is drawn.", "",
+        "A picture is drawn in horizontal strips, the bands.", "",
         "| picture | lines of a band | bands |", "|---|---|---|", *sizes, "",
         f"A set of band lists begins with a table of {LIST_TABLE_WORDS} words of 16 bytes: the lengths of {LISTS} lists. {LIST_GAP_WORDS} "
         "words are between two lists.", "",

@@ -1,4 +1,4 @@
-"""Register banks and their bridge on the CPU's bus, with flip-flops at each bank for the address decoder."""
+"""Register banks and their bridge to the CPU's bus. Each bank registers its address and its selection."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
@@ -7,25 +7,23 @@ from migen import FSM, Cat, ClockDomainsRenamer, If, NextState, Signal, log2_int
 
 
 class RegisterBank(CSRBank):
-    """A bank of registers that a flip-flop selects.
+    """A bank of registers whose selection is stored in a flip-flop.
 
-    In LiteX's bank, the whole address of the bus selects a register. On its way from the bridge to the block, that takes longer than
-    anything else in a large FPGA. Here each bank compares the number of its window, and stores the result with the address in
-    the window:
+    In LiteX's bank, the whole bus address selects a register. In a large FPGA this path, from the bridge to the block, is the
+    longest path. Here each bank compares the window number with its own, and stores the result together with the address within the
+    window:
 
         bus ─▶ is this the window? ─▶ flip-flops ─▶ LiteX's bank ─▶ data
 
-    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX: the bus must still
-    show the written data then. `addressed` is high while `bus` shows an access to the bank. A bank is in the clock domain `clock_domain` of its
-    registers, if they have this attribute.
+    Read data are valid two clocks after the access. A write takes effect one clock later than in LiteX, so the bus must hold the written
+    data for one more clock. `addressed` is high while `bus` shows an access to the bank. If the registers have the attribute
+    `clock_domain`, the bank is in that clock domain.
     """
 
     def __init__(self, description, address=0, bus=None, paging=0x800, ordering="big"):
         access, selected = Interface.like(bus), Signal()
         CSRBank.__init__(self, description, 1, access, paging, ordering)
         self.bus, self.addressed = bus, Signal()
-
-        # # #
 
         number, in_window = Signal(log2_int(paging // 4)), Signal()
         self.comb += [
@@ -46,7 +44,8 @@ class RegisterBank(CSRBank):
 
 
 class RegisterBridge(LiteXModule):
-    """Replaces LiteX's bridge, for banks of this class: a Wishbone slave whose request comes from flip-flops, and the bus of the banks.
+    """Replaces LiteX's bridge for `RegisterBank`s: a Wishbone slave that accesses the bus of the banks. The Wishbone request must come
+    from flip-flops.
 
         clock   0        1         2
         csr     access   address, written data stay
@@ -56,8 +55,6 @@ class RegisterBridge(LiteXModule):
 
     def __init__(self, bus_wishbone=None, bus_csr=None, register=True):
         self.wishbone, self.csr = bus_wishbone or wishbone.Interface(), bus_csr or Interface(data_width=32)
-
-        # # #
 
         self.comb += [
             self.csr.adr.eq(self.wishbone.adr),

@@ -1,7 +1,7 @@
 """Addresses of all peripherals, and the build id computed from them.
 
-Addresses and interrupt numbers are pinned here, so that they are the same in every build: a block left out of a
-build leaves its window empty (it reads as 0) and moves nothing else.
+Addresses and interrupt numbers are pinned here, so they are the same in every build. The window of a block that
+a build omits reads as 0, and no other address changes.
 """
 
 import json
@@ -56,9 +56,9 @@ BLOCKS = {
     "raymarch": "The raymarcher.",
     "line": "The line engine, a part of the triangle engine.",
     "gesture": "The gesture engine.",
-    "flash": "The SPI flash in a window of memory.",
+    "flash": "The SPI flash, readable in a memory window.",
     "i2c": "The I2C master, for the motion sensor.",
-    "digits": "The displays of digits.",
+    "digits": "The seven-segment displays.",
 }
 
 OPTIONAL_BLOCKS = {name: bit for bit, name in enumerate(BLOCKS)}
@@ -125,12 +125,12 @@ choices!(Block {{
 }});
 
 impl Block {{
-    /// The block's bit among the block enable bits.
+    /// Returns the block's bit among the block enable bits, as a mask.
     pub const fn bit(self) -> u32 {{
         1 << self as u32
     }}
 
-    /// The blocks of these bits.
+    /// Yields the blocks whose bits are set in `bits`.
     pub fn of_bits(bits: u32) -> impl Iterator<Item = Self> {{
         let all = Self::ALL.into_iter();
         all.filter(move |block| block.bit() & bits != 0)

@@ -1,7 +1,7 @@
 """The SystemVerilog files of a module, found in the folder `gateware/rtl`.
 
 Every module or package has a file of its own name. A module's sources are its file and those of all packages that it names
-and modules that it instantiates, recursively. LiteX, Yosys, the Verilator benches and the proofs all ask `sources`.
+and modules that it instantiates, recursively. LiteX, Yosys, the Verilator benches and the proofs all use `sources`.
 """
 
 import re

@@ -19,7 +19,7 @@ _WORD_ADDRESS_BITS = 28
 class Scanout(LiteXModule):
     """Reads the front RGB565 frame through `port`, a native 128-bit LiteDRAM read port in the domain `sys`.
 
-    `video` (`VIDEO_LAYOUT`) is the output, one pixel a clock of the domain `pix`, with the timing of `mode` (a `VideoMode`), both
+    `video` (`VIDEO_LAYOUT`) is the output, one pixel per clock of the domain `pix`, with the timing of `mode` (a `VideoMode`), both
     syncs active high. It runs as soon as that domain leaves reset, and is black until the scan-out is enabled.
     """
 
@@ -39,10 +39,10 @@ class Scanout(LiteXModule):
             CSRField("width", size=12, offset=0, reset=mode.width, description="Pixels of an output line."),
             CSRField("height", size=12, offset=12, reset=mode.height, description="Lines of an output frame."),
             CSRField("scales", size=3, offset=24, reset=mode.scales,
-                     description="Bit k: the scale 2^k is supported."),
+                     description="Bit k is set if the scale 2^k is supported."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("enable", description="1: show the frame. 0: black picture, syncs continue. Latched at vblank."),
+            CSRField("enable", description="1: show the frame. 0: show a black picture; the syncs continue. Latched at vblank."),
         ], description="Operation.")
         self._status = CSRStatus(name="status", fields=[
             CSRField("enabled", offset=0, description="The frame is shown: `enable` as latched at the last vblank."),
@@ -63,12 +63,12 @@ class Scanout(LiteXModule):
             "vblank for the whole next frame.")
         self._scale = CSRStorage(3, reset=4, name="scale", description="Enlargement: a pixel of the frame is shown as a square of "
             "scale x scale pixels: `width` of `caps` divided by the width of the frame. Latched at vblank.")
-        self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame that is shown, in "
-            "vertical blanking the next one. A frame buffer that is neither this nor `fb_next` is free for drawing.")
+        self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame that is shown, or, in "
+            "vertical blanking, of the next frame. A frame buffer that is neither this nor `fb_next` is free for drawing.")
         self._frame_count = CSRStatus(32, name="frame_count", description="Vertical blankings since reset, modulo 2^32.")
         self._underflow_count = CSRStatus(32, name="underflow_count", description="Source lines that came too late from memory, "
             "modulo 2^32. The previous line is shown again, or black in the first line.")
-        # A reset clears the two counters above, but not these.
+        # A reset clears the two counters above, but not the following counters.
         self.growing = Counters(self, {
             "cycles_busy": "Clock cycles of line fetches.",
             "cycles_stalled": "Clock cycles in which memory refused a command.",
@@ -76,8 +76,6 @@ class Scanout(LiteXModule):
             "items_out": "Source lines fetched.",
         })
         self.counters = ["frame_count", "underflow_count", *self.growing.registers]
-
-        # # #
 
         enabled, fetching, error = Signal(), Signal(), Signal(2)
         scale_current = Signal(3)

@@ -1,7 +1,7 @@
 """The SoC that all boards share: CPU, memory controller, peripherals and accelerators.
 
-A board adds its platform, its clocks (domains `sys` and `pix`), its memory with a PHY, and its video output. All other parts,
-which firmware can see, are here.
+A board adds its platform, its clocks (domains `sys` and `pix`), its memory with a PHY, and its video output. All other parts
+that are visible to firmware are in this module.
 """
 
 from unittest.mock import patch
@@ -49,9 +49,9 @@ class GlintSoC(SoCCore):
     `blocks` names the optional blocks of this build. Line engine and raymarcher draw through the triangle engine. Without the block
     `triangle`, the parts of the engine that draw triangles are left out: with `line`, the parts for lines and all registers remain; with
     `raymarch` alone, the raster pass, the band buffer and all registers. `build_id` is the checksum of the register map of the full build
-    (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `texture` textures, `geometry` its geometry
-    pass, which a build without lines may lack, and `depths` the memory of depths, which a build without triangles may lack. `fields`
-    are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
+    (see `register_map.build_id`). `smooth` adds smooth shading to the triangle engine, and `texture` adds textures. `geometry` is its
+    geometry pass, which a build without lines may omit, and `depths` the depth memory, which a build without triangles may omit.
+    `fields` are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
     """
 
     csr_map = CSR_MAP
@@ -84,7 +84,7 @@ class GlintSoC(SoCCore):
         self.geometry = geometry
         self.depths = depths
         self.fields = fields or Fields()
-        # Comes before SoCCore adds `uart` and `timer0`, because SoCCore keeps interrupt numbers that are already set.
+        # This must be set before SoCCore adds `uart` and `timer0`, because SoCCore keeps interrupt numbers that are already assigned.
         self.interrupt_map = {
             name: location.irq for name, location in PINNED.items()
             if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
@@ -129,7 +129,7 @@ class GlintSoC(SoCCore):
             self.add_constant("FLASH_BOOT_ADDRESS", _FLASH + FLASH_FIRMWARE)
 
     def add_cpu(self, *arguments, **options):
-        """Adds the CPU with one bus in place of its two."""
+        """Adds the CPU, with one bus master instead of two."""
         SoCCore.add_cpu(self, *arguments, **options)
         self.bus.masters.clear()
         self.cpu_bus = ResetInserter()(CpuBus(self.cpu.dbus, self.cpu.ibus))
@@ -142,7 +142,7 @@ class GlintSoC(SoCCore):
             SoCCore.finalize(self, *arguments, **options)
 
     def do_finalize(self):
-        # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.
+        # LiteX creates the register banks and numbers the registers only when it finalizes the SoC.
         for name, _, _, bank in self.csr_bankarray.banks:
             block = getattr(self, name, None)
             if parameters := getattr(block, "parameters", None):
@@ -151,12 +151,12 @@ class GlintSoC(SoCCore):
                 self.comb += control.accessed.eq(bank.addressed)
 
     def _inputs(self, name, bits):
-        """The input pins `name` with `bits` bits; bits without a pin on the board are 0."""
+        """Returns the input pins `name`, extended to `bits` bits; bits without a pin on the board are 0."""
         pads = self.platform.request(name)
         return Cat(pads, Constant(0, bits - len(pads))) if len(pads) < bits else pads
 
     def _outputs(self, name, bits):
-        """`bits` bits that drive the output pins `name`; bits without a pin on the board have no effect."""
+        """Returns a signal of `bits` bits that drives the output pins `name`; bits without a pin on the board have no effect."""
         pads = self.platform.request(name)
         if len(pads) == bits:
             return pads

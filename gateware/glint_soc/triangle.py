@@ -47,11 +47,12 @@ class TriangleEngine(LiteXModule):
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
-    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `texture` textures, not both, `fields`
-    the input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws lines and fields only, and does not use
-    the port of the vertices; without both triangles and lines it uses the last two writers only. The registers are the same. Then `depths`
-    may be left out too: the memory of the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from
-    the firmware's lists, and does not use the ports of mesh, vertices, descriptors and lists.
+    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures (they
+    exclude each other), `fields` adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine
+    draws only lines and fields, and does not use the port of the vertices; with neither triangles nor lines it uses only the last two
+    writers. The registers are the same. A build without `triangles` may also omit `depths`, the memory for the depths of a band. Without
+    `has_geometry`, for builds without lines, the engine draws triangles from the firmware's lists, and does not use the ports of mesh,
+    vertices, descriptors and lists.
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, fields=False, lines=False,
@@ -67,20 +68,20 @@ class TriangleEngine(LiteXModule):
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`TRIA` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("sizes", size=3, offset=0, reset=sizes, description="Bit k: `size` k is supported."),
+            CSRField("sizes", size=3, offset=0, reset=sizes, description="Bit k is set if `size` k is supported."),
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
                      f"vertices. A descriptor has {DESCRIPTOR.size} bytes, and {LIGHT_BYTES} more with smooth shading."),
             CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes without `lines`, and raster "
                      "passes of their lists. With neither triangles nor lines a raster pass draws the raymarcher's field alone."),
             CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`, and raster passes of their "
                      "lists."),
-            CSRField("depths", offset=6, reset=int(depths), description="Depths: the depth test, and `depth` of a raster pass, which "
-                     "writes 0 without them."),
+            CSRField("depths", offset=6, reset=int(depths), description="Depths: the depth test and the field `depth` of a raster pass, which "
+                     "writes zeros in a build without depths."),
             CSRField("geometry", offset=7, reset=int(has_geometry), description="Geometry passes. Without them a raster pass draws lists that "
                      "the CPU has written."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
-            CSRField("textures", offset=14, reset=int(texture), description="Textures: a descriptor has "
-                     f"{TEXTURE_BYTES} bytes more with them."),
+            CSRField("textures", offset=14, reset=int(texture), description="Textures: descriptors are "
+                     f"{TEXTURE_BYTES} bytes longer."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
@@ -124,13 +125,13 @@ class TriangleEngine(LiteXModule):
         self._mesh_bytes = Parameter(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
         self._geometry_descriptors = Parameter(32, name="geometry_descriptors", description=f"{address} the descriptors, "
                                                 "written by the pass.")
-        self._descriptor_limit = Parameter(_COUNT_BITS, name="descriptor_limit", description="Most descriptors, "
-                                             "whose size follows from `caps`.")
+        self._descriptor_limit = Parameter(_COUNT_BITS, name="descriptor_limit", description="Largest number of "
+                                             "descriptors; `caps` determines their size.")
         self._geometry_lists = Parameter(32, name="geometry_lists", description=f"{address} the band lists, written by the pass.")
-        self._list_shift = Parameter(5, name="list_shift", description="Entries of a band list: at most 4 << list_shift, "
+        self._list_shift = Parameter(5, name="list_shift", description="A band list has at most 4 << list_shift entries, "
             "in both passes.")
         self._exceptions = Parameter(32, name="exceptions", description=f"{address} the list of exceptions, written by the pass.")
-        self._exception_limit = Parameter(_COUNT_BITS, name="exception_limit", description="Most exceptions, 4 bytes each.")
+        self._exception_limit = Parameter(_COUNT_BITS, name="exception_limit", description="Largest number of exceptions, 4 bytes each.")
         self._scale_shift = Parameter(5, name="scale_shift", description="Scale shift f of rows U and V; in orthographic projection "
             "f + 1 - ke.")
         rows = {}
@@ -155,19 +156,19 @@ class TriangleEngine(LiteXModule):
 
         self._coordinates = Parameter(32, name="coordinates", description=f"{address} the texture coordinates of the mesh's vertices, with "
                                       "`textures` in `geometry`.")
-        self._first_texture = Parameter(8, name="first_texture", description="Number in the table of `textures` before that of the mesh's "
-                                        "first texture.")
+        self._first_texture = Parameter(8, name="first_texture", description="Number of textures before the mesh's first texture in the "
+                                        "table at `textures`.")
 
         # Registers with the parameters of the raster pass, constant while the pass runs.
         self._raster = Parameter(name="raster", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
             CSRField("first", offset=3, description="Draw the first set of lists."),
-            CSRField("second", offset=4, description="Draw the second set, in each band after the first."),
+            CSRField("second", offset=4, description="Draw the second set of lists, in each band after the first set."),
             CSRField("depth", offset=5, description="Write the depths as well as the colours. Implies `whole`."),
             CSRField("slot", offset=6, description="Number of the frame buffer: the engine remembers the extents of the last frame in each "
                      "slot."),
-            CSRField("whole", offset=7, description="Write all of the frame buffer. Required for the first frame of a buffer, "
+            CSRField("whole", offset=7, description="Write the whole frame buffer. Required for the first frame in a frame buffer, "
                      "after a cancelled frame, after a change of size or `clear`, and after writes by the CPU."),
         ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures` must hold "
             "while it runs.")
@@ -213,8 +214,8 @@ class TriangleEngine(LiteXModule):
             "cycles_raster": "Clock cycles of raster passes.",
             "cycles_walking": "Clock cycles in which the walker was at a group of pixels.",
             "cycles_empty": "Clock cycles in which the walker was at a group without a covered pixel.",
-            "groups": "Groups of eight pixels with a covered pixel, without those whose texels are all transparent.",
-            "pixels_covered": ("Pixels covered, for each triangle, without those of transparent texels.", 4),
+            "groups": "Groups of eight pixels with a covered pixel, except groups whose texels are all transparent.",
+            "pixels_covered": ("Covered pixels, counted for each triangle, except pixels of transparent texels.", 4),
             "pixels_drawn": ("Pixels that passed the depth test.", 4),
             "cycles_held": "Clock cycles in which a group waited for an earlier group of the same pixels.",
             "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
@@ -225,14 +226,12 @@ class TriangleEngine(LiteXModule):
                  for i, axis in enumerate("xyz")]
         for i, register in enumerate(light):
             setattr(self, f"_light_{i}", register)
-        self._light_colour = Parameter(27, name="light_colour", description="Colour of the light, u1.8 of each channel, at most 1: red "
-                                       "in bits 0 to 8, green, blue.")
+        self._light_colour = Parameter(27, name="light_colour", description="Colour of the light, u1.8 for each channel, at most 1: red "
+                                       "in bits 0 to 8, green in bits 9 to 17, blue in bits 18 to 26.")
         self._ambient = Parameter(27, name="ambient", description="Ambient light, in the format of `light_colour`. It must be 0 with "
                                   "`smooth` and without `cull`.")
         self._colour = Parameter(16, name="colour", description="Colour instead of those of the mesh, with `recolour` in "
                                  "`geometry`, RGB565.")
-
-        # # #
 
         recovering = Signal()
         self.clock_control = ClockControl(
@@ -244,7 +243,8 @@ class TriangleEngine(LiteXModule):
              self._colour, *([self._coordinates, self._first_texture] if texture else [])],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()),
              *([self._textures] if texture else [])])
-        # A raymarcher copies its parameters when the raster pass starts; the pass waits until both have copied theirs.
+        # A raymarcher copies its parameters when the raster pass is requested; the pass waits until engine and
+        # raymarcher have copied their parameters.
         self.raster_load, self.field_loading = Signal(), Signal()
         # A refused request does not change the parameters of the running pass.
         self.comb += [
@@ -395,8 +395,8 @@ def _read_port(port):
 
 
 def _address(port):
-    """The address of a port, as wide as in the RTL. A smaller memory lacks the top bits, which are 0 there: the regions of a pass
-    are checked to lie in memory."""
+    """Returns the address of a port, extended to the width in the RTL. The additional bits are 0 for a smaller memory, because
+    the regions of a pass are checked to be within memory."""
     return Cat(port.cmd.addr, Signal(_ADDRESS_BITS - len(port.cmd.addr))) if len(port.cmd.addr) < _ADDRESS_BITS else port.cmd.addr
 
 

@@ -21,7 +21,8 @@ _CLK25_FREQ = 25e6
 
 
 class _PLL(ECP5PLL):
-    """A PLL whose outputs, including the feedback output, have at most half of the VCO's frequency, the limit of an output."""
+    """A PLL that divides the VCO's frequency by at least 2 for each output, including the feedback output, because of the
+    frequency limit of outputs."""
 
     clko_div_range = (2, 128 + 1)
 
@@ -29,7 +30,7 @@ class _PLL(ECP5PLL):
 class CRG(LiteXModule):
     """Clocks and resets: `sys` with the clock of the memory, `pix` with its TMDS clock.
 
-    No divider of one PLL makes 25.2 MHz from 25 MHz, so the PLL of the video follows that of the system. `rst` restarts the
+    No single PLL can generate 25.2 MHz from 25 MHz, so the PLL of the video is driven by the PLL of the system. `rst` restarts the
     system but neither PLL: the picture goes black and the monitor keeps its lock.
     """
 
@@ -41,8 +42,6 @@ class CRG(LiteXModule):
         self.cd_pix = ClockDomain()
         self.cd_pix5x = ClockDomain()
 
-        # # #
-
         self.sys_pll = sys_pll = _PLL()
         sys_pll.register_clkin(platform.request("clk25"), _CLK25_FREQ)
         sys_pll.create_clkout(self.cd_sys, sys_clk_freq, margin=0, with_reset=False)
@@ -51,7 +50,8 @@ class CRG(LiteXModule):
         restart = Signal()
         self.comb += self.cd_por.clk.eq(self.cd_sys.clk)
         self.sync.por += restart.eq(self.rst)
-        # A global buffer distributes the reset to its thousands of loads; on ordinary wires the reset would be among the slowest paths.
+        # A global buffer distributes the reset to its thousands of loads; through ordinary wires the reset would be one of the slowest
+        # paths.
         reset = ClockDomain("reset", reset_less=False)
         self.comb += reset.clk.eq(self.cd_sys.clk)
         self.specials += [
@@ -70,15 +70,16 @@ class CRG(LiteXModule):
 class Ulx3sSoC(GlintSoC):
     """The SoC on the board."""
 
-    # The flash of this board is not configured for four data lines: the FPGA loads from it on one line. The board has no digits.
+    # The flash of this board is not set to four data lines, because the FPGA is configured through one line. The board has no
+    # digit displays.
     possible_blocks = GlintSoC.possible_blocks - {"flash", "digits"}
     # With the raymarcher, nextpnr takes twice as long, and reaches a lower clock frequency (see docs/boards.md).
     default_blocks = possible_blocks - {"raymarch"}
 
-    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, sys_clk_freq=SYS_CLK_FREQ, **options):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
-                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq, mode=CEA_640X480)
+        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", sys_clk_freq=sys_clk_freq,
+                          mode=CEA_640X480, **options)
         self.sdrphy = GENSDRPHY(platform.request("sdram"), sys_clk_freq)
         self.add_dram(self.sdrphy, MT48LC16M16(sys_clk_freq, "1:1"))
         if "gesture" in self.blocks:

@@ -28,7 +28,7 @@ _io = [
         Subsignal("scl", Pins("C11")),
         Misc("PULLMODE=UP"), _3V3),
 
-    # An image sensor at the following pins of the header, GP1 to GN8: its clock is at a pin that reaches the FPGA's clock network.
+    # An image sensor at the following pins of the header, GP1 to GN8. Its clock uses a pin that is connected to the FPGA's clock network.
     ("camera", 0,
         Subsignal("pclk", Pins("A10")),
         Subsignal("xclk", Pins("A11"), Misc("DRIVE=4")),
@@ -52,16 +52,13 @@ _io = [
     ("sdram", 0,
         Subsignal("a", Pins("M20 M19 L20 L19 K20 K19 K18 J20 J19 H20 N19 G20 G19")),
         Subsignal("ba", Pins("P19 N20")),
-        Subsignal("cs_n", Pins("P20")),
-        Subsignal("cke", Pins("F20")),
-        Subsignal("ras_n", Pins("R20")),
-        Subsignal("cas_n", Pins("T19")),
-        Subsignal("we_n", Pins("T20")),
+        Subsignal("cs_n", Pins("P20")), Subsignal("cke", Pins("F20")),
+        Subsignal("ras_n", Pins("R20")), Subsignal("cas_n", Pins("T19")), Subsignal("we_n", Pins("T20")),
         Subsignal("dm", Pins("U19 E20")),
         Subsignal("dq", Pins("J16 L18 M18 N18 P18 T18 T17 U20 E19 D20 D19 C20 E18 F18 J18 J17")),
         Misc("SLEWRATE=FAST"), _3V3),
 
-    # High: the ESP32 on the board starts its own program, and does not wait for a download.
+    # A high level lets the ESP32 on the board start its own program instead of waiting for a download.
     ("wifi_gpio0", 0, Pins("L2"), _3V3),
 ]
 

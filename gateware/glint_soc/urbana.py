@@ -51,10 +51,8 @@ class CRG(LiteXModule):
         self.cd_pix = ClockDomain()
         self.cd_pix5x = ClockDomain()
 
-        # # #
-
-        # A clock region has one MMCM, and the pin reaches only the MMCM and the PLL of its own region directly: a second MMCM on the pin
-        # is Vivado's error [Place 30-575]. A global buffer reaches those of all regions.
+        # A clock region has one MMCM, and the pin reaches only the MMCM and the PLL of its own region directly: Vivado rejects a second
+        # MMCM at the pin with error [Place 30-575]. A global buffer reaches the MMCMs and PLLs of all regions.
         clk100 = Signal()
         self.specials += Instance("BUFG", i_I=platform.request("clk100"), o_O=clk100)
 
@@ -84,9 +82,9 @@ class CRG(LiteXModule):
 
 
 def _without_write_bitslip(strobe):
-    """Returns the strobe of a register of the PHY, but 0 for the one that shifts write data by a bit.
+    """Returns the write strobe of a register of the PHY, or 0 for the register that shifts write data by a bit.
 
-    The BIOS never writes it, because this PHY has no calibration of the write latency. Without the strobe, synthesis removes a
+    The BIOS never writes this register, because this PHY has no calibration of the write latency. Without the strobe, synthesis removes a
     multiplexer of eight inputs for each bit of the write data.
     """
     name, _ = strobe.backtrace[-1]
@@ -96,10 +94,10 @@ def _without_write_bitslip(strobe):
 class UrbanaSoC(GlintSoC):
     """The SoC of the Urbana board."""
 
-    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, sys_clk_freq=SYS_CLK_FREQ, **options):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
-                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
+        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", sys_clk_freq=sys_clk_freq,
+                          **options)
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=sys_clk_freq, iodelay_clk_freq=_IDELAY_CLK_FREQ, csr_cdc=_without_write_bitslip)
@@ -121,9 +119,9 @@ class UrbanaSoC(GlintSoC):
     def _constrain_camera(self, platform):
         """Constrains the clock of the image sensor, and the paths between it and `sys`, which all go through crossings of rtl/common.
 
-        The bits of a pointer of `cdc_fifo` may arrive apart by less than a period of either clock, so the limit is the shorter
-        one. It is not known whether the pin can reach the clock network directly. The commands run before the placement, because
-        in the XDC they would precede the commands that create the clocks.
+        The delays of the bits of a pointer of `cdc_fifo` may differ by less than a period of either clock, so the limit is the
+        shorter period. It is not known whether the pin can reach the clock network directly. The commands run before the
+        placement, because in the XDC they would precede the commands that create the clocks.
         """
         platform.add_period_constraint(self.gesture.pclk, 1e9 / PIXEL_CLOCK)
         limit = round(1e9 / max(PIXEL_CLOCK, self.sys_clk_freq), 2)

@@ -9,11 +9,11 @@ from litex.build.xilinx import Xilinx7SeriesPlatform
 from litex.build.xilinx.vivado import XilinxVivadoToolchain
 
 CONTROL_PIN_LOADS = 5
-"""Least number of flip-flops that an enable or a synchronous reset controls by their pins. For fewer, the synthesis puts it into
-the LUTs of their inputs, because each combination of clock, enable and reset takes slices of its own, of eight flip-flops."""
+"""Smallest number of flip-flops whose enable or synchronous reset uses the control pins. For fewer flip-flops the synthesis
+implements it in LUTs, because each combination of clock, enable and reset needs its own slices of eight flip-flops."""
 
-# Bank 35 has the buttons and switches, and a differential pair that the board uses as LVDS_25, so the supply
-# of the bank is 2.5 V.
+# Bank 35 contains the buttons and switches, and a differential pair that the board uses as LVDS_25, so the
+# supply voltage of the bank is 2.5 V.
 _BANK_35 = IOStandard("LVCMOS25")
 
 _io = [
@@ -64,14 +64,10 @@ _io = [
         IOStandard("LVCMOS33")),
 
     ("hdmi_out", 0,
-        Subsignal("clk_p", Pins("U16")),
-        Subsignal("clk_n", Pins("V17")),
-        Subsignal("data0_p", Pins("U17")),
-        Subsignal("data0_n", Pins("U18")),
-        Subsignal("data1_p", Pins("R16")),
-        Subsignal("data1_n", Pins("R17")),
-        Subsignal("data2_p", Pins("R14")),
-        Subsignal("data2_n", Pins("T14")),
+        Subsignal("clk_p", Pins("U16")), Subsignal("clk_n", Pins("V17")),
+        Subsignal("data0_p", Pins("U17")), Subsignal("data0_n", Pins("U18")),
+        Subsignal("data1_p", Pins("R16")), Subsignal("data1_n", Pins("R17")),
+        Subsignal("data2_p", Pins("R14")), Subsignal("data2_n", Pins("T14")),
         IOStandard("TMDS_33")),
 
     # The memory is DDR3L, 1 Gbit, 16 bits wide. Its chip select is tied low on the board.
@@ -101,7 +97,8 @@ VIVADO = "2020.1"
 """Oldest version of Vivado that the script accepts. No version has been tried."""
 
 # Commands before and after the build, with `build_name` as a field. An old bitstream is deleted, so that a failed build leaves none. The
-# text is that of the report when setup, hold and pulse widths of all clocks are met; `get_timing_paths` would miss the pulse widths.
+# script looks for the sentence that the report contains if setup, hold and pulse widths of all clocks are met, because
+# `get_timing_paths` does not cover pulse widths.
 _CHECK_VERSION = f"""set vivado [version -short]
 regexp {{{{^\\d+\\.\\d+}}}} $vivado release
 if {{{{[package vcompare $release {VIVADO}] < 0}}}} {{{{
@@ -114,8 +111,9 @@ _CHECK_TIMING = """if {{[string first "All user specified timing constraints are
     exit 1
 }}"""
 
-# The worst paths of the SoC are in the CPU, and nine tenths of their time is wire. One clock region, beside the pins of the memory, has room
-# for the CPU and keeps it together; without room Vivado may place parts of it outside. No version of Vivado has run these commands.
+# The worst paths of the SoC are in the CPU, and nine tenths of their delay is in wires. The CPU fits one clock region, next to the pins of
+# the memory, which keeps these wires short. If the region is full, Vivado may place parts of the CPU outside. No version of Vivado has run
+# these commands.
 _PLACE_CPU = """create_pblock cpu
 resize_pblock [get_pblocks cpu] -add CLOCKREGION_X1Y1:CLOCKREGION_X1Y1
 set_property IS_SOFT TRUE [get_pblocks cpu]
@@ -123,7 +121,7 @@ add_cells_to_pblock [get_pblocks cpu] [get_cells VexRiscv]"""
 
 
 class _Toolchain(XilinxVivadoToolchain):
-    """Writes a script whose folder may be moved to another computer, and which writes a bitstream only if the timing is met."""
+    """Writes a script for Vivado. Its folder may be moved to another computer, and it writes a bitstream only if the timing is met."""
 
     def __init__(self):
         XilinxVivadoToolchain.__init__(self)
@@ -132,7 +130,7 @@ class _Toolchain(XilinxVivadoToolchain):
         self.bitstream_commands.append(_CHECK_TIMING)
 
     def build_project(self):
-        # The working folder is that of the script.
+        # This function runs in the folder of the script.
         shutil.rmtree(SOURCES, ignore_errors=True)
         Path(SOURCES).mkdir()
         sources = []

@@ -7,10 +7,12 @@ from .constants import SIZES
 
 @dataclass(frozen=True)
 class VideoMode:
-    """A video timing: active pixels, front porch, sync and back porch of a line, and the same of the lines of a frame.
+    """A video timing: numbers of active pixels, front porch, sync and back porch pixels of a line, and the same
+    numbers of lines of a frame.
 
-    The active area is the screen, which pictures fill. `border` black lines above and below the screen are visible too; they are
-    part of the porches here. The scan-out makes both syncs active high; `sync_low` says that the mode has them active low.
+    The active area is the screen, which pictures fill. `border` black lines above and below the screen are visible too; here
+    they count as part of the porches. The scan-out outputs both syncs active high; `sync_low` is set if the mode has active-low
+    syncs.
     """
 
     clk_freq: float

@@ -13,7 +13,7 @@ from migen.genlib.resetsync import AsyncResetSynchronizer
 from .clock_control import ClockControl
 from .memory_model import MemoryModel
 from .rtl import add_sources
-from .soc import SYS_CLK_FREQ, GlintSoC
+from .soc import GlintSoC
 
 _io = [
     ("sys_clk", 0, Pins(1)),
@@ -80,8 +80,6 @@ class CRG(LiteXModule):
         self.cd_pix = ClockDomain()
         self.cd_por = ClockDomain(reset_less=True)
 
-        # # #
-
         power_on = Signal(reset=1)
         restart = Signal()
         self.comb += [
@@ -97,16 +95,16 @@ class CRG(LiteXModule):
 class PinSoC(GlintSoC):
     """SoC on the pins of `Platform`, without a memory."""
 
-    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, **options):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth,
-                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", **options)
 
     def add_memory(self, phy):
-        """Adds the memory behind `phy`, which is that of the Urbana, the blocks that access it, and the video pins."""
+        """Adds the memory behind `phy`, with the geometry of the Urbana's memory, the blocks that access memory, and the video pins."""
         self.ddrphy = phy
         self.add_dram(phy, phy.module)
-        # These pins and the video pins exist in every build, so that one harness fits all builds. Wires are released, and digits dark.
+        # These pins and the video pins exist in every build, so that one harness fits all builds. For missing blocks, wires are
+        # released and digits are dark.
         for block, pins in (("gesture", "camera"), ("flash", "flash"), ("i2c", "i2c"), ("digits", "digits")):
             if block not in self.blocks:
                 pads = self.platform.request(pins)
@@ -132,10 +130,10 @@ class VirtualSoC(PinSoC):
         self._gate_clocks(self.platform)
 
     def _gate_clocks(self, platform):
-        """Stops the clocks of idle blocks, and of idle banks of the memory, which the simulation then does not evaluate.
+        """Stops the clocks of idle blocks and of idle memory banks, so that the simulation does not evaluate them.
 
-        Free-running counters of blocks, such as the turns of an arbiter, stop with their clock. So the cycles of a pass differ by about
-        1 % from those with clocks that never stop, as they differ with the time of its start.
+        Free-running counters in blocks, such as the turn of an arbiter, stop with their clock. The cycle count of a pass therefore
+        differs by about 1 % from a SoC without stopped clocks. It differs as much between start times.
         """
         add_sources(platform, "clock_gate")
         for name, block in list(vars(self).items()):

@@ -19,12 +19,12 @@ from .tools import ToolError
 DOCS = GATEWARE.parent / "docs"
 
 _AT_A_TIME = 2
-"""Measurements at a time; each needs one core and about a gigabyte."""
+"""Number of parallel measurements; each needs one core and about 1 GB of memory."""
 
 
 def measured(what, measure, names):
-    """Measures blocks until one fails, some at a time, and prints a line for each on standard error. The results are in the order of
-    the tables."""
+    """Measures blocks in parallel until one fails, and prints a line for each on standard error. The results are in the order of the
+    tables."""
     def one(name):
         start = time.monotonic()
         result = {"name": name, **measure(name)}
@@ -51,14 +51,14 @@ def measured_rates(names):
 
 
 def check(budget):
-    """Measures the own blocks, and with one seed the clock rates of the blocks with a minimum ratio. The SoC and the soft core are left
-    out, because they take too long for every test. Returns the exceeded limits."""
+    """Measures the sizes of the project's own blocks, and with one seed the clock rates of blocks with a minimum ratio. The SoC and the
+    soft core are left out, because their measurement takes too long for every test run. Returns a line for each exceeded limit."""
     sizes = measured("size", size.measure, OWN)
     return budget.problems(sizes, measured("clock rate", partial(route.measure, seeds=route.SEEDS[:1]), budget.routed()))
 
 
 def measure_scenes(path, write):
-    """Measures the builds of the file `path`, which `cargo xtask resources --scenes` writes. Returns what is beyond their limits."""
+    """Measures the builds in the file `path`, which `cargo xtask resources --scenes` writes. Returns a line for each exceeded limit."""
     data = json.loads(path.read_text())
     sizes = measured("size", size.measure, [f"{SOC}-{build['name']}" for build in data["builds"]])
     rows = scenes.rows(data, {one["name"].removeprefix(f"{SOC}-"): one for one in sizes})
@@ -70,14 +70,14 @@ def measure_scenes(path, write):
 
 
 def main():
-    """Parses the command line, which is that of `cargo xtask resources`."""
+    """Parses the command line of `cargo xtask resources`, and measures. Returns a line for each exceeded limit."""
     parser = argparse.ArgumentParser(prog="python -m resources", description=__doc__)
     parser.add_argument("blocks", nargs="*")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--check", action="store_true", help="measure what `cargo xtask test` checks")
+    what.add_argument("--check", action="store_true", help="measure only the limits that `cargo xtask test` checks")
     what.add_argument("--route", action="store_true", help="place and route on an ECP5")
-    what.add_argument("--tree", type=int, metavar="DEPTH", help="print the instances in the blocks")
-    what.add_argument("--scenes", type=Path, metavar="FILE", help="measure the builds for scenes")
+    what.add_argument("--tree", type=int, metavar="DEPTH", help="print the cells of the instances in the blocks, down to DEPTH")
+    what.add_argument("--scenes", type=Path, metavar="FILE", help="measure the builds for scenes that FILE describes")
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--write", action="store_true", help="write the page in docs")
     arguments = parser.parse_args()

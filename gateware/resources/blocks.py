@@ -7,23 +7,23 @@ SOC = "soc"
 
 OWN = ("exit_lane", "setup", "triangle_raster", "band_buffer", "scanout", "vertex_stage", "line_setup", "line_raster", "gesture_engine",
        "i2c_engine", "flash_reader")
-"""This project's own blocks. The block that takes longest to measure comes first."""
+"""This project's own blocks, as opposed to LiteX's. The block that takes longest to measure comes first."""
 
 BUILDS = ("triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "raymarcher", "triangle_engine", "raymarcher_sponge",
           "raymarcher_round", "raymarcher_faces", "ring_lane", "ring_lane_all", "exit_lane_all", "ray_generator", "ray_paint",
           "round_light")
-"""Engines that consist of the own blocks, in several builds, and parts of the raymarcher. The tables list them, but they take too long to
-be measured by `cargo xtask test`."""
+"""Builds of engines, which consist of blocks in `OWN`, and parts of the raymarcher. The tables list them, but their measurement takes too
+long for `cargo xtask test`."""
 
 SHOWN = ("soc_core", "triangle_engine", "raymarcher_faces", "ray_generator")
-"""What the page shows placed and routed besides the own blocks: the computer without its engines, and the engines of the Urbana's default
-build with a part. The whole SoC takes an hour."""
+"""Blocks that are placed and routed for the page, in addition to `OWN`: the computer without its engines, the engines of the Urbana's
+default build, and a part of the raymarcher. The whole SoC would take an hour."""
 
 FLAT_PARTS = ("vertex_stage", "setup", "triangle_raster")
-"""Blocks that together are the smallest triangle engine, which draws triangles of one colour each."""
+"""Blocks that together form the smallest triangle engine, with flat shading only."""
 
 FLAT = "flat_build"
-"""The sum of `FLAT_PARTS`."""
+"""Name of the row with the sum of `FLAT_PARTS`."""
 
 ROWS = ("scanout", "i2c_engine", "flash_reader", *FLAT_PARTS, FLAT, "line_setup", "line_raster", "gesture_engine", "band_buffer",
         "triangle_engine", "triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "field_menger", "field_box",
@@ -32,18 +32,18 @@ ROWS = ("scanout", "i2c_engine", "flash_reader", *FLAT_PARTS, FLAT, "line_setup"
 """The blocks in the order of their rows in the tables. Other measured modules come after them."""
 
 FIELDS = tuple(sorted(path.stem for path in RTL.glob("raymarch/field_*.sv") if path.stem != "field_unit"))
-"""The modules of the raymarcher's fields."""
+"""The modules that compute the distances of the raymarcher's fields."""
 
 ALL = (SOC, *BUILDS, *OWN, *FIELDS)
 """All blocks, the slowest to measure first."""
 
 
 def selection(names, default):
-    """The blocks to measure, each once: `names`, or `default` if there are none. The flat build is measured by its parts."""
+    """Returns the blocks to measure, each once: `names`, or `default` if `names` is empty. `FLAT` is replaced by its parts."""
     parts = (part for name in names or default for part in (FLAT_PARTS if name == FLAT else (name,)))
     return list(dict.fromkeys(parts))
 
 
 def row(block):
-    """The place of a block in the tables."""
+    """Returns the number of a block's row in the tables."""
     return ROWS.index(block) if block in ROWS else len(ROWS)

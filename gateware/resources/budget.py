@@ -13,7 +13,7 @@ PATH = GATEWARE / "budget.toml"
 
 RESOURCES = {"lut": "LUT", "ff": "FF", "dsp48": "DSP48", "ramb36": "RAMB36", "carry4": "CARRY4", "path": "path",
              "control_sets": "control sets", "slices": "slices"}
-"""Limited resources in the order of the tables, with their names in tables and messages. The last two are about placement."""
+"""Limited resources in the order of the tables, with their names in tables and messages. The last two limit the placement."""
 
 
 def number(count):
@@ -22,14 +22,14 @@ def number(count):
 
 
 def amounts(size):
-    """The amounts of the limited resources of a block, from its counts of cells; a half block RAM counts 0.5."""
+    """Returns the amounts of the limited resources of a block, from its cell counts; a RAMB18 counts as 0.5 RAMB36."""
     sums = {"lut": size["logic"] + size["srl"] + size["lutram"], "ramb36": size["ramb36"] + size["ramb18"] / 2}
     return {resource: sums.get(resource, size.get(resource)) for resource in RESOURCES}
 
 
 def with_flat_build(sizes):
-    """Sizes of blocks, with the sum `FLAT` if all its parts are there. The path of the sum is the longest of their paths. A control set
-    that several blocks have counts once for each of them."""
+    """Returns `sizes`, and the sum `FLAT` if all of its parts are measured. The path of the sum is the longest path of the parts. A
+    control set that several parts have counts once for each part."""
     parts = [size for size in sizes if size["name"] in FLAT_PARTS]
     if len(parts) != len(FLAT_PARTS):
         return sizes
@@ -45,9 +45,9 @@ def with_flat_build(sizes):
 
 @dataclass(frozen=True)
 class Budget:
-    """The contents of the file: resources of the FPGA, which are the limits of the SoC; limits for every other block; limits of single
-    blocks, with `ratio`, the least ratio of the clock rate to the soft core's; the soft core's rate with the first seed of the placer,
-    and the version of nextpnr that reached it."""
+    """The contents of the file. `device`: resources of the FPGA, which are the limits of the SoC. `own`: limits of every other block.
+    `block`: limits of single blocks, and `ratio`, the minimum ratio of a block's clock rate to that of the soft core. `reference`:
+    clock rate of the soft core with the first seed of the placer, and the version of nextpnr that reached it."""
 
     device: dict
     own: dict
@@ -78,31 +78,32 @@ class Budget:
         return cls.parse(PATH.read_text())
 
     def limits(self, block):
-        """The limits of a block. A limit of this single block replaces the default limit, which is the device's for the SoC."""
+        """Returns the limits of a block. A limit of the single block replaces the default limit, which is that of the device
+        for the SoC and that of `own` for other blocks."""
         limits = (self.device if block == SOC else self.own) | self.block.get(block, {})
         return {resource: limits[resource] for resource in RESOURCES if resource in limits}
 
     def ratio(self, block):
-        """The least ratio of a block's clock rate to the soft core's, or None."""
+        """Returns the minimum ratio of a block's clock rate to that of the soft core, or None."""
         return self.block.get(block, {}).get("ratio")
 
     def routed(self):
-        """The blocks that have a least ratio."""
+        """Returns the blocks that have a minimum ratio."""
         return sorted(name for name in self.block if self.ratio(name) is not None)
 
     def excesses(self, sizes):
-        """Every resource of every block that is above its limit."""
+        """Returns every resource of every block that exceeds its limit."""
         return [{"block": size["name"], "resource": resource, "budget": limit, "measured": amounts(size)[resource]}
                 for size in sizes for resource, limit in self.limits(size["name"]).items() if amounts(size)[resource] > limit]
 
     def shortfalls(self, rates, reference):
-        """The blocks below their least ratios to `reference`, the soft core's rate in MHz."""
+        """Returns the blocks below their minimum ratios to `reference`, the soft core's rate in MHz."""
         return [{"block": rate["name"], "minimum": minimum, "measured": rate["mhz"] / reference}
                 for rate in rates if (minimum := self.ratio(rate["name"])) is not None and rate["mhz"] / reference < minimum]
 
     def stale_reference(self, rates):
-        """A line for a measured rate of the soft core that differs from the reference in the budget, and for each rate by another version
-        of nextpnr: only rates by one version can be compared."""
+        """Yields a line if the measured rate of the soft core differs from the reference in the budget, and a line for each rate by
+        another version of nextpnr, because only rates by the same version can be compared."""
         mhz, nextpnr = self.reference["mhz"], self.reference["nextpnr"]
         for rate in rates:
             if rate["name"] == REFERENCE and (rate["seeds"][0], rate["nextpnr"]) != (mhz, nextpnr):
@@ -113,8 +114,8 @@ class Budget:
                        f"--route {REFERENCE}` measures that again")
 
     def problems(self, sizes, rates):
-        """A line for each resource above its limit, and for each rate below its limit. If `rates` lacks the soft core, its rate is that
-        of the budget."""
+        """Returns a line for each resource above its limit, and for each rate below its limit. If `rates` does not include the soft
+        core, the budget's rate is used."""
         reference = next((rate["mhz"] for rate in rates if rate["name"] == REFERENCE), self.reference["mhz"])
         return [
             *(f"{excess['block']}: {RESOURCES[excess['resource']]}: budget {number(excess['budget'])}, measured "

@@ -1,5 +1,5 @@
-// Models of the FPGA's LUT memories, with which size.py finds the longest path. They have only the read: a lookup table with the
-// address as its input. The write is left out, so a path ends where it writes a memory.
+// Models of the FPGA's LUT memories, from which size.py computes the longest path. They model only the read, as a lookup table
+// with the address as its input. The write is not modelled, so a path ends where it writes a memory.
 
 module RAM32M #(
     parameter INIT_A = 0, INIT_B = 0, INIT_C = 0, INIT_D = 0, IS_WCLK_INVERTED = 0

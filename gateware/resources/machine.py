@@ -1,4 +1,4 @@
-"""The SoC as a block for place and route: plain pins in place of pads and clocks, and the memory's PHY cut off."""
+"""The SoC as a block for place and route, with plain pins instead of pads and clocks, and without the memory's PHY."""
 
 from pathlib import Path
 
@@ -19,15 +19,13 @@ TOP = "glint_machine"
 
 
 class _DfiPins(LiteXModule):
-    """The memory's interface as pins, with the phases and latencies of the Urbana's PHY."""
+    """The DFI interface to the memory's PHY as pins, with the phases and latencies of the Urbana's PHY."""
 
     def __init__(self, platform, clk_freq):
         self.module = module = MT41K64M16(clk_freq, "1:4")
         self.settings = settings = get_sdram_phy_settings(module.memtype, 16, clk_freq)
         geometry = module.geom_settings
         self.dfi = Interface(geometry.addressbits, geometry.bankbits, settings.nranks, settings.dfi_databits, settings.nphases)
-
-        # # #
 
         for number, phase in enumerate(self.dfi.phases):
             signals = [(name, getattr(phase, name)) for name, *_ in phase.layout]
@@ -41,7 +39,7 @@ class _DfiPins(LiteXModule):
 def write(name, folder):
     """Writes the Verilog of a machine to `folder`. Returns all its source files."""
     soc = PinSoC(0, MACHINES[name], fields=build("faces"))
-    # Any contents but constant ones, which Yosys would remove with the ROM.
+    # Arbitrary contents. If all words were equal, Yosys would remove the ROM.
     soc.rom.mem.init = [0x9E3779B9 * (word + 1) % 2**32 for word in range(soc.rom.mem.depth)]
     soc.add_memory(_DfiPins(soc.platform, soc.sys_clk_freq))
     soc.finalize()

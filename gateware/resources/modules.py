@@ -26,8 +26,8 @@ class Module:
         return {self.top: {}, **self.variants}
 
 
-# Video timing of a small picture: a frame takes about 1/200 of the time of a 1280x720 frame, but in the active part of a line a memory
-# word lasts for the same number of pixel clocks.
+# Video timing of a small picture. A frame takes about 1/200 of the time of a 1280x720 frame, but a memory word lasts for the same
+# number of pixel clocks.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
@@ -39,25 +39,23 @@ _NO_GEOMETRY = {"GEOMETRY": 0}
 # Parameters of the module that computes the colours of rays (ray_paint) in a build with every field.
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES)), "SHADOW": 1}
 
+_SIMULATED = ("skid_buffer", "flash_reader", "binner", "vertex_stage", "vertex_cache", "reciprocal", "texture_sampler", "texture_place",
+              "texture_filter", "texture_loader", "colour_window", "line_setup", "line_raster", "exit_reciprocal")
+_MEASURED = ("list_reader", "texture_shader", "field_sphere", *(f"field_{flat.name}" for flat in FLAT_FIELDS if flat.marches))
+
 MODULES = [
+    *(Module(top=name) for name in _SIMULATED),
+    *(Module(top=name, measured=(name,)) for name in _MEASURED),
     Module(
         top="scanout",
         variants={"scanout_small": _SMALL_RASTER, "scanout_border": _SMALL_RASTER | {"V_FRONT": 5, "V_BACK": 7, "V_BORDER": 3}},
     ),
-    Module(top="skid_buffer"),
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}, "fifo_block": {"BLOCK": 1}}),
     # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is 2^15 clocks, 0.4 ms.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
-    Module(top="flash_reader"),
     Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}}),
-    Module(top="binner"),
-    Module(top="vertex_stage"),
-    Module(top="vertex_cache"),
-    Module(top="reciprocal"),
     Module(top="setup", variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
-    Module(top="texture_sampler"),
-    Module(top="list_reader", measured=("list_reader",)),
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_texture": {"TEXTURE": 1}, "triangle_engine_fields": {"FIELDS": 1},
@@ -66,19 +64,10 @@ MODULES = [
                      "triangle_engine_no_geometry": _NO_GEOMETRY,
                      "triangle_engine_smooth_lines": _SMOOTH | _LINES},
            measured=("triangle_engine_fields",)),
-    Module(top="texture_place"),
-    Module(top="texture_shader", measured=("texture_shader",)),
     Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),
-    Module(top="colour_window"),
-    # A sensor's clock counts as stopped after 2^6 clocks.
+    # In the build gesture_engine_hasty, the sensor's clock counts as stopped after 2^6 clocks.
     Module(top="gesture_engine",
            variants={"gesture_engine_hasty": {"MOMENTS": 1, "TIMEOUT_BITS": 6}}, measured=("gesture_engine",)),
-    Module(top="texture_filter"),
-    Module(top="texture_loader"),
-    Module(top="line_setup"),
-    Module(top="line_raster"),
-    *(Module(top=f"field_{flat.name}", measured=(f"field_{flat.name}",)) for flat in FLAT_FIELDS if flat.marches),
-    Module(top="field_sphere", measured=("field_sphere",)),
     Module(top="ray_generator",
            variants={"ray_generator_all": {"MARCH": 1, "ROUND": 1, "LATTICE": 1, "OCTAHEDRON": 1}}),
     Module(top="ray_paint", variants={"ray_paint_shadow": {"SHADOW": 1}, "ray_paint_all": _ALL_PAINT}),
@@ -90,7 +79,6 @@ MODULES = [
                      "exit_lane_octahedron": {"OCTAHEDRON": 1}}),
     Module(top="exit_shadow", variants={"exit_shadow_sponge": {"BOXES": 0}}, measured=("exit_shadow", "exit_shadow_sponge")),
     Module(top="exit_landing", variants={"exit_landing_round": {"ROUND": 1}}),
-    Module(top="exit_reciprocal"),
     Module(top="sphere_unit", variants={"sphere_unit_one_eye": {"STEREO": 0}, "sphere_unit_cone": {"CONE": 1}}),
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},

@@ -1,4 +1,4 @@
-"""What the cells of a mapped netlist, as Yosys writes it in JSON, say about placement: names of nets, control sets, fan-outs,
+"""Evaluation of a mapped netlist in Yosys' JSON format with regard to placement: names of nets, control sets, fan-outs, and
 slices of a 7-series FPGA."""
 
 import json
@@ -47,23 +47,23 @@ class Netlist:
 
     @classmethod
     def read(cls, path):
-        """The top module of a file of Yosys."""
+        """Reads the top module from a JSON file of Yosys."""
         (top,) = (module for module in json.loads(path.read_text())["modules"].values() if "top" in module["attributes"])
         return cls(top)
 
     def name(self, bit):
-        """The name of a net in the source code, or None. Of the names of a net that crosses instances, the one in the file of the
-        cell that drives it; otherwise the one of the outermost instance."""
+        """Returns the name of a net in the source code, or None. A net that crosses instances has several names: the name in the
+        source file of the driving cell is preferred, then the name in the outermost instance."""
         files = _files(self._drivers[bit]) if bit in self._drivers else set()
         names = self._names.get(bit, ())
         return min((not files & declared, name.count("."), len(name), name) for name, declared in names)[-1] if names else None
 
     def name_in(self, bit, instance):
-        """The shortest name of a net that starts with `instance`, or None."""
+        """Returns the shortest name of a net that starts with `instance`, or None."""
         return min((name for name, _ in self._names.get(bit, ()) if name.startswith(instance)), key=len, default=None)
 
     def described(self, bit):
-        """The name of a net; for an unnamed net, a description by a register that it controls."""
+        """Returns the name of a net; for an unnamed net, a description by a register that the net controls."""
         if name := self.name(bit):
             return name
         for pin, cell in self._loads[bit]:
@@ -73,21 +73,22 @@ class Netlist:
         return "without a name"
 
     def control_sets(self):
-        """The number of flip-flops in each control set. The flip-flops of a slice share one set."""
+        """Returns the number of flip-flops in each control set. The flip-flops of a slice share one set."""
         return Counter(_control_set(cell) for cell in self.cells.values() if _FLIP_FLOP.fullmatch(cell["type"]))
 
     def fan_outs(self, count):
-        """Descriptions and numbers of loads of the nets with the most loads, except clocks."""
+        """Returns descriptions and load counts of the `count` nets with the most loads, except clocks."""
         numbers = {bit: len(loads) for bit, loads in self._loads.items()
                    if not any(_is_clock(pin, self.cells[cell]) for pin, cell in loads)}
         return [(self.described(bit), numbers[bit]) for bit in sorted(numbers, key=lambda bit: (-numbers[bit], bit))[:count]]
 
     def instances(self, is_flat_source=False):
-        """The kinds of cells of each instance, counted, by its path: a tuple of names.
+        """Returns the number of cells of each kind for each instance, by the path of the instance, a tuple of names.
 
         A cell with a name in the source code belongs to the instance around it; any other cell to the instance of the net that
-        it drives. Where that net has no name, as between LUTs, the cell belongs to the instance of most of its loads, so what
-        several instances share is counted at one. In a flat source, the words of the names of nets stand for instances.
+        it drives. If that net has no name, for example between LUTs, the cell belongs to the instance of most of its loads,
+        so a cell that several instances share is counted in one of them. In a flat source, the words of the names of nets
+        stand for instances.
         """
         def path(name):
             *instance, name = name.split(".")
@@ -115,7 +116,7 @@ class Netlist:
 
 
 def placement(netlist, luts, carries):
-    """Control sets, slices and fan-outs of a netlist with the given numbers of LUTs and CARRY4, as a dictionary."""
+    """Returns control sets, slices and fan-outs of a netlist with the given numbers of LUTs and CARRY4, as a dictionary."""
     sets = netlist.control_sets()
     by_sets = sum(ceil(flip_flops / SLICE_FLIP_FLOPS) for flip_flops in sets.values())
     return {"control_sets": len(sets), "small_set_ff": sum(number for number in sets.values() if number < SLICE_FLIP_FLOPS),
@@ -123,8 +124,8 @@ def placement(netlist, luts, carries):
 
 
 def _control_set(cell):
-    """All that flip-flops of a slice share: nets of clock, enable, and set or reset, how they act, and latch or flip-flop.
-    A pin at a constant has no net."""
+    """Returns the properties that all flip-flops of a slice share: the nets of clock, enable, and set or reset, their
+    polarities, synchronous or asynchronous reset, and latch or flip-flop. A pin at a constant has no net."""
     kind, (clock, enable, reset) = cell["type"], (_net(cell, *pins) for pins in (("C", "G"), ("CE", "GE"), _RESETS))
     inverted = tuple(sorted(key for key, value in cell["parameters"].items()
                             if re.fullmatch(r"IS_(?!D_)\w+_INVERTED", key) and int(value, 2)))
@@ -136,7 +137,7 @@ def _net(cell, *pins):
 
 
 def _bits(cell, direction, pin=None):
-    """The nets at the outputs or the inputs of a cell, or only at a given pin."""
+    """Returns the nets at the outputs or the inputs of a cell, or only at a given pin."""
     directions = cell.get("port_directions", {})
     return [bit for each in ([pin] if pin else cell["connections"]) if directions.get(each) == direction
             for bit in cell["connections"][each] if isinstance(bit, int)]
@@ -147,6 +148,6 @@ def _is_clock(pin, cell):
 
 
 def _files(thing):
-    """Names of the source files of a net or a cell, except Yosys' own files."""
+    """Returns the names of the source files of a net or a cell, except Yosys' own files."""
     sources = thing["attributes"].get("src", "").split("|")
     return {Path(source.rpartition(":")[0]).name for source in sources if source and "/share/" not in source}

@@ -1,6 +1,7 @@
-"""The slow paths of a routed netlist, grouped by their ends, from the delays that nextpnr writes as an SDF file.
+"""Slow paths of a routed netlist, grouped by their ends, computed from the delays in nextpnr's SDF file.
 
-nextpnr's own report has one path for each clock. Here the latest arrival at every register follows from the delays of cells and wires:
+nextpnr's report contains only one path for each clock. This module computes the latest arrival at every register from the delays of
+cells and wires:
 
     register ─▶ wire ─▶ cell ─▶ wire ─▶ ... ─▶ register's input, and its setup time
 """
@@ -17,7 +18,8 @@ _SETUP = re.compile(r"\(SETUPHOLD \(\w+ (\w+)\) \(\w+ (\w+)\) \((-?\d+):(-?\d+):
 
 @dataclass(frozen=True)
 class Group:
-    """The slow paths from registers of one place to registers of another: the number of endpoints, and the longest path in ns."""
+    """The slow paths from the registers of one place to the registers of another place: number of endpoints, and delay of the
+    longest path in ns."""
 
     start: str
     end: str
@@ -26,8 +28,9 @@ class Group:
 
 
 def groups(sdf, period, place):
-    """The groups of the paths that take longer than `period` ns, the longest first. `sdf` is the text of the file in lines; `place`
-    returns the place of a register from the name of its cell and of its pin. Each endpoint counts once, with its longest path."""
+    """Returns the groups of the paths that take longer than `period` ns, the longest path first. `sdf` yields the lines of the
+    file. `place` returns the place of a register, given the names of its cell and pin. Each endpoint counts once, with its longest
+    path."""
     counts, longest = Counter(), defaultdict(float)
     for (cell, pin), (arrival, start) in _endpoints(sdf).items():
         if arrival > period:
@@ -39,16 +42,16 @@ def groups(sdf, period, place):
 
 
 def _endpoints(sdf):
-    """For each input of a register, by cell and pin, the latest arrival in ns with the setup time, and the output where the path
-    starts."""
+    """Returns for each input of a register, by cell and pin, the latest arrival in ns including the setup time, and the output
+    at which the path starts."""
     loads, drivers, setups = _edges(sdf)
-    # A pin waits for all its drivers, so that its arrival is the latest.
+    # A pin is processed after all its drivers, so that its arrival time is the latest.
     waits = Counter({pin: len(sources) for pin, sources in drivers.items()})
     arrivals, ready = {}, deque(pin for pin in loads if not waits[pin])
     while ready:
         pin = ready.popleft()
         for load, delay, starts in loads.get(pin, ()):
-            # The delay of the clock itself is common to both ends. A constant never arrives.
+            # The delay of the clock network is not counted, because it is common to both ends. Constants have no arrival time.
             before = (0, load) if starts else arrivals.get(pin)
             if before and before[0] + delay >= arrivals.get(load, (-1, None))[0]:
                 arrivals[load] = before[0] + delay, before[1]
@@ -59,8 +62,8 @@ def _endpoints(sdf):
 
 
 def _edges(sdf):
-    """The delays in ps from each pin to those that follow it, with whether the path starts there; the pins before each pin; and the
-    setup times of the inputs of registers."""
+    """Returns three dictionaries: for each pin the following pins, with the delay in ps and whether paths start at this edge; for
+    each pin the preceding pins; and the setup times of the inputs of registers in ps."""
     loads, drivers, setups = defaultdict(list), defaultdict(list), {}
     through, clocks, cell = [], set(), ""
 
@@ -92,5 +95,5 @@ def _edges(sdf):
 
 
 def _name(text):
-    """The name of a cell without the escapes of the format."""
+    """Returns the name of a cell without the escape characters of the SDF format."""
     return text.replace("\\", "")

@@ -1,14 +1,14 @@
 """Clock rates of a module by place and route on an ECP5 FPGA, with open tools.
 
-The rate itself says little about a chip of another family: what counts is its ratio to the soft core's, by the same
-tools. A wrapper makes a flip-flop of every port of the module, so that the ports need no pads, and every path between
-a port and a register counts:
+The rate itself says little about a chip of another family. The useful figure is its ratio to the rate of the soft
+core, measured by the same tools. A wrapper connects every port of the module to a flip-flop, so that the ports need
+no pads, and paths between a port and a register count too:
 
        serial_in --> [input flip-flops: a shift register] --> module --> [output flip-flops] --> [XOR chain] --> serial_out
 
-An ECP5 multiplies 18 by 18 bits. A product of 25 by 18 bits, one DSP48E1 of the 7 series, takes two multipliers and a wide
-sum there, which would hide the paths that matter. So wide products get a register between multipliers and sum (`split_products`):
-the netlist then has another latency, but the paths of a pipeline made for the family.
+An ECP5 multiplies 18 by 18 bits. A product of 25 by 18 bits, one DSP48E1 of the 7 series, takes two multipliers and a wide sum
+there, whose delay would hide the relevant paths. Wide products therefore get a register between multipliers and sum
+(`split_products`): the netlist then has a different latency, but the paths of a pipeline designed for the ECP5.
 """
 
 import itertools
@@ -28,10 +28,10 @@ from .netlist import Netlist
 from .tools import BUILD, NEXTPNR, YOSYS, ToolError, run_nextpnr, run_yosys
 
 REFERENCE = "vexriscv"
-"""The soft core in the SoC's variant: all ratios are relative to this block's rate."""
+"""The soft core, in the variant of the SoC. All ratios are relative to the rate of this block."""
 
 SEEDS = (1, 2, 3)
-"""Seeds of the placer. The rate of a block is the median of their rates."""
+"""Seeds of the placer. The rate of a block is the median over the seeds."""
 
 _FOLDER = BUILD.parent / "route"
 _CODE = [Path(__file__).with_name(name) for name in ("route.py", "machine.py", "netlist.py", "tools.py")]
@@ -47,7 +47,7 @@ _KINDS = {"DP16KD": "block RAM", "TRELLIS_DPR16X4": "LUT memory", "MULT18X18D": 
 
 @dataclass(frozen=True)
 class Port:
-    """A port of a module in Yosys, where a packed struct is a vector."""
+    """A port of a module in Yosys, which converts packed structs to vectors."""
 
     name: str
     width: int
@@ -60,11 +60,11 @@ class Port:
 
 
 def measure(name, seeds=SEEDS):
-    """Returns the rates of a block or of `REFERENCE`, in MHz, for each seed and their median, and the median's worst path, as a
-    dictionary.
+    """Returns a dictionary with the clock rates of a block or of `REFERENCE` for each seed and their median, in MHz, and the
+    worst path of the median.
 
-    The files of all programs stay in `target/gateware/route/NAME`. The same inputs to the same programs give the same rates, so
-    they are measured again only after a change.
+    The output files of all programs remain in `target/gateware/route/NAME`. The result only depends on the inputs and the
+    versions of the programs, so a block is measured again only after a change of these.
     """
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
@@ -78,7 +78,7 @@ def measure(name, seeds=SEEDS):
 
 
 def _measure(top, sources, parameters, seeds, folder):
-    # Yosys first gives a parametrised module another name.
+    # Yosys renames a module with parameters, so it is renamed back.
     choose = f"{size.set_parameters(top, parameters)}hierarchy -check -top {top}; rename -top {top};"
     run_yosys(f"{choose} proc; select {top}; write_json -selected ports.json", sources, folder)
     ports = _ports(json.loads((folder / "ports.json").read_text()), top)
@@ -96,7 +96,7 @@ def _measure(top, sources, parameters, seeds, folder):
 
 
 def _block(name, folder):
-    """Top module, sources and parameters of a block. The Verilog of a machine is written to `folder`."""
+    """Returns top module, sources and parameters of a block. The Verilog of a machine is written to `folder`."""
     if name == REFERENCE:
         return "VexRiscv", [_VEXRISCV], {}
     if name in machine.MACHINES:
@@ -111,8 +111,8 @@ def _ports(netlist, top):
 
 
 def wrapper(top, ports):
-    """Verilog of the wrapper of a module. The first of the module's clocks, or `sys_clk`, drives the flip-flops of all ports. Paths
-    between two clocks are not measured, so ports that belong to another clock do not affect the rate."""
+    """Returns the Verilog of the wrapper of a module. The module's clock `sys_clk`, or otherwise its first clock, drives the
+    flip-flops of all ports. Paths between two clocks are not measured, so ports of another clock do not affect the rate."""
     clocks = sorted((port for port in ports if port.is_clock), key=lambda port: port.name != "sys_clk")
     inputs = [port for port in ports if port.is_input and not port.is_clock]
     outputs = [port for port in ports if not port.is_input]
@@ -174,7 +174,7 @@ def split_products(module, operand_bits=18):
 
 
 def _chunks(bits, signed, operand_bits):
-    """Parts of an operand, each with the position of its lowest bit. A part of a signed operand is signed."""
+    """Yields the parts of an operand, each with the position of its lowest bit. The parts of a signed operand are signed."""
     size = operand_bits - 1 if signed else operand_bits
     for at in range(0, len(bits), size):
         is_last = len(bits) - at <= operand_bits
@@ -185,14 +185,14 @@ def _chunks(bits, signed, operand_bits):
 
 
 def _cell(kind, signed, **connections):
-    """An arithmetic cell of Yosys."""
+    """Returns an arithmetic cell in Yosys' JSON format."""
     parameters = {f"{port}_WIDTH": len(bits) for port, bits in connections.items()}
     return {"type": kind, "parameters": parameters | {"A_SIGNED": signed, "B_SIGNED": signed}, "attributes": {},
             "port_directions": {"A": "input", "B": "input", "Y": "output"}, "connections": connections}
 
 
 def _number(cell, parameter):
-    """A parameter of a cell: Yosys writes numbers as binary digits."""
+    """Returns a parameter of a cell as a number: Yosys writes it in binary digits."""
     return int(cell["parameters"][parameter], 2)
 
 
@@ -209,12 +209,13 @@ def _route(folder, seed):
 
 
 def _delays(folder, seed):
-    """The file with the delays of a placement."""
+    """Returns the path of the SDF file with the delays for a seed."""
     return folder / f"delays-{seed}.sdf"
 
 
 def slow_paths(name, mhz):
-    """The groups of the paths of a measured block that are too slow for a clock of `mhz`, in its median placement (`paths.groups`)."""
+    """Returns the groups of the paths (`paths.groups`) of a measured block that are too slow for a clock of `mhz`, in the placement
+    with the median rate."""
     folder = _FOLDER / name
     netlist = Netlist.read(folder / "netlist.json")
     seed = json.loads((folder / "result.json").read_text())["seed"]
@@ -227,15 +228,17 @@ def slow_paths(name, mhz):
 
 
 def _place(name):
-    """The instance around a register. LiteX writes one flat module: there the register's name without its numbers stands for it."""
+    """Returns the instance that contains a register. LiteX writes one flat module: for its registers, the name without its numbers
+    replaces the instance."""
     name = re.sub(r"(\[\d+\])+| \(.*\)$", "", name)
     instance, dot, _ = name.rpartition(".")
     return instance if dot else re.sub(r"\d+", "*", name)
 
 
 def worst_path(segments, netlist):
-    """A path of nextpnr's report: its ends by the nets of their registers, the nets between them, its levels of logic, and its
-    delays in logic and wire in ns. A carry chain is one level; so is a LUT with the multiplexers that join it to others."""
+    """Returns a path of nextpnr's report: the registers at its ends, the nets between them, the number of logic levels, and
+    the delays in logic and in wires in ns. A carry chain is one level, and so is a LUT with the multiplexers that combine it
+    with other LUTs."""
     delays = Counter()
     for part in segments:
         delays["wire" if part["type"] == "routing" else "logic"] += part["delay"]
@@ -246,9 +249,9 @@ def worst_path(segments, netlist):
 
 
 def register(netlist, end):
-    """The name of a register at an end of a path. A flip-flop of the wrapper represents a port of the module."""
+    """Returns the name of a register at an end of a path. A flip-flop of the wrapper is named by the module's port."""
     name = end["cell"]
-    while name not in netlist.cells and "$" in name: # nextpnr adds a part to the names of cells that it splits
+    while name not in netlist.cells and "$" in name: # nextpnr appends a suffix to the names of cells that it splits
         name = name.rpartition("$")[0]
     cell = netlist.cells.get(name, {"type": "", "connections": {}})
     if cell["type"] != "TRELLIS_FF":

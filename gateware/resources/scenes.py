@@ -1,7 +1,8 @@
-"""The builds for the built-in scenes: what gateware and firmware take, and what their frames take.
+"""The builds for the built-in scenes: sizes of gateware and firmware, and cycles of their frames.
 
-`cargo xtask resources --scenes` makes the builds and describes them in a file: `full`, the length of the firmware with all parts;
-`ulx3s`, the cells of the build for all scenes on the ULX3S and those of its FPGA; and `builds`.
+`cargo xtask resources --scenes` makes the builds and describes them in a file: `full` is the length in bytes of the firmware with
+all parts, `ulx3s` has, by type, the cells of the build for all scenes on the ULX3S and the cells of its FPGA, and `builds` lists
+the builds.
 """
 
 from .budget import RESOURCES, amounts, number
@@ -10,13 +11,13 @@ ALL = "all"
 """Name of the build for all scenes."""
 
 _FIRMWARE_SHARE = 0.5
-"""The share of the firmware with all parts that the firmware for a single scene takes at most."""
+"""Limit of the length of the firmware for a single scene, as a share of the firmware with all parts."""
 
 _WORD, _PIXEL = 16, 2
-"""Bytes of a word of the engines' memory ports, and of a pixel of the frame buffer."""
+"""Sizes in bytes: a word of the engines' memory ports, and a pixel of the frame buffer."""
 
 _REFRESH = 60
-"""Pictures a second that scan-out reads."""
+"""Pictures per second that scan-out reads."""
 
 _LIMITED = {"lut": "lut", "ff": "ff", "dsp": "dsp48", "ramb36": "ramb36"}
 """Limits of a scene file that are resources."""
@@ -25,8 +26,8 @@ _CYCLES = ("cycles", "cycles_soft_core", "cycles_geometry", "cycles_raster", "cy
 
 
 def rows(data, sizes):
-    """The builds with their amounts of resources. To each frame it adds `rate`, the frames per second if one follows the other, and
-    `memory`, the traffic with main memory in MB/s: that of the engines at this rate, and that of scan-out."""
+    """Returns the builds with their amounts of resources. Each frame gets two more figures: `rate`, the frames per second without
+    pauses between frames, and `memory`, the memory traffic in MB/s of the engines at this rate and of scan-out."""
     found = []
     for build in data["builds"]:
         frame = build["frame"]
@@ -39,7 +40,7 @@ def rows(data, sizes):
 
 
 def contents(data, builds, budget):
-    """What the template of the page shows."""
+    """Returns the contents for the template of the page."""
     every = next((build["amounts"] for build in builds if build["name"] == ALL), None)
     fits_ulx3s = all(used <= available for used, available in data["ulx3s"].values())
     gateware = [["scene", "LUT", "of all", "FF", "DSP48", "RAMB36", "slices", "fits the XC7S50", "the ULX3S", "build"]]
@@ -48,7 +49,7 @@ def contents(data, builds, budget):
                "MB a second"]]
     for build in builds:
         name, amount, image = f"`{build['name']}`", build["amounts"], build["firmware"]
-        # Only the build for all scenes is measured on the ULX3S: a build that takes no more of any resource fits if that one does.
+        # Only the build for all scenes is measured on the ULX3S. If it fits, a build that needs no more of any resource fits too.
         is_smaller = fits_ulx3s and every and all(amount[resource] <= every[resource] for resource in _LIMITED.values())
         gateware.append([
             name, number(amount["lut"]), f"{100 * amount['lut'] / every['lut'] if every else 0:.0f} %",
@@ -65,15 +66,15 @@ def contents(data, builds, budget):
 
 
 def _fit(amount, device):
-    """Whether a build fits a device: "yes", or what it has too much of."""
+    """Returns whether a build fits a device: "yes", or the resources that exceed the device."""
     shares = {RESOURCES[resource]: 100 * amount[resource] / device[resource] for resource in RESOURCES if resource in device}
     beyond = ", ".join(f"{name} {share:.0f} %" for name, share in shares.items() if share > 100)
     return f"no: {beyond}" if beyond else "yes"
 
 
 def problems(builds, full):
-    """A line for each limit of a scene that its build is beyond: `fps` is a minimum, all others are maxima. A single scene's firmware
-    is limited to a share of the `full` bytes with all parts."""
+    """Returns a line for each limit of a scene that its build violates: `fps` is a minimum, all other limits are maxima. The firmware
+    of a single scene is limited to a share of the `full` bytes with all parts."""
     lines = []
     for build in builds:
         length = build["firmware"]["length"]

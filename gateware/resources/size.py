@@ -17,8 +17,8 @@ from .modules import MODULES
 from .tools import BUILD, YOSYS, ToolError, run_yosys
 
 SOC = "soc"
-"""Name of the whole SoC on the Urbana, as `cargo xtask gateware --board urbana` builds it: with the BIOS in its ROM. `soc-SCENE` is the
-build for a scene that `cargo xtask resources --scenes` makes beside it."""
+"""Name of the whole SoC on the Urbana, as built by `cargo xtask gateware --board urbana`, with the BIOS in its ROM. `soc-SCENE` is the
+build for a scene, made by `cargo xtask resources --scenes`."""
 
 _FOLDER = BUILD.parent / "size"
 _CODE = [Path(__file__).with_name(name) for name in ("size.py", "netlist.py", "tools.py", "lutram_reads.v")]
@@ -51,8 +51,8 @@ tee -q -o {folder}/path.txt ltp"""
 
 
 def measure(name):
-    """Returns the resources of a block, a variant of one, or the SoC, its longest path in cells, and what its flip-flops and
-    nets mean for placement (see `netlist.placement`), as a dictionary.
+    """Returns a dictionary with the resources of a block, of a variant of a block, or of the SoC, with its longest path in
+    cells, and with the figures of `netlist.placement`.
 
     The output of Yosys stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path. A SoC takes minutes, so it
     is measured again only after a change.

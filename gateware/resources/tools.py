@@ -15,8 +15,8 @@ BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
 
 
 def run_nextpnr(*arguments, cwd):
-    """Runs nextpnr. The first call of this WebAssembly program caches its compiled code, and two of these at once would write the same
-    file, so one process at a time asks for the version first."""
+    """Runs nextpnr. The first run of this WebAssembly program caches its compiled code, and two first runs at the same time would
+    write the same file. Therefore each call first runs `nextpnr -V` under a lock."""
     program = Path(sys.executable).parent / NEXTPNR
     BUILD.mkdir(parents=True, exist_ok=True)
     with open(BUILD / "nextpnr.lock", "w") as lock:
@@ -26,7 +26,7 @@ def run_nextpnr(*arguments, cwd):
 
 
 def run_yosys(script, sources, folder=BUILD, log=None):
-    """Reads SystemVerilog, if any, with Yosys and runs a script in `folder`."""
+    """Reads the SystemVerilog files `sources` with Yosys, and runs a script in `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     script = f"read_verilog -sv {' '.join(map(str, sources))}; {script}" if sources else script
     run([sys.executable, YOSYS_PROGRAM, *(["-l", log] if log else []), "-p", script], cwd=folder)

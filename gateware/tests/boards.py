@@ -6,7 +6,7 @@ from collections import Counter
 
 
 def check_pins(found, table, in_design):
-    """Checks that each port of a design has the pin and the properties of the table, and no other, and that no pin is used twice.
+    """Checks that each port of a design has exactly the pin and the properties in the table, and that no pin is used twice.
 
     `found` maps the ports of the constraints to their properties, with the pin as `LOC` and its I/O standard as `IOSTANDARD`.
     `table` is a CSV file with the columns signal, pin, iostandard, properties. `in_design` are the ports of the design.

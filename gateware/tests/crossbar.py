@@ -1,11 +1,11 @@
-"""A crossbar of the memory with its ports, for its tests and proofs."""
+"""A memory crossbar with its ports, for tests and proofs."""
 
 from litedram.common import LiteDRAMInterface
 from litedram.core.controller import ControllerSettings
 
 
 class _Settings:
-    """Makes settings of a small memory with the given members."""
+    """Settings of a small memory, an object with the given members."""
 
     def __init__(self, **members):
         self.__dict__.update(members)
@@ -13,7 +13,8 @@ class _Settings:
 
 def connect(crossbar, modes, latencies, depth, bits, column_bits, bank_bits):
     """Returns a crossbar of the class `crossbar` with a port for each mode, the interface to the bank machines, and the ports.
-    `latencies` are those of reads and writes, `depth` that of the queues. The memory has `bits` a word, and two rows."""
+    `latencies` are the read and the write latency in clocks, `depth` is the depth of the queues. The memory has words of
+    `bits` bits, and two rows."""
     settings = ControllerSettings(cmd_buffer_depth=depth)
     settings.phy = _Settings(nranks=1, dfi_databits=bits, nphases=1, read_latency=latencies[0], write_latency=latencies[1])
     settings.geom = _Settings(rowbits=1, colbits=column_bits, bankbits=bank_bits)

@@ -1,4 +1,5 @@
-"""The whole way to main memory as a module for a test bench: the CPU's stage and bridge, ports of engines and scan-out, controller, memory."""
+"""The complete path to main memory as a module for a test bench: the CPU's arbiter and bridge, the ports of engines and scan-out, the
+controller, and the memory."""
 
 from litedram.modules import MT41K64M16
 from litex.gen import LiteXModule
@@ -22,9 +23,9 @@ class _Memory(MT41K64M16):
 
 
 class _Machine(LiteXModule):
-    """Ports: `clk`, `rst`; the members of both buses of the CPU, whose addresses are those of words of 32 bits in main memory; commands and
-    data of the ports `read0`, `read1`, `write0`, `write1` and `scanout`, with words of 128 bits; and `refreshed`, high for one clock at
-    the end of a refresh."""
+    """Ports: `clk`, `rst`; the members of both buses of the CPU, with addresses of 32-bit words in main memory; commands and data of the
+    memory ports `read0`, `read1`, `write0`, `write1` and `scanout`, with 128-bit words; and `refreshed`, which is high for one clock at the
+    end of a refresh."""
 
     def __init__(self):
         self.cd_sys = ClockDomain()

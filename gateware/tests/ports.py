@@ -15,5 +15,5 @@ def add_ports(module, inputs, outputs):
 
 
 def members(buses, names):
-    """The ports of the given members of buses, each called BUS_MEMBER."""
+    """Returns the ports for the given members of buses, each named BUS_MEMBER."""
     return {f"{bus}_{name}": [getattr(interface, name)] for bus, interface in buses.items() for name in names.split()}

@@ -16,8 +16,8 @@ module size_sample (
     output logic [15:0] small_out
 );
     // A sum of 32 LUTs and 8 CARRY4; a LUT memory that stores 6 bits of it (a RAM32M of 4 LUTs); a sum of these 6 bits and 32
-    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops without an enable. The memory is between the two sums, so the longest path is a
-    // read of the memory, a LUT and 8 CARRY4.
+    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops without an enable. The memory is between the two sums, so the longest path
+    // consists of a read of the memory, a LUT and 8 CARRY4.
     (* ram_style = "distributed" *) logic [5:0] few [32];
     logic [31:0] a_held, b_held, first;
     logic [4:0] read_address_held;

@@ -1,4 +1,4 @@
-"""Checks of the files that are generated from the descriptions: whether they are up to date, and the parts of their generators."""
+"""Tests of the files that are generated from the descriptions, and of their generators."""
 
 import re
 from types import SimpleNamespace
@@ -68,7 +68,7 @@ def _control(**fields):
      [_control(state=[1], a_state=[1], b_state=[2], c_state=[2])], []),
 ])
 def test_refusals(expected, csrs, counters):
-    """Checks that the generator of the register access crate refuses what it cannot print."""
+    """Checks that the generator of the register access crate rejects unsupported descriptions."""
     with pytest.raises(ValueError, match=re.escape(expected)):
         assert pac.peripheral("lamp", SimpleNamespace(counters=counters), SimpleNamespace(origin=0, obj=csrs), None).enumerations
 
@@ -76,5 +76,5 @@ def test_refusals(expected, csrs, counters):
 @pytest.mark.parametrize(("names", "suffix"), [
     (["geometry_error", "raster_error"], "error"), (["size", "size"], "size"), (["frame_size", "size"], "size"), (["mistake", "stake"], "")])
 def test_suffixes(names, suffix):
-    """Checks the words in which all names end."""
+    """Checks the common last words of names."""
     assert pac.common_suffix(names) == suffix

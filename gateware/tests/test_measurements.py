@@ -13,7 +13,7 @@ from resources.tools import ToolError, run_yosys
 
 _SAMPLES = Path(__file__).parent
 
-# Expected numbers for `size_sample.sv`, which explains them.
+# Expected numbers for `size_sample.sv`, whose comments explain them.
 _SAMPLE = {"logic": 42, "srl": 1, "lutram": 4, "ff": 105, "dsp48": 1, "ramb36": 1, "ramb18": 1, "carry4": 16, "others": {},
            "path": 10, "control_sets": 1, "small_set_ff": 0, "slices": 16}
 
@@ -54,7 +54,7 @@ def test_placement(tmp_path):
 
 
 def test_instances():
-    """Cells of a netlist by instance: flip-flops, a memory, and LUTs between them."""
+    """Checks the number of cells by instance in a netlist of flip-flops, a memory, and LUTs between them."""
     def cell(kind, source, **pins):
         return {"type": kind, "attributes": {"src": source}, "connections": {pin: [bit] for pin, bit in pins.items()},
                 "port_directions": {pin: "output" if pin in "OQ" else "input" for pin in pins}}
@@ -77,8 +77,8 @@ def test_instances():
 @pytest.mark.parametrize("signed", [False, True])
 @pytest.mark.parametrize(("a", "b", "operand_bits"), [(7, 4, 4), (9, 6, 4), (25, 18, 18), (33, 20, 18)])
 def test_products(tmp_path, a, b, operand_bits, signed):
-    """Split products without their registers equal the products: proved for multipliers of 4 by 4 bits, tried at the ends of
-    all ranges and of all parts for those of 18 by 18 bits."""
+    """Checks that split products, without their registers, equal the products: by proof for multipliers of 4 by 4 bits, and
+    at the ends of all ranges and parts for multipliers of 18 by 18 bits."""
     _write_both_products(tmp_path, a, b, operand_bits, signed)
     miter = "read_json both.json; miter -equiv -flatten product split miter;"
     if operand_bits == 4:
@@ -115,7 +115,7 @@ def _samples(bits):
 
 
 def test_path():
-    """Names, levels and delays of a path: LUT, wide multiplexer, carry chain, from a port to a flip-flop."""
+    """Checks names, levels and delays of a path from a port to a flip-flop, through a LUT, a wide multiplexer and a carry chain."""
     def part(kind, cell, pins, delay, **more):
         (first, from_pin), (last, to_pin) = zip(cell.split(" "), pins.split(" "))
         return {"type": kind, "from": {"cell": first, "port": from_pin}, "to": {"cell": last, "port": to_pin}, "delay": delay,
@@ -171,7 +171,8 @@ _DELAYS = """
 
 
 def test_slow_paths():
-    """The latest path to an endpoint counts, from the output of its register on and with the setup time; constants never arrive."""
+    """Checks that the latest path to an endpoint counts, from the output of a register and including the setup time, and that
+    constants are ignored."""
     lines = _DELAYS.splitlines()
     assert paths.groups(lines, 3.7, "{}.{}".format) == [paths.Group("second.Q", "third$1.DI", 1, 6.0), paths.Group("second.Q", "second.DI", 1, 3.8)]
     assert paths.groups(lines, 3.8, lambda *_: "here") == [paths.Group("here", "here", 1, 6.0)]
@@ -182,5 +183,5 @@ def test_slow_paths():
     ("rom (block RAM)", "rom"),
 ])
 def test_places(name, place):
-    """The instance around a register, or the flat name of a register of LiteX."""
+    """Checks the instance of a register, and the place of a register in LiteX's flat module."""
     assert route._place(name) == place

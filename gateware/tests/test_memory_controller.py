@@ -1,4 +1,4 @@
-"""Tests of the parts of the memory controller: a bank beside LiteDRAM's, and the refresher's commands."""
+"""Tests of parts of the memory controller: compares the bank machine with LiteDRAM's, and checks the refresher's commands."""
 
 import math
 import random
@@ -28,7 +28,7 @@ def _settings():
 
 
 class _Machine:
-    """A bank and the log of its columns: what the memory is asked for. Checks the rows and the times of the commands."""
+    """A bank machine and the log of its accesses. Checks the rows and the timing of its commands."""
 
     def __init__(self, bank, settings):
         self.bank, self.columns, self.row, self.problems = bank, [], None, []
@@ -72,7 +72,8 @@ class _Machine:
 
 @pytest.mark.parametrize("busy", (0.1, 0.5, 0.9))
 def test_a_bank_asks_for_what_litedrams_asks(busy):
-    """Gives both banks the same requests, for few rows, and takes their commands at the same random times."""
+    """Sends the same requests, for a few rows, to both bank machines, accepts their commands at the same
+    random times, and compares their accesses."""
     rng, settings, top = random.Random(7), _settings(), Module()
     machines = [_Machine(bank(3, _ADDRESS_BITS, _ALIGNMENT, *ranks, settings), settings)
                 for bank, ranks in ((MemoryBank, ()), (BankMachine, (1,)))]
@@ -83,7 +84,7 @@ def test_a_bank_asks_for_what_litedrams_asks(busy):
         nonlocal pending
         refreshing = 0
         for cycle in range(_CYCLES + 300):
-            # As many requests at a time as the crossbar gives.
+            # At most as many pending requests as the crossbar allows.
             gives = cycle < _CYCLES and rng.random() < busy and pending < 5
             row, column, is_write = rng.choice((5, 5, 5, 9, 4000)), rng.randrange(128), rng.randrange(2)
             if gives:
@@ -110,8 +111,8 @@ def test_a_bank_asks_for_what_litedrams_asks(busy):
 
 
 def test_refreshes_and_calibrations():
-    """Checks the times between refreshes, and that one of them in each period of calibration has a calibration, however late the
-    banks are ready."""
+    """Checks the intervals between refreshes, and that there is one calibration per calibration period, although the banks are
+    ready at random times."""
     rng, settings = random.Random(3), _settings()
     settings.timing.tREFI = 200
     period = 1500

@@ -20,8 +20,8 @@ _CYCLES = 3000
 
 
 class _Memory:
-    """Model of the bank machines: a queue of commands for each bank; at most one command is done in a clock, with probability
-    `rate`. Data of writes come, and data of reads go, some clocks after that."""
+    """Model of the bank machines: a queue of commands for each bank. In each clock at most one command completes, with
+    probability `rate`. Its write or read data are transferred some clocks later."""
 
     def __init__(self, controller, rng, rate):
         self.controller, self.rng, self.rate = controller, rng, rate
@@ -63,8 +63,8 @@ class _Memory:
 
 
 def _clients(ports, rng, pause, counts):
-    """Sends commands to all ports, and compares data that were read with those that were written before, in the order in which the
-    crossbar took the commands."""
+    """Sends commands to all ports, and compares read data with the data written before, in the order in which the crossbar
+    accepted the commands."""
     written, expected, data = {}, [deque() for _ in ports], [deque() for _ in ports]
     for cycle in range(_CYCLES + 100):
         for number, port in enumerate(ports):

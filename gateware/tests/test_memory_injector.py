@@ -1,4 +1,4 @@
-"""Test of the CPU's commands to the memory against LiteDRAM's injector."""
+"""Test of the memory commands of the CPU: compares the injector with LiteDRAM's."""
 
 import random
 
@@ -14,12 +14,13 @@ _ADDRESS, _BANK, _DATA, _PHASES = 13, 3, 32, 4
 
 
 def _fields(*registers):
-    """The fields of registers of equal layout, side by side."""
+    """Pairs the fields of registers of equal layout."""
     return zip(*([getattr(register.fields, field.name) for field in register.fields.fields] for register in registers), strict=True)
 
 
 class _Both(Module):
-    """LiteDRAM's injector and this project's, and the inputs of both in pairs. Without a bank of registers nothing drives their fields."""
+    """LiteDRAM's injector and this project's, with their inputs in pairs. No register bank is connected, so the test drives the registers'
+    fields."""
 
     def __init__(self):
         self.submodules.expected = expected = DFIInjector(_ADDRESS, _BANK, 1, _DATA, _PHASES)
@@ -61,7 +62,7 @@ def test_commands_and_data():
             sel = yield both.sel
             injected += not sel
             pairs = [*both.commands]
-            # The crossbar sends the registers' words.
+            # While the registers inject commands, their words go through the crossbar.
             pairs.append((_words(both.expected, "master", "wrdata"), both.injector.words if not sel
                           else _words(both.injector, "master", "wrdata")))
             if sel:
@@ -79,7 +80,7 @@ def test_commands_and_data():
 
 
 def test_the_crossbar_sends_the_words():
-    """Checks that the crossbar sends the words of the registers while they inject, and a port's otherwise."""
+    """Checks that the crossbar sends the words of the registers while the registers inject commands, and the words of a port otherwise."""
     injector = MemoryInjector(_ADDRESS, _BANK, 8, 2)
     crossbar, controller, ports = connect(lambda interface: MemoryCrossbar(interface, injector), ("both", "read", "write", "write"),
                                           (4, 3), 8, 16, 4, 2)

@@ -1,4 +1,4 @@
-"""The modules of the RTL: lint, whether Yosys reads them, and the models for the tests in `tools/testbench`."""
+"""Tests of the RTL modules: lint, and whether Yosys reads them. Also builds the models for the tests in `tools/testbench`."""
 
 import shutil
 
@@ -16,7 +16,7 @@ _BUILDS = [pytest.param(module, name, parameters, id=name) for module in MODULES
 
 @pytest.fixture(scope="module", autouse=True)
 def _no_other_models():
-    """Deletes the models that no build makes any more: a test that still uses one fails here, not only in a fresh clone."""
+    """Deletes models that are no longer built, so that a test that still uses one fails here too, and not only in a fresh clone."""
     names = {name for module in MODULES for name in module.builds() if name not in module.measured} | {"runtime", memory_machine.NAME}
     for path in verilated_module.MODELS.glob("*"):
         if path.stem not in names:
@@ -35,7 +35,7 @@ def test_model(module, name, parameters):
 
 
 def test_model_of_the_memory():
-    """Builds the model of the way to main memory, in Verilog that LiteX wrote."""
+    """Builds the model of the path to main memory from LiteX's Verilog."""
     source = memory_machine.write(verilated_module.MODELS.parent / memory_machine.NAME)
     verilated_module.build(memory_machine.NAME, [source], memory_machine.NAME, {}, warnings=("-Wno-fatal", "-Wno-lint"))
 

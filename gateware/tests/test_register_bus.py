@@ -10,6 +10,7 @@ from migen import run_simulation
 
 from glint_soc.register_bus import RegisterBank, RegisterBridge
 from glint_soc.register_map import CSR_PAGING
+from memory_bench import access
 
 # Windows of the two banks. LiteX's bridge leaves the address 0, in the first window, between accesses.
 _WINDOWS = (0, 9)
@@ -40,20 +41,8 @@ def test_accesses():
     written = [[0] * _REGISTERS for _ in _WINDOWS]
     writes, problems = [0, 0], []
 
-    def access(bank, number, value=None):
-        bus = soc.bus
-        yield bus.adr.eq(_WINDOWS[bank] * CSR_PAGING // 4 + number)
-        yield bus.dat_w.eq(value or 0)
-        yield bus.we.eq(value is not None)
-        yield bus.sel.eq(0b1111)
-        yield bus.cyc.eq(1)
-        yield bus.stb.eq(1)
-        yield
-        while not (yield bus.ack):
-            yield
-        found = yield bus.dat_r
-        yield bus.cyc.eq(0)
-        yield bus.stb.eq(0)
+    def at(bank, number, value=None):
+        found, = yield from access(soc.bus, _WINDOWS[bank] * CSR_PAGING // 4 + number, data=value)
         for _ in range(rng.randrange(3)):
             yield
         return found
@@ -64,10 +53,10 @@ def test_accesses():
             if number < _REGISTERS and rng.randrange(2):
                 written[bank][number] = rng.getrandbits(32)
                 writes[bank] += number == 0
-                yield from access(bank, number, written[bank][number])
+                yield from at(bank, number, written[bank][number])
                 continue
             expected = written[bank][number] if number < _REGISTERS else writes[bank]
-            if (found := (yield from access(bank, number))) != expected:
+            if (found := (yield from at(bank, number))) != expected:
                 problems.append(f"register {number} of bank {bank}: expected {expected:#x}, got {found:#x}")
 
     run_simulation(soc, accesses())

@@ -9,8 +9,8 @@ from resources.budget import Budget, amounts, number, with_flat_build
 from resources.route import REFERENCE
 from resources.tools import ToolError
 
-# A budget with different limits for three names. The block of `_size` is within those of `setup`, and exceeds those of `band_buffer` and
-# `soc`.
+# A budget with different limits for three blocks. The block of `_size` is within the limits of `setup`, and exceeds those of
+# `band_buffer` and `soc`.
 _BUDGET = """
 device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75, slices = 8150 }
 own = { path = 9 }
@@ -31,7 +31,7 @@ def _budget(*changes):
 
 
 def _size(name):
-    """A block in which every count is different."""
+    """Returns a block in which every count is different."""
     return {"name": name, "yosys": "Yosys 0.70", "logic": 1200, "srl": 30, "lutram": 4, "ff": 2000, "dsp48": 7, "ramb36": 2, "ramb18": 1,
             "carry4": 50, "path": 9, "others": {"MUXF7": 3}, "control_sets": 21, "small_set_ff": 17, "slices": 400,
             "fan_outs": [["enable", 348], ["first[0]", 99]], "instances": []}
@@ -46,17 +46,17 @@ _RATES = [_rate(REFERENCE, 80.0), _rate("setup", 100.0)]
 
 
 def test_numbers():
-    """Thousands are grouped, and halves shown."""
+    """Checks that thousands are grouped, and that halves are shown."""
     assert [number(count) for count in (0.0, 60.5, 999, 1000, 32600, 1234567)] == ["0", "60.5", "999", "1,000", "32,600", "1,234,567"]
 
 
 def test_amounts():
-    """Shift registers, memories and half block RAMs count."""
+    """Checks that shift registers and LUT memories count as LUTs, and that RAMB18s count as halves."""
     assert list(amounts(_size("setup")).values()) == [1234, 2000, 7, 2.5, 50, 9, 21, 400]
 
 
 def test_selection():
-    """Each block is measured once, and the flat build by its parts."""
+    """Checks that each block is measured once, and that the flat build is replaced by its parts."""
     assert selection([], ALL) == list(ALL)
     assert len(ALL) == 1 + 14 + 11 + 3
     assert ALL[0] == SOC
@@ -65,7 +65,7 @@ def test_selection():
 
 
 def test_measured():
-    """All blocks are measured, in the order of the tables, until one fails."""
+    """Checks that all blocks are measured, that results are in the order of the tables, and that a failure is raised."""
     assert [one["name"] for one in measured("size", lambda name: {}, ["soc", "d", "setup", "scanout"])] == ["scanout", "setup", "soc", "d"]
 
     def fail(name):
@@ -76,7 +76,7 @@ def test_measured():
 
 
 def test_flat_build():
-    """The flat build is the sum of its parts, with the longest of their paths, if all are measured."""
+    """Checks that the flat build is the sum of its parts, with their longest path, and that it needs all parts."""
     sizes = [_size(part) for part in FLAT_PARTS]
     sizes[0]["path"] = 11
     sizes[1] |= {"logic": 1, "others": {"MUXF7": 3, "BUFG": 1}, "fan_outs": [["enable", 350], ["first[0]", 99]]}
@@ -92,8 +92,8 @@ def test_flat_build():
 @pytest.mark.parametrize(("name", "changes", "expected"), [
     ("setup", [], []),
     ("setup", [("1234", "1233")], ["setup: LUT: budget 1,233, measured 1,234"]),
-    # Every block but the SoC has the default limit of the path, unless it has its own. A half block RAM counts. The SoC has to fit the
-    # device, and its path has no limit.
+    # Every block except the SoC has the default limit of the path, unless it has its own limit. A RAMB18 counts as a half. The SoC has
+    # to fit the device, and its path has no limit.
     *((name, [("path = 9", "path = 7")], [f"{name}: path: budget 7, measured 9"]) for name in ("setup", "scanout", "binner")),
     ("band_buffer", [], ["band_buffer: path: budget 8, measured 9"]),
     ("soc", [], ["soc: RAMB36: budget 2, measured 2.5"]),
@@ -101,22 +101,22 @@ def test_flat_build():
      ["soc: FF: budget 1,999, measured 2,000", "soc: RAMB36: budget 2, measured 2.5"]),
 ])
 def test_excesses(name, changes, expected):
-    """An amount equal to its limit is accepted, an amount above it is reported."""
+    """Checks that an amount equal to its limit is accepted, and an amount above it is reported."""
     assert _budget(*changes).problems([_size(name)], []) == expected
 
 
 def test_shortfalls():
-    """Only named blocks have a least clock rate."""
+    """Checks that only the blocks named in the budget have a minimum clock rate."""
     assert _budget().routed() == ["setup"]
     rates = [*_RATES, _rate("scanout", 1.0)]
     assert _budget().shortfalls(rates, 80.0) == []
     assert _budget(("1.25", "1.26")).problems([], rates) == ["setup: ratio to vexriscv: at least 1.26, measured 1.25"]
-    # Without a rate of the soft core, that of the budget counts.
+    # If the soft core was not measured, the rate in the budget counts.
     assert _budget().problems([], rates[1:]) == ["setup: ratio to vexriscv: at least 1.25, measured 1.11"]
 
 
 def test_reference():
-    """The budget has the soft core's rate with the first seed, and the version of nextpnr that measured all rates."""
+    """Checks that a difference from the soft core's rate or from the nextpnr version in the budget is reported."""
     assert list(_budget().stale_reference(_RATES)) == []
     for change in ("90.0", "90.1"), ("'0.11'", "'0.12'"):
         line, *_ = _budget(change).stale_reference(_RATES)
@@ -131,13 +131,13 @@ def test_reference():
     ("path = 9", "ratio = 1", "ratio = 1 of own"), ("device", "devices", "'devices'"),
 ])
 def test_wrong_budgets(old, new, said):
-    """Unknown blocks and resources are refused."""
+    """Checks that unknown blocks and resources are rejected."""
     with pytest.raises(ToolError, match=said):
         _budget((old, new))
 
 
 def test_budget_file():
-    """The limits of the file: no block but the SoC may have a path of more than 12 cells, and the SoC has to fit the device."""
+    """Checks the committed budget: no block except the SoC may have a path of more than 12 cells, and the SoC has to fit the device."""
     budget = Budget.read()
     assert [name for name in ROWS if name != SOC and budget.limits(name)["path"] > 12] == []
     assert [name for name, limit in budget.device.items() if budget.limits(SOC)[name] > limit] == []
@@ -145,7 +145,7 @@ def test_budget_file():
 
 
 def test_text():
-    """The columns of the tables are aligned."""
+    """Checks the tables for a terminal."""
     lines = tables.text([_size("setup"), _size(SOC)], [], _budget()).splitlines()
     assert lines[:9] == [
         "block            LUT  logic  SRL  LUTRAM     FF  DSP48  RAMB36  CARRY4  path",
@@ -170,7 +170,7 @@ def test_text():
 
 
 def test_json():
-    """JSON has sums, excesses and ratios."""
+    """Checks sums, excesses and ratios in the JSON output."""
     data = tables.as_json([_size("setup"), _size(SOC)], [_RATES[0], _rate("setup", 60.0)], _budget())
     assert (data["blocks"][0]["lut"], data["blocks"][0]["ramb36"]) == (1234, 2.5)
     assert data["blocks"][1]["fan_outs"][0] == ["enable", 348]
@@ -180,7 +180,7 @@ def test_json():
 
 
 def test_page():
-    """The page is marked as generated, and has the sizes, rates and budgets."""
+    """Checks that the page is marked as generated, and contains sizes, rates and budgets."""
     text = page([_size("setup"), _size(SOC)], _RATES, _budget())
     assert text.startswith("<!-- Generated by `cargo xtask resources --write --route`.")
     lines = {
@@ -194,7 +194,7 @@ def test_page():
 
 
 def test_slow_paths():
-    """A machine has a table with the groups of its slow paths, and the number of all their endpoints."""
+    """Checks the table of the slow paths of a machine, and the number of their endpoints."""
     slow = [{"start": "cpu.cache", "end": f"bank*_{number}", "endpoints": 1000 + number, "longest": 21.37 - number} for number in range(20)]
     rates = [*_RATES, _rate("soc", 50.0) | {"slow": slow}]
     (name, count, table), = tables.slow_tables(rates)
@@ -204,7 +204,7 @@ def test_slow_paths():
 
 
 def test_tree():
-    """The figures of an instance include its parts, the largest instance comes first, and the depth is limited."""
+    """Checks that the figures of an instance include its parts, that the largest instance comes first, and that the depth is limited."""
     paths = {"": (1, 2, 0, 0), "small": (3, 0, 0, 0.5), "big.deep": (1000, 9, 4, 1), "big": (10, 1, 0, 0)}
     instances = [{"path": path.split(".") if path else [], **dict(zip(("lut", "ff", "dsp48", "ramb36"), cells))}
                  for path, cells in paths.items()]
@@ -222,7 +222,7 @@ def test_tree():
 
 
 def _builds(budget=None, **more):
-    """Builds for all scenes and for a lamp, with their amounts."""
+    """Returns builds for all scenes and for a scene `lamp`, with their amounts."""
     frame = {"cycles": 1_354_166, "cycles_soft_core": 66, "cycles_geometry": 4_100, "cycles_raster": 1_350_000, "cycles_stalled": 12,
              "clock": 81_249_960, "words_read": 0, "words_written": 0, "pixels": 460_833}
     build = {"options": ["--blocks", "scanout"], "is_single": True, "frame": frame, "budget": budget or {},
@@ -232,7 +232,7 @@ def _builds(budget=None, **more):
 
 
 def test_scenes():
-    """The tables have a row for each build."""
+    """Checks that the tables have a row for each build."""
     budget = _budget(("lut = 32600", "lut = 1234"), ("ramb36 = 75", "ramb36 = 2"))
     data, rows = _builds()
     text = tables.render("scene-builds.md", **scenes.contents(data, rows, budget))
@@ -247,7 +247,8 @@ def test_scenes():
 
 
 def test_budgets_of_scenes():
-    """A build beyond a limit is reported, and for a single scene a firmware of more than half of the bytes with all parts."""
+    """Checks that violated limits are reported, including a firmware for a single scene with more than half of the bytes of
+    the full firmware."""
     full = 108_642
     kept = {"cycles": 1_354_166, "fps": 60, "lut": 1_234}
     assert scenes.problems(_builds(kept)[1][1:], full) == []

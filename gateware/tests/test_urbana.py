@@ -78,8 +78,8 @@ def test_constraints(board):
     assert [word for word in words if word not in board.tcl] == []
 
 
-# The commands of Vivado that the script calls, as procedures that record their words in `calls`. Each reads its files from the script's
-# folder. `$version` is Vivado's version, `$timing` the text of the timing report.
+# The Vivado commands of the script, as procedures that record their arguments in `calls` and read their files from the script's folder.
+# `$version` is Vivado's version, `$timing` the text of the timing report.
 _VIVADO = """set calls {}
 proc version {option} {return $::version}
 proc report_timing_summary {args} {if {"-return_string" in $args} {return $::timing}}
@@ -111,7 +111,8 @@ _MET, _MISSED = "...\nAll user specified timing constraints are met.\n", "...\nT
 
 @pytest.mark.usefixtures("board")
 def test_script_in_another_folder(tmp_path, monkeypatch):
-    """Checks that a copy of the folder has all that the script reads, and that the script writes a bitstream if the timing is met."""
+    """Checks that a copy of the folder contains all files that the script reads, and that the script writes a bitstream if the timing
+    is met."""
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "moved"
     shutil.copytree(_GATEWARE, folder)
@@ -204,8 +205,8 @@ def _check_complete(folder):
 
 
 def test_fields_alone():
-    """Checks the build with the raymarcher and without triangles: it is complete, has the registers of the full build, the bit of
-    each block that was asked for, and four memory ports: of CPU and scan-out, and two for frames."""
+    """Checks the build with the raymarcher and without triangles: it is complete, has the registers of the full build, the enable
+    bits of the selected blocks, and four memory ports: one for the CPU, one for scan-out, and two for frames."""
     output, full = _OUTPUT.with_name("urbana_fields_alone"), VirtualSoC(build_id=0, blocks=OPTIONAL_BLOCKS)
     soc = UrbanaSoC(build_id=0, blocks=("scanout", "raymarch"))
     _elaborate(soc, output)

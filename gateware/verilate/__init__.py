@@ -4,5 +4,5 @@ Both kinds of libraries have the C interface of `tools/testbench/harness/interfa
 and their types.
 
     PYTHONPATH=gateware python -m verilate FOLDER [--waveforms]
-                                           builds the virtual board whose Verilog LiteX left in FOLDER
+                                           builds the virtual board from LiteX's Verilog in FOLDER
 """

@@ -1,7 +1,7 @@
 """Builds the SoC of the virtual board as a shared library, which the crate `virtual-board` loads.
 
-For speed the model is compiled twice: a first build counts how often the BIOS takes each branch, and the second build, compiled with
-these counts, needs a tenth less time for a cycle. A library for a few frames is compiled once.
+For speed the model is compiled twice: the first build counts how often the BIOS takes each branch; the second build, optimised with
+these counts, needs a tenth less time per cycle. A library for a few frames is compiled only once.
 """
 
 import shutil
@@ -59,7 +59,7 @@ def _compile_model(objects, options, harness_options, kind):
     sources = compiler.model_sources(objects, kind == WAVEFORMS)
     slow = [source for source in sources if "__Slow" in source.name]
     hot = [source for source in sources if source not in slow]
-    compiler.compile_all("compile what runs once", slow, objects, options)
+    compiler.compile_all("compile code that runs once", slow, objects, options)
     # With waveforms, the cost of tracing exceeds the gain of a profile; for a few frames, making the profile takes longer than it saves.
     if kind == PROFILED:
         harness = [_SOC / "soc.cpp", _SOC / "train.cpp"]
@@ -72,4 +72,4 @@ def _compile_model(objects, options, harness_options, kind):
         run([compiler.PROFILE_MERGER, "merge", counts, "-o", profile])
         compiler.object_of(harness[1], objects).unlink()
         options = [*options, f"-fprofile-use={profile}"]
-    compiler.compile_all("compile what runs in each cycle", hot, objects, options)
+    compiler.compile_all("compile code that runs in each cycle", hot, objects, options)

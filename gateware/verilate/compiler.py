@@ -16,8 +16,8 @@ RECIPE = [*(_HERE / f"{part}.py" for part in ("compiler", "description", "progra
 """Files that every library depends on, whatever its design."""
 
 COMPILER, PROFILE_MERGER = "clang++-19", "llvm-profdata-19"
-"""The C++ compiler and its companion for profiles: it takes half of g++'s time for the code of Verilator, which then runs as fast;
-with version 14 the verilated SoC runs an eighth slower."""
+"""The C++ compiler, and its program that merges profiles. It compiles Verilator's code in half of g++'s time, to an equally fast
+program. With clang 14 the verilated SoC is an eighth slower."""
 
 _RUNTIME = [VERILATOR_ROOT / "include" / f"{part}.cpp" for part in ("verilated", "verilated_threads")]
 _RUNTIME_OF_WAVEFORMS = VERILATOR_ROOT / "include" / "verilated_vcd_c.cpp"
@@ -69,7 +69,7 @@ def compile_all(name, sources, folder, options):
             done += 1
             print(f"{name}: {done} of {len(sources)}", flush=True)
 
-    # Compiles the largest file first, because it determines the total time.
+    # Compiles the largest file first, because it takes longest.
     queue = sorted(sources, key=lambda source: -source.stat().st_size)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(compile_one, queue))

@@ -26,7 +26,7 @@ def build(top, sources, name, parameters, warnings=("-Wall",)):
     folder.mkdir(parents=True)
     compiler.verilate(top, sources, parameters, folder, [*warnings, *_VERILATE])
     options = [*compiler.flags(folder), _OPTIMISE]
-    # All files are compiled as one file: compiling one of them alone takes as long as compiling all of them as one.
+    # All files are compiled as one file, because each of them alone would take as long as all together.
     parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
     whole = folder / "whole.cpp"
     whole.write_text("".join(f'#include "{path}"\n' for path in parts))

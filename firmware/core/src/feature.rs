@@ -21,7 +21,7 @@ impl Feature {
     }
 }
 
-/// Writes an error: this build lacks the part; states how to build a firmware with the part.
+/// Writes the error that this build lacks the part, and how to build a firmware with it.
 impl fmt::Display for Feature {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let name = self.name;
@@ -75,7 +75,7 @@ features! {
     STEREO = "stereo";
     /// Lights other than the default lights.
     LIGHT = "light";
-    /// Motion of the picture by the time: `animate`.
+    /// Motion of the picture over time: `animate`.
     ANIMATE = "animate";
     /// The motion sensor.
     IMU = "imu";

@@ -30,7 +30,7 @@ pub use union::Union;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(
     clippy::large_enum_variant,
-    reason = "there is nowhere to box the spheres"
+    reason = "there is no heap for the spheres"
 )]
 pub enum Field {
     /// A field of one kind.
@@ -73,7 +73,8 @@ impl Field {
         matches!(member, Primitive::Cone(_))
     }
 
-    /// Whether no gateware draws the field, but the soft core: a bent union, or a cone in a lattice.
+    /// Whether only the soft core draws the field, because no gateware does: a bent union, or a cone in a
+    /// lattice.
     pub fn is_left_to_soft_core(&self) -> bool {
         let has_lattice = match self {
             Self::Primitive(_) => false,
@@ -82,7 +83,7 @@ impl Field {
         self.is_bent() || self.has_cone() && has_lattice
     }
 
-    /// Whether the field is a union with spheres of a field that repeats.
+    /// Whether the field is a union of a periodic field and spheres.
     pub fn is_repeated_union(&self) -> bool {
         match self {
             Self::Primitive(_) => false,

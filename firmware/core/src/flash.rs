@@ -5,7 +5,6 @@
 
 #[cfg(feature = "alloc")]
 mod encode;
-mod error;
 mod lines;
 
 use core::ops::Range;
@@ -13,13 +12,14 @@ use core::str;
 
 use crate::console::LINE_MAX;
 use crate::constants;
+use crate::deviation::Expected::{AtLeast, AtMost, Content, Crc32, Exactly, Magic};
+use crate::deviation::{Deviation, Expected, Format};
 use crate::mesh::is_name;
 use crate::records::{FirmwareHeader, FlashEntry, FlashHeader, WORD};
 use crate::wire::crc32;
 
 #[cfg(feature = "alloc")]
 pub use encode::{EncodeError, Piece, encode};
-pub use error::{Expected, FlashError};
 pub use lines::{DataLines, data_lines};
 
 /// Offset of the firmware in bytes, after the slot of the bitstream.
@@ -57,7 +57,7 @@ impl Kind {
     /// All kinds.
     pub const ALL: [Self; 3] = [Self::Mesh, Self::Scene, Self::List];
 
-    /// Name for people.
+    /// Name for messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mesh => "mesh",
@@ -94,14 +94,9 @@ impl<'a> Item<'a> {
     ///
     /// # Errors
     /// The checksum of the bytes is wrong.
-    pub fn checked(&self) -> Result<&'a [u8], FlashError> {
+    pub fn checked(&self) -> Result<&'a [u8], Deviation> {
         let found = crc32(self.bytes);
-        expect(
-            CONTENTS + self.offset,
-            Expected::Crc32(self.crc32),
-            found,
-            found == self.crc32,
-        )?;
+        expect(CONTENTS + self.offset, Crc32(self.crc32), found)?;
         Ok(self.bytes)
     }
 
@@ -109,18 +104,19 @@ impl<'a> Item<'a> {
     ///
     /// # Errors
     /// The checksum is wrong, or the bytes are not ASCII text with lines of this length.
-    pub fn text(&self) -> Result<&'a str, FlashError> {
+    pub fn text(&self) -> Result<&'a str, Deviation> {
         let bytes = self.checked()?;
         let start = CONTENTS + self.offset;
         let is_text = |byte: &u8| matches!(byte, b'\n' | b' '..=b'~');
         if let Some(place) = bytes.iter().position(|byte| !is_text(byte)) {
-            return Err(error(start + place, Expected::Text, bytes[place].into()));
+            let text = Content("ASCII text: a visible character, a blank or a line end");
+            return Err(error(start + place, text, bytes[place].into()));
         }
         let mut place = start;
         for line in bytes.split(|byte| *byte == b'\n') {
             let length = line.len();
-            let limit = Expected::AtMost("bytes in a line", LINE_MAX as u32);
-            expect(place, limit, length as u32, length <= LINE_MAX)?;
+            let limit = AtMost("bytes in a line", LINE_MAX as u32);
+            expect(place, limit, length as u32)?;
             place += length + 1;
         }
         // The bytes are ASCII, so this conversion to UTF-8 does not fail.
@@ -142,51 +138,32 @@ impl<'a> Contents<'a> {
     ///
     /// # Errors
     /// The first deviation from the format.
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, FlashError> {
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, Deviation> {
         let found = clamped(bytes.len());
         let Some((header, _)) = bytes.split_first_chunk() else {
-            let expected = Expected::AtLeast("bytes of contents", FlashHeader::BYTES as u32);
+            let expected = AtLeast("bytes of contents", FlashHeader::BYTES as u32);
             return Err(error(CONTENTS, expected, found));
         };
         let header = FlashHeader::from_bytes(header);
         let FlashHeader { length, .. } = header;
         let place = |field: Range<usize>| CONTENTS + field.start;
-        expect(
-            place(FlashHeader::MAGIC),
-            Expected::Magic(MAGIC),
-            u32::from_le_bytes(header.magic),
-            header.magic == MAGIC,
-        )?;
-        let limit = Expected::AtMost("bytes of contents, as there are", found);
-        expect(place(FlashHeader::LENGTH), limit, length, length <= found)?;
-        let limit = Expected::AtMost("items", MAX_ITEMS);
-        expect(
-            place(FlashHeader::ITEMS),
-            limit,
-            header.items,
-            header.items <= MAX_ITEMS,
-        )?;
+        let magic = u32::from_le_bytes(header.magic);
+        expect(place(FlashHeader::MAGIC), Magic(MAGIC), magic)?;
+        let limit = AtMost("bytes of contents (to the end of the image)", found);
+        expect(place(FlashHeader::LENGTH), limit, length)?;
+        let limit = AtMost("items", MAX_ITEMS);
+        expect(place(FlashHeader::ITEMS), limit, header.items)?;
         // At most 64.
         let count = header.items as usize;
         let list = list_end(count);
-        let least = Expected::AtLeast("bytes of contents, for the list of items", list as u32);
-        expect(
-            place(FlashHeader::LENGTH),
-            least,
-            length,
-            length as usize >= list,
-        )?;
+        let least = AtLeast("bytes of contents (for the list of items)", list as u32);
+        expect(place(FlashHeader::LENGTH), least, length)?;
         let contents = Self {
             bytes: bytes.get(..length as usize).unwrap_or_default(),
             count,
         };
         let sum = list_checksum(contents.bytes, list);
-        expect(
-            place(FlashHeader::CHECKSUM),
-            Expected::Crc32(header.checksum),
-            sum,
-            sum == header.checksum,
-        )?;
+        expect(place(FlashHeader::CHECKSUM), Crc32(header.checksum), sum)?;
         contents.check_list()?;
         Ok(contents)
     }
@@ -231,35 +208,31 @@ impl<'a> Contents<'a> {
         list.as_chunks().0.iter().take(self.count)
     }
 
-    fn check_list(&self) -> Result<(), FlashError> {
+    fn check_list(&self) -> Result<(), Deviation> {
         let mut offset = list_end(self.count);
         for (number, entry) in self.entries().enumerate() {
             let place = |field: Range<usize>| CONTENTS + list_end(number) + field.start;
             let FlashEntry {
                 kind, length, name, ..
             } = FlashEntry::from_bytes(entry);
-            expect(
-                place(FlashEntry::KIND),
-                Expected::Kind,
-                kind,
-                kind_of(kind).is_some(),
-            )?;
-            let rest = self.bytes.len().saturating_sub(offset);
-            let limit = Expected::AtMost("bytes of an item, up to the end", clamped(rest));
-            let is_inside = length as usize <= rest;
-            expect(place(FlashEntry::LENGTH), limit, length, is_inside)?;
+            if kind_of(kind).is_none() {
+                let expected = Content("a kind of items: 1 (mesh), 2 (scene) or 3 (list)");
+                return Err(error(place(FlashEntry::KIND), expected, kind));
+            }
+            let rest = clamped(self.bytes.len().saturating_sub(offset));
+            let limit = AtMost("bytes of an item (to the end of the contents)", rest);
+            expect(place(FlashEntry::LENGTH), limit, length)?;
             let reserved = entry.get(FlashEntry::RESERVED).unwrap_or_default();
             let reserved = (reserved.first_chunk()).map_or(0, |word| u32::from_le_bytes(*word));
-            let zero = Expected::Exactly("(reserved)", 0);
-            expect(place(FlashEntry::RESERVED), zero, reserved, reserved == 0)?;
-            let [first, ..] = name;
-            let is_named = name_of(entry).is_some();
             expect(
-                place(FlashEntry::NAME),
-                Expected::Name,
-                first.into(),
-                is_named,
+                place(FlashEntry::RESERVED),
+                Exactly("(reserved)", 0),
+                reserved,
             )?;
+            if name_of(entry).is_none() {
+                let expected = Content("a name of 1 to 24 visible characters of ASCII, then zeros");
+                return Err(error(place(FlashEntry::NAME), expected, name[0].into()));
+            }
             offset = (offset + length as usize).next_multiple_of(WORD);
         }
         Ok(())
@@ -282,17 +255,11 @@ impl<'a> Image<'a> {
     ///
     /// # Errors
     /// The first deviation from the format.
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, FlashError> {
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, Deviation> {
         let found = clamped(bytes.len());
-        let limit = Expected::AtMost("bytes", MAX_BYTES as u32);
-        expect(0, limit, found, bytes.len() <= MAX_BYTES)?;
-        let least = Expected::AtLeast("bytes", (CONTENTS + FlashHeader::BYTES) as u32);
-        expect(
-            0,
-            least,
-            found,
-            bytes.len() >= CONTENTS + FlashHeader::BYTES,
-        )?;
+        expect(0, AtMost("bytes", MAX_BYTES as u32), found)?;
+        let least = AtLeast("bytes", (CONTENTS + FlashHeader::BYTES) as u32);
+        expect(0, least, found)?;
         let (slot, rest) = bytes.split_at_checked(FIRMWARE).unwrap_or_default();
         let firmware = firmware(rest)?;
         let contents = Contents::new_checked(bytes.get(CONTENTS..).unwrap_or_default())?;
@@ -311,7 +278,7 @@ impl<'a> Image<'a> {
 }
 
 /// The bitstream in its slot, without the erased bytes after it; `None` for an erased slot.
-fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, FlashError> {
+fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, Deviation> {
     let Some(last) = slot.iter().rposition(|byte| *byte != 0xff) else {
         return Ok(None);
     };
@@ -320,7 +287,10 @@ fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, FlashError> {
     let first = slot
         .first_chunk()
         .map_or(0, |bytes| u32::from_be_bytes(*bytes));
-    expect(0, Expected::Bitstream, first, is_bitstream)?;
+    if !is_bitstream {
+        let expected = Content("an erased slot, or a bitstream with its word 0xaa995566");
+        return Err(error(0, expected, first));
+    }
     Ok(slot.get(..=last))
 }
 
@@ -329,23 +299,16 @@ fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, FlashError> {
 ///
 /// # Errors
 /// The length is out of range, or the checksum is wrong.
-pub fn firmware(bytes: &[u8]) -> Result<&[u8], FlashError> {
+pub fn firmware(bytes: &[u8]) -> Result<&[u8], Deviation> {
     let (header, rest) = bytes.split_first_chunk().unwrap_or((&[0; _], &[]));
     let FirmwareHeader { length, checksum } = FirmwareHeader::from_bytes(header);
-    let least = Expected::AtLeast("bytes of firmware", MIN_FIRMWARE);
     let place = FIRMWARE + FirmwareHeader::LENGTH.start;
-    expect(place, least, length, length >= MIN_FIRMWARE)?;
+    expect(place, AtLeast("bytes of firmware", MIN_FIRMWARE), length)?;
     let most = clamped(rest.len()).min(MAX_FIRMWARE);
-    let limit = Expected::AtMost("bytes of firmware", most);
-    expect(place, limit, length, length <= most)?;
+    expect(place, AtMost("bytes of firmware", most), length)?;
     let firmware = rest.get(..length as usize).unwrap_or_default();
-    let found = crc32(firmware);
-    expect(
-        FIRMWARE + FirmwareHeader::CHECKSUM.start,
-        Expected::Crc32(checksum),
-        found,
-        found == checksum,
-    )?;
+    let place = FIRMWARE + FirmwareHeader::CHECKSUM.start;
+    expect(place, Crc32(checksum), crc32(firmware))?;
     Ok(firmware)
 }
 
@@ -384,16 +347,10 @@ fn clamped(length: usize) -> u32 {
     u32::try_from(length).unwrap_or(u32::MAX)
 }
 
-fn error(offset: usize, expected: Expected, found: u32) -> FlashError {
-    FlashError {
-        offset: clamped(offset),
-        expected,
-        found,
-    }
+fn error(offset: usize, expected: Expected, found: u32) -> Deviation {
+    Format::Flash.deviation(clamped(offset), expected, found)
 }
 
-fn expect(offset: usize, expected: Expected, found: u32, holds: bool) -> Result<(), FlashError> {
-    holds
-        .then_some(())
-        .ok_or_else(|| error(offset, expected, found))
+fn expect(offset: usize, expected: Expected, found: u32) -> Result<(), Deviation> {
+    Format::Flash.expect(clamped(offset), expected, found)
 }

@@ -20,6 +20,7 @@ mod text;
 
 pub mod allocator;
 pub mod console;
+pub mod deviation;
 pub mod feature;
 pub mod field;
 pub mod flash;

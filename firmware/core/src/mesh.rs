@@ -7,14 +7,15 @@ mod checksum;
 mod encode;
 mod turned;
 
-use core::fmt;
 use core::ops::Range;
 
 pub use crate::colour::Rgb565;
+use crate::deviation::Expected::{AtLeast, AtMost, Below, Exactly, Magic, MultipleOf};
+use crate::deviation::{Deviation, Expected, Format};
 use crate::feature::TEXTURE;
 pub use crate::records::{Attribute, ChunkHeader, MeshHeader, Triangle, Vertex};
 use crate::records::{TEXTURES, WORD};
-use crate::texture::{Texture, TextureError};
+use crate::texture::Texture;
 pub use checksum::{checksum, set_checksum, stated_checksum};
 #[cfg(feature = "alloc")]
 pub use encode::{EncodeError, IndexedTriangle, encode, encode_with};
@@ -29,6 +30,9 @@ pub const MAX_NAME: usize = 24;
 pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 /// The largest radius, in units of 2^−14: 2·√3, the distance of the farthest position from the origin, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
+
+/// The content of reserved fields.
+const RESERVED: Expected = Exactly("(reserved)", 0);
 
 /// Whether a text is a valid name of a mesh: 1 to [`MAX_NAME`] visible characters of ASCII.
 pub fn is_name(text: &str) -> bool {
@@ -57,66 +61,35 @@ impl<'a> Mesh<'a> {
     ///
     /// # Errors
     /// The first deviation from the format, with its position.
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
-        let found = bytes.len();
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, Deviation> {
         // A length of more than 32 bits is reported as the largest 32-bit number.
-        let wrong_length = |expected| MeshError {
-            offset: 0,
-            expected,
-            found: u32::try_from(found).unwrap_or(u32::MAX),
-        };
+        let found = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let Some((header, records)) = bytes.split_first_chunk() else {
-            return Err(wrong_length(Expected::AtLeast(
-                "bytes of header",
-                MeshHeader::BYTES as u32,
-            )));
+            let least = AtLeast("bytes of header", MeshHeader::BYTES as u32);
+            return Err(deviation(0, least, found));
         };
-        let length = match u32::try_from(found) {
-            Ok(length) if length <= MAX_BYTES => length,
-            _ => return Err(wrong_length(Expected::AtMost("bytes", MAX_BYTES))),
-        };
+        expect(0, AtMost("bytes", MAX_BYTES), found)?;
         let (records, []) = records.as_chunks() else {
-            return Err(wrong_length(Expected::MultipleOf("bytes", WORD as u32)));
+            return Err(deviation(0, MultipleOf("bytes", WORD as u32), found));
         };
         let header = MeshHeader::from_bytes(header);
-        expect(
-            start(MeshHeader::MAGIC),
-            Expected::Magic,
-            u32::from_le_bytes(header.magic),
-            header.magic == MAGIC,
-        )?;
-        expect(
-            start(MeshHeader::LENGTH),
-            Expected::Exactly("bytes in all", length),
-            header.length,
-            header.length == length,
-        )?;
-        expect(
-            start(MeshHeader::CHUNKS),
-            Expected::AtLeast("chunks", 1),
-            header.chunks,
-            header.chunks >= 1,
-        )?;
-        expect(
-            start(MeshHeader::RADIUS),
-            Expected::AtMost("radius in 2^-14", MAX_RADIUS),
-            header.radius,
-            header.radius <= MAX_RADIUS,
-        )?;
+        let magic = u32::from_le_bytes(header.magic);
+        expect(start(MeshHeader::MAGIC), Magic(MAGIC), magic)?;
+        let length = Exactly("bytes in all", found);
+        expect(start(MeshHeader::LENGTH), length, header.length)?;
+        let least = AtLeast("chunks", 1);
+        expect(start(MeshHeader::CHUNKS), least, header.chunks)?;
+        let most = AtMost("radius in 2^-14", MAX_RADIUS);
+        expect(start(MeshHeader::RADIUS), most, header.radius)?;
         let known = Attribute::ALL
             .iter()
             .fold(TEXTURES, |bits, one| bits | one.bit());
         let unknown = header.attributes & !known;
-        expect(
-            start(MeshHeader::ATTRIBUTES),
-            Expected::Exactly("(reserved)", 0),
-            unknown,
-            unknown == 0,
-        )?;
+        expect(start(MeshHeader::ATTRIBUTES), RESERVED, unknown)?;
 
         let mut walk = Walk::new(records);
         let (mut seen_vertices, mut seen_triangles) = (0, 0);
-        // The largest number of a texture, and its place.
+        // The largest texture number of all triangles, and its offset.
         let mut largest_texture = (0, 0);
         for _ in 0..header.chunks {
             let (offset, chunk) = walk.chunk()?;
@@ -133,16 +106,11 @@ impl<'a> Mesh<'a> {
         let has_textures = header.attributes & TEXTURES != 0;
         let [expected, found] = [words, rest.len()].map(|words| (words * WORD) as u32);
         let count = if has_textures {
-            Expected::AtLeast("bytes after the last chunk", expected + WORD as u32)
+            AtLeast("bytes after the last chunk", expected + WORD as u32)
         } else {
-            Expected::Exactly("bytes after the last chunk", expected)
+            Exactly("bytes after the last chunk", expected)
         };
-        let holds = if has_textures {
-            found > expected
-        } else {
-            found == expected
-        };
-        expect(walk.offset, count, found, holds)?;
+        expect(walk.offset, count, found)?;
         let textures_offset = walk.offset + expected;
         // A build that draws no textures does not read them.
         let texture_count = if TEXTURE.is_built {
@@ -153,22 +121,13 @@ impl<'a> Mesh<'a> {
         let (number, offset) = largest_texture;
         expect(
             offset,
-            Expected::AtMost("as the number of a texture", texture_count),
+            AtMost("(number of a texture)", texture_count),
             number,
-            number <= texture_count,
         )?;
-        expect(
-            start(MeshHeader::VERTICES),
-            Expected::Exactly("vertices, as the chunks have", seen_vertices),
-            header.vertices,
-            header.vertices == seen_vertices,
-        )?;
-        expect(
-            start(MeshHeader::TRIANGLES),
-            Expected::Exactly("triangles, as the chunks have", seen_triangles),
-            header.triangles,
-            header.triangles == seen_triangles,
-        )?;
+        let vertices = Exactly("vertices, the sum of the chunks", seen_vertices);
+        expect(start(MeshHeader::VERTICES), vertices, header.vertices)?;
+        let triangles = Exactly("triangles, the sum of the chunks", seen_triangles);
+        expect(start(MeshHeader::TRIANGLES), triangles, header.triangles)?;
         let (records, _) = records
             .split_at_checked(records.len() - rest.len())
             .unwrap_or_default();
@@ -188,13 +147,9 @@ impl<'a> Mesh<'a> {
     ///
     /// # Errors
     /// The mesh has more triangles.
-    pub fn with_at_most(self, limit: u32) -> Result<Self, MeshError> {
-        expect(
-            start(MeshHeader::TRIANGLES),
-            Expected::AtMost("triangles, which this board can draw", limit),
-            self.triangles,
-            self.triangles <= limit,
-        )?;
+    pub fn with_at_most(self, limit: u32) -> Result<Self, Deviation> {
+        let most = AtMost("triangles, which this board can draw", limit);
+        expect(start(MeshHeader::TRIANGLES), most, self.triangles)?;
         Ok(self)
     }
 
@@ -243,7 +198,7 @@ impl<'a> Mesh<'a> {
         !self.textures.is_empty()
     }
 
-    /// The textures in order: a triangle with the number n of a texture has the one with index n − 1.
+    /// The textures in order. The texture with number n, as in triangles, has index n − 1.
     pub fn textures(&self) -> impl Iterator<Item = Texture<'a>> + Clone + use<'a> {
         let mut rest = self.textures.as_flattened();
         core::iter::from_fn(move || {
@@ -298,7 +253,8 @@ impl<'a> Chunk<'a> {
         self.triangles.iter().map(Triangle::from_bytes)
     }
 
-    /// The largest number of a texture, and its offset in the mesh, for a chunk whose header is at byte `offset`.
+    /// The largest texture number of the chunk's triangles, and its offset in the mesh. The chunk's header
+    /// is at byte `offset`.
     fn largest_texture(&self, offset: u32) -> (u32, u32) {
         let first = offset as usize + WORD * (1 + self.vertices.len()) + Triangle::TEXTURE.start;
         let numbers = self.triangles().map(|triangle| u32::from(triangle.texture));
@@ -307,7 +263,7 @@ impl<'a> Chunk<'a> {
     }
 
     /// Checks the records of the chunk, whose header is at byte `offset` of a mesh with the given radius.
-    fn check(&self, offset: u32, radius: u32) -> Result<(), MeshError> {
+    fn check(&self, offset: u32, radius: u32) -> Result<(), Deviation> {
         let count = self.vertices.len() as u32;
         let mut offset = offset + WORD as u32;
         for record in self.vertices {
@@ -319,11 +275,8 @@ impl<'a> Chunk<'a> {
                 .sum();
             if squared > radius.pow(2) {
                 let radius_needed = squared.isqrt() + u32::from(squared.isqrt().pow(2) < squared);
-                return Err(MeshError {
-                    offset,
-                    expected: Expected::AtMost("(radius) from the origin", radius),
-                    found: radius_needed,
-                });
+                let most = AtMost("(radius) from the origin", radius);
+                return Err(deviation(offset, most, radius_needed));
             }
             expect_reserved(offset, record, Vertex::RESERVED)?;
             offset += WORD as u32;
@@ -331,13 +284,8 @@ impl<'a> Chunk<'a> {
         for record in self.triangles {
             let places = Triangle::INDICES.step_by(2);
             for (place, index) in places.zip(Triangle::from_bytes(record).indices) {
-                let index = u32::from(index);
-                expect(
-                    offset + place as u32,
-                    Expected::Below("vertices of the chunk, as an index", count),
-                    index,
-                    index < count,
-                )?;
+                let below = Below("vertices in the chunk", count);
+                expect(offset + place as u32, below, index.into())?;
             }
             expect_reserved(offset, record, Triangle::RESERVED)?;
             offset += WORD as u32;
@@ -347,14 +295,14 @@ impl<'a> Chunk<'a> {
 }
 
 /// Checks the textures of a mesh, which begin at byte `offset`. Returns their number.
-fn check_textures(textures: &[[u8; WORD]], mut offset: u32) -> Result<u32, MeshError> {
+fn check_textures(textures: &[[u8; WORD]], mut offset: u32) -> Result<u32, Deviation> {
     let mut rest = textures.as_flattened();
     let mut count = 0;
     while !rest.is_empty() {
-        let texture = Texture::new_checked(rest).map_err(|error| MeshError {
+        let texture = Texture::new_checked(rest).map_err(|error| Deviation {
+            format: Format::TextureAt(offset),
             offset: offset + error.offset,
-            expected: Expected::Texture(error),
-            found: error.found,
+            ..error
         })?;
         let length = texture.bytes().len();
         rest = rest.get(length..).unwrap_or_default();
@@ -382,50 +330,32 @@ impl<'a> Walk<'a> {
     }
 
     /// Returns the next chunk, and the offset of its header in the mesh.
-    fn chunk(&mut self) -> Result<(u32, Chunk<'a>), MeshError> {
+    fn chunk(&mut self) -> Result<(u32, Chunk<'a>), Deviation> {
         let offset = self.offset;
         let Some((header, rest)) = self.rest.split_first() else {
-            return Err(MeshError {
-                offset,
-                expected: Expected::AtLeast("bytes for a chunk's header", WORD as u32),
-                found: 0,
-            });
+            let least = AtLeast("bytes for a chunk's header", WORD as u32);
+            return Err(deviation(offset, least, 0));
         };
         let ChunkHeader {
             vertices,
             triangles,
         } = ChunkHeader::from_bytes(header);
-        expect(
-            offset,
-            Expected::AtLeast("vertices in a chunk", 1),
-            vertices,
-            vertices >= 1,
-        )?;
-        expect(
-            offset,
-            Expected::AtMost("vertices in a chunk", MAX_CHUNK_VERTICES),
-            vertices,
-            vertices <= MAX_CHUNK_VERTICES,
-        )?;
+        expect(offset, AtLeast("vertices in a chunk", 1), vertices)?;
+        let most = AtMost("vertices in a chunk", MAX_CHUNK_VERTICES);
+        expect(offset, most, vertices)?;
         expect_reserved(offset, header, ChunkHeader::RESERVED)?;
-        let left = rest.len() as u32;
-        let too_short = |at, what, needed, found| MeshError {
-            offset: at,
-            expected: Expected::AtLeast(what, needed),
-            found,
-        };
-        let (vertices, rest) = rest.split_at_checked(vertices as usize).ok_or(too_short(
+        let least = AtLeast("records for the chunk's vertices", vertices);
+        let (vertices, rest) = rest.split_at_checked(vertices as usize).ok_or(deviation(
             offset,
-            "records for the chunk's vertices",
-            vertices,
-            left,
+            least,
+            rest.len() as u32,
         ))?;
-        let left = rest.len() as u32;
-        let (triangles, rest) = rest.split_at_checked(triangles as usize).ok_or(too_short(
-            offset + start(ChunkHeader::TRIANGLES),
-            "records for the chunk's triangles",
-            triangles,
-            left,
+        let least = AtLeast("records for the chunk's triangles", triangles);
+        let place = offset + start(ChunkHeader::TRIANGLES);
+        let (triangles, rest) = rest.split_at_checked(triangles as usize).ok_or(deviation(
+            place,
+            least,
+            rest.len() as u32,
         ))?;
         self.offset += (WORD * (1 + vertices.len() + triangles.len())) as u32;
         self.rest = rest;
@@ -465,20 +395,16 @@ const fn start(field: Range<usize>) -> u32 {
     field.start as u32
 }
 
-fn expect(offset: u32, expected: Expected, found: u32, holds: bool) -> Result<(), MeshError> {
-    if holds {
-        Ok(())
-    } else {
-        Err(MeshError {
-            offset,
-            expected,
-            found,
-        })
-    }
+fn expect(offset: u32, expected: Expected, found: u32) -> Result<(), Deviation> {
+    Format::Mesh.expect(offset, expected, found)
+}
+
+fn deviation(offset: u32, expected: Expected, found: u32) -> Deviation {
+    Format::Mesh.deviation(offset, expected, found)
 }
 
 /// Checks the reserved field of a record at byte `offset` of the mesh.
-fn expect_reserved(offset: u32, record: &[u8; WORD], field: Range<usize>) -> Result<(), MeshError> {
+fn expect_reserved(offset: u32, record: &[u8; WORD], field: Range<usize>) -> Result<(), Deviation> {
     let offset = offset + field.start as u32;
     let words = record.get(field).unwrap_or_default().chunks(4);
     let little_endian = |bytes: &[u8]| {
@@ -487,78 +413,5 @@ fn expect_reserved(offset: u32, record: &[u8; WORD], field: Range<usize>) -> Res
     };
     let found = words.map(little_endian).find(|&word| word != 0);
     let found = found.unwrap_or(0);
-    expect(
-        offset,
-        Expected::Exactly("(reserved)", 0),
-        found,
-        found == 0,
-    )
+    expect(offset, RESERVED, found)
 }
-
-/// Reason why bytes are not a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MeshError {
-    /// Offset of the error in bytes from the start of the mesh.
-    pub offset: u32,
-    /// The number or value that was expected at this position.
-    pub expected: Expected,
-    /// The number found in the mesh.
-    pub found: u32,
-}
-
-/// The content that a mesh should have at the offset. A variant with a count also contains the name of the counted items.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Expected {
-    /// The four bytes of [`MAGIC`].
-    Magic,
-    /// Exactly this number of items.
-    Exactly(&'static str, u32),
-    /// At least this number of items.
-    AtLeast(&'static str, u32),
-    /// At most this number of items.
-    AtMost(&'static str, u32),
-    /// An index below this number of items.
-    Below(&'static str, u32),
-    /// A multiple of this number of items.
-    MultipleOf(&'static str, u32),
-    /// A texture, which has an error.
-    Texture(TextureError),
-}
-
-impl fmt::Display for MeshError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        if let Expected::Texture(error) = self.expected {
-            return write!(f, "mesh byte {}: {error}", self.offset);
-        }
-        write!(
-            f,
-            "mesh byte {}: expected {}, found ",
-            self.offset, self.expected
-        )?;
-        match self.expected {
-            Expected::Magic => write!(f, "\"{}\"", self.found.to_le_bytes().escape_ascii()),
-            Expected::Exactly(..)
-            | Expected::AtLeast(..)
-            | Expected::AtMost(..)
-            | Expected::Below(..)
-            | Expected::MultipleOf(..)
-            | Expected::Texture(_) => write!(f, "{}", self.found),
-        }
-    }
-}
-
-impl fmt::Display for Expected {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Magic => write!(f, "\"{}\"", MAGIC.escape_ascii()),
-            Self::Exactly(what, count) => write!(f, "{count} {what}"),
-            Self::AtLeast(what, count) => write!(f, "at least {count} {what}"),
-            Self::AtMost(what, count) => write!(f, "at most {count} {what}"),
-            Self::Below(what, count) => write!(f, "less than the {count} {what}"),
-            Self::MultipleOf(what, count) => write!(f, "a multiple of {count} {what}"),
-            Self::Texture(_) => f.write_str("a texture"),
-        }
-    }
-}
-
-impl core::error::Error for MeshError {}

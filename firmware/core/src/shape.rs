@@ -42,8 +42,8 @@ pub const MAX_BYTES: usize = MeshHeader::BYTES + WORD * (1 + 20 * AROUND as usiz
 
 /// Half of the edge length of [`Shape::Crate`].
 const HALF: Q2_14 = Q2_14::lit("0.42");
-/// The sides of [`Shape::Crate`]: the axes of the picture's directions to the right and up with their signs, and whether the picture is
-/// the one with the star. The side looks in the direction of their cross product.
+/// The sides of [`Shape::Crate`]: the axes, with their signs, that point to the right and up in the
+/// side's picture, and whether the picture has the star. The side faces the direction of right × up.
 const SIDES: [([(usize, i32); 2], bool); 6] = [
     ([(1, 1), (2, 1)], true),
     ([(1, -1), (2, 1)], true),
@@ -232,9 +232,9 @@ impl Writer<'_> {
         Some(())
     }
 
-    /// Writes the crate, in a build without textures a cube.
+    /// Writes the crate; in a build without textures, a cube.
     fn sides(&mut self) -> Option<()> {
-        // Corners from below on the left, counter-clockwise: to the right and up.
+        // The corners, counter-clockwise from the lower left: steps to the right and up.
         const CORNERS: [[i32; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
         let half = i32::from(HALF.to_bits());
         for ([(right, along), (up, upwards)], _) in SIDES {
@@ -274,7 +274,7 @@ impl Writer<'_> {
             .get_mut(after..)?
             .split_at_mut_checked(SIDES.len() * 2)?;
         let places = SIDES.iter().flat_map(|(_, has_star)| {
-            // Two sides are beside each other in the texture.
+            // The texture contains two sides, one next to the other.
             let left = i32::from(*has_star) << 15;
             CORNERS.map(|[x, y]| TextureCoordinates {
                 s: left + (x << 15),

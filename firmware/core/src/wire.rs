@@ -18,7 +18,7 @@
 //!   frames on a bad line. Up to 128 blocks are in flight.
 //! * An acknowledgement lists the received blocks and the last data frame. As a line keeps the order of frames, missing blocks of
 //!   earlier frames are lost and are sent again at once. Only the loss of the newest frame or of its acknowledgement requires a
-//!   time-out.
+//!   timeout.
 //! * Only the newest acknowledgement counts. If a damaged acknowledgement passes its CRC-16, the next acknowledgement corrects
 //!   the sender's state. If damaged data passes its CRC-16, the CRC-32 of the transfer is wrong, and the transfer starts again.
 //! * The receiver decides when the transfer is complete. The receiver repeats its verdict until it receives a `Close`, so both

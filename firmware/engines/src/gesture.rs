@@ -19,7 +19,7 @@ fn sensor(engine: &mut GestureEngine, clock: Clock) -> Sensor<'_> {
     ImageSensor::new(TwoWires::new(engine, Waiting(clock)))
 }
 
-/// Resets the image sensor, sets it up for a size, and starts the engine, which takes frames from the next VSYNC on. Takes some 50 ms, in
+/// Resets the image sensor, sets it up for a size, and starts the engine, which takes frames from the next VSYNC on. Takes about 50 ms, in
 /// which the CPU serves only interrupts.
 ///
 /// # Errors
@@ -30,7 +30,7 @@ pub fn start(
     mut clock: Clock,
 ) -> Result<Model, SetUpError> {
     engine.set_power(false);
-    // Longer than the minimum length of a reset of every supported chip.
+    // Longer than the minimum reset pulse of every supported chip.
     clock.delay_ms(1);
     engine.set_power(true);
     clock.delay_ms(RESET_TIME);
@@ -42,7 +42,7 @@ pub fn start(
     started
 }
 
-/// Whether the image sensor that [`start`] found still has its settings. Takes some 5 ms, or less than 1 ms without a sensor.
+/// Whether the image sensor that [`start`] found still has its settings. Takes about 5 ms, or less than 1 ms without a sensor.
 ///
 /// # Errors
 /// The chip does not answer.
@@ -55,7 +55,7 @@ pub fn keeps(
     block_on(sensor(engine, clock).keeps(model, size))
 }
 
-/// Finds an image sensor after the last one has stopped answering. Takes some 2 ms, or less than 1 ms without a sensor.
+/// Finds an image sensor after the last one has stopped answering. Takes about 2 ms, or less than 1 ms without a sensor.
 ///
 /// # Errors
 /// No known chip answers.

@@ -24,11 +24,11 @@ pub enum Missing {
     Lattice,
     /// Fillets between spheres and flat fields.
     Blend,
-    /// Distances that are too long, which no build has.
+    /// Bent unions, which no build draws.
     Bend,
     /// Cones.
     Cone,
-    /// Cones in lattices, which no build has.
+    /// Cones in lattices, which no build draws.
     ConeInLattice,
     /// Spheres coloured by their normals.
     Normals,
@@ -213,13 +213,13 @@ pub fn set_field(
     Ok(())
 }
 
-/// Half the sides of the solid of rays by exits.
+/// Half the sides of a solid whose rays are drawn by exits (docs/raymarch-exits.md).
 fn half(exits: &Exits) -> [u32; 3] {
     let solid = exits.solid.unwrap_or_default();
     solid.half().map(|half| half as u32)
 }
 
-/// The rule of the solid, and the prisms around the eyes.
+/// The register with the rule of the solid, and the prisms around the eyes.
 fn prisms(exits: &Exits) -> (driver::Exits, [Prism; 2]) {
     let solid = exits.solid.unwrap_or_default();
     let rule = match solid.rule {
@@ -282,8 +282,9 @@ fn with_spheres(
         .with_last_light(lights.count.saturating_sub(1) as u8)
 }
 
-/// The solid with the cones in which the eyes see the spheres. Also writes the cones: without spheres one that no pixel sees, because the
-/// gateware looks for spheres in every frame by exits and keeps the cones of the frame before.
+/// The solid with the numbers of the cones in which the eyes see the spheres. Also writes the cones.
+/// Without spheres, this is one cone without pixels: by exits, the gateware intersects rays with spheres in
+/// every frame, and it would use the cones of the previous frame.
 fn with_cones(raymarcher: &Raymarcher, exits: &Exits, solid: Solid, stereo: bool) -> Solid {
     if !raymarcher.capabilities().round {
         return solid;

@@ -51,7 +51,8 @@ fn what_is_not_built_is_refused_and_nothing_is_written() {
     }
 }
 
-/// The gateware looks for spheres in every frame by exits, and keeps the cones of the frame before.
+/// By exits, the gateware intersects rays with spheres in every frame, and it keeps the cones of the
+/// previous frame.
 #[test]
 fn a_frame_without_spheres_has_a_cone_that_no_pixel_sees() {
     // SAFETY: a model on the bus answers all accesses, so no device is affected.

@@ -43,7 +43,7 @@ pub struct I2c {
     /// Whether the gateware has the master.
     is_present: bool,
     clock: Clock,
-    /// The time-out [`WAIT`] in clock cycles.
+    /// The timeout [`WAIT`] in clock cycles.
     wait: u64,
     periodic: Option<Periodic>,
 }

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`timer`] | the uptime counter of `timer0` | [`DelayNs`](embedded_hal::delay::DelayNs) |
 //! | [`frequency`] | the clock frequency that `identity` states | |
-//! | [`uart`] | `uart`, by interrupts and queues | [`Read`](embedded_io::Read), [`Write`](embedded_io::Write), both with time-outs |
+//! | [`uart`] | `uart`, by interrupts and queues | [`Read`](embedded_io::Read), [`Write`](embedded_io::Write), both with timeouts |
 //! | [`i2c`] | `i2c`, by queued commands | [`I2c`](embedded_hal::i2c::I2c), blocking, and [`I2c`](embedded_hal_async::i2c::I2c), async |
 //! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
 //! | [`digits`] | `digits`, two displays of four digits | |

@@ -47,7 +47,7 @@ pub type Prism = [[Start; 4]; 2];
 pub struct Start {
     /// Distance of the plane, u12.12.
     pub distance: u32,
-    /// Whether there is such a plane.
+    /// Whether the plane exists.
     pub there: bool,
     /// Whether a ray along the axis leads away from the solid.
     pub away: bool,
@@ -60,7 +60,7 @@ pub struct Start {
 /// The constants that depend on how rays find the solid.
 #[derive(Clone, Copy)]
 pub enum Form<'a> {
-    /// Rays leave empty prisms.
+    /// Rays step to the exits of empty prisms.
     Exits {
         /// Coordinates of planes of the solid.
         borders: [i32; 3],
@@ -95,7 +95,7 @@ pub struct Field<'a> {
     pub exits: Exits,
     /// The prisms around the left and the right eye.
     pub prisms: [Prism; 2],
-    /// How rays find the solid.
+    /// Method by which rays find the solid.
     pub form: Form<'a>,
     /// Position of the left and of the right eye.
     pub origins: [[i32; 3]; 2],

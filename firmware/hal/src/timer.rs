@@ -74,7 +74,7 @@ impl Clock {
         self.frequency.milliseconds(self.cycles())
     }
 
-    /// Returns the point in time at the duration `span` from now.
+    /// Returns the point in time that is `span` from now.
     #[must_use]
     pub fn after(self, span: Duration) -> Deadline {
         self.after_cycles(self.frequency.cycles(span))
@@ -291,11 +291,11 @@ pub(crate) mod tests {
             &mut clock, 100
         ));
         let mut context = Context::from_waker(Waker::noop());
-        let mut looks = 1;
+        let mut polls = 1;
         while delay.as_mut().poll(&mut context).is_pending() {
-            looks += 1;
+            polls += 1;
         }
         // The delay takes 8125 cycles, and each reading of the clock advances the model by 1000.
-        assert_eq!((looks, asked.get()), (9, 8_126));
+        assert_eq!((polls, asked.get()), (9, 8_126));
     }
 }

@@ -111,7 +111,7 @@ pub struct Geometry<'a> {
     pub lights: [[u16; 3]; 2],
     /// Colour that replaces the colours of the mesh, RGB565.
     pub colour: Option<u16>,
-    /// The textures of the mesh, if they are drawn. None are drawn under smooth shading, or by gateware without textures.
+    /// The textures of the mesh, if they are drawn. Smooth shading, and gateware without textures, draw none.
     pub textures: Option<Textures<'a>>,
     /// Output of the pass, initially empty; `None` appends to the output of the previous pass, which must have an equal picture
     /// size and equal light colours.
@@ -123,7 +123,7 @@ pub struct Geometry<'a> {
 pub struct Textures<'a> {
     /// The texture coordinates of the mesh's vertices, aligned to 16 bytes.
     pub coordinates: &'a [u8],
-    /// Number of textures in the frame's table before those of this mesh.
+    /// Number of textures in the frame's table before the textures of this mesh.
     pub before: u8,
 }
 
@@ -161,11 +161,11 @@ pub struct Raster {
     pub clear: u16,
     /// The capacity of a band list is 4 << `list_shift` entries; the next geometry pass must have an equal [`Lists::list_shift`].
     pub list_shift: u8,
-    /// What the pass draws.
+    /// Input of the pass.
     pub input: Input,
 }
 
-/// What a raster pass draws.
+/// Input of a raster pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Input {
     /// The sets of descriptors and band lists, drawn in this order in each band.

@@ -196,7 +196,7 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
     }
 }
 
-/// No byte could be received or sent within the time-out.
+/// No byte could be received or sent within the timeout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedOut;
 

@@ -31,7 +31,7 @@ impl DepthScale {
         Self::from_nearest(near.max(origin - Self::reach(radius)))
     }
 
-    /// Returns the largest difference in depth between a mesh with the given `radius` and its origin, 37 fraction bits.
+    /// Returns the largest difference in depth between a point of a mesh with the given `radius` and the mesh's origin, 37 fraction bits.
     pub(crate) fn reach(radius: u32) -> i64 {
         let radius = i64::from(radius);
         (radius << 23) + (radius << 10)
@@ -47,7 +47,7 @@ impl DepthScale {
     /// Returns the scale of an orthographic frame for depths from `nearest` to `farthest`, with 37 fraction bits: the smallest power of
     /// two, at least 2^(`least` − 19) world units per code, with which every depth has a code. `nearest` has the code 2^18 − 4.
     pub(crate) fn linear(nearest: i64, farthest: i64, least: i32) -> Self {
-        // A code is 2^(18 + ke) units of a depth. Depths differ by less than 2^46, so the loop ends at an exponent of at most 10.
+        // One code is 2^(18 + ke) units of a depth. Depths differ by less than 2^46, so the loop ends at an exponent of at most 10.
         let mut exponent = least;
         while LINEAR_CODES << (18 + exponent) < farthest - nearest && exponent < 10 {
             exponent += 1;
@@ -59,7 +59,7 @@ impl DepthScale {
         }
     }
 
-    /// Returns this scale times `scale`, a number above 0, times 2^`shift`, with the mantissa truncated to 17 bits.
+    /// Returns this scale multiplied by `scale`, which is above 0, and by 2^`shift`, with the mantissa truncated to 17 bits.
     pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
         // Multiplies the mantissa (17 bits) by `scale` truncated to 40 bits, of which 24 are fraction bits.
         let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
@@ -76,7 +76,7 @@ impl DepthScale {
         }
     }
 
-    /// Converts a depth code to the depth along the camera's forward axis n, to nearest; `None` for code 0, an empty pixel.
+    /// Converts a depth code to the depth along the camera's forward axis n, rounded to nearest; `None` for code 0, an empty pixel.
     pub fn distance(&self, code: u32) -> Option<Q32_32> {
         if let (Some(origin), 1..) = (self.origin, code) {
             let below = (1 << 18) - i64::from(code);

@@ -1,7 +1,7 @@
 //! Edges of meshes as lines, each moved in front of its adjacent faces by a depth bias computed from their slopes (docs/formats/line.md,
 //! "Lines").
 //!
-//! [`EdgeList`] lists each edge of a mesh once, in memory of the caller, and makes the segments of a frame.
+//! [`EdgeList`] lists each edge of a mesh once, in the caller's memory, and makes the segments of a frame.
 
 mod list;
 mod table;
@@ -26,9 +26,9 @@ type Biases = [u16; 2];
 /// Counts of the edges of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EdgeStats {
-    /// Edges of the mesh.
+    /// Number of edges of the mesh.
     pub edges: u32,
-    /// Edges drawn as lines, because a part is in the view volume of the frame.
+    /// Number of edges drawn as lines, because a part of them is in the view volume of the frame.
     pub drawn: u32,
 }
 
@@ -105,7 +105,7 @@ fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {
         // Depths are in 2^-6 codes, distances in 2^-8 pixels, and the area in 2^-16 square pixels.
         let twice = 4 * determinant(w, along).unsigned_abs();
         let double = 2 * area.unsigned_abs();
-        // Rounded up. The soft core divides 64-bit numbers by a library function, which `div_ceil` would call twice.
+        // Rounded up. The soft core divides 64-bit numbers with a library function, which `div_ceil` would call twice.
         let quotient = twice / double;
         let half_slope = quotient + u64::from(quotient * double < twice);
         half_slope.min(u64::from(range.div_ceil(64))) + 2
@@ -114,7 +114,7 @@ fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {
     biases.map(|bias| u16::try_from(bias).unwrap_or(u16::MAX))
 }
 
-/// Twice the area of a triangle on the screen, in 2^-16 square pixels, positive for a clockwise one.
+/// Twice the area of a triangle on the screen, in 2^-16 square pixels, positive if its vertices are clockwise.
 fn doubled_area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
     determinant([b.x - a.x, c.x - a.x], [b.y - a.y, c.y - a.y])
 }

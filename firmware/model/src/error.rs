@@ -67,18 +67,18 @@ pub enum RenderError {
     Eye([Q32_32; 3]),
     /// The near plane of a frame with a mesh is too near for the half width, the width of the picture and the size of an object.
     Near {
-        /// Distance of the near plane.
+        /// Distance of the near plane in world units.
         near: U4_28,
-        /// Its smallest distance.
+        /// Smallest allowed distance in world units.
         least: U4_28,
     },
-    /// The far plane is at the near plane or nearer.
+    /// The far plane is not beyond the near plane.
     Far(U8_28),
     /// The view of an orthographic camera is too narrow for the picture's width in pixels and the size of an object.
     Width {
         /// Width in world units.
         width: U8_28,
-        /// Its smallest value.
+        /// Smallest allowed width in world units.
         least: U8_28,
     },
     /// The camera in a frame with a field, or with two eyes, is orthographic.
@@ -117,22 +117,18 @@ impl fmt::Display for RenderError {
                     "{name} buffer of {found} pixels: expected {expected}, the picture's width times its height"
                 )
             }
-            Self::Scratch { expected, found } => {
-                write!(
-                    f,
-                    "scratch for {found} vertices: expected at least {expected}, as the largest chunk has"
-                )
-            }
+            Self::Scratch { expected, found } => write!(
+                f,
+                "scratch for {found} vertices: expected at least {expected}, the number in the largest chunk"
+            ),
             Self::Edges { triangles } => write!(
                 f,
-                "edges of {triangles} triangles: expected a mesh of fewer triangles, as the memory for edges allows"
+                "edges of {triangles} triangles: expected fewer triangles, to fit the memory for edges"
             ),
-            Self::Eye([x, y, z]) => {
-                write!(
-                    f,
-                    "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
-                )
-            }
+            Self::Eye([x, y, z]) => write!(
+                f,
+                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
+            ),
             Self::Near { near, least } => write!(
                 f,
                 "near {near}: expected at least {least} for a mesh of this size in a picture of this width and field of view"

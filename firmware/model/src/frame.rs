@@ -22,9 +22,9 @@ pub use constants::{FieldConstants, FrameConstants};
 pub use description::{FieldSubject, Frame, MeshSubject, Object, Subject};
 
 /// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
-const TRIANGLES_A_CALL: u32 = 32;
+const TRIANGLES_PER_CALL: u32 = 32;
 /// Number of pixels of a field that are drawn between two calls of `progress` in [`Frame::draw`].
-const PIXELS_A_CALL: u32 = 16;
+const PIXELS_PER_CALL: u32 = 16;
 
 /// Counts of the work of drawing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -113,7 +113,7 @@ impl Frame<'_> {
         if constants.mesh().is_some() {
             let mut part = |number| self.part(constants, number);
             let mut show = |triangle: &DrawnTriangle| {
-                if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
+                if triangle.index.is_multiple_of(TRIANGLES_PER_CALL) {
                     progress();
                 }
             };
@@ -124,7 +124,7 @@ impl Frame<'_> {
         }
         if let Some(FieldConstants { setup, palette }) = constants.field() {
             let mut show = |x, _, _: &RayEnd| {
-                if x % PIXELS_A_CALL == 0 {
+                if x % PIXELS_PER_CALL == 0 {
                     progress();
                 }
             };

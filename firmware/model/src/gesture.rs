@@ -46,7 +46,6 @@ impl Channel {
 ///
 /// Full-range luma and chroma of ITU-R BT.601, with factors of 10 fraction bits, rounded to nearest, ties down. All channels fit in 8
 /// bits, because the factors of luma add up to 1 and the factors of chroma to 0, and a chroma's positive factor is 1/2.
-#[must_use]
 pub const fn channels(colour: Rgb565) -> [u8; 6] {
     let [r, g, b] = colour.to_rgb888();
     let [red, green, blue] = [r as i32, g as i32, b as i32];
@@ -65,7 +64,7 @@ pub struct Settings {
     pub windows: [(Channel, Window); 2],
     /// The region in which pixels are counted.
     pub region: Region,
-    /// Minimum length of a run of marked pixels in the region that is counted, at most 15; 0 acts as 1.
+    /// Length from which a run of marked pixels in the region is counted, at most 15; 0 acts as 1.
     pub least_run: u8,
 }
 
@@ -74,7 +73,6 @@ impl Settings {
     pub const MAX_SIZE: [u16; 2] = [1280, 720];
 
     /// Whether a pixel is marked.
-    #[must_use]
     pub const fn marks(&self, colour: Rgb565) -> bool {
         let channels = channels(colour);
         let [(a, window_a), (b, window_b)] = self.windows;
@@ -87,16 +85,16 @@ impl Settings {
 pub struct Sums {
     /// Number of pixels, at most 921,600: u20.
     pub count: u32,
-    /// Sums of their columns, at most 589,363,200, u30, and of their lines, at most 331,315,200, u29.
+    /// Sum of the pixels' columns, at most 589,363,200 (u30), and of their lines, at most 331,315,200 (u29).
     pub sums: [u32; 2],
-    /// Bounding box of these pixels. Without a pixel, `first` is 2047 and `last` 0.
+    /// Bounding box of the counted pixels. Without such pixels, `first` is 2047 and `last` 0.
     pub bounds: Region,
-    /// Sums of x·x, x·y and y·y, below 2^39: u40.
+    /// Sums of x·x, x·y and y·y of the pixels, each below 2^39: u40.
     pub products: [u64; 3],
 }
 
 impl Sums {
-    /// The sums for a frame without pixels.
+    /// The sums of a frame without counted pixels.
     pub const NONE: Self = Self {
         count: 0,
         sums: [0; 2],
@@ -107,14 +105,14 @@ impl Sums {
         products: [0; 3],
     };
 
-    /// Adds the marked pixels of line `y` that are in the region and in a run of at least `settings.least_run` there. `marks` are the
-    /// marks of the line's pixels from the left.
+    /// Adds the counted pixels of line `y`: the runs of at least `settings.least_run` marked pixels in the region. `marks` tells for each
+    /// pixel of the line, from the left, whether it is marked.
     pub fn add_line(&mut self, settings: &Settings, y: u16, marks: impl Iterator<Item = bool>) {
         let [left, top] = settings.region.first;
         let [right, bottom] = settings.region.last;
         let is_row_inside = (top..=bottom).contains(&y);
         let mut run = 0;
-        // A pixel past the end of the line ends its last run.
+        // An unmarked pixel after the end of the line ends the last run.
         for (x, is_marked) in (0_u16..).zip(marks.chain([false])) {
             if is_marked && is_row_inside && (left..=right).contains(&x) {
                 run += 1;

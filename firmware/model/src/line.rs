@@ -3,7 +3,7 @@
 //! A line has one pixel in each column if its end points are at least as far apart horizontally as vertically, otherwise one in each row.
 //! The axis along which it is longer is its *major* axis, the other axis its *minor* axis. The diamond-exit rule selects its pixels: a
 //! pixel is drawn if the path from the first to the second end point leaves the pixel's diamond,
-//! |x| + |y| < 1/2 about its centre. [`Line::new`] is the set-up, [`Line::pixels`] iterates over the pixels in a rectangle, and [`draw`]
+//! |x| + |y| < 1/2 about its centre. [`Line::new`] is the setup, [`Line::pixels`] iterates over the pixels in a rectangle, and [`draw`]
 //! writes them. The engine cuts lines into [`Piece`]s.
 
 mod piece;
@@ -48,7 +48,7 @@ pub struct Segment {
 }
 
 /// Writes an end of a segment, with the depth `w`, to its words in memory.
-// Called for each end, because the firmware, optimised for size, would not unroll a loop over the ends.
+// A function and not a loop over the ends, because the compiler would not unroll the loop in the firmware, which is optimised for size.
 const fn put_end(words: &mut [u32], place: &ScreenVertex, w: u32, side: u16) {
     // Each field starts a word; the remaining bits of the word have no effect.
     words[segment_end::X.word()] = place.x as u32;
@@ -64,7 +64,6 @@ impl Segment {
     const END: usize = segment_end::BITS / 32;
 
     /// The segment in memory (docs/formats/line.md, "Segments in memory").
-    #[must_use]
     pub const fn words(&self) -> [u32; Self::WORDS] {
         let (w, bias) = match self.depth {
             LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
@@ -78,9 +77,8 @@ impl Segment {
         words
     }
 
-    /// The segment with these [`words`](Self::words) in memory, of which bits beyond the fields have no effect. A segment without a depth
-    /// test is read as one with a depth test that draws the same pixels.
-    #[must_use]
+    /// The segment with these [`words`](Self::words) in memory. Bits outside of the fields have no effect. A segment without a depth test
+    /// is read as a segment with a depth test that draws the same pixels.
     pub fn from_words(words: [u32; Self::WORDS]) -> Self {
         let [first, second] = [0, segment_end::BITS].map(|start| {
             let end = ScreenVertex {
@@ -97,8 +95,7 @@ impl Segment {
         }
     }
 
-    /// The header of a chunk of one vertex and `segments` segments, followed by the vertex; together as long as a segment.
-    #[must_use]
+    /// The header of a chunk with one vertex and `segments` segments, and the vertex. Together they are as long as a segment.
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
     }
@@ -126,7 +123,7 @@ pub struct LinePixel {
 }
 
 impl LinePixel {
-    /// The depth code, to nearest, saturated to 1…2^18 − 1.
+    /// The depth code, rounded to nearest and saturated to 1…2^18 − 1.
     pub fn code(&self, depth: LineDepth) -> u32 {
         let code = match depth {
             LineDepth::Over => NEAREST,
@@ -138,7 +135,7 @@ impl LinePixel {
     }
 }
 
-/// A segment after the set-up.
+/// A segment after the setup.
 ///
 /// On an axis along which the segment runs backward, coordinates are mirrored: column or row i becomes −1 − i. The walk from the first to
 /// the second end point therefore always increases them.
@@ -183,7 +180,7 @@ impl Coordinate {
         }
     }
 
-    /// Distance to the centre, less 1 on one side of the centre.
+    /// Distance to the centre in 1/256 pixel, less 1 on one side of the centre.
     const fn distance(self) -> i32 {
         if self.place >= 128 {
             self.place - 128
@@ -194,7 +191,7 @@ impl Coordinate {
 }
 
 impl Line {
-    /// The set-up (docs/formats/line.md, "Lines") of a segment from the first to the second end point; `None` for a segment that
+    /// The setup (docs/formats/line.md, "Lines") of a segment from the first to the second end point; `None` for a segment that
     /// leaves no diamond, or with an end point outside of the format s12.8.
     pub fn new([a, b]: &[ScreenVertex; 2]) -> Option<Self> {
         if [a.x, a.y, b.x, b.y].iter().any(|x| !REACH.contains(x)) {
@@ -394,10 +391,10 @@ pub fn draw(
 }
 
 impl FrameBuffer<'_> {
-    /// Draws a pixel of a line, which is in the picture. Returns whether it passed the depth test.
+    /// Draws a pixel of a line; the pixel must be in the picture. Returns whether it passed the depth test.
     #[inline]
     fn draw_pixel(&mut self, pixel: &LinePixel, depth: LineDepth, colour: Rgb565) -> bool {
-        // Both coordinates are at least 0, and both buffers have the pixel.
+        // Both coordinates are at least 0, and the pixel is in both buffers.
         let at = pixel.row as usize * self.width as usize + pixel.column as usize;
         let code = pixel.code(depth);
         if let (Some(stored), Some(place)) = (self.depth.get_mut(at), self.colour.get_mut(at))

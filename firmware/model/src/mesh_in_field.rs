@@ -12,7 +12,7 @@ use crate::triangle::MeshSetup;
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth codes for both.
 /// `options` must have one eye.
 ///
-/// [`trace_frame`](crate::trace_frame) draws the mesh first, [`render_field`](crate::raymarch::render_field) the field over it.
+/// [`trace_frame`](crate::trace_frame) draws the mesh first, then [`render_field`](crate::raymarch::render_field) draws the field over it.
 ///
 /// # Errors
 /// The errors of [`MeshSetup::new`] and [`FieldSetup::new`].
@@ -32,8 +32,8 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// Returns the smaller of two scales of depth codes, with its mantissa truncated so that its product with `scale` has 17 bits at most, if
-/// that takes no more than 10 low bits. With the smaller scale, the depth codes of neither mesh nor field overflow.
+/// Returns the smaller of two scales of depth codes. Its mantissa is truncated so that its product with `scale` has at most 17 bits, if
+/// clearing 10 low bits suffices for that. With the smaller scale, the depth codes of neither mesh nor field overflow.
 fn shared(a: DepthScale, b: DepthScale, scale: Q32_32) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a
@@ -47,8 +47,8 @@ fn shared(a: DepthScale, b: DepthScale, scale: Q32_32) -> DepthScale {
     }
 }
 
-/// Number of low bits to clear in a mantissa of 17 bits: the length of the scale's odd factor. It is 7 for 40.5 = 81/2, and 10 for 45.5625 =
-/// 729/16. The product with a longer factor is truncated in any case.
+/// Number of low bits to clear in a mantissa of 17 bits: the number of bits of the scale's odd factor. It is 7 for 40.5 = 81/2, and 10 for
+/// 45.5625 = 729/16. The product with a longer factor is truncated in any case.
 fn cleared_bits(scale: Q32_32) -> u32 {
     let scale = scale.to_bits().unsigned_abs();
     let odd = scale.checked_shr(scale.trailing_zeros()).unwrap_or(0);

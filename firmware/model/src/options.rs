@@ -17,24 +17,26 @@ pub struct MeshOptions {
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
-    /// Whether triangles have their textures.
+    /// Whether the textures of the mesh are drawn.
     pub textures: bool,
 }
 
-/// The options of [`MeshSubject::new`].
 impl Default for MeshOptions {
     fn default() -> Self {
-        Self {
-            cull: true,
-            shading: Shading::Flat,
-            clip: Clip::Guard,
-            winding: Winding::Mesh,
-            textures: true,
-        }
+        Self::DEFAULT
     }
 }
 
 impl MeshOptions {
+    /// Flat shading, culled back faces, clipping to the guard band, the mesh's own winding, and textures.
+    pub const DEFAULT: Self = Self {
+        cull: true,
+        shading: Shading::Flat,
+        clip: Clip::Guard,
+        winding: Winding::Mesh,
+        textures: true,
+    };
+
     /// A mesh with these options.
     pub const fn subject<'a>(&self, mesh: Mesh<'a>) -> MeshSubject<'a> {
         MeshSubject {

@@ -1,8 +1,8 @@
 //! The raymarcher: frames of a distance field (docs/formats/raymarch.md, "Distance fields").
 //!
-//! A ray is parametrised by depth: its direction D is not scaled. [`exits`] finds the ends of the rays in all fields but smooth and bent
-//! unions, whose rays march by distances: [`Marching::march`]. For both, [`FieldSetup`] has the constants of a frame, [`Tracer::trace`]
-//! finds the end of a pixel's ray, and [`paint()`] computes the colour for this end.
+//! A ray is parametrised by depth: its direction D is not scaled. In most fields, rays go *by exits*: each step takes a ray to the exit of
+//! a whole empty prism ([`exits`]). In smooth and bent unions, rays *march*: each step is a distance ([`Marching::march`]). For both kinds,
+//! [`FieldSetup`] has the constants of a frame, [`Tracer::trace`] finds the end of a pixel's ray, and [`paint()`] computes its colour.
 
 mod blend;
 mod directions;

@@ -1,6 +1,6 @@
-//! Pictures of the self-test, and the checksums of their colours: the CRC-32 of the colours' bytes, row by row, the low byte first.
+//! Pictures of the self-test, and the checksums of their colours: the CRC-32 of the colours, row by row, the low byte of each colour first.
 //!
-//! The firmware draws each picture by the gateware, and compares its checksum with the model's checksum. A test of this crate
+//! The firmware draws each picture with the gateware, and compares its checksum with the model's checksum. A test of this crate
 //! computes and stores the checksums.
 
 mod checksums;
@@ -54,8 +54,7 @@ impl TestPicture {
         Self::Stereo,
     ];
 
-    /// Name for messages: the gateware block, and the feature of it that the picture needs.
-    #[must_use]
+    /// Name for messages: the gateware block, and the feature of the block that the picture needs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Triangle => "triangle flat",
@@ -69,7 +68,6 @@ impl TestPicture {
     }
 
     /// Whether this build of the firmware includes the code that draws the picture.
-    #[must_use]
     pub const fn is_built(self) -> bool {
         match self {
             Self::Triangle | Self::Smooth => MESH.is_built,
@@ -81,7 +79,6 @@ impl TestPicture {
     }
 
     /// The stored checksum of the colours.
-    #[must_use]
     pub const fn stored(self) -> u32 {
         checksums::STORED[self as usize]
     }

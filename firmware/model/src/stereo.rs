@@ -13,10 +13,10 @@ use glint_core::stereo::Tint;
 use crate::error::RenderError;
 use crate::frame::{Frame, FrameStats, Subject};
 
-/// Number of words, of two pixels, in a line of the soft core's data cache.
+/// Number of words in a line of the soft core's data cache. A word holds two pixels.
 const LINE: usize = 8;
 /// Number of cache lines that are composed between two calls of `progress` in [`Eyes::compose`].
-const LINES_A_CALL: usize = 128;
+const LINES_PER_CALL: usize = 128;
 
 /// The frames of two eyes, whose pictures are composed into one.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +73,7 @@ impl<'a> Frame<'a> {
 }
 
 impl Eyes<'_> {
-    /// Replaces the picture of the left eye by the picture of both eyes, in the colours of the glasses. A word is two pixels, the left
+    /// Replaces the picture of the left eye by the picture of both eyes, in the colours of the glasses. A word holds two pixels, the left
     /// pixel in its lower half. Calls `progress` at short intervals.
     pub fn compose(&self, left: &mut [u32], right: &[u32], progress: &mut dyn FnMut()) {
         let (left, left_rest) = left.as_chunks_mut::<LINE>();
@@ -85,14 +85,14 @@ impl Eyes<'_> {
             let (of_right, of_left) = (*right, *left);
             let (a, b) = (of_left[0], of_right[0]);
             if of_left.iter().all(|&x| x == a) && of_right.iter().all(|&x| x == b) {
-                // In most lines each eye has a single colour, which is that of the previous line.
+                // In most lines each eye has a single colour, the same as in the previous line.
                 *left = [self.remembered(&mut last, [a, b]); LINE];
             } else {
                 for (left, (a, b)) in left.iter_mut().zip(of_left.into_iter().zip(of_right)) {
                     *left = self.remembered(&mut last, [a, b]);
                 }
             }
-            if number.is_multiple_of(LINES_A_CALL) {
+            if number.is_multiple_of(LINES_PER_CALL) {
                 progress();
             }
         }
@@ -130,10 +130,10 @@ fn luminance(pixel: u16) -> u8 {
     ((LOW[usize::from(low)] + HIGH[usize::from(high)]) >> 8) as u8
 }
 
-/// Share of the lower byte of a pixel in its luminance, in units of 2^−8, plus the rounding. The luminance is the sum of the entries of
-/// `LOW` and `HIGH`, because the bits that widen green are all in the higher byte.
+/// Contribution of the lower byte of a pixel to its luminance, in units of 2^−8, plus the rounding constant. The luminance is the
+/// sum of the entries of `LOW` and `HIGH`, because the bits that widen green are all in the higher byte.
 static LOW: [u16; 256] = shares(0, HALF_LUMINANCE);
-/// Share of the higher byte of a pixel in its luminance, in units of 2^−8.
+/// Contribution of the higher byte of a pixel to its luminance, in units of 2^−8.
 static HIGH: [u16; 256] = shares(8, 0);
 
 const fn shares(shift: u32, rounding: u16) -> [u16; 256] {

@@ -2,7 +2,7 @@
 //!
 //! Vertices are processed by [`vertex`], and triangles by [`setup`] and [`raster`]. Triangles that cross the guard band
 //! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles that the engine
-//! writes to memory, [`vertex_cache`] models the cache that determines which vertices it fetches.
+//! writes to memory; [`vertex_cache`] models the cache that determines which vertices the engine fetches.
 
 mod classify;
 pub mod clip;

@@ -13,7 +13,7 @@ use crate::triangle::ScreenVertex;
 pub const LINE_COLOUR: Rgb565 = Rgb565(0x07E0);
 
 /// Number of segments that are drawn between two calls of `progress`.
-const SEGMENTS_A_CALL: u32 = 16;
+const SEGMENTS_PER_CALL: u32 = 16;
 
 /// A program and the motion of its segments.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,6 @@ pub struct WireframeSubject<'a> {
 
 impl WireframeSubject<'_> {
     /// The line of a segment of the program, drawn without a depth test; `None` if no part of it is on the screen.
-    #[must_use]
     pub fn line(&self, projection: &Projection, segment: Segment) -> Option<line::Segment> {
         let ends = projection.line(self.pose.segment(segment))?;
         Some(line::Segment {
@@ -67,7 +66,7 @@ pub fn render_wireframe(
     let projection = Projection::new(subject.program.viewing(), size);
     let mut stats = WireframeStats::default();
     for segment in subject.program.segments() {
-        if stats.segments % SEGMENTS_A_CALL == 0 {
+        if stats.segments % SEGMENTS_PER_CALL == 0 {
             progress();
         }
         stats.segments += 1;

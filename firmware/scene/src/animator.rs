@@ -7,18 +7,18 @@ use glint_core::fixed::U32_32;
 
 use crate::scene::Scene;
 
-/// Moves a scene by its animation and the time of a board, in seconds. A wrap of the time does no harm.
+/// Moves a scene by its animation. Times are those of a board, in seconds, and may wrap.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Animator {
     animation: Animation,
     /// Time of the board at which the animation started.
     start: U32_32,
-    /// Time since then to which the scene has moved.
+    /// Time since the start to which the scene has moved.
     last: U32_32,
 }
 
 impl Animator {
-    /// Moves `scene` to its state at the time that `now` returns. The time of an animation starts at the first call after its setting.
+    /// Moves `scene` to its state at the time that `now` returns. An animation starts at the first call after it was set.
     /// The camera moves only with `moves_camera`.
     pub fn advance(&mut self, scene: &mut Scene, now: impl FnOnce() -> U32_32, moves_camera: bool) {
         let animation = scene.animation;

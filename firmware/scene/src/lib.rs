@@ -2,7 +2,7 @@
 //!
 //! A [`Scene`] is a plain value. Console options change the scene ([`Scene::apply`]), [`Scene::frame`] converts it to a frame of
 //! the model or the gateware, and [`Scene::write_lines`] writes it as console commands. A picture is outdated if its scene
-//! differs from the present scene. Firmware and host share this crate, so that a scene has the same meaning on both.
+//! differs from the current scene. Firmware and host share this crate, so that a scene has the same meaning on both.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -122,15 +122,15 @@ impl PlacedMesh {
     }
 
     /// Turns the object about its own origin, as an animation does: many small turns about one axis give the matrix of a single
-    /// one. Another axis requires [`settle`](Self::settle) first.
+    /// turn. Another axis requires [`settle`](Self::settle) first.
     fn turn(&mut self, axis: Axis, by: Turns) {
         self.turned = self.turned.wrapping_add(by);
-        // An object whose matrix would be out of range at this angle keeps its last one.
+        // An object whose matrix would be out of range at this angle keeps its last matrix.
         let turned = self.start.turned(axis, self.turned);
         self.place.matrix = turned.unwrap_or(self.place.matrix);
     }
 
-    /// Makes the present placement the start of the next turn of an animation.
+    /// Makes the current placement the start of the next turn of an animation.
     const fn settle(&mut self) {
         self.start = self.place.matrix;
         self.turned = Turns(0);
@@ -245,7 +245,7 @@ pub struct Scene {
     pub backend: Backend,
     /// Whether text is written over the picture.
     pub overlay: bool,
-    /// What moves by the time.
+    /// The motion over time.
     pub animation: Animation,
 }
 
@@ -511,8 +511,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves what the picture shows by its [animation](Self::animation), from one point in time to another, in seconds since its start.
-    /// Steps from the start to a time give the same scene as a single one: no errors add up. The camera moves only with `moves_camera`.
+    /// Moves the scene by its [animation](Self::animation) from one point in time to another, in seconds
+    /// since the animation's start. Many steps give the same scene as a single step: no errors add up. The camera moves only with `moves_camera`.
     // Not inlined, so that the firmware's main loop takes few lines of the instruction cache.
     #[inline(never)]
     pub fn animate(&mut self, from: U32_32, to: U32_32, moves_camera: bool) {

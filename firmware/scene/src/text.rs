@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Display, Write};
 
-use glint_core::choice::switch_name;
+use glint_core::choice::{OrWord, switch_name};
 use glint_core::console::OptionName;
 use glint_core::feature::{ANIMATE, TEXTURE};
 use glint_core::fixed::{Turns, U4_28};
@@ -11,14 +11,6 @@ use glint_core::picture::Size;
 use glint_model::Clip;
 
 use crate::scene::{Kind, PlacedMesh, Scene, Sphere};
-
-/// Displays a value, or `off` for `None`.
-#[derive(PartialEq)]
-struct OrOff<T>(Option<T>);
-
-/// Displays a value, or `default` for `None`.
-#[derive(PartialEq)]
-struct OrDefault<T>(Option<T>);
 
 /// Displays width and height as arguments of `size`.
 #[derive(PartialEq)]
@@ -38,22 +30,8 @@ impl Display for Sphere {
     }
 }
 
-impl<T: Display> Display for OrOff<T> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match &self.0 {
-            Some(value) => value.fmt(f),
-            None => f.write_str("off"),
-        }
-    }
-}
-
-impl<T: Display> Display for OrDefault<T> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match &self.0 {
-            Some(value) => value.fmt(f),
-            None => f.write_str("default"),
-        }
-    }
+fn or_off<T>(value: Option<T>) -> OrWord<T> {
+    OrWord(value, "off")
 }
 
 impl Scene {
@@ -125,9 +103,9 @@ impl Scene {
     ) -> fmt::Result {
         let name = option.name();
         match option {
-            OptionName::Field => self.put(name, from, out, |scene| OrOff(scene.field)),
+            OptionName::Field => self.put(name, from, out, |scene| or_off(scene.field)),
             OptionName::Mesh => self.put(name, from, out, |scene| switch_name(scene.with_mesh)),
-            OptionName::Stereo => self.put(name, from, out, |scene| OrOff(scene.stereo)),
+            OptionName::Stereo => self.put(name, from, out, |scene| or_off(scene.stereo)),
             OptionName::Object => {
                 let mut numbered = (1..).zip(&self.objects);
                 numbered.try_for_each(|(number, PlacedMesh { mesh, place, .. })| match from {
@@ -152,19 +130,19 @@ impl Scene {
                 writeln!(out, "{name} {}", HexColour(self.shown_ambient()))
             }
             OptionName::Ambient => self.put(name, from, out, |scene| {
-                OrDefault(scene.appearance.ambient.map(HexColour))
+                OrWord(scene.appearance.ambient.map(HexColour), "default")
             }),
             OptionName::Highlight => {
-                self.put(name, from, out, |scene| OrOff(scene.appearance.highlight))
+                self.put(name, from, out, |scene| or_off(scene.appearance.highlight))
             }
             OptionName::Shadow => self.put(name, from, out, |scene| {
                 switch_name(scene.appearance.shadow)
             }),
             OptionName::Background => self.put(name, from, out, |scene| {
-                OrDefault(scene.appearance.background)
+                OrWord(scene.appearance.background, "default")
             }),
             OptionName::Fog => self.put(name, from, out, |scene| {
-                OrOff(Some(scene.appearance.fog).filter(|fog| *fog != U4_28::ZERO))
+                or_off(Some(scene.appearance.fog).filter(|fog| *fog != U4_28::ZERO))
             }),
             OptionName::Occlusion => self.put(name, from, out, |scene| {
                 switch_name(scene.appearance.occlusion)
@@ -198,11 +176,11 @@ impl Scene {
                 self.put(name, from, out, |scene| switch_name(scene.options.textures))
             }),
             OptionName::Clip => self.put(name, from, out, |scene| match scene.options.clip {
-                Clip::Guard => OrOff(None),
-                Clip::View { far } => OrOff(Some(far)),
+                Clip::Guard => or_off(None),
+                Clip::View { far } => or_off(Some(far)),
             }),
             OptionName::Winding => self.put(name, from, out, |scene| scene.options.winding),
-            OptionName::Edges => self.put(name, from, out, |scene| OrOff(scene.edges)),
+            OptionName::Edges => self.put(name, from, out, |scene| or_off(scene.edges)),
             OptionName::Overlay => self.put(name, from, out, |scene| switch_name(scene.overlay)),
             OptionName::Animate => {
                 ANIMATE.when_built(|| self.put(name, from, out, |scene| scene.animation))

@@ -1,4 +1,4 @@
-//! Tests of animations: the scene after a time, on its own and as the animator of a board moves it.
+//! Tests of animations: the scene after a time, moved directly and by the animator of a board.
 
 use glint_core::fixed::U32_32;
 use glint_core::picture::Backend;
@@ -24,7 +24,7 @@ fn seconds(number: u32) -> U32_32 {
     U32_32::from_num(number)
 }
 
-/// The time of a frame of a board with 81.25 MHz: frames take a number of clock cycles that no second is a multiple of.
+/// The time of a frame in seconds: a second is not a whole number of frames.
 fn frame(number: u64) -> U32_32 {
     U32_32::from_bits(((u128::from(number * 13_543_217) << 32) / 81_250_000) as u64)
 }
@@ -35,7 +35,7 @@ fn still(mut scene: Scene) -> Scene {
     scene
 }
 
-/// After ten hours in many frames the scene is that with the angle set, and so after one step.
+/// After ten hours, in many frames or in one step, the scene is the one with the final angle set.
 #[test]
 fn a_scene_is_exact_after_ten_hours() {
     let cases = [
@@ -79,7 +79,7 @@ fn a_scene_is_exact_after_ten_hours() {
     }
 }
 
-/// The time of a board in seconds wraps after 136 years.
+/// The time of a board wraps after 2^32 s, 136 years.
 #[test]
 fn the_wrap_of_the_time_does_no_harm() {
     let (mut animator, mut scene) = (
@@ -109,10 +109,10 @@ fn an_animation_starts_when_it_is_set() {
     execute(&mut scene, "animate azimuth 10");
     expect(&mut scene, 6, true, 0.0);
     expect(&mut scene, 7, true, 10.0);
-    // A new azimuth is the new start.
+    // A new azimuth is the start of further motion.
     execute(&mut scene, "camera 3 90 60");
     expect(&mut scene, 8, true, 100.0);
-    // While the sensor steers the camera, the azimuth rests.
+    // While the sensor steers the camera, the azimuth is constant.
     expect(&mut scene, 10, false, 100.0);
     expect(&mut scene, 11, true, 110.0);
     execute(&mut scene, "animate off");
@@ -122,7 +122,7 @@ fn an_animation_starts_when_it_is_set() {
     expect(&mut scene, 31, true, 120.0);
 }
 
-/// Commands act on the placement and the angle that are shown, and the motion goes on from there.
+/// Commands act on the shown placement and angle, and the motion continues from there.
 #[test]
 fn commands_act_on_what_is_shown() {
     let mut moved = scene("object add a move 1,0,0\nanimate turn z 30");
@@ -143,7 +143,7 @@ fn commands_act_on_what_is_shown() {
     assert_eq!(still(moved), scene("field moving:0.2,1,100"));
 }
 
-/// Parts that the scene does not show rest, so that the picture stays and the board sleeps.
+/// Parts that the scene does not show do not move, so that the picture stays and the board sleeps.
 #[test]
 fn what_is_not_shown_rests() {
     for lines in [

@@ -279,7 +279,8 @@ fn objects_come_and_go() {
     assert_eq!(object(ObjectAction::Remove(None)), (Kind::Solid, None));
 }
 
-/// An object that turns by many small steps keeps its size, also while it moves; a later change of its scale counts.
+/// An object that turns by many small steps keeps its size, even while it moves. A later change of its
+/// scale has an effect.
 #[test]
 fn a_turning_object_keeps_its_size() {
     let mut scene = scene("object add a scale 0.5");

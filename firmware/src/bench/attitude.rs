@@ -53,7 +53,7 @@ pub fn attitude(report: Report) {
     measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // Measures the machine's own method, through the code that replays logs.
+    // Measures the method in use, through the code that replays logs.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),

@@ -50,10 +50,7 @@ pub fn run<'l>(
         Some(("field", _)) if machine.scene.field.is_none() => return Err(CommandError::NoField),
         Some(("triangle" | "field", count)) => frames(machine, count.unwrap_or(FRAMES))?,
         Some((name, Some(_))) => {
-            return Err(CommandError::Kernel {
-                name,
-                expected: &["triangle", "field"],
-            });
+            return Err(CommandError::Kernel(name, &["triangle", "field"]));
         }
         Some(("sine", None)) => bench::sine(&mut print),
         Some(("object", None)) => bench::object(&mut print),
@@ -65,12 +62,7 @@ pub fn run<'l>(
         Some(("gesture", None)) => bench::gesture(&mut print),
         #[cfg(feature = "peers")]
         Some(("kernels", None)) => bench::kernels(&mut print),
-        Some((name, None)) => {
-            return Err(CommandError::Kernel {
-                name,
-                expected: KERNELS,
-            });
-        }
+        Some((name, None)) => return Err(CommandError::Kernel(name, KERNELS)),
     }
     Ok(())
 }

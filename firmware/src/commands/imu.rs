@@ -1,7 +1,9 @@
 //! Commands of the sensor, an MPU-6050: its state, calibration, samples, mounting and sensitivity, and the replay of logs.
 
+use core::fmt::{self, Display};
 use core::task::Poll;
 
+use glint_core::choice::OrWord;
 use glint_core::console::{ImuAction, ImuCommands};
 use glint_core::feature::IMU;
 use glint_core::fixed::Q32_32;
@@ -12,7 +14,6 @@ use glint_core::wire::Manifest;
 
 use super::{replay, upload};
 use crate::error::CommandError;
-use crate::format::{OrOff, Vector};
 use crate::job::{CommandResult, Job, JobResult, Reply, SensorJob};
 use crate::machine::Machine;
 use crate::sensor;
@@ -158,7 +159,7 @@ fn print_status(machine: &mut Machine) {
     let angles = attitude.angles();
     let angles = [angles.yaw, angles.pitch, angles.roll].map(|angle| angle.to_signed_degrees());
     terminal.print_entry("angles", &Vector(angles));
-    terminal.print_entry("follow", &OrOff(imu.follow()));
+    terminal.print_entry("follow", &OrWord(imu.follow(), "off"));
     print_calibration(machine);
 }
 
@@ -177,4 +178,14 @@ fn print_calibration(machine: &mut Machine) {
         }
     }
     terminal.print_entry("bias", &Vector(imu.bias()));
+}
+
+/// Displays the three numbers of a vector with six decimals each.
+struct Vector([Q32_32; 3]);
+
+impl Display for Vector {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [x, y, z] = self.0;
+        write!(f, "{x:.6} {y:.6} {z:.6}")
+    }
 }

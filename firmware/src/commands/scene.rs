@@ -36,7 +36,7 @@ impl<'l> SceneCommands<'l> for Machine {
         } else {
             self.models.check_capacity(name)
         };
-        accepted.map_err(|error| CommandError::MeshName { name, error })?;
+        accepted.map_err(|error| CommandError::MeshName(name, error))?;
         // The parser limits names to the string's capacity, so the conversion does not fail.
         let purpose = Purpose::Mesh(Name::try_from(name).unwrap_or_default());
         upload::begin(self, "load", purpose, upload)
@@ -83,7 +83,7 @@ impl<'l> SceneCommands<'l> for Machine {
         let object = self.scene.first_object_of(name);
         let object = object.filter(|_| self.models.has_upload(name));
         if object.is_some() || !self.models.remove(name) {
-            return Err(CommandError::Unload { name, object });
+            return Err(CommandError::Unload(name, object));
         }
         if self.scene.mesh == name {
             self.scene.set_mesh(CUBE);
@@ -174,7 +174,7 @@ pub fn show<'l>(machine: &mut Machine, name: &'l str) -> CommandResult<'l> {
             let found = machine.library.find(first);
             match content(first, &found.ok_or(CommandError::Scene(first))?)? {
                 Content::Lines(lines) => lines,
-                // A list of lists.
+                // The first item of the list is itself a list, and lists do not nest.
                 Content::Scenes(_) => return Err(CommandError::Scene(first)),
             }
         }
@@ -195,10 +195,10 @@ fn content<'l>(name: &'l str, found: &SceneItem) -> Result<Content, CommandError
     if let SceneItem::BuiltIn(built_in) = *found
         && built_in.lacks_features().next().is_some()
     {
-        return Err(CommandError::Features { built_in });
+        return Err(CommandError::Features(built_in));
     }
     let content = found.content();
-    content.map_err(|error| CommandError::Flash { name, error })
+    content.map_err(|error| CommandError::Flash(name, error))
 }
 
 /// Executes the lines of the scene `name` on the default scene. A camera motion starts when its line is reached.
@@ -212,7 +212,7 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> C
     machine.scene.backend = Backend::Gateware;
     let (mut is_stated, mut motion) = (false, None);
     for line in lines(text) {
-        let (_, line) = line.map_err(|error| CommandError::Line { name, error })?;
+        let (_, line) = line.map_err(|error| CommandError::Line(name, error))?;
         if let Some(mesh) = line.mesh() {
             let is_there = upload::from_flash(machine, mesh)? || machine.models.has(mesh);
             // The check of a large mesh is slow, and several meshes may follow.
@@ -258,7 +258,7 @@ fn check_blocks<'l>(
     let hand = if has_hand { Block::Gesture.bit() } else { 0 };
     match (machine.scene.blocks() | hand) & !machine.identity.blocks {
         0 => Ok(()),
-        lacks => Err(CommandError::Blocks { name, lacks }),
+        lacks => Err(CommandError::Blocks(name, lacks)),
     }
 }
 

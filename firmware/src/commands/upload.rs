@@ -80,13 +80,13 @@ pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, Comm
         return Ok(false);
     };
     let bytes = item.checked();
-    let bytes = bytes.map_err(|error| CommandError::Flash { name, error })?;
+    let bytes = bytes.map_err(|error| CommandError::Flash(name, error))?;
     let accepted = machine.models.check_capacity(name);
-    accepted.map_err(|error| CommandError::MeshName { name, error })?;
+    accepted.map_err(|error| CommandError::MeshName(name, error))?;
     let mut memory = lend(machine, name, bytes.len())?;
     memory.as_mut().copy_from_slice(bytes);
     let accepted = machine.models.accept(name, memory);
-    accepted.map_err(|error| CommandError::FlashMesh { name, error })?;
+    accepted.map_err(|error| CommandError::FlashMesh(name, error))?;
     Ok(true)
 }
 

@@ -16,8 +16,8 @@ use super::fallback::Fallback;
 /// Capacity of the memory of one frame. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
 pub struct Capacity {
-    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without optional parts in a set. Of
-    /// longer descriptors fewer fit.
+    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without
+    /// optional parts in a set. With optional parts, fewer descriptors fit.
     descriptors: usize,
     /// Number of 32-bit words of a set of band lists, including the table of their lengths.
     list_words: usize,
@@ -179,8 +179,8 @@ impl TextureTable {
         self.count = 0;
     }
 
-    /// The textures of a mesh for its geometry pass, which the table takes if they are new; `None` for a mesh without textures or
-    /// coordinates.
+    /// Adds the textures of a mesh to the table if they are new, and returns them for the geometry pass;
+    /// `None` for a mesh without textures or coordinates.
     ///
     /// # Errors
     /// The table is full.
@@ -201,7 +201,7 @@ impl TextureTable {
         }))
     }
 
-    /// The number of a texture, which the table takes if it is new; `None` if the table is full.
+    /// The number of a texture, which is added to the table if it is new; `None` if the table is full.
     pub fn number(&mut self, texture: &Texture) -> Option<u8> {
         let address = address(texture.bytes());
         let known = self.addresses.get(1..=self.count).unwrap_or_default();

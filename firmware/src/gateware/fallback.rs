@@ -126,7 +126,7 @@ impl fmt::Display for Fallback {
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine")?,
         }
         match self.build() {
-            Some(build) => write!(f, ", expected that of `cargo xtask gateware {build}`"),
+            Some(build) => write!(f, ", expected a build by `cargo xtask gateware {build}`"),
             None => Ok(()),
         }
     }
@@ -136,7 +136,7 @@ impl fmt::Display for Fallback {
 /// them.
 #[derive(Clone, Copy, Debug)]
 pub enum Unsupported {
-    /// All: this gateware has no geometry passes.
+    /// Every option: this gateware has no geometry passes.
     Geometry,
     /// Clipping to the view volume.
     Volume,
@@ -144,11 +144,9 @@ pub enum Unsupported {
     Winding,
     /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
-    /// Transformed normals of an object, if no memory is free for a copy of its mesh. Objects are numbered from 1.
-    Normals {
-        /// Number of the object.
-        object: usize,
-    },
+    /// Transformed normals of the object with this number, from 1, if no memory is free for a copy of
+    /// its mesh.
+    Normals(usize),
 }
 
 impl fmt::Display for Unsupported {
@@ -159,7 +157,7 @@ impl fmt::Display for Unsupported {
             Self::Volume => f.write_str("no clipping to the view volume"),
             Self::Winding => f.write_str("no winding by the screen"),
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
-            Self::Normals { object } => write!(
+            Self::Normals(object) => write!(
                 f,
                 "not enough memory for the transformed normals of object {object}, expected fewer or smaller objects with non-uniform scale"
             ),

@@ -268,7 +268,7 @@ impl GeometryPasses {
         stats.drawn = drawn;
     }
 
-    /// Makes the descriptors and lists of all meshes by the CPU.
+    /// Makes the descriptors and lists of all meshes on the CPU.
     ///
     /// Not inlined, because few frames need it.
     #[inline(never)]
@@ -359,5 +359,5 @@ fn unsupported(frame: &Frame) -> Option<Unsupported> {
     });
     let mut objects = frame.subject.objects().unwrap_or_default().iter();
     let mut normals = || objects.position(|object| object.placement.normals().is_some());
-    lacking.or_else(|| normals().map(|index| Unsupported::Normals { object: index + 1 }))
+    lacking.or_else(|| normals().map(|index| Unsupported::Normals(index + 1)))
 }

@@ -65,7 +65,7 @@ pub struct GatewareRenderer {
     buffers: [Buffers; 2],
     /// The projected part of a wireframe.
     projected: Projected,
-    /// Counts of a mesh's edges.
+    /// Counts of the edges of the mesh.
     edges: EdgeStats,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,

@@ -35,7 +35,7 @@ pub const PIXELS: &[Pixel] = &[
     },
 ];
 
-/// Returns the input for a phase.
+/// Maps a phase, a number that a benchmark spreads over its range, to an input.
 pub const fn input(phase: u32) -> u32 {
     phase >> 8
 }

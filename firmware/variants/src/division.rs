@@ -59,7 +59,7 @@ pub const KERNELS: &[Kernel<[u32; 2], u64>] = &[
     }),
 ];
 
-/// Returns the input for a phase.
+/// Maps a phase, a number that a benchmark spreads over its range, to an input.
 pub const fn input(phase: u32) -> [u32; 2] {
     [
         crate::reciprocal::input(phase.wrapping_mul(0x85EB_CA6B)),

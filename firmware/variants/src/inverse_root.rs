@@ -52,7 +52,7 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
     ),
 ];
 
-/// Returns the input for a phase.
+/// Maps a phase, a number that a benchmark spreads over its range, to an input.
 pub const fn input(phase: u32) -> u32 {
     // Three quarters of the 24-bit numbers are in [1, 4).
     (1 << 22) + (phase >> 8) * 3 / 4

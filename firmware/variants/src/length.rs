@@ -30,7 +30,7 @@ pub const KERNELS: &[Kernel<[i32; 3], u64>] = &[
     }),
 ];
 
-/// Returns the input for a phase: pseudo-random directions and lengths.
+/// Maps a phase, a number that a benchmark spreads over its range, to an input: pseudo-random directions and lengths.
 pub fn input(phase: u32) -> [i32; 3] {
     let mixed = [0x85EB_CA6B, 0xC2B2_AE35, 0x27D4_EB2F_u32].map(|odd| {
         let x = phase.wrapping_mul(odd);

@@ -52,7 +52,7 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
     other("reciprocal_f32", "f32 division", Float, float!(|x| 1.0 / x)),
 ];
 
-/// Returns the input for a phase: a mantissa.
+/// Maps a phase, a number that a benchmark spreads over its range, to an input: a mantissa.
 pub const fn input(phase: u32) -> u32 {
     1 << 23 | phase >> 9
 }

@@ -43,8 +43,7 @@
 // of every line to each slot. The renderers must also be restarted, because the band buffer accepts all groups and bands that they offer
 // afterwards.
 //
-// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds
-// until it has moved. Words for memory: see band_flush. `flushed` is high when memory has taken all words of all bands.
+// Stream protocol as in `fifo`. Words for memory: see band_flush. `flushed` is high when memory has taken all words of all bands.
 
 `default_nettype none
 

@@ -12,9 +12,8 @@
 // of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as
 // neighbouring triangles do along their common edge, pass without a stall, because each lane is a separate memory.
 //
-// Stream protocol at the input: an item moves in a clock in which valid and ready are high; `group_ready` comes from registers
-// and from `open`, which admits groups. `empty` is high when no group is in the pipeline; a read of a row then returns the pixels of all
-// accepted groups.
+// The input is a valid/ready stream; `group_ready` comes from registers and from `open`, which admits groups. `empty` is high when no group
+// is in the pipeline; a read of a row then returns the pixels of all accepted groups.
 
 `default_nettype none
 

@@ -4,7 +4,7 @@
 //
 // Payloads do not pass through this module: the other side reads the registers directly. Data from the source must be stable from `start`
 // until `finished`; data from the destination must be stable from `done` until the next `request`. The data are therefore stable for at
-// least one clock of the receiving side before this side uses them.
+// least one clock of the receiving side before the receiving side uses them.
 //
 // The signals are levels, not toggles, because each side may be reset alone: after a reset, a destination sees the request again, and a
 // source withdraws the request. There is at most one request at a time; `start` is ignored while `busy` is high. Latency from `start` to

@@ -36,8 +36,8 @@ module credit_fifo #(
     localparam int unsigned PLACES     = DEPTH + 32'(!DIRECT);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
 
-    // Free credits, one for each place of the FIFO. The count is one clock late, so `credit` already falls when one credit is free: it is for
-    // an item that is sent before the previous item has been counted.
+    // Free credits, one for each entry of the FIFO. The count is one clock late, so `credit` already falls when one credit is left. This
+    // last credit is reserved for an item that is sent before the previous item has been counted.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 

@@ -1,5 +1,5 @@
-// Compares two values, three bits of each in a LUT. Synthesis keeps these parts: where it looks for the shortest path, it may take a LUT
-// for two bits.
+// Compares two values. One LUT compares three bits of each. The attribute `keep` preserves this division: when synthesis optimises for
+// the shortest path, it would otherwise use a LUT for every two bits.
 
 `default_nettype none
 

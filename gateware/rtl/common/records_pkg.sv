@@ -89,13 +89,13 @@ package records_pkg;
         logic [31:0] start;
     } plane_t;
 
-    // Planes of light of a triangle, in three words behind its descriptor and its texture.
+    // Planes of light of a triangle, in the three words after its descriptor.
     typedef struct packed {
         logic smooth;
         logic [2:0][95:0] light;
     } planes_t;
 
-    // Texture of a triangle, in the two words behind its descriptor.
+    // Texture of a triangle, in the two words after its descriptor.
     typedef struct packed {
         logic linear;
         logic [7:0] texture;

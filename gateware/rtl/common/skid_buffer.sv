@@ -1,8 +1,7 @@
 // A buffer of two items in a valid/ready stream, so that no combinational path crosses it: neither from `out_ready` to
 // `in_ready`, nor from `in_valid` to `out_valid`.
 //
-// Latency 1 clock, throughput one item per clock. Stream protocol on both sides: an item moves in a clock in which valid
-// and ready are high; valid does not wait for ready, and a payload holds until it has moved.
+// Latency 1 clock, throughput one item per clock. Stream protocol on both sides as in `fifo`.
 //
 //            ┌────────┐  spare   ┌──────────┐
 //   in ──┬──▶│ spare  │─────────▶│          │

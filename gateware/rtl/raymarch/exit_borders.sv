@@ -1,19 +1,19 @@
 // Finds the planes at which a ray leaves the empty prism around its point (docs/raymarch-exits.md, "Solids").
 //
-//   point ─▶ interval of each axis ─▶ largest of it and `reached` ─▶ rule ─▶ next interval above each plane, the plane's coordinate
+//   point ─▶ interval of each axis ─▶ larger of it and `reached` ─▶ rule ─▶ next interval above each plane, the plane's coordinate
 //
-// Coordinates are those of mirrored axes, so that every ray leads up: of the point from the solid's lower corner, of planes from its
-// centre. `there[i]` is high if a plane perpendicular to axis i bounds the prism; `next[i]` is the interval above this plane, `above[i]` is
-// high if this interval is above the solid, and `at[i]` is the plane's coordinate. The ray leaves by the last of the planes if `choice[1]`
-// is high, by the first if `choice[0]` is high, and otherwise by the second of three. Without any plane the point is in the solid (`hit`),
-// or the ray has left the solid for good (`gone`).
+// Axes are mirrored so that every coordinate of a ray increases along the ray. The origin of the point's coordinates is the solid's lower
+// corner; the origin of the planes' coordinates is the solid's centre. `there[i]` is high if a plane perpendicular to axis i bounds the
+// prism; `next[i]` is the interval above this plane, `above[i]` is high if this interval is above the solid, and `at[i]` is the plane's
+// coordinate. The ray leaves by the last of the planes if `choice[1]` is high, by the first if `choice[0]` is high, and otherwise by the
+// second of three. Without any plane the point is in the solid (`hit`), or the ray has left the solid for good (`gone`).
 //
-// A sponge is what three extruded carpets have in common: a point is outside if at some level two of its digits are 1. It is then in a
-// prism between the planes of these two cells, which goes through the whole sponge. The interval of a cube's cell ends with a digit that
-// is 1 in the gap, so that the same rule gives the next interval.
+// A sponge is the intersection of three extruded Sierpinski carpets: a point is outside if at some level two of its ternary digits are
+// 1. The point is then in a prism between the planes of these two cells, and the prism goes through the whole sponge. For cubes, the
+// last digit of an interval is 1 in the gap between two cubes, so that the same rule gives the next interval.
 //
-// Spheres of a lattice are in such cubes: `hit` then says that the point is in the box about a sphere, from which the planes of the box lead
-// by the first exit. `over` says that a coordinate, within its cell, is above the cube.
+// Each sphere of a lattice is inscribed in such a cube: `hit` is then high if the point is in the box around a sphere, and a ray that
+// misses the sphere leaves this box by the first exit. `over` is high if a coordinate, within its cell, is above the cube.
 //
 // Latency 7 clocks from `point` to `next`, `there`, `choice`, `above`, `hit` and `gone`, 8 clocks to `at`, and 1 clock to `over`; `reached_3`
 // is an input of clock 3. Throughput one point per clock, no handshake. `solid` must hold.
@@ -40,8 +40,8 @@ module exit_borders #(
     output logic [2:0][exit_pkg::PLANE_BITS-1:0]     at,
     output logic [2:0]                               over
 );
-    // The digits of an interval that a build uses, and the widths of an interval with them and of the number of a cell. LAST is the digit
-    // of a cube's gap.
+    // DIGITS: number of ternary digits of an interval that this build uses. LAST: index of the digit that is 1 in the gap between cubes.
+    // BITS: width of an interval with these digits. CELL_BITS: width of the number of a cell.
     localparam bit          DEEP      = LEVELS > 4;
     localparam int unsigned DIGITS    = DEEP ? 6 : 4;
     localparam int unsigned LAST      = 3;
@@ -49,7 +49,7 @@ module exit_borders #(
     localparam int unsigned UNUSED    = exit_pkg::INTERVAL_BITS - BITS;
     localparam int unsigned CELL_BITS = DEEP ? 10 : 7;
 
-    // Registered, as they have many loads.
+    // Registered, because these signals have many loads.
     logic is_sponge, is_cubes, is_planes, is_deep, is_lattice;
     logic [DIGITS-1:0] levels;
 
@@ -63,7 +63,7 @@ module exit_borders #(
             levels[level] <= LEVELS != 0 && (!BOXES || solid.rule == exit_pkg::SPONGE) && 3'(level) < solid.levels;
     end
 
-    // The first digit of a cell is the number of times that PLACE_VALUE fits in its number; a table has the digits of the rest.
+    // The first ternary digit of a cell is the quotient of its number and PLACE_VALUE; a table converts the remainder to the other digits.
     localparam int unsigned PLACE_VALUE = DEEP ? 243 : 27;
     localparam int unsigned REST_BITS   = DEEP ? 8 : 5;
 
@@ -110,7 +110,7 @@ module exit_borders #(
             interval_4[i] <= interval_3 > reached ? interval_3 : reached;
 
             interval_5[i] <= interval_4[i];
-            // After a gap is the next cell.
+            // An interval in a gap gets the number of the next cell, because the next box is in that cell.
             if (LATTICE && is_cubes)
                 interval_5[i][BITS-2 -: 8] <= {interval_4[i][BITS-2 -: 6] + 6'(interval_4[i][BITS-8]), 1'b0, interval_4[i][BITS-9]};
             below_5[i]    <= !interval_4[i][BITS-1];
@@ -119,7 +119,8 @@ module exit_borders #(
                 middle_5[level][i] <= interval_4[i][BITS-3-2*level +: 2] == 2'd1;
         end
 
-        // The digits of the cell. A cell of a sponge of up to four levels counts as nine cells of 2^9 units in a build for more.
+        // The digits of the cell. In a build for more than four levels, a cell of a sponge of up to four levels counts as nine
+        // cells of 2^9 units.
         logic [1:0]           first_1, first_2;
         logic [REST_BITS-1:0] rest_2;
 
@@ -149,7 +150,8 @@ module exit_borders #(
             three_5[level] <= ones == '1;
         end
 
-    // The first level at which two digits are 1, as a bit and as those of the levels before it, and the axes whose digit is 1 there.
+    // The first level at which two digits are 1, as a one-hot mask (`first`) and as the mask of the levels before it (`before`), and
+    // the axes whose digit is 1 at this level (`middle`).
     logic [DIGITS-1:0] holes_5, first_5, first_6, before_6;
     logic [2:0] middle_6;
     logic       outside_5, in_hole_5, in_box_5, in_box_6, in_box_7;
@@ -181,8 +183,8 @@ module exit_borders #(
                               : above_5 == '0 && !outside_5 && !in_hole_5 && !(is_cubes && middle_5[LAST] != '0);
     end
 
-    // The next interval has the digits before the first middle digit, this digit plus one, and zeros; from a box, the digit 1. Below the solid
-    // it is the lowest one, and without a middle digit the plane is the upper one of the solid.
+    // The digits of the next interval are those before the first middle digit, then this digit plus one (1 when the ray leaves a box), then
+    // zeros. Below the solid, the next interval is the lowest one; without a middle digit, the plane is the upper plane of the solid.
     logic [2:0] below_7;
 
     always_ff @(posedge clk) begin
@@ -207,13 +209,13 @@ module exit_borders #(
         end
     end
 
-    // Coordinates of planes, in units of 2^UNIT: a cell of a sponge has two, or of up to four levels in a build for more, sixteen. The first
-    // digit is 3 at the upper plane. The coordinate of a sponge has fewer bits than those of other solids.
+    // Coordinates of planes, in units of 2^UNIT: a cell of a sponge has two units, or sixteen for a sponge of up to four levels in a build
+    // for more levels. The first digit is 3 at the upper plane. Coordinates of sponges have fewer bits than coordinates of other solids.
     localparam int unsigned UNIT     = DEEP ? 8 : 11;
     localparam int unsigned SUM_BITS = 19 - UNIT;
 
-    // Returns the coordinate of two ternary digits: `unit` times their number, without `centre`. A table: products would be chains of
-    // carries.
+    // Returns the coordinate of two ternary digits: their number times `unit`, minus `centre`. The table avoids the carry chains of a
+    // product.
     function automatic logic [SUM_BITS-1:0] pair(input logic [3:0] digits, input logic [SUM_BITS-1:0] unit, input logic [SUM_BITS-1:0] centre);
         case (digits)
             4'b0001: pair = unit - centre;
@@ -258,7 +260,7 @@ module exit_borders #(
             sum = high + middle + low;
         end
 
-        // Cubes also have the number of the cell.
+        // The coordinate of a plane of repeated cubes includes the number of the cell.
         logic [6:0] cube, other;
 
         assign cube  = {7{below_7[i]}} | {1'b0, digits[11:6]};

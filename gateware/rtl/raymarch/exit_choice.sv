@@ -1,9 +1,9 @@
-// Chooses the exit by which a ray leaves a prism, of the exits at up to three planes (docs/raymarch-exits.md, "Solids").
+// Chooses the exit by which a ray leaves a prism, from the exits at up to three planes (docs/raymarch-exits.md, "Solids").
 //
 // `there[i]` is high if a plane perpendicular to axis i bounds the prism. The ray leaves by the last exit if `choice[1]` is high, by the
-// first if `choice[0]` is high, and otherwise by the second of three. Of equal exits the axis with the smaller number is first. The
-// results are the chosen exit, its axis, and for each axis whether the ray has crossed the plane by then; without meaning if the exit exceeds
-// the range of T.
+// first if `choice[0]` is high, and otherwise by the second of three. Of equal exits, the exit of the axis with the smaller number is the
+// first. The results are the chosen exit, its axis, and for each axis whether the ray has crossed its plane at this exit; they are
+// undefined if the exit exceeds the range of T.
 //
 // Latency 2 clocks, throughput one per clock, no handshake.
 

@@ -1,10 +1,11 @@
-// Finds out whether a point is above the fourth slab of an octahedron (docs/raymarch-exits.md, "Octahedra").
+// Tests whether a point is above the fourth slab of an octahedron (docs/raymarch-exits.md, "Octahedra").
 //
 //   point ─▶ sum of the three coordinates, with their signs ─▶ - border ─▶ beyond
 //
-// The point, between 0 and the side of the slabs, or before 0 by rounding, is given along three diagonals from the slabs' lower borders,
-// mirrored where `down`; the integer k stands for k + 1/2. The fourth diagonal is their sum; `down_sum` says whether it is mirrored. `half` is
-// half the side of all slabs.
+// `point` has a coordinate along each of three diagonals, measured from the lower border of the slab, and mirrored where `down` is high. A
+// coordinate is between 0 and the thickness of the slabs, or slightly below 0 due to rounding; the integer k stands for k + 1/2. The
+// coordinate along the fourth diagonal is the sum of the three; it is mirrored if `down_sum` is high. `half` is half the thickness of every
+// slab.
 //
 // Latency 4 clocks from `point` and `down`, 3 clocks from `down_sum_1`; throughput one point per clock, no handshake. `half` must hold.
 
@@ -18,7 +19,7 @@ module exit_diagonal (
     input  wire                                    down_sum_1,
     output logic                                   beyond
 );
-    // Width of a side, and of the sum of three coordinates with a sign.
+    // Width of a slab's thickness, and of the signed sum of three coordinates.
     localparam int unsigned SIDE_BITS = exit_pkg::HALF_BITS + 1;
     localparam int unsigned SUM_BITS  = SIDE_BITS + 3;
 
@@ -27,14 +28,15 @@ module exit_diagonal (
     logic [1:0]                  downs_1;
     logic [2:0]                  sides_1;
 
-    // A mirrored coordinate has its complement. Three halves make the sum of three integers smaller by one than that of the middles.
+    // Complementing the integer of a coordinate mirrors the coordinate, because the integer k stands for k + 1/2. The three halves
+    // add up to 3/2, so the integer of the sum is the sum of the integers plus 1.
     assign x_0 = {{2{point[0][SIDE_BITS]}}, point[0][SIDE_BITS:0]} ^ {SUM_BITS{down[0]}};
     assign y_0 = {{2{point[1][SIDE_BITS]}}, point[1][SIDE_BITS:0]} ^ {SUM_BITS{down[1]}};
     assign z_0 = {{2{point[2][SIDE_BITS]}}, point[2][SIDE_BITS:0]} ^ {SUM_BITS{down[2]}};
 
     assign side = {{SUM_BITS - SIDE_BITS{1'b0}}, half, 1'b0};
 
-    // Counted from the lower corners, the fourth border is 2 sides above 0, or one side less for each mirrored axis.
+    // The upper border of the fourth slab is at 2 thicknesses, and one thickness lower for each mirrored axis.
     assign sides_1 = {1'b0, downs_1} + {2'd0, down_sum_1};
 
     always_ff @(posedge clk) begin

@@ -1,11 +1,10 @@
-// Computes T of the ends of rays on spheres of a lattice (docs/raymarch-exits.md, "Spheres of a lattice").
+// Computes the parameter T at which rays end on spheres of a lattice (docs/raymarch-exits.md, "Spheres of a lattice").
 //
 //   end ─▶ exit_root ─▶ -q·D - root ─▶ times 1/|D|² ─▶ shift ─▶ T of the box + ─▶ FIFO ─▶ end
 //
-// All ends pass in order. A hit on a sphere that is beyond `far_t` becomes a miss. With ROUND each end has a limit of its own, beyond which
-// the ray meets the sphere of a list at this limit, if any. One such unit is enough for all lanes, because a ray ends once. The streams
-// are valid/ready; the pipeline cannot be stopped, and has a credit for each end. `far_t` must hold. Latency 21 clocks, throughput one end
-// per clock.
+// All ends pass in order. A hit on a sphere of the lattice beyond `far_t` becomes a miss. With ROUND, each end has its own limit instead,
+// at which the ray may meet a sphere of the list. One unit is enough for all lanes, because a ray ends once. The streams are valid/ready;
+// the pipeline cannot be stopped, so each end in it uses a credit. `far_t` must hold. Latency 21 clocks, throughput one end per clock.
 
 `default_nettype none
 
@@ -57,7 +56,7 @@ module exit_landing #(
     assign equation_1 = end_1.equation;
     assign lands_1   = end_1.hit && end_1.round && end_1.lands;
 
-    // Both terms have 15 fraction bits. Only a root of 0 can be the larger one: it counts as 1.
+    // Both terms have 15 fraction bits. exit_root replaces 0 by 1, and only this root can exceed the other term.
     exit_root rooting (.clk, .square(~equation_1.rest), .root(root_10));
 
     delay #(.WIDTH(exit_pkg::ALONG_BITS), .CLOCKS(8)) along_waits (.clk, .enable(1'b1), .in(equation_1.along), .out(along_9));
@@ -75,7 +74,7 @@ module exit_landing #(
     delay #(.WIDTH(1), .CLOCKS(10)) lands_waits (.clk, .enable(1'b1), .in(lands_1), .out(lands_11));
     delay #(.WIDTH(1), .CLOCKS(4)) lands_goes (.clk, .enable(1'b1), .in(lands_11 && !distance_11[22]), .out(lands_15));
 
-    // The mantissa less 1 has a sign.
+    // The factor is the mantissa minus 1, which is signed.
     multiply_add #(.BITS(44)) quotient (
         .clk, .enable(1'b1), .a({3'd0, distance_11[21:0]}), .b(inverse_11.mantissa), .c({4'd0, distance_13, 18'd0}), .p(product_14)
     );

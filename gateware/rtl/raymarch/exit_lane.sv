@@ -3,29 +3,30 @@
 //
 //   rays ──▶ slot ─▶ O + T·D ─▶ exit_borders ─▶ exit_quotient for each axis ─▶ exit_choice ─▶ hit? miss? ─┐
 //             ▲                                                                                            ├─▶ fifo ─▶ ends
-//             └──────────────────────── largest of T and the exit ◀────────────────────────────────────────┘
+//             └──────────────────────── larger of T and the exit ◀────────────────────────────────────────┘
 //
-// The ring has SLOTS slots and never stalls. In the diagram, O is the eye from the solid's lower corner along the ray's mirrored axes, D
-// the magnitude of the ray's direction, and T its parameter. The point is computed again in each round, so errors do not accumulate.
-// Intervals of a ray only increase, each evaluation increases one, so every ray ends.
+// The ring has SLOTS slots and never stalls. In the diagram, O is the position of the eye relative to the solid's lower corner, along
+// the ray's mirrored axes; D has the magnitudes of the components of the ray's direction, and T is the ray's parameter. The point is
+// computed again in each round, so errors do not accumulate. The interval numbers of a ray never decrease, and each evaluation increases
+// at least one of them, so every ray ends.
 //
 // A slot whose ray ends receives the next ray in the same clock. A ray enters only if the FIFO of ends has a free entry for its end: the
 // FIFO has PLACES entries, and each ray in the ring reserves one. `evaluates` is high in clocks in which a ray begins an evaluation,
 // `waits` in clocks in which an empty slot cannot receive a ray because the FIFO has no free entry.
 //
-// With LATTICE, spheres may be repeated in place of cubes. In the box about a sphere a ray meets the sphere if the quadratic equation for T
-// has solutions (`meets`); the end of a ray that does has the equation's terms, and exit_landing computes T.
+// With LATTICE, the repeated solids may be spheres instead of cubes. In the box around a sphere, a ray meets the sphere if the quadratic
+// equation for T has solutions (`meets`). The end of such a ray contains the terms of the equation, from which exit_landing computes T.
 //
-// With OCTAHEDRON, a box may have a fourth pair of faces, perpendicular to the sum of its axes. A ray enters its slab with the prism around
-// the eye (exit_start), so only its upper border is compared.
+// With OCTAHEDRON, a box may have a fourth pair of faces, perpendicular to the sum of its axes. A ray has already entered the slab of this
+// pair when it leaves the prism around the eye (exit_start), so only the upper border of the slab is compared.
 //
-// With SPOT, the end of a ray has the point of its hit. A lane with CARRIED has the rays to the light that begin there (exit_shadow): each
-// has an origin of its own and carries CARRIED bits to its end, of which only `hit` is defined. All these rays have the direction of
-// `in_ray`, which must hold while they are in the ring.
+// With SPOT, the end of a ray includes the point of its hit. With CARRIED other than 0, the lane evaluates the rays from these points to
+// the light (exit_shadow): each ray has its own origin, and CARRIED bits of the user travel with it. Only the field `hit` of these ends is
+// defined. All these rays have the direction of `in_ray`, which must hold while rays are in the ring.
 //
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
-// registers. Parameters hold while rays are in the ring. `origins` has each eye's position from the solid's centre. `rst` discards all
-// rays.
+// registers. Parameters hold while rays are in the ring. `origins` has the position of each eye relative to the solid's centre. `rst`
+// discards all rays.
 
 `default_nettype none
 
@@ -33,7 +34,7 @@ module exit_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1,
     parameter bit          STEREO = 1'b1,
-    // Whether rays may meet spheres of a list. Each ray then has a limit of its own; otherwise `far_t` is the limit of every ray.
+    // Whether rays may meet spheres of a list. Each ray then has its own limit; otherwise `far_t` is the limit of all rays.
     parameter bit          ROUND  = 1'b0,
     // Whether there may be spheres of a lattice, with BOXES.
     parameter bit          LATTICE = 1'b0,
@@ -53,7 +54,7 @@ module exit_lane #(
     input  wire                                           in_valid,
     output logic                                          in_ready,
     input  wire exit_pkg::ray_t                           in_ray,
-    // With CARRIED, the origin of the ray, from the solid's centre.
+    // With CARRIED, the origin of the ray relative to the solid's centre.
     input  wire  [2:0][exit_pkg::PLANE_BITS-1:0]          in_origin,
     input  wire  [(CARRIED == 0 ? 1 : CARRIED)-1:0]       in_carried,
     // Ends.
@@ -75,14 +76,16 @@ module exit_lane #(
     logic [COUNT_BITS-1:0] places;
     logic                  enter, finished, again, ended, end_ready, gone_out;
 
-    // Spheres of a lattice: whether the solid consists of them, and whether and how a ray in the box about one meets it.
+    // Spheres of a lattice: whether the solid consists of them, whether a ray in the box around a sphere meets the
+    // sphere (`meets`), and whether its T is still to be computed from `equation` (`lands`).
     logic               is_lattice, meets_21, lands_22;
     exit_pkg::equation_t equation_22;
 
-    // An octahedron: whether the point is above the fourth slab, and whether the ray leads down along its axis.
+    // An octahedron: whether the point is above the fourth slab, and whether the ray's coordinate along its axis decreases.
     logic beyond_21, down_sum_22;
 
-    // State of a ray: T and the axis of the last plane that it has crossed, and the number of evaluations, with that of this round.
+    // State of a ray: its T, the axis of the last plane that it has crossed, the number of its evaluations including this round,
+    // and whether it ends without an evaluation (`over`).
     logic [exit_pkg::T_BITS-1:0] t_0, t_21, t_22;
     logic [1:0]                  axis_0, axis_21, axis_22;
     logic [7:0]                  steps_0, steps_21, steps_22;
@@ -102,7 +105,7 @@ module exit_lane #(
     assign enter    = in_valid && in_ready;
     assign gone_out = out_valid && out_ready;
 
-    // Rounding may place an exit before the last one: T does not decrease.
+    // T never decreases, although rounding may place an exit before the previous exit.
     always_ff @(posedge clk) begin
         occupied <= {occupied[LAST-1:0], again || enter};
         over_0   <= !again && in_ray.over;
@@ -120,8 +123,8 @@ module exit_lane #(
         end
     end
 
-    // Values of the rays in the ring, in a word of LUT memory per slot, written when a ray enters, at the end of a round or at its
-    // beginning. Each stage that reads values has a memory of its own, and the number of the slot in this stage. Writes to an empty slot are
+    // Values of the rays in the ring. A word of LUT memory for each slot is written when a ray enters, or at the end or beginning of a
+    // round. Each stage that reads values has its own memory, and knows the number of the slot in this stage. Writes to an empty slot are
     // allowed.
     logic [SLOT_BITS-1:0] slot_0, slot_8, slot_12, slot_13, slot_14, slot_21, slot_22;
 
@@ -185,7 +188,7 @@ module exit_lane #(
         {t_22, axis_22, steps_22, over_22} <= {t_21, axis_21, steps_21, over_21};
     end
 
-    // The limit, and T of an end: without a hit, the limit.
+    // The limit of T, and the T of an end, which is the limit for a ray without a hit.
     logic [exit_pkg::T_BITS-1:0] limit_21, end_t_22;
     exit_pkg::meeting_t          sphere_22;
 
@@ -229,7 +232,7 @@ module exit_lane #(
     delay #(.WIDTH(4), .CLOCKS(4)) signs (.clk, .enable(1'b1), .in({eye_0, down_0}), .out({eye_4, down_4}));
     delay #(.WIDTH(4), .CLOCKS(9)) signs_wait (.clk, .enable(1'b1), .in({eye_4, down_4}), .out({eye_13, down_13}));
 
-    // The eye, or the origin of a ray to the light, from the solid's centre.
+    // The eye, or the origin of a ray to the light, relative to the solid's centre.
     logic [2:0][exit_pkg::PLANE_BITS-1:0] place_4, place_13;
 
     if (CARRIED != 0) begin : own_origins
@@ -255,8 +258,8 @@ module exit_lane #(
         wire _unused = &{1'b0, in_origin};
     end
 
-    // The point O + T·D, from two products for each axis, rounded down, and in a lattice to nearest. O is the sum of half the side and the
-    // eye's position with a sign; in the sums, a bit after the point completes the complement.
+    // The point O + T·D, from two products for each axis, rounded down, or to nearest in a lattice. O is half the side plus or minus the
+    // eye's position. One extra bit below the lowest bit of these sums adds the 1 of the two's complement.
     logic [10:0] t_high_1;
     logic [2:0][exit_pkg::POINT_BITS-1:0] point_5;
 
@@ -301,7 +304,7 @@ module exit_lane #(
     delay #(.WIDTH(5), .CLOCKS(7)) choice_waits (.clk, .enable(1'b1), .in({there_12, choice_12}), .out({there_19, choice_19}));
     delay #(.WIDTH(5), .CLOCKS(9)) ends_wait (.clk, .enable(1'b1), .in({above_12, hit_12, gone_12}), .out({above_21, hit_21, gone_21}));
 
-    // Spheres of a lattice. Each axis has a memory of its own for its speed, as the axes follow each other.
+    // Spheres of a lattice. Each axis has its own memory for its component of D, because the axes are processed in successive clocks.
     if (LATTICE) begin : lattice
         (* ram_style = "distributed" *) logic [exit_pkg::SPEED_BITS-1:0]          speeds_x  [0:2**SLOT_BITS-1];
         (* ram_style = "distributed" *) logic [exit_pkg::SPEED_BITS-1:0]          speeds_y  [0:2**SLOT_BITS-1];
@@ -351,7 +354,8 @@ module exit_lane #(
         wire _unused = &{1'b0, in_ray.length, in_ray.inverse_square, over_6};
     end
 
-    // The fourth slab of an octahedron. The point along its axis is the sum of the three others, from their centres, and with their signs.
+    // The fourth slab of an octahedron. The point's coordinate along its axis is the signed sum of the other three coordinates, relative
+    // to the centre.
     if (OCTAHEDRON) begin : diagonals
         (* ram_style = "distributed" *) logic down_sums [0:2**SLOT_BITS-1];
 
@@ -377,8 +381,8 @@ module exit_lane #(
         wire _unused = &{1'b0, in_ray.down_sum};
     end
 
-    // The intervals that a ray has reached. Those of a point without a crossed plane need no memory: the ray's later points are not below
-    // it. Only sponges of more than four levels have all digits.
+    // The intervals that a ray has reached. An interval is only stored when the ray crosses a plane: the points of later evaluations are
+    // not below earlier points, and give at least the same interval. Only sponges of more than four levels use all digits.
     localparam int unsigned UNUSED    = LEVELS > 4 ? 0 : 4;
     localparam int unsigned USED_BITS = exit_pkg::INTERVAL_BITS - UNUSED;
 
@@ -419,7 +423,7 @@ module exit_lane #(
         .clk, .exits(exit_19), .there(there_19), .choice(choice_19), .t(exit_21), .axis(exit_axis_21), .crossed(crossed_21)
     );
 
-    // A ray that has left the solid does not come back, and the limit ends it too. No T in the ring is beyond the limit.
+    // A ray ends when it leaves the solid for good or when its exit is beyond the limit, so no T in the ring exceeds the limit.
     always_ff @(posedge clk) begin
         exit_22      <= exit_21[exit_pkg::T_BITS-1:0];
         exit_axis_22 <= exit_axis_21;
@@ -431,7 +435,7 @@ module exit_lane #(
 
     assign finished = over_22 || hit_22 || left_22;
 
-    // At a hit, the ray ends at the plane that it had crossed before this evaluation.
+    // At a hit, the ray ends on the plane that it crossed before this evaluation.
     assign end_in.place     = place_22;
     assign end_in.hit       = hit_22 && !over_22;
     assign end_in.t         = end_t_22;

@@ -2,10 +2,10 @@
 //
 //   whole ─▶ shift until its first bit is 1 ─▶ table of 2^10 entries ─▶ interpolation ─▶ mantissa from 3/4 to below 3/2, exponent
 //
-// `whole` is u0.28, at least 2^-28; that of a magnitude of 27 bits ends with a 1, the middle of its interval. The table takes the first 25
-// bits from the first 1. The mantissa has 22 fraction bits, rounded to nearest. An entry of the table has the value at the end of its
-// interval and the decrease over the interval; values are reduced by half of the largest error of the interpolation, so that errors have both
-// signs. Latency 10 clocks with `enable`, throughput one per clock, no handshake.
+// `whole` is u0.28, at least 2^-28. A caller with a magnitude of 27 bits appends a 1 bit, because the magnitude stands for the middle of an
+// interval. The 25 bits from the highest 1 of `whole` on are used. The mantissa has 22 fraction bits, rounded to nearest. An entry of the
+// table contains the value at the end of its interval and the decrease over the interval. Values are reduced by half of the largest
+// interpolation error, so that errors have both signs. Latency 10 clocks with `enable`, throughput one per clock, no handshake.
 
 `default_nettype none
 
@@ -16,8 +16,8 @@ module exit_mantissa (
     output logic [22:0] mantissa,
     output logic [4:0]  exponent
 );
-    // The suffix of a name is the number of clocks after the number. The shift is 8 times a number, plus twice a number, plus a bit, so
-    // that these are the bits of its sum.
+    // The suffix of a name is the number of clocks after the input. The shift is done in steps of 8 (`eights`), of 2 (`twos`) and of 1
+    // bit; the numbers of these steps side by side are the bits of the total shift, `lead`.
     logic [27:0] whole_1, whole_2;
     logic [24:0] whole_3;
     logic [1:0]  eights_0, twos_1;
@@ -43,8 +43,8 @@ module exit_mantissa (
         lead_3   <= {lead_2, !whole_2[27]};
     end
 
-    // The value at the end of interval i is 2^34/(1025 + i), with 24 bits. Its first bit is 1; its second bit, 1 up to i = 340, follows from
-    // the index, so that an entry has the width of the block RAM.
+    // The value at the end of interval i is 2^34/(1025 + i), with 24 bits. Its highest bit is always 1, and its second bit is 1 for i up to
+    // 340. Both are therefore not stored, so that an entry fits the width of the block RAM.
     localparam int unsigned LAST_HIGH = 340;
 
     (* ram_style = "block" *) logic [35:0] entries [0:1023];
@@ -54,7 +54,7 @@ module exit_mantissa (
         quotient = 25'((64'd17179869184 + 64'(divisor / 2)) / 64'(divisor));
     endfunction
 
-    // Returns half of the largest error of the interpolation in interval i, 2/(1 + i/2^10)^3 units, rounded to nearest.
+    // Returns half of the largest interpolation error in interval i: 2/(1 + i/2^10)^3 units of the table, rounded to nearest.
     function automatic logic [24:0] excess(input int unsigned i);
         excess = i <= 103 ? 25'd2 : 25'(i <= 601);
     endfunction
@@ -72,7 +72,7 @@ module exit_mantissa (
     always_ff @(posedge clk) if (enable) begin
         fall_4  <= entries[whole_3[23:14]];
         fall_5  <= fall_4;
-        // The part of the interval after the number.
+        // The distance from the input to the end of the interval.
         left_4  <= 15'd16384 - {1'b0, whole_3[13:0]};
         left_5  <= left_4;
 
@@ -98,7 +98,7 @@ module exit_mantissa (
 
     delay #(.WIDTH(5), .CLOCKS(6)) lead_waits (.clk, .enable, .in(lead_3), .out(lead_9));
 
-    // A value below 3/4 is doubled.
+    // A value below 3/4 is doubled, and the exponent changes by 1.
     always_ff @(posedge clk) if (enable) begin
         low_9    <= low_8;
         half_9   <= (low_8 ? value_8 : {1'b0, value_8[24:1]}) + 25'd1;

@@ -3,7 +3,7 @@
 //
 //   distance, factor ─▶ distance·factor ─▶ shift by the scale ─▶ T
 //
-// `distance` is u12.12 with a 0 before it, at least 0. T is rounded down. Latency 5 clocks, throughput one per clock, no handshake.
+// `distance` is u12.12 with a 0 as its highest bit. T is rounded down. Latency 5 clocks, throughput one per clock, no handshake.
 
 `default_nettype none
 

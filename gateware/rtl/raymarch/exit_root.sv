@@ -1,9 +1,9 @@
-// Computes a lower bound of the square root of a number, too small by at most a relative 2^-18 (docs/raymarch-exits.md).
+// Computes a lower bound of the square root of a number, with a relative error of at most 2^-18 (docs/raymarch-exits.md).
 //
 //   square ─▶ shift by an even number of bits until one of the two highest is 1 ─▶ root_table, interpolated ─▶ shift back ─▶ root
 //
-// `square` is an integer; 0 counts as 1. `root` is that of square·2^14, rounded down. Latency 9 clocks, throughput one per clock, no
-// handshake.
+// `square` is an integer; 0 is replaced by 1. `root` is the square root of square·2^14, rounded down. Latency 9 clocks, throughput
+// one per clock, no handshake.
 
 `default_nettype none
 
@@ -12,8 +12,8 @@ module exit_root (
     input  wire  [31:0] square,
     output logic [22:0] root
 );
-    // The suffix of a name is the number of clocks after the square. The number of shifted pairs of bits is four times a number, plus a
-    // number.
+    // The suffix of a name is the number of clocks after the square. The shift is done in two steps: by four pairs of bits at a time,
+    // then by single pairs.
     logic [31:0] coarse_1;
     logic [25:0] fine_2;
     logic [1:0]  eights_0, eights_1, twos_1, ones_8;

@@ -1,16 +1,17 @@
-// Finds out which hits on faces are in the shadow of the first light (docs/raymarch-exits.md, "Shadows").
+// Determines which hits on faces are in the shadow of the first light (docs/raymarch-exits.md, "Shadows").
 //
 //         ┌─ hit on a face that the light shines on ─▶ origin ─▶ exit_lane ─┐
 //   ends ─┤                                                                 ├─▶ ends
 //         └─ any other end ─▶ skid_buffer ──────────────────────────────────┘
 //
-// A hit of the first kind is followed by a ray from the face to the light. The hit is in the shadow if this ray hits the solid. `height` of
-// the end of a hit is then 1, and of any other hit 0. Ends may overtake each other. A light far away gives all rays one direction, so speed
-// and reciprocals are constants of the frame.
+// For a hit on a face that the light shines on, a second ray is sent from the face to the light. The hit is in the shadow if this ray hits
+// the solid. The field `height` of a hit in the shadow becomes 1, of any other hit 0. Ends may overtake each other. The light is infinitely
+// far away, so all rays to it have the same direction, and the magnitudes of its components and their reciprocals are constants of the
+// frame.
 //
-// The face's plane is at a multiple of 2^9 units of 2^-12 from the solid's lower corner: the hit, whose coordinate is rounded, is moved onto
-// this plane, so that the ray starts in the empty interval before the face. In repeated solids the origin is moved to the equivalent
-// position in the middle cell.
+// The distance of the face's plane from the solid's lower corner is a multiple of 2^9 units of 2^-12. The hit has rounded coordinates and
+// is therefore moved onto this plane, so that the ray starts in the empty interval before the face. In repeated solids the origin is moved
+// to the equivalent position in the middle cell.
 //
 // Throughput one end per clock, and one evaluation per clock; latency 2 clocks without a ray to the light. Streams are valid/ready. Parameters
 // hold while ends are inside. `rst` discards all ends.
@@ -39,7 +40,7 @@ module exit_shadow #(
     output logic                                       evaluates,
     output logic                                       waits
 );
-    // The direction to the light, and whether the solid is repeated; registered, as they have many loads.
+    // The direction to the light, and whether the solid is repeated; registered, because these signals have many loads.
     exit_pkg::ray_t ray;
     logic [2:0]     down;
     logic           is_repeated, enable;
@@ -82,7 +83,7 @@ module exit_shadow #(
     assign wants    = enable && in_end.hit && !in_end.round && in_end.axis != 2'd3 && in_end.positive != down[in_end.axis];
     assign in_ready = wants ? lane_ready : pass_ready;
 
-    // The origin of this ray, from the solid's centre.
+    // The origin of this ray, relative to the solid's centre.
     logic [2:0][exit_pkg::PLANE_BITS-1:0] origin;
 
     for (genvar i = 0; i < 3; i++) begin : axes
@@ -121,7 +122,7 @@ module exit_shadow #(
         .out_valid(passed_valid), .out_ready(out_ready && !is_found), .out_data(kept)
     );
 
-    // Ends of rays to the light go first, but an end that waits to be taken stays.
+    // Ends of rays to the light have priority, but an end that is already offered at the output stays there until it is taken.
     logic is_found, was_found, stays;
 
     assign is_found  = stays ? was_found : found_valid;

@@ -1,17 +1,18 @@
-// Finds out whether a ray in the box about a sphere of a lattice meets the sphere (docs/raymarch-exits.md, "Spheres of a lattice").
+// Tests whether a ray in the box around a sphere of a lattice meets the sphere (docs/raymarch-exits.md, "Spheres of a lattice").
 //
 //   point ─▶ q ─┬─▶ |q|² - r² ─▶ ·|D|² ─┐
 //               └─▶ q·D ─▶ square ──────┴─▶ - ─▶ square of the root
 //
-// The point is given from the lower corner of the box of cell 0, with D along mirrored axes, and q is the point from the centre of the box in
-// its cell. `over_1` is high where a coordinate, within its cell, is above the box: rounding has then placed the point before the box, and it
-// counts as on the box. `half` is the radius. `speed`, the magnitudes of D, and `length` are those of exit_pkg::ray_t.
+// The point is relative to the lower corner of the box in cell 0, along the mirrored axes of the ray; q is the point relative to the centre
+// of the box in its cell. `over_1` is high for an axis along which the point, within its cell, is above the box: rounding has then placed
+// the point before the next box, and its coordinate is replaced by that of the border of the box. `half` is the radius. `speed` (the
+// magnitudes of D's components) and `length` are fields of exit_pkg::ray_t.
 //
-// `meets` is high if the ray meets the sphere: it `starts` in the sphere, or the equation has solutions in its direction. `along` and `rest`
-// are those of exit_pkg::equation_t.
+// `meets` is high if the ray meets the sphere: the point is in the sphere (`starts`), or the equation has solutions in the ray's direction.
+// `along` and `rest` are fields of exit_pkg::equation_t.
 //
-// The suffix of a name is the number of clocks after the point: the axes follow each other. Latency 8 clocks to `along`, 11 clocks to `rest`
-// and `starts`, 12 clocks to `meets`; throughput one point per clock, no handshake. `half` must hold.
+// The suffix of a name is the number of clocks after the point; the three axes are processed in successive clocks. Latency 8 clocks to
+// `along`, 11 clocks to `rest` and `starts`, 12 clocks to `meets`; throughput one point per clock, no handshake. `half` must hold.
 
 `default_nettype none
 
@@ -34,8 +35,8 @@ module exit_sphere (
     logic signed [17:0] offset_2, y_3, z_3, z_4;
     logic signed [18:0] left_2, left_3, left_4;
 
-    // The first square less r² is the product of the distances from both borders of the box, x + r and x - r. The first of them has 18 bits
-    // without half a period.
+    // The first square minus r² is computed as (x + r)·(x - r), the product of the distances from both borders of the box. The factor x + r
+    // fits 18 bits after half a period is subtracted from it; the addend compensates for this.
     always_ff @(posedge clk) begin
         for (int i = 0; i < 3; i++) begin
             place_1[i] <= point[i][17:0];
@@ -73,7 +74,7 @@ module exit_sphere (
             2'd3: along_8 <= along_7[40:19];
         endcase
 
-    // The square of the root with the other sign, 26 fraction bits.
+    // The negated number whose root is to be computed, with 26 fraction bits.
     multiply_add #(.BITS(43)) part (
         .clk, .enable(1'b1), .a({1'b0, beyond_7[34:11]}), .b({1'b0, length_7.square}), .c('0), .p(product_10)
     );

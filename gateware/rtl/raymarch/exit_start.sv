@@ -1,17 +1,17 @@
-// Makes rays that leave empty prisms, and lets them leave the prism around the eye (docs/raymarch-exits.md, "Principle").
+// Generates rays by exits, each already at its exit from the empty prism around the eye (docs/raymarch-exits.md, "Principle").
 //
-//   D ─┬─▶ signs, magnitudes ─▶ exit_reciprocal for each axis ─▶ exit_quotient ─▶ exit_choice ─▶ largest of the exit and the near plane
+//   D ─┬─▶ signs, magnitudes ─▶ exit_reciprocal for each axis ─▶ exit_quotient ─▶ exit_choice ─▶ larger of the exit and the near plane
 //      └─▶ sky_height
 //
-// With OCTAHEDRON, in a frame with `diagonals` the axes are three diagonals of an octahedron, and a fourth axis is their sum. A ray is in its
-// slab too when it leaves the prism, by the last of all exits.
+// With OCTAHEDRON, in a frame with `diagonals`, the axes are three diagonals of an octahedron, and a fourth axis is their sum. A ray leaves
+// the prism by the last of all exits, and has then also entered the slab of the fourth axis.
 //
-// With LATTICE, for spheres of a lattice, a ray also has the square of D's length and its reciprocal.
+// With LATTICE, the square of D's length and its reciprocal are added to each ray, for spheres of a lattice.
 //
-// The prism is a constant of the frame: for each eye, and for each axis as it is and mirrored, the distance of the plane that bounds it,
-// whether there is one, the interval above this plane, whether this interval is above the solid, and whether a ray along the axis leads away
-// from the solid. `choice`, for each eye,
-// is that of exit_borders. An eye that is in no such prism has no planes; its rays start at the near plane.
+// The prism is a constant of the frame. For each eye, and for each axis in both directions, it consists of: the distance of the plane that
+// bounds the prism (`distances`), whether there is such a plane (`there`), the interval above this plane (`nexts`), whether this interval
+// is above the solid (`last`), and whether a ray in this direction leads away from the solid (`away`). `choice`, for each eye, has the
+// meaning of `choice` in exit_borders. For an eye in no such prism there are no planes; its rays start at the near plane.
 //
 // Latency 22 clocks, throughput one ray per clock, no handshake: `in_valid` travels with the ray. The constants must hold.
 
@@ -32,7 +32,7 @@ module exit_start #(
     input  wire  [1:0][1:0][2:0]                                  away,
     input  wire  [1:0][1:0][2:0]                                  last,
     input  wire  [1:0][1:0][2:0][exit_pkg::INTERVAL_BITS-1:0]     nexts,
-    // Used with OCTAHEDRON: whether the solid is one, and the constants of its fourth axis.
+    // Used with OCTAHEDRON: whether the solid is an octahedron, and the constants of its fourth axis.
     input  wire                                                   diagonals,
     input  wire  [1:0][1:0][exit_pkg::PLANE_BITS-1:0]            sum_distances,
     input  wire  [1:0][1:0]                                       sum_there,
@@ -109,7 +109,7 @@ module exit_start #(
         .clk, .exits(exit_18), .there(there_18), .choice(eye_18 ? choice[1] : choice[0]), .t(exit_20), .axis(axis_20), .crossed(crossed_20)
     );
 
-    // A ray that leads away, has left the solid, or leaves the prism beyond the far limit misses without an evaluation.
+    // A ray is a miss without an evaluation if it leads away from the solid, has left the solid, or leaves the prism beyond the far limit.
     logic [exit_pkg::T_BITS-1:0] exit_21, start_22;
     logic [1:0] axis_21, axis_22;
     logic [2:0][exit_pkg::INTERVAL_BITS-1:0] reached_21, reached_22;
@@ -135,7 +135,8 @@ module exit_start #(
         over_22    <= away_21 != '0 || beyond_21 || above_21 != '0 || sum_away_21;
     end
 
-    // The last exit and its axis, and the direction for the sky. Of equal exits, that of the fourth axis is the last one.
+    // The last exit and its axis, and the direction for the sky. If the exit of the fourth axis equals another exit, the
+    // exit of the fourth axis counts as the later one.
     logic            sky_down_1;
     logic [2:0][9:0] part_1;
     logic [7:0]      height_10, height_22;
@@ -152,8 +153,8 @@ module exit_start #(
 
         assign {z_0, y_0, x_0} = in_direction;
 
-        // The three halves of the components make the sum of three integers smaller by one than that of the middles. The sum of two
-        // diagonals is half a component along an axis.
+        // An integer k stands for k + 1/2. The three halves add up to 3/2, so the integer of the sum is the sum of the integers
+        // plus 1. The sum of the components along two diagonals is half the component along an axis.
         always_ff @(posedge clk) begin
             sum_1       <= 29'(x_0) + 29'(y_0) + 29'sd1;
             z_1         <= z_0;
@@ -215,7 +216,7 @@ module exit_start #(
     sky_height sky (.clk, .magnitude(part_1), .down(sky_down_1), .height(height_10));
     delay #(.WIDTH(8), .CLOCKS(12)) height_waits (.clk, .enable(1'b1), .in(height_10), .out(height_22));
 
-    // The square of D's length: D is doubled until its length is from 1 to 2.
+    // The square of D's length, after D is doubled until its length is at least 1 and below 2.
     exit_pkg::length_t         length_22;
     exit_pkg::inverse_square_t inverse_square_22;
 
@@ -238,7 +239,7 @@ module exit_start #(
             y_2         <= speed_1[1];
             z_2         <= speed_1[2];
             z_3         <= z_2;
-            // Of 40 fraction bits; with the doublings, 23 are left.
+            // `square_6` has 40 fraction bits. `square_8`, after the doublings, has 23.
             square_7    <= square_6[41:0];
             doublings_7 <= square_6[41:40] != '0 ? 2'd0 : square_6[39:38] != '0 ? 2'd1 : square_6[37:36] != '0 ? 2'd2 : 2'd3;
             unique case (doublings_7)
@@ -248,7 +249,7 @@ module exit_start #(
                 2'd3: square_8 <= square_7[35:11];
             endcase
             doublings_8 <= doublings_7;
-            // Rounded to nearest, but below 4.
+            // Rounded to nearest, and saturated below 4.
             short_9     <= square_8[24:8] + 17'(square_8[7] && square_8[24:8] != '1);
             doublings_9 <= doublings_8;
             inverse_19  <= {3'(exponent_18[1:0]) + 3'(doublings_18), mantissa_18[21:4]};

@@ -8,10 +8,10 @@
 // exchanging coordinates. The low bits therefore bypass these levels, which only need the order of the low bits in each pair of
 // coordinates. Further levels get all bits.
 //
-// With BOX the last stage is field_box, and the module also computes the distance to a box: a sponge without levels in use.
+// With BOX the last stage is field_box, and the module also computes the distance to a box, which is a sponge with no level in use.
 //
 // Latency 3 * LEVELS + 3 clocks, throughput one point per clock, no handshake. `levels` has a bit for each level in use, the
-// first level in bit 0; `half` is half the side of the smallest solid cubes along each axis, of a box half its side. The parameters must
+// first level in bit 0; `half` is half the side, along each axis, of the smallest solid cubes of a sponge, or of a box. The parameters must
 // hold.
 
 `default_nettype none
@@ -33,7 +33,7 @@ module field_menger #(
     // Whether the low bits bypass all levels, up to menger_cube.
     localparam bit          APART = LEVELS == SPLIT && !BOX;
 
-    // Coordinates between the levels; between the first SPLIT levels without their low bits.
+    // Coordinates between the levels. Between the first SPLIT levels they do not include the low bits.
     logic [LEVELS:0][2:0][21:0]   points;
     logic [LEVELS-1:0][2:0][21:0] entering;
     logic [LEVELS:0][2:0][2:0]    grows;

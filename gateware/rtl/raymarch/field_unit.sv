@@ -2,10 +2,10 @@
 //
 // Latency raymarch_pkg::field_clocks(LEVELS), throughput one point per clock, no handshake. `solid` must hold during a frame.
 //
-// Spheres are evaluated one after the other, one in each pass of a point. `pass` is the number of the sphere, and must arrive one clock
-// before the point. `so_far` is the nearest sphere in the earlier passes of the point; `nearest` also includes the sphere of this pass. The
-// distance is valid in the last pass. `surface` is the number of the nearest sphere, `face` the surface of the flat field, and `share` the
-// weight of the sphere's colour.
+// Spheres are evaluated one after the other: a point passes through the unit once for each sphere. `pass` is the number of the sphere, and
+// must arrive one clock before the point. `so_far` is the nearest sphere in the earlier passes of the point; `nearest` also includes the
+// sphere of this pass. The distance is valid in the last pass. `surface` is the number of the nearest sphere, `face` the surface of the
+// flat field, and `share` the weight of the sphere's colour.
 
 `default_nettype none
 

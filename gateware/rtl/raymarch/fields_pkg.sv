@@ -6,7 +6,8 @@
 package fields_pkg;
     // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // All fields, those whose faces are perpendicular to the diagonals, and those that fillets join with spheres.
+    // Masks of all fields, of fields with faces perpendicular to the diagonals, and of fields that fillets can join with
+    // spheres.
     localparam int unsigned ALL = 7;
     localparam int unsigned OCTANTS = 4;
     localparam int unsigned MARCHED = 3;

@@ -3,9 +3,9 @@
 //   ray_pixels ─▶ exit_start ─▶ FIFO ─┬─▶ rays
 //                       sphere_unit ──┘
 //
-// Bands, lines and eyes follow each other as in ray_pixels. With ROUND, sphere_unit finds the first sphere of each ray by exits. A ray that
-// starts beyond its sphere hits no flat solid (`over`). With MARCH there are also frames of marching rays, while `exits` is low: of these only
-// `place`, `start`, `over`, `height`, `down` and `speed` have a meaning.
+// The order of bands, lines and eyes is that of ray_pixels. With ROUND, sphere_unit finds the first sphere that each ray by exits meets. A
+// ray that starts beyond its sphere hits no flat solid (`over`). With MARCH there are also frames of marching rays, in which `exits` is
+// low. Only the fields `place`, `start`, `over`, `height`, `down` and `speed` of a marching ray have a meaning.
 //
 // The pipelines cannot be stopped: valid bits travel with the rays, and credit_fifo at their end limits the number of rays inside. Without
 // a credit, only D and the position counters stop.
@@ -20,11 +20,11 @@ module ray_generator #(
     parameter bit MARCH  = 1'b0,
     parameter bit ROUND  = 1'b0,
     parameter bit STEREO = 1'b1,
-    // Whether rays by exits have the square of D's length.
+    // Whether rays by exits include the square of D's length.
     parameter bit LATTICE = 1'b0,
     // Whether rays by exits may have the fourth axis of an octahedron.
     parameter bit OCTAHEDRON = 1'b0,
-    // Whether there may be a solid cone, in a build with spheres of a list.
+    // Whether the list may include a solid cone. Requires ROUND.
     parameter bit CONE = 1'b0,
     // Depth of the FIFO of rays after the pipeline.
     parameter int unsigned PLACES = 32

@@ -24,8 +24,8 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A marching ray before its first step; `height` is that of sky_height. A ray with `over` does not meet the box about the field, and its
-    // `start` has no meaning.
+    // A marching ray before its first step; `height` is the result of sky_height. A ray with `over` does not meet the box around the field,
+    // and its `start` has no meaning.
     typedef struct packed {
         logic                           over;
         logic [T_BITS-1:0]              start;
@@ -36,11 +36,11 @@ package raymarch_pkg;
 
     localparam int unsigned RAY_BITS = 1 + T_BITS + PLACE_BITS + 8 + 3 * DIRECTION_BITS;
 
-    // The state of an end; a hit on a face that is SHADED is in the shadow of the first light. The lowest bit is 1 for hits.
+    // The state of an end. SHADED is a hit on a face in the shadow of the first light. The lowest bit is 1 for hits.
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2, SHADED = 2'd3} state_t;
 
     // The result of a ray that has ended at T = `t` after `steps` evaluations. `surface` is {axis, positive} of a face, or the number of a
-    // sphere. For a miss, `t` is the height of the sky in 8 bits (sky_height). `round` marks an end on a sphere or a fillet; only the light on
+    // sphere. For a miss, `t` holds the 8-bit result of sky_height. `round` marks an end on a sphere or a fillet; only the light on
     // spheres uses `direction`. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8.
     typedef struct packed {
         logic [2:0]        face;

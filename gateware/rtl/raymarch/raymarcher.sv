@@ -6,8 +6,8 @@
 //                    └─▶ ...  ─┘         └▶ waiting ─┘
 //                                     of the next band
 //
-// In a lane, an exit_lane finds the ends of rays that leave empty prisms; in the first lane, a ring_lane finds those of rays that march by
-// distances. A build has the lanes that its fields need; `exits` selects one kind for the frame.
+// Each lane has an exit_lane, which finds the ends of rays by exits; the first lane also has a ring_lane, which finds the ends of marching
+// rays. A build contains only the kinds of lanes that its fields need; `exits` selects the kind for a frame.
 //
 // `start` (one clock, not while `busy`) begins a frame; its parameters must hold until the frame has ended. The pixels of a
 // band are sent while `band_open` is high, in any order, each pixel once, or with `stereo` once for each eye. `band_done` is
@@ -15,17 +15,17 @@
 // and begins the next one; after the last band it ends the frame.
 //
 // While the last rays of a band are still in the lanes, up to EARLY rays of the next band already enter the lanes. The ends of these early
-// rays wait in a FIFO in block RAM. Slots of the lanes are therefore only empty at the end of the frame, and when the rays at the end of a
+// rays wait in a FIFO in block RAM. The lanes therefore have empty slots only at the end of the frame, or when the rays at the end of a
 // band need very different numbers of evaluations.
 //
-// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Rays by exits meet the spheres of a
-// list in the generator, before they enter a lane; with LATTICE, a lane also finds spheres of a lattice. round_light then precedes
-// ray_paint, and takes one clock per pass for a pixel on a sphere or fillet: with NORMALS one for each axis, then one for each light, and
-// with HIGHLIGHT one for a highlight.
+// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. The generator intersects rays by
+// exits with the spheres of a list, before the rays enter a lane; with LATTICE, a lane also finds hits on spheres of a lattice.
+// round_light then precedes ray_paint, and takes one clock per pass for a pixel on a sphere or fillet: with NORMALS one for each axis,
+// then one for each light, and with HIGHLIGHT one for a highlight.
 //
-// Each lane makes one evaluation of the field per clock, for marching rays the first lane alone.
-// `restart` and reset cancel the frame. Groups are a valid/ready stream,
-// whose payload holds until the transfer. `events` holds the increment of each counter in this clock.
+// Each lane makes one evaluation of the field per clock; marching rays use only the first lane.
+// `restart` and reset cancel the frame. Groups are a valid/ready stream, whose payload holds until
+// the transfer. `events` holds the increment of each counter in this clock.
 
 `default_nettype none
 
@@ -60,7 +60,8 @@ module raymarcher #(
     input  wire  [exit_pkg::T_BITS-1:0] far_limit,
     // Positions of both eyes.
     input  wire  [1:0][2:0][24:0]     origins,
-    // Exits: the solid (exit_pkg::solid_t); and for both eyes, for each axis as it is and mirrored, the prism around the eye (exit_start).
+    // Rays by exits: the solid (exit_pkg::solid_t), and for both eyes and both directions along each axis the prism around the eye
+    // (exit_start).
     input  wire  [1:0]                rule,
     input  wire  [2:0]                levels,
     input  wire  [2:0][exit_pkg::HALF_BITS-1:0]               halves,
@@ -75,7 +76,7 @@ module raymarcher #(
     input  wire  [1:0][1:0][exit_pkg::PLANE_BITS-1:0]        sum_distances,
     input  wire  [1:0][1:0]           sum_there,
     input  wire  [1:0][1:0]           sum_away,
-    // Marching rays: the box about the field (docs/formats/raymarch.md, "Marching rays").
+    // Marching rays: the box around the field (docs/formats/raymarch.md, "Marching rays").
     input  wire  [2:0][20:0]          bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
     input  wire raymarch_registers_pkg::tuning_t tuning,
@@ -118,7 +119,7 @@ module raymarcher #(
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
-    // Whether the build has solids with empty prisms, octahedra, marching rays, and light on spheres.
+    // Whether the build has rays by exits, octahedra, marching rays, and light on spheres.
     localparam bit          LEAVES     = FIELDS != 0 || LATTICE;
     localparam bit          OCTAHEDRON = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam bit          MARCH      = BLEND && (FIELDS & fields_pkg::MARCHED) != 0;
@@ -224,12 +225,13 @@ module raymarcher #(
             short_direction[axis] = {1'b0, ray.speed[axis][exit_pkg::SPEED_BITS-1 -: exit_pkg::DIRECTION_BITS-1]}
                                     ^ {exit_pkg::DIRECTION_BITS{ray.down[axis]}};
 
-    // The ends of the rays by exits and of the marching rays.
+    // The ends of rays by exits, and of marching rays.
     logic [LANES-1:0][exit_pkg::END_BITS-1:0]      found;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0]  ring_end;
     logic [LANES-1:0]                              exit_valid, exit_taken, ring_valid, ring_taken;
 
-    // The eyes in a repeated solid: only the position in the cell about the origin counts for the solid, but not for the spheres of a list.
+    // The positions of the eyes relative to the solid. For a repeated solid this is the equivalent position in the cell around the origin.
+    // The spheres of a list use the positions in the world.
     logic [1:0][2:0][exit_pkg::PLANE_BITS-1:0] places;
 
     if (ROUND && ((FIELDS & fields_pkg::BOX) != 0 || LATTICE)) begin : cells
@@ -291,8 +293,8 @@ module raymarcher #(
         end
 
         if (MARCH && i == 0) begin : marching
-            // Fields with fillets march, in a single lane: it is larger than a lane by exits. Its ring holds enough rays to keep it busy when
-            // rays with one evaluation follow rays with many.
+            // Rays of fields with fillets march, in one lane only, because a ring_lane is larger than an exit_lane. The ring holds enough
+            // rays to keep the lane busy when rays with one evaluation follow rays with many.
             raymarch_pkg::end_t ending;
 
             assign ring_end[i] = ending;
@@ -379,7 +381,7 @@ module raymarcher #(
             exit_end.round   = 1'b0;
         end
         exit_end.direction = landed.direction;
-        // A pure sphere.
+        // An end on a sphere has the colour of the sphere only; fillets are drawn by marching rays.
         exit_end.share     = '1;
     end
 

@@ -14,7 +14,8 @@
 // A ray needs one round for each sphere, and its T does not change before the last of these rounds. The slot of the ray also stores the
 // nearest of the spheres evaluated so far.
 //
-// `pace` is a lower bound of 1/|D|, from a table: the index is |D|^2, from the first six bits of each component, rounded up.
+// `pace` is a lower bound of 1/|D|, from a table. The index of the table is |D|^2, computed from the highest six bits of
+// each component, rounded up.
 //
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready comes directly from
 // registers. Parameters hold while rays are in the ring. `rst` discards all rays.
@@ -26,7 +27,7 @@ module ring_lane #(
     parameter int unsigned LEVELS = 4,
     parameter bit          BOXES  = 1'b1,
     parameter bit          STEREO = 1'b1,
-    // Latency of the field, which only proofs change.
+    // Latency of field_unit in clocks; only proofs override this value.
     parameter int unsigned FIELD_CLOCKS = raymarch_pkg::field_clocks(LEVELS),
     // Depth of the FIFO of ends. The depth exceeds the number of slots, because some slots would otherwise stay empty.
     parameter int unsigned PLACES = 64
@@ -54,7 +55,7 @@ module ring_lane #(
     output logic                     evaluates,
     output logic                     waits
 );
-    // Pipeline stages, counted from the slot: that in which the distance is valid, and the last one.
+    // Numbers of pipeline stages, counted from the first stage of the ring: the stage in which the distance is valid, and the last stage.
     localparam int unsigned DISTANCE   = 4 + FIELD_CLOCKS;
     localparam int unsigned LAST       = DISTANCE + 4;
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
@@ -64,7 +65,7 @@ module ring_lane #(
     localparam int unsigned SLOTS      = LAST + 1;
     localparam int unsigned SLOT_BITS  = $clog2(SLOTS);
 
-    // What stays of a ray in the ring.
+    // The fields of a ray that are stored while the ray is in the ring.
     typedef struct packed {
         logic                                         over;
         raymarch_pkg::place_t                         place;
@@ -140,9 +141,9 @@ module ring_lane #(
         end
     end
 
-    // The suffix of a name is the number of clocks after the first stage; names without one follow in the clock of the distance. The point
-    // o + T·D is valid in clock 3. The position o of the eye is selected in clock 2, when the product T·D is valid. In clock 4 each coordinate is
-    // saturated to the range of the field.
+    // The suffix of a name is the number of clocks after the first stage; signals without a suffix are valid in the clock of the distance.
+    // The point o + T·D is valid in clock 3. The position o of the eye is selected in clock 2, when the product T·D is valid. In clock 4
+    // each coordinate is saturated to the range of the field.
     logic       eye_2;
     logic [2:0] backwards_3;
     logic [2:0][POINT_BITS-1:0]               point_3;
@@ -176,7 +177,7 @@ module ring_lane #(
         wire _unused = &{1'b0, sum[14:0]};
     end
 
-    // `gone` is high if, along some axis, the point is outside of the box about the field and the ray leads away from the box.
+    // `gone` is high if, along some axis, the point is outside of the box around the field and the ray leads away from the box.
     logic [2:0] leaves_4;
     logic       gone_5, gone_next;
 
@@ -186,8 +187,8 @@ module ring_lane #(
         gone_5 <= leaves_4 != '0;
     end
 
-    // The pace of a ray, u3.14: sqrt(32/(i + 1)) for the index i, which is 32·|D|^2, rounded down, of an upper bound of |D|^2: the sum of the
-    // squares of the first six bits of each component and one more.
+    // The pace of a ray, u3.14: sqrt(32/(i + 1)). The index i is floor(32·s), where s is an upper bound of |D|^2: the sum of the squares
+    // of the components, each rounded up to a multiple of 1/64.
     (* rom_style = "logic" *) logic [16:0] paces [0:127];
     (* rom_style = "logic" *) logic [12:0] squares [0:63];
 
@@ -271,8 +272,8 @@ module ring_lane #(
     end
 
     // Three clocks after the distance (suffix _next): the next T, whether the distance is below the threshold (`near_next`), the ray has left
-    // the box, or the step limit is reached (`late_next`). T advances by distance·pace, rounded up, so that it always changes; in the solid, and
-    // before the last pass, it stays. The bit above T says that the ray is beyond the largest T.
+    // the box, or the step limit is reached (`late_next`). T advances by distance·pace, rounded up, so that each step changes T; inside the
+    // solid and before the last pass, T does not change. The bit above T is set if the ray is beyond the largest T.
     logic                            near_1, late_1, near_next, late_next, beyond;
     logic [raymarch_pkg::T_BITS-1:0] t_2;
     logic signed [raymarch_pkg::T_BITS+17:0] sum_next;

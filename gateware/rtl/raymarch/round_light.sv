@@ -9,12 +9,14 @@
 // - one for each light, if there are any;
 // - with HIGHLIGHT, and if `lights.highlight` is high, one for the highlight, with a power of the cosine in place of the cosine.
 //
-// With CONE, and if `lights.cone` is high, the only surface with light is the lateral face of a solid cone. The centre is its apex, the
-// directions are changed for its normals, those of the axes to `across` and `along`, and the reciprocal is that of the distance below the apex.
+// With CONE, and if `lights.cone` is high, light is only computed for the lateral face of a solid cone. The centre is then the apex of the
+// cone, `lights` contains directions that are adapted to the normals of the cone (`across` and `along` instead of those of the axes), and
+// the reciprocal of the distance below the apex replaces the reciprocal of the radius.
 //
-// With BLEND the colour is interpolated, by `share`, between the colours of the face, from `palette`,
-// and of the sphere. Latency 24 clocks, 12 more with HIGHLIGHT, 4 more with CONE and 4 more with BLEND, plus one clock for each pass after the
-// first. The ends at the output have no direction. Streams are valid/ready. Writes and changes of parameters are only allowed while the pipeline is empty.
+// With BLEND, the colour is interpolated by `share` between the colour of the face, from `palette`, and the colour of the sphere. Latency
+// 24 clocks, 12 more with HIGHLIGHT, 4 more with CONE and 4 more with BLEND, plus one clock for each pass after the first. The ends at the
+// output do not include the direction. Streams are valid/ready. Writes and changes of parameters are only allowed while the pipeline is
+// empty.
 
 `default_nettype none
 
@@ -48,7 +50,7 @@ module round_light #(
     output raymarch_pkg::end_t          out_end,
     output logic [23:0]              out_colour
 );
-    // Clocks that the reciprocal for a cone and the highlight take. The suffixes of names from 15 on leave them out.
+    // Additional clocks for the reciprocal of a cone and for the highlight. Suffixes of names from 15 on do not count these clocks.
     localparam int unsigned CONE_WAIT  = CONE ? 4 : 0;
     localparam int unsigned SHINE_WAIT = HIGHLIGHT ? 12 : 0;
     localparam int unsigned WAIT       = CONE_WAIT + SHINE_WAIT;
@@ -61,7 +63,7 @@ module round_light #(
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
 
-    // An end stays in clock 0 for one clock per pass: the kind of the pass, and its number among those of this kind.
+    // An end stays in clock 0 for one clock per pass. These signals are the kind of the pass, and its number among the passes of this kind.
     typedef enum logic [1:0] {NORMAL, LIGHT, SHINE} kind_t;
 
     logic            enable, held_valid, last_0, last_of_kind_0, has_normals, has_highlight;
@@ -155,7 +157,7 @@ module round_light #(
             2'd3: towards_3 = directions[215:162];
         endcase
         if (HIGHLIGHT && kind_3 == SHINE) towards_3 = lights.half;
-        // The axis with this number, of length 1.
+        // The unit vector of the axis with this number.
         if (NORMALS && kind_3 == NORMAL)
             towards_3 = {1'b0, light_3 == 2'd2, 16'b0, 1'b0, light_3 == 2'd1, 16'b0, 1'b0, light_3 == 2'd0, 16'b0};
         if (CONE && NORMALS && kind_3 == NORMAL && lights.cone)
@@ -222,7 +224,7 @@ module round_light #(
         .clk, .enable, .a(25'($signed(apart_z_6))), .b(towards_z_6), .c(x_y_8), .p(product_9)
     );
 
-    // A component of a normal may be negative: its complement is shifted and multiplied.
+    // For a negative component of a normal, the complement is shifted and multiplied instead.
     logic negative_9, negative_15;
 
     assign negative_9   = NORMALS && kind_9 == NORMAL && product_9[42];
@@ -282,7 +284,7 @@ module round_light #(
         exit_mantissa reciprocal (
             .clk, .enable, .whole({2'b0, below_5, 3'b0}), .mantissa(mantissa_15), .exponent(exponent_15)
         );
-        // A mantissa below 3/4 is doubled: its exponent has the other parity.
+        // If a mantissa below 3/4 has been doubled, the parity of its exponent is inverted.
         assign low_15 = exponent_15[0] == odd_15;
         delay #(.WIDTH(1), .CLOCKS(9)) parity_waits (.clk, .enable, .in(log_6[0]), .out(odd_15));
         delay #(.WIDTH(17), .CLOCKS(3)) inverse_waits (.clk, .enable, .in(inverse_12), .out(inverse_15));
@@ -329,7 +331,7 @@ module round_light #(
         end
 
         delay #(.WIDTH(10), .CLOCKS(SHINE_WAIT)) share_waits (.clk, .enable, .in(share_of_cosine), .out(waited_27));
-        // `kind_14` has waited too.
+        // `kind_14` is delayed by the same number of clocks.
         delay #(.WIDTH(2), .CLOCKS(1)) kind_to_27 (.clk, .enable, .in(kind_14), .out({kind_27}));
         assign share_15 = kind_27 == SHINE ? {1'b0, part_27} : waited_27;
 
@@ -339,7 +341,7 @@ module round_light #(
         wire _unused = &{1'b0, lights.half, lights.steepness, lights.shine, lights.highlight};
     end
 
-    // Share of a component of the normal in its own channel; with two eyes the luminances of the three in all channels.
+    // Contribution of a component of the normal to its own channel; with two eyes, the luminance of this contribution in every channel.
     localparam logic [7:0] SLOPE = 8'd95, MIDDLE = 8'd130;
 
     always_ff @(posedge clk) begin
@@ -371,8 +373,8 @@ module round_light #(
         );
         assign light = sum_18[15:8] | {8{sum_18[25:16] != '0}};
 
-        // The passes of an end follow each other: the light stays for the highlight, and the material's colour for the lights. Without
-        // lights, the ambient light is all.
+        // The passes of an end follow each other. The sum of the lights is kept for the pass of the highlight, and the material's
+        // colour for the passes of the lights. Without lights, the only light is the ambient light.
         always_ff @(posedge clk)
             if (enable && !(HIGHLIGHT && kind_18 == SHINE))
                 light_19 <= NORMALS && kind_18 == NORMAL ? {1'b0, ambient} + 9'(ambient[7]) : {1'b0, light} + 9'(light[7]);

@@ -1,4 +1,4 @@
-// Computes how far up a ray leads: the component of its direction along z, relative to the largest component, u0.8, rounded down
+// Computes the elevation of a ray: the component of its direction along z divided by the largest component, u0.8, rounded down
 // (docs/formats/raymarch.md, "Ends"). The colour of the sky depends on it.
 //
 //   first ten bits of the magnitudes ─▶ largest ─▶ z / (largest + 1), a bit of the quotient per clock
@@ -13,8 +13,8 @@ module sky_height (
     input  wire               down,
     output logic [7:0]        height
 );
-    // The suffix of an array's element is the number of bits of the quotient that are known. The dividend is below the divisor, and so is
-    // each remainder.
+    // The index of an array's element is the number of quotient bits that are computed. The dividend and each remainder are below the
+    // divisor.
     logic [8:0][9:0] rest;
     logic [8:0][9:0] largest;
     logic [8:0][7:0] quotient;

@@ -1,26 +1,27 @@
 // Finds the first sphere of a list that the ray of each pixel of a frame meets (docs/raymarch-exits.md, "Spheres of a list").
 //
-//   groups of 8 columns ─▶ a clock for each cone ─▶ FIFO of masks ─▶ a job for each cone around a pixel
+//   groups of 8 columns ─▶ a clock for each cone ─▶ FIFO of masks ─▶ a job for each cone at a pixel
 //                                                                                    │
 //                                                                                    ▼
 //                                               forward·f, two sides ─▶ f² - a² - b² ─▶ root·share + f ─▶ exit_mantissa
 //                                                                                                              │
 //   meetings ◀─ FIFO ◀─ first of the pixel's cones ◀─ shift ◀─ distance·reciprocal ◀───────────────────────────┘
 //
-// The list of an eye has a cone for each sphere, and one more for each sphere that the near plane cuts. A pixel takes one clock for each
-// cone whose rectangle holds it, and at least one clock. The rectangles have whole groups of 8 columns: the cones of the next group are
-// found while the pixels of a group pass, if there are at most 8.
+// An eye sees each sphere in a cone. The list of an eye has a cone for each sphere, and one more for each sphere that the near plane
+// cuts. Each cone has a bounding rectangle on the screen. A pixel takes one clock for each cone whose rectangle contains it, and at
+// least one clock. Rectangles consist of whole groups of 8 columns: while the pixels of a group pass, the cones of the next group are
+// found without delay if there are at most 8.
 //
-// The pixels of a line come from the left. With `stereo` each line comes first for the left eye, then for the right eye. A ray needs no
-// place of its own to be found: the rays of ray_pixels come in the same order.
+// The pixels of a line are processed from left to right. With `stereo` each line is processed first for the left eye, then for the
+// right eye. The results carry no position, because the rays of ray_pixels have the same order.
 //
-// The three linear functions of a pixel's column and row are computed with multipliers, of which the second side needs only one. Adding
-// `across` from pixel to pixel would need two sums of up to 46 bits for each function and cone, in LUT memory: some 600 LUTs in place of
-// five multipliers, and no pixel could be skipped.
+// Multipliers compute three linear functions of a pixel's column and row: two each for the forward function and side a, one for side b.
+// Adding `across` from pixel to pixel would instead need two sums of up to 46 bits for each function and cone, in LUT memory: some 600
+// LUTs instead of five multipliers, and no pixel could be skipped.
 //
-// `start` (one clock) begins the frame, after the last meeting of the frame before it has left. A ray that meets no sphere up to the far
-// limit has the far limit as its T. The output is a valid/ready stream: each item moves in a clock in which both are high, and payloads
-// stay until then.
+// `start` (one clock) begins the frame, and is allowed when the last meeting of the previous frame has left. The T of a ray that meets
+// no sphere up to the far limit is the far limit. The output is a valid/ready stream: each item moves in a clock in which both are high,
+// and payloads stay until then.
 //
 // The constants of the cones are written one at a time, in clocks with `write`, between frames. `address` is {eye, number of
 // the cone, constant}. All numbers start at bit 0 of `value`, in this order:
@@ -34,18 +35,20 @@
 //   6   down of the forward function                                      14   number of the sphere, 3 bits, and half the shift of
 //   7   first of side a, the 32 lowest bits                                    the sides' changes, 2 bits
 //
-// With CONE there may also be a solid cone. The kind of an entry of the list is in bits 5 to 7 of constant 14, and constant 15 is `across` of
-// side b. An entry of the kind
-// - SPHERE is a sphere or its disc;
-// - BASE is the plane of the solid cone's base, for an eye below it: the ray meets the base as a disc, and other faces behind the plane;
-// - LIMIT is the same plane for an eye above it: the ray meets other faces before the plane;
-// - LATERAL is the lateral face: side b is the divisor's addend in place of the forward function, and its square is left out;
-// - AROUND is the lateral face, for an eye that sees it all around: the root is that of the sum of the sides' squares, and is subtracted;
-// - SECTION is the section by the near plane, which the ray meets at the near plane.
+// With CONE, the list may also include a solid cone. Bits 5 to 7 of constant 14 are the kind of a list entry, and constant 15 is `across`
+// of side b. The kinds are:
+// - SPHERE: a sphere, or its section by the near plane;
+// - BASE: the plane of the solid cone's base, for an eye below this plane: the ray meets the base as a disc, and other faces behind the
+//   plane;
+// - LIMIT: the same plane, for an eye above it: the ray meets other faces before the plane;
+// - LATERAL: the lateral face: side b replaces the forward function as the divisor's addend, and the square of side b is left out;
+// - AROUND: the lateral face, for an eye above the apex that sees it all around: the root of the sum of the sides' squares is subtracted;
+// - SECTION: the section of the cone by the near plane, which the ray meets at the near plane.
 // The entry with the plane precedes those of the other faces.
 //
-// `across` and `down` have 25 bits with a sign. `last_cone` has the number of the last cone of each eye; an eye without cones has one with a
-// first column above the last. Rounding is that of the model. The other parameters must hold until the frame has ended.
+// `across` and `down` have 25 bits with a sign. `last_cone` has the number of the last cone of each eye; an eye without cones has one entry
+// whose first column is above its last column. Results are rounded as in the model. The other parameters must hold until the frame has
+// ended.
 //
 // Latency 58 clocks for the first pixel of a group, if there are 8 cones. `rst` ends the frame.
 
@@ -131,8 +134,8 @@ module sphere_unit #(
         end
     end
 
-    // The next group of the frame. Its walk through the cones, from the last to the first, begins when that of the group before ends and
-    // the FIFO of masks has an entry for it.
+    // The next group of the frame. The walk through its cones, from the last cone to the first, begins when the walk of the previous
+    // group ends and the FIFO of masks has a free entry.
     logic                  more, begins, room, walking, walked, fresh, done, holds, ends_line, ends_row;
     logic                  next_eye;
     logic [9:0]            next_row;
@@ -184,7 +187,7 @@ module sphere_unit #(
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
-    // The pixel whose jobs are sent, and the cones that are left, of which the first comes next.
+    // The pixel whose jobs are sent, and the mask of its remaining cones; the cone with the lowest number is next.
     logic                  busy, credit, job_ends, sends, pixel_ends, group_ends;
     logic [GROUP_BITS-1:0] now;
     logic [2:0]            column;
@@ -272,7 +275,7 @@ module sphere_unit #(
     );
     multiply_add #(.BITS(48)) f_of_row (.clk, .enable(1'b1), .a(down_f[entry_4]), .b({8'd0, row_4}), .c(f_6), .p(f_7));
 
-    // The kind of the entry, and the column's part of side b, which has none without a solid cone.
+    // The kind of the entry, and the contribution of the column to side b, which is 0 without a solid cone.
     kind_t kind_6, kind_7, kind_10, kind_19, kind_38;
 
     if (CONE) begin : solid_cone
@@ -302,7 +305,7 @@ module sphere_unit #(
         wire _unused = &{1'b0, kind_6, kind_7, kind_10, kind_19, kind_38};
     end
 
-    // A side of 2 or more is outside of the cone, and so is a pixel with a negative forward function.
+    // A pixel is outside of the cone if the magnitude of a side is 2 or more, or if the forward function is negative.
     logic over_6, over_7, out_8, out_10;
 
     always_ff @(posedge clk) begin
@@ -312,7 +315,7 @@ module sphere_unit #(
     end
     delay #(.WIDTH(1), .CLOCKS(2)) out_waits (.clk, .enable(1'b1), .in(out_8), .out(out_10));
 
-    // The square of the root, with 38 fraction bits and the other sign.
+    // The negated number whose root is to be computed, with 38 fraction bits.
     logic signed [42:0] square_8, square_9, square_10;
 
     square_add square_a (.clk, .x(a_5[31:8]), .c('0), .p(square_8));
@@ -324,7 +327,7 @@ module sphere_unit #(
     logic [22:0] root_19;
     logic        hit_11, hit_38;
 
-    // All but spheres are met at any smaller square; AROUND, also at 0.
+    // A smaller square is a miss for spheres only. Entries of the other kinds are met at any square above 0, and AROUND also at 0.
     logic around_10, meets_10;
 
     assign around_10 = CONE && kind_10 == AROUND;
@@ -336,7 +339,7 @@ module sphere_unit #(
     exit_root rooting (.clk, .square(rest_10), .root(root_19));
     delay #(.WIDTH(1), .CLOCKS(27)) hit_waits (.clk, .enable(1'b1), .in(hit_11), .out(hit_38));
 
-    // The divisor, u2.22, and its reciprocal. It is rounded up, because the root is rounded down.
+    // The divisor, u2.22, and its reciprocal. The divisor is rounded up, because the root is rounded down.
     logic [23:0]                      f_21;
     logic signed [43:0]               divisor_22;
     logic [22:0]                      mantissa_32;
@@ -370,7 +373,7 @@ module sphere_unit #(
     );
     exit_mantissa reciprocal (.clk, .enable(1'b1), .whole({divisor_22[40:17], 4'b1000}), .mantissa(mantissa_32), .exponent(scale_32));
 
-    // T: the distance times the reciprocal of a quarter of the divisor. The mantissa less 1 has a sign.
+    // T: the distance times the reciprocal of a quarter of the divisor. The factor is the mantissa minus 1, which is signed.
     logic [23:0]        distance_32, distance_34;
     logic [3:0]         exponent_32;
     logic [5:0]         exponent_33;
@@ -389,8 +392,8 @@ module sphere_unit #(
         .clk, .enable(1'b1), .a({1'b0, distance_32}), .b(mantissa_32[21:4]), .c({2'd0, distance_34, 18'd0}), .p(product_35)
     );
 
-    // The product times 2^exponent, without its 30 lowest bits. Three clocks shift by multiples of 8, of 2, and by one bit; `over` says
-    // that T is too large.
+    // The product times 2^exponent, without its 30 lowest bits. Three clocks shift by multiples of 8, of 2, and by one bit; `over` is
+    // high if T is too large.
     logic [81:0]                 shifted;
     logic [63:23]                middle;
     logic [57:23]                coarse_36;
@@ -413,7 +416,7 @@ module sphere_unit #(
         over_38     <= over_37 || exponent_37 && fine_37[57];
     end
 
-    // The first of the ray's cones so far; of several at one T, that of the first job.
+    // The nearest of the ray's cones so far; of several cones at the same T, the cone of the first job.
     logic [2:0]                  number_38, number_39, best_number;
     logic                        hit_39, best_met, from_met, better;
     logic [exit_pkg::T_BITS-1:0] t_39, best_t, from_t;
@@ -421,7 +424,7 @@ module sphere_unit #(
     logic met_38, between_39;
 
     if (CONE) begin : faces
-        // The plane of the base, at most at the largest T, is the lower limit of the parameters of other faces, or their upper limit.
+        // The T of the base's plane, saturated to the largest T, is the lower or the upper limit of T of the other faces.
         logic                        is_plane_39, is_face_39, is_base_39, is_least;
         logic [exit_pkg::T_BITS-1:0] plane_39, limit, from_limit;
 

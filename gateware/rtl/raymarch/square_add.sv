@@ -1,10 +1,11 @@
-// Computes p = c + x² without the square of the low bits of x, mapped to one DSP48 (docs/raymarch-exits.md, "Spheres of a list").
+// Computes p = c + x², where the square of the low bits of x is left out, mapped to one DSP48 (docs/raymarch-exits.md, "Spheres
+// of a list").
 //
 //   x ─▶ high·(2·x - high) ─▶ + ─▶ p
 //                             ▲
 //                             c
 //
-// `high` has the 18 highest bits of x, an integer; p and c are in units of 2^6. The difference is that of the DSP48's pre-adder. With
+// `high` is the 18 highest bits of the integer x; p and c are in units of 2^6. The DSP48's pre-adder computes the difference. With
 // NEGATIVE the square is subtracted. Latency 3 clocks, counted from `x`, and 1 clock counted from `c`. Throughput one per clock, no
 // handshake.
 

@@ -21,10 +21,10 @@
 // `offset` is the number of rows from the triangle's top to `first`. Streams are valid/ready, and ready comes from registers.
 // Latency 13 clocks, throughput one triangle per 8 clocks: while one triangle is in its passes, the previous triangle completes, or is held
 // until the output is free, and the next triangle waits at the input. At least two clocks pass between two triangles at the output. A
-// triangle without a row in the band is taken and dropped. `in_y0`, the band's first row, and `in_odd`, the parity of the band's number,
+// triangle without a row in the band is taken and dropped. `in_y0` (the band's first row) and `in_odd` (the parity of the band's number)
 // arrive with the triangle; bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must
-// hold while triangles are inside. With SMOOTH or TEXTURE, the planes of light and of texture coordinates pass through plane_entry, each with
-// its own multiplier.
+// hold while triangles are inside. With SMOOTH or TEXTURE, the planes of light and of texture coordinates pass through plane_entry, each
+// with its own multiplier.
 
 `default_nettype none
 

@@ -168,8 +168,8 @@ module binner #(
         row_band   <= size == 2'd0 ? BAND_BITS'(small_band) : by_171[9 +: BAND_BITS];
     end
 
-    // What the memories hold of the list of `band` is valid one clock after `band`. `room` is the number of entries of a full list, a power
-    // of two.
+    // The length and the entries of the list of `band` are read from the memories one clock after `band` is set. `room` is the number of
+    // entries of a full list, a power of two.
     always_ff @(posedge clk) begin
         if (store) lengths[band] <= {(stored & room) != '0, stored};
         if (state == CLEAR) addresses[band] <= next_address;
@@ -184,8 +184,9 @@ module binner #(
         exceptions_full  <= exceptions == exception_limit;
     end
 
-    // The next word: a word of a descriptor or of a piece, the last entries of a list, or one entry for all lanes, of which the strobe selects
-    // one. Encoded selections, in trees, because synthesis makes wider logic of other conditions and of `case`.
+    // The next word: a word of a descriptor or of a piece, the last entries of a list, or one entry in all lanes, of which the strobe
+    // selects one. The selections are encoded in a tree of multiplexers, because synthesis needs more LUTs for other conditions and for
+    // `case`.
     logic [127:0] next_data, ends_word, descriptor_or_ends;
     logic [31:0]  entry;
     logic         takes_list;
@@ -237,8 +238,8 @@ module binner #(
         endcase
     end
 
-    // Address and data load in every clock in which they may, with or without a word, so that their enables have short paths. The address
-    // rests in LOOK: no enable drives both.
+    // Address and data are loaded in every clock in which the output register is free, with or without a new word, so that their enables
+    // have short paths. In LOOK the address is not loaded, so address and data have separate enables.
     always_ff @(posedge clk) begin
         if (free) write_data <= next_data;
         if (free && state != LOOK) write_addr <= base + offset;

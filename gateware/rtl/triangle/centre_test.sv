@@ -10,8 +10,8 @@
 //   E + 256·dx · ─── · E + 256·(dx − dy)
 //
 // Throughput one triangle per 3 clocks, one edge per clock; latency 10 clocks; never stalls. The inputs are the steps of the
-// three edge functions by a pixel to the right (−dy) and down (dx), and (px, py) of vertex 0, s3.8. The vertices are clockwise on
-// the screen.
+// three edge functions for one pixel to the right (−dy) and for one pixel down (dx), and (px, py) relative to vertex 0, s3.8. The
+// vertices are clockwise on the screen.
 
 `default_nettype none
 

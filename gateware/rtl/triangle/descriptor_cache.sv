@@ -17,8 +17,7 @@
 // one clock, all lines are invalidated, one line per clock, and numbers wait until all lines are invalid. `forget` may only be high while the cache holds no
 // item: each item from the input has left at the output.
 //
-// Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
-// moved. Memory: a client of read_port.
+// Stream protocol as in `fifo`. Memory: a client of read_port.
 
 `default_nettype none
 

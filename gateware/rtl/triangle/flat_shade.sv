@@ -76,7 +76,7 @@ module flat_shade #(
     end
 
     always_ff @(posedge clk) begin
-        // Registers before those of the multiplier, so that these need not be near what they are chosen from.
+        // Extra registers before the registers of the multiplier, so that the multiplier can be placed far from the sources of its factors.
         if (enable) {a, b} <= {chosen_a, chosen_b};
 
         if (count == 4'd6) begin

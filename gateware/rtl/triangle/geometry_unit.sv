@@ -25,8 +25,8 @@
 //
 // Without TRIANGLES, the units for triangles, from vertex_cache to setup, are not built, and each pass has the flag `lines`.
 //
-// With TEXTURE, the flag `textures` selects the textures of the mesh: the texture coordinates of a vertex are read beside the vertex, and
-// kept with it in the vertex_cache.
+// With TEXTURE, the flag `textures` selects the textures of the mesh: the texture coordinates of a vertex are read in parallel with the
+// vertex, and stored with it in the vertex_cache.
 //
 // The slowest part determines the throughput: 11 clocks per drawn triangle (33 with smooth shading or textures), 3 per culled triangle, 6
 // per vertex that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH, 8 with TEXTURE) plus 2 clocks for each band of
@@ -54,7 +54,7 @@ module geometry_unit #(
     input  wire triangle_registers_pkg::geometry_flags_t flags,
     input  wire triangle_registers_pkg::geometry_t parameters,
     input  wire triangle_registers_pkg::view_t view,
-    // Clients of read_ports, for the mesh, the vertices, and with TEXTURE the texture coordinates of the vertices.
+    // Clients of read_ports: for the mesh, the vertices, and, with TEXTURE, the texture coordinates of the vertices.
     output logic [2:0]               ask_valid,
     input  wire  [2:0]               ask_ready,
     output logic [3*ADDRESS_BITS-1:0] ask_addr,
@@ -177,7 +177,7 @@ module geometry_unit #(
     records_pkg::descriptor_t      descriptor;
     logic [triangle_pkg::planes_bits(SMOOTH, TEXTURE)-1:0] planes;
 
-    // Arrays of the block `triangles`, in which Yosys does not accept them.
+    // Arrays that belong to the block `triangles`; Yosys does not accept their declaration inside a generate block.
     logic [2:0][VERTEX_BITS-1:0] cached;
     logic [2:0][67:0]            placed;
     logic [2:0][65:0]            regular;
@@ -196,7 +196,7 @@ module geometry_unit #(
         if (TEXTURE) begin : texture_side
             logic [7:0] number;
 
-            // A frame numbers the textures of all its meshes.
+            // Textures of all meshes of a frame are numbered consecutively.
             assign number = flags.textures && triangle.texture != '0 ? triangle.texture + parameters.first_texture : '0;
             assign side   = {number, triangle.normal, triangle.colour};
         end else begin : plain_side
@@ -217,7 +217,8 @@ module geometry_unit #(
         assign vertex = data[128 +: 128];
         assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
 
-        // Reads the texture coordinates of each fetched vertex, two vertices a word, beside the vertex.
+        // Reads the texture coordinates of each fetched vertex in parallel with the vertex. A word
+        // contains the coordinates of two vertices.
         logic [63:0] coordinates;
         logic        has_coordinates;
 
@@ -225,7 +226,7 @@ module geometry_unit #(
             logic                  reads, places_ready, place_valid, half_room, half_valid, half, asks;
             logic [ADDRESS_BITS:0] place;
 
-            // The frame may have textures on other meshes only.
+            // `flags.textures` is low for a mesh without textures, although other meshes of the frame may have textures.
             assign reads        = flags.textures;
             assign ask_valid[1] = fetch_valid && places_ready;
             assign fetch_ready  = ask_ready[1] && places_ready;

@@ -16,8 +16,8 @@
 // not below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.
 //
 // `start` (one clock, not while a frame is read) begins reading a frame, from band 0. `forget` invalidates the descriptor_cache. An item of
-// `out` is a descriptor, or with `out_end` the end of a band; the end of `last_band` is the last item. Streams: an item moves
-// in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved.
+// `out` is a descriptor, or with `out_end` the end of a band; the end of `last_band` is the last item. Stream
+// protocol as in `fifo`.
 
 `default_nettype none
 

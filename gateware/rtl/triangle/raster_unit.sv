@@ -20,7 +20,7 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
-// With TEXTURE, triangles may have textures, whose table is `parameters.textures` (docs/textures.md, "Textures of a frame").
+// With TEXTURE, triangles may have textures; `parameters.textures` is the address of their table (docs/textures.md, "Textures of a frame").
 //
 // Without TRIANGLES, triangle_raster is not built, and a descriptor that is no piece of a line counts as damaged. With neither TRIANGLES
 // nor LINES, list_reader is not built either: frames have fields only, `flags.first` and `flags.second` must be low, and the unit reads no
@@ -190,7 +190,7 @@ module raster_unit #(
 
         // `stray` is high for a descriptor that is skipped: with groups outside of the picture, or of a triangle without TRIANGLES.
         logic stray, list_damaged;
-        // `is_line` is high for a piece of a line, and `piece_taken` in the clock after line_raster has taken it.
+        // `is_line` is high for a piece of a line, and `piece_taken` is high in the clock after line_raster has taken the piece.
         logic is_line, piece_taken, line_idle;
 
         assign stray = !TRIANGLES || descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right

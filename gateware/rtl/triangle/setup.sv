@@ -17,8 +17,8 @@
 // vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This equation holds at every point: the
 // differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
-// With TEXTURE, each texture coordinate has a plane, in a frame with the flag `textures`. Such a frame has flat light, and beats of three
-// rounds, as explained below; the first round prepares s.
+// With TEXTURE, in a frame with the flag `textures`, each texture coordinate has a plane. Such a frame has flat shading and beats of
+// three rounds, as explained below; the first round prepares the coordinate s.
 //
 // With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes the values P of the
 // plane at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then pass through one datapath in turn, in rounds of 11
@@ -328,7 +328,8 @@ module setup #(
             end
         end
 
-        // Rounds 1 and 2 of a frame with textures are for s and t, whose shares are prepared in the round before.
+        // In a frame with textures, rounds 1 and 2 process the coordinates s and t. The shares of a coordinate
+        // are prepared in the previous round.
         if (TEXTURE) begin : textures_built
             logic [3*32-1:0]  coordinates;
             logic [3:0]       range, periods;
@@ -347,7 +348,7 @@ module setup #(
                 .clk, .count(light_count), .next(round_comes), .coordinates, .vertex(place), .share, .range, .periods
             );
 
-            // What belongs to t is kept in the last round, and what belongs to s in the round before.
+            // The values of t are stored in the last round, and the values of s in the round before.
             always_ff @(posedge clk) if (round_ends && round == 2'd1) range_s <= {periods, range};
 
             assign of_triangle = {number_1, periods, range_s[7:4], range, range_s[3:0]};

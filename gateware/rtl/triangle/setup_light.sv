@@ -1,7 +1,7 @@
 // Stage 1 of the triangle setup for smooth shading and textures: computes P = nearest((w + 1/2)·L) of each vertex and channel
-// (docs/formats/triangle.md, "Smooth shading"), where w is the depth of the vertex and L its light, or its share σ of a texture coordinate
-// (docs/formats/texture.md, "On a triangle"). The results are the inputs of a plane: P at vertex 0 (`value`), and P at the other vertices
-// minus P at vertex 0 (`p10`, `p20`).
+// (docs/formats/triangle.md, "Smooth shading"), where w is the depth of the vertex, and L is the light of the vertex or its share σ of a
+// texture coordinate (docs/formats/texture.md, "On a triangle"). The results are the inputs of a plane: P at vertex 0 (`value`), and P at
+// the other vertices minus P at vertex 0 (`p10`, `p20`).
 //
 // A round computes the three products of a channel, vertex after vertex, for the triangle in stage 1. The results wait in a queue until the
 // same round of the next beat. The module `setup` drives `count`, the number of the clock in a round (11 clocks or more), `round`, and
@@ -26,7 +26,8 @@ module setup_light #(
     input  wire         front,
     input  wire         swap,   // vertices 1 and 2 of the mesh are exchanged
     input  wire  [2:0][40:0] lights, // triangle_pkg::light_t each, numbered as in the mesh
-    // With TEXTURE: the channel is a coordinate with this share, u0.17, one clock after `place`; `linear` in orthographic projection.
+    // With TEXTURE: `is_coordinate` is high if the channel is a texture coordinate. Its share, u0.17, arrives one clock after
+    // `place`. `linear` is high in orthographic projection.
     input  wire         is_coordinate,
     input  wire         linear,
     input  wire  [16:0] share,
@@ -36,7 +37,7 @@ module setup_light #(
     output logic [24:0] p10,
     output logic [24:0] p20
 );
-    // Orthographic projection has this weight for w.
+    // In orthographic projection this constant replaces w.
     localparam logic [24:0] WEIGHT = 25'd8388576;
 
     logic        [1:0]    vertex;
@@ -65,7 +66,7 @@ module setup_light #(
         factor = TEXTURE && is_coordinate ? share : {lit, 3'd0};
     end
 
-    // The product is w·L + L/2 + 1/2. In units of w half a depth code is 2^5; in units of the product half a unit of P is 2^16.
+    // The product is w·L + L/2 + 1/2. Half a depth code is 2^5 units of w; half a unit of P is 2^16 units of the product.
     always_ff @(posedge clk) begin
         w    <= TEXTURE && is_coordinate && linear ? WEIGHT : {1'b0, w0} + (vertex[0] ? w10 : vertex[1] ? w20 : '0);
         half <= {1'b0, factor} + 18'd2048;

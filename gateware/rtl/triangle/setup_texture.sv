@@ -1,9 +1,9 @@
 // Stage 1 of the triangle setup for textures: computes the base, the range and the shares of the coordinates s or t of a triangle's vertices
 // (docs/formats/texture.md, "On a triangle", steps 1 to 3).
 //
-// The coordinates of an axis enter in a round of the setup, 11 clocks or more; `share`, `range` and `periods` belong to the axis of the
-// round before. The module `setup` drives `count`, the number of the clock in a round, and `next`, which is high one clock before its last
-// clock. The coordinates must hold during a round.
+// The coordinates of one axis enter in each round of the setup, which takes 11 clocks or more; `share`, `range` and `periods` belong to
+// the axis of the previous round. The module `setup` drives `count`, the number of the clock in a round, and `next`, which is high one
+// clock before its last clock. The coordinates must hold during a round.
 //
 //   count    0           1, 2       3        4, 5      6, 7     last
 //            selected ─▶ smallest ─▶ r ─▶ largest ─▶ range ─▶ kept for the next round ─▶ r of a vertex ─▶ share
@@ -15,7 +15,7 @@ module setup_texture (
     input  wire  [3:0]      count,
     input  wire             next,
     input  wire  [2:0][31:0] coordinates, // s16.16
-    // Number of the vertex whose share is given one clock later.
+    // Number of the vertex whose share is at the output one clock later.
     input  wire  [1:0]      vertex,
     output logic [16:0]     share,
     output logic [3:0]      range,
@@ -27,7 +27,8 @@ module setup_texture (
 
     assign period = smallest[31:17];
 
-    // A range is 0 for numbers below 1, and grows by 1 for each further bit; one more if the highest six bits are ones.
+    // The range is 0 for a largest distance below 1, and increases by 1 for each further bit, and by another 1 if the
+    // highest six bits are ones.
     logic [4:0]  length, length_7;
     logic [5:0]  head, head_7;
     logic        ones;
@@ -40,7 +41,8 @@ module setup_texture (
         ones = head_7 == '1;
     end
 
-    // The base in periods of two repeats, which clamping needs in four bits: from 1 on, all of the triangle is beyond the texture.
+    // The base in units of two repeats of the texture. Clamping needs it saturated to four bits, because from 1 on the whole
+    // triangle is beyond the texture.
     logic [3:0] limited;
 
     always_comb begin
@@ -56,7 +58,7 @@ module setup_texture (
         for (int i = 0; i < 3; i++) distances[i] <= {places[i][31:17] - period, places[i][16:0]};
         high     <= distances[1] > distances[0] ? distances[1] : distances[0];
         most     <= distances[2] > high ? distances[2] : high;
-        // The largest distance with range 15 is just below 63/64·2^15.
+        // Distances saturate just below 63/64·2^15, the largest distance with range 15.
         for (int i = 0; i < 3; i++)
             fitting[i] <= distances[i][31] || distances[i][30:25] == '1 ? {7'b0111110, 25'h1FFFFFF} : distances[i];
         length_7 <= length;

@@ -152,7 +152,7 @@ module triangle_control #(
             4'd8:    begin first = raster.descriptors[0];  words = descriptor_words; used = raster_kept.first; end
             default: begin first = raster.descriptors[1];  words = descriptor_words; used = raster_kept.second; end
         endcase
-        // A build for fields only checks frame and depth, and needs no logic for the other regions.
+        // A build for fields alone checks only the regions of frame and depth, and needs no logic for other regions.
         if (!TRIANGLES && !LINES) begin
             first = region[0] ? raster.depth : raster.frame;
             words = region[0] ? frame_words << 1 : frame_words;

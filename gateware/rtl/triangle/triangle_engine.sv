@@ -16,8 +16,8 @@
 // interpolated with perspective correction, which takes a division per pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then
 // have twice the words.
 //
-// TEXTURE builds textures: descriptors have two more words, a second client of the vertices' port reads texture coordinates, and a fourth
-// one of the raster pass's port textures. Not with SMOOTH.
+// TEXTURE builds textures: descriptors have two more words, a second client of the vertex port reads texture coordinates, and a fourth
+// client of the raster port reads textures. TEXTURE and SMOOTH exclude each other.
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //
@@ -76,9 +76,9 @@ module triangle_engine #(
 );
     localparam int unsigned ADDRESS_BITS   = triangle_registers_pkg::ADDRESS_BITS;
     localparam int unsigned RASTER_CLIENTS = 4;
-    // The client that reads textures is built with TEXTURE alone.
+    // The client that reads textures is only built with TEXTURE.
     localparam int unsigned BUILT_CLIENTS  = TEXTURE ? 4 : 3;
-    // Of a geometry pass: mesh, vertices, texture coordinates.
+    // Three clients of the geometry pass read the mesh, the vertices and the texture coordinates.
     localparam int unsigned CLIENTS        = 3 + RASTER_CLIENTS;
     localparam int unsigned VERTEX_CLIENTS = TEXTURE ? 2 : 1;
 

@@ -28,9 +28,9 @@ package triangle_pkg;
         logic [12:0] blue;
     } light_t;
 
-    // The planes of a triangle besides the depth, from the lowest bits: those of light with SMOOTH, those of texture coordinates with
-    // TEXTURE, then what does not change on the triangle: whether it is smooth, and the rest of a records_pkg::texture_planes_t. Without
-    // any of them there is one bit, 0.
+    // The planes of a triangle other than its depth, from the lowest bits: the planes of light with SMOOTH, or of texture coordinates
+    // with TEXTURE, then values that are constant on the triangle: whether it is smooth, and the other fields of
+    // records_pkg::texture_planes_t. In a build with neither there is a single bit, 0.
     localparam int unsigned TEXTURE_BITS = 49;
 
     // Returns the number of planes.
@@ -43,8 +43,8 @@ package triangle_pkg;
         planes_bits = smooth || texture ? 96 * channels(smooth, texture) + (smooth ? 1 : 0) + (texture ? TEXTURE_BITS : 0) : 1;
     endfunction
 
-    // Returns the number of bits of what a vertex has besides its place: from the lowest bits a light_t with SMOOTH, and the texture
-    // coordinates with TEXTURE; without both one bit, 0.
+    // Returns the number of bits of a vertex in addition to its position: from the lowest bits a light_t with SMOOTH, and the
+    // texture coordinates with TEXTURE; a single bit, 0, in a build with neither.
     function automatic int unsigned vertex_bits(input bit smooth, input bit texture);
         vertex_bits = smooth || texture ? (smooth ? 41 : 0) + (texture ? 64 : 0) : 1;
     endfunction

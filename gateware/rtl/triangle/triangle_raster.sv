@@ -45,7 +45,7 @@ module triangle_raster #(
     input  wire                            triangle_odd,
     input  wire records_pkg::descriptor_t triangle_descriptor,
     input  wire  [PLANES_BITS-1:0]         triangle_planes,
-    // Textures: their table, and the client of a read_port that reads them. `forget` as in texture_shader.
+    // Textures: the address of their table, and the client of a read_port that reads them. texture_shader explains `forget`.
     input  wire                            forget,
     input  wire  [ADDRESS_BITS-1:0]        texture_table,
     output logic                           ask_valid,

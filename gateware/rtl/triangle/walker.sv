@@ -125,8 +125,9 @@ module walker #(
             .best(best[k]), .beside_fails(beside_fails[k])
         );
 
-        // The changes of E' for a move by one row down, in the group and beside it: by one group more to the worse side. An idle walker makes
-        // no such move, so these registers load valid triangles only: their enable has half of the loads of an enable for all constants.
+        // The changes of E' for a move down by one row, for `best` and for `beside`, which is one group further towards the worse side. An
+        // idle walker makes no such move, so these registers load valid triangles only: their enable has half of the loads of an enable for
+        // all constants.
         always_ff @(posedge clk) begin
             if (out_ready && leave && in_valid) begin
                 step_y[k]      <= in_triangle.step_y[k];

@@ -63,16 +63,16 @@ pub enum ConsoleError {
 /// Time-out of a line of a reply in milliseconds of the board's time: longer than the slowest frame of a board without
 /// accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
-/// Time-out of a whole reply after its first line, as a multiple of the time-out of a line. It ends the wait for a board that keeps
-/// sending lines.
+/// Time-out of a whole reply after its first line, as a multiple of the time-out of a line. It ends
+/// the wait for a board that never stops sending lines.
 const REPLY_PATIENCE: u64 = 20;
-/// Number of frames of the console command `orbit` without an argument, and of scenes with an orbit.
+/// Default number of frames of the console command `orbit`, and of scenes with an orbit.
 const ORBIT_FRAMES: u32 = 240;
-/// Number of frames of the console command `bench` without an argument.
+/// Default number of frames of the console command `bench`.
 const BENCH_FRAMES: u32 = 8;
 
-/// Frame of LiteX's serial boot that ends the boot. After a host was killed during `glint flash`, the BIOS waits for frames without
-/// a time limit. The prompt of the BIOS and the firmware ignore the bytes.
+/// Frame that ends LiteX's serial boot. If the host is killed during `glint flash`, the BIOS waits
+/// for frames without a time limit. The BIOS prompt and the firmware ignore this frame.
 pub const END_BOOT: &[u8] = &[1, 0, 0, 0, 0];
 /// End of the prompt of the BIOS.
 pub const BIOS_PROMPT: &[u8] = b"litex\x1b[0m> ";
@@ -84,14 +84,14 @@ const MAX_REPLY: usize = 1 << 20;
 
 /// Maximum number of unanswered attempts of [`Console::synchronise`].
 const ATTEMPTS: u32 = 7;
-/// Time-out of the first attempt of [`Console::synchronise`] in milliseconds; it doubles up to the time-out of a reply, because a
-/// board that is starting loses its input.
+/// Time-out of the first attempt of [`Console::synchronise`] in milliseconds; each further attempt
+/// doubles it, up to the time-out of a reply, because a starting board loses its input.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
-/// The end of a wait.
+/// Deadline of a wait.
 #[derive(Clone, Copy)]
 struct Limit {
-    /// The board's time in milliseconds.
+    /// Time of the deadline, in milliseconds of the board's time.
     end_ms: u64,
     /// Length of the wait in milliseconds.
     length_ms: u64,
@@ -114,12 +114,12 @@ impl Limit {
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
     board: &'b mut B,
-    /// Received bytes that have not been processed yet.
+    /// Received bytes that are not processed yet.
     pending: Vec<u8>,
     patience_ms: u64,
-    /// The wait for the current line.
+    /// Deadline of the current line.
     line: Limit,
-    /// The wait for the whole reply; received lines do not extend it.
+    /// Deadline of the whole reply; received lines do not extend it.
     reply: Limit,
     /// Number of bytes that may still arrive before the reply to the current command must be complete.
     allowance: usize,
@@ -138,7 +138,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Begins the wait for a line that may take `patience_ms`.
+    /// Sets the deadline of the next line to `patience_ms` milliseconds from now.
     fn begin_line(&mut self, patience_ms: u64) {
         self.line = Limit::after(self.board.now_ms(), patience_ms);
     }
@@ -173,7 +173,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.allowance = self.allowance.saturating_add(bytes);
     }
 
-    /// Appends `said` to the received bytes: bytes that other code has read from the board.
+    /// Adds bytes that other code has read from the board to the received bytes.
     pub fn hear(&mut self, said: &[u8]) {
         self.pending.extend_from_slice(said);
     }
@@ -206,15 +206,17 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// output of earlier commands, so that it is not read as part of a later reply.
     ///
     /// # Errors
-    /// [`ConsoleError::Silence`] if the board does not answer, [`ConsoleError::Bios`] if only its BIOS does.
+    /// [`ConsoleError::Silence`] if the board does not answer, [`ConsoleError::Bios`] if only its
+    /// BIOS answers.
     pub fn synchronise(&mut self) -> Result<(), ConsoleError> {
         self.synchronise_within(self.patience_ms)
     }
 
-    /// Synchronises as [`synchronise`](Self::synchronise), with `patience_ms` as the longest wait for the answer to an attempt.
+    /// Synchronises as [`synchronise`](Self::synchronise), but waits at most `patience_ms`
+    /// milliseconds for the answer to an attempt.
     ///
     /// # Errors
-    /// Those of [`synchronise`](Self::synchronise).
+    /// As for [`synchronise`](Self::synchronise).
     pub fn synchronise_within(&mut self, patience_ms: u64) -> Result<(), ConsoleError> {
         let usual_ms = std::mem::replace(&mut self.patience_ms, patience_ms);
         let result = self.within(patience_ms, Self::find_firmware);
@@ -250,15 +252,17 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Sends a command that prints a word. Returns true if the board has printed the word, and false if it has printed an error
-    /// first, of a cancelled transfer or of an earlier line.
+    /// Sends a command that prints a word. Returns true if the board has printed the word, and
+    /// false if it has first printed an error, which belongs to a cancelled transfer or to an
+    /// earlier line.
     fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
         let command = format!("echo {word}");
         self.board.write(format!("\0{command}\r").as_bytes())?;
         self.begin_line(self.patience_ms);
         loop {
             let line = self.next_line(&command)?;
-            // The prompt may precede the word, but the echo of the command is not the reply.
+            // The prompt may precede the word on the line. The echo of the command also ends with
+            // the word, but is not the reply.
             let before = line.strip_suffix(word);
             if before.is_some_and(|before| before.is_empty() || before.ends_with(PROMPT)) {
                 return self.lines(&command, &mut |_| {}).map(|_| true);

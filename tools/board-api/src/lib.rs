@@ -5,7 +5,7 @@
 //! | [`mod@line`] | the serial line of a board, and direct access to its memory |
 //! | [`console`], [`transfer`] | protocols of the firmware on the line: commands, uploads, downloads |
 //! | [`simulation`] | common parts of simulated boards, and their serial line |
-//! | [`pace`] | limits a simulated board to real time |
+//! | [`pace`] | limits the speed of a simulated board to real time |
 //! | [`built`] | finds the files that `cargo xtask` builds |
 //!
 //! Other crates implement the boards.

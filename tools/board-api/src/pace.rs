@@ -7,7 +7,8 @@ pub trait Clock {
     /// Time since the start of the clock.
     fn now(&self) -> Duration;
 
-    /// Waits for `time`. On a platform that cannot wait, the call returns immediately, and the board is early for a while.
+    /// Waits for `time`. On a platform that cannot wait, the call returns immediately, and the
+    /// board runs ahead of real time.
     fn wait(&self, time: Duration);
 }
 
@@ -33,7 +34,7 @@ impl Clock for SystemClock {
     }
 }
 
-/// Longest delay behind real time that a board catches up. A longer delay remains.
+/// Largest delay behind real time that a board makes up for. A larger delay is not made up for.
 const MAX_DELAY: Duration = Duration::from_millis(50);
 
 /// Relates a board's cycles to real time.
@@ -41,7 +42,7 @@ const MAX_DELAY: Duration = Duration::from_millis(50);
 pub struct Pace<C> {
     clock: C,
     clock_hz: u32,
-    /// A time, and the board's cycle at that time.
+    /// A time of the clock, and the board's cycle at that time.
     origin: (Duration, u64),
 }
 
@@ -61,8 +62,8 @@ impl<C: Clock> Pace<C> {
         &self.clock
     }
 
-    /// Waits until real time has reached cycle `cycle` of the board. A board that is more than 50 ms late continues without
-    /// catching up.
+    /// Waits until real time has reached cycle `cycle` of the board. A board that is more than 50
+    /// ms late does not make up for the delay.
     pub fn wait(&mut self, cycle: u64) {
         let early = self.early(cycle);
         if !early.is_zero() {
@@ -92,7 +93,7 @@ mod tests {
 
     const CLOCK_HZ: u32 = 1_000_000;
 
-    /// A clock that the test sets.
+    /// A clock whose time the test sets.
     #[derive(Default)]
     struct Set(Cell<Duration>);
 
@@ -115,10 +116,10 @@ mod tests {
         };
         assert_eq!(early(0, 0), 0);
         assert_eq!(early(10, 25), 15);
-        // A delay of 40 ms is caught up.
+        // The board makes up for a delay of 40 ms.
         assert_eq!(early(100, 60), 0);
         assert_eq!(early(100, 110), 10);
-        // A delay of 90 ms remains.
+        // The board does not make up for a delay of 90 ms.
         assert_eq!(early(200, 110), 0);
         assert_eq!(early(200, 115), 5);
         pace.wait(7 + 115_000);

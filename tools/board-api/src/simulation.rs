@@ -21,7 +21,7 @@ pub trait Uart {
     /// System clock frequency in Hz.
     fn clock_hz(&self) -> u32;
 
-    /// Sends bytes to the UART. They queue until the program takes them.
+    /// Sends bytes to the UART. The bytes wait in a queue until the program reads them.
     fn uart_write(&mut self, bytes: &[u8]);
 
     /// Number of sent bytes that the UART has not received yet.
@@ -58,7 +58,7 @@ pub trait Uart {
     /// unread.
     ///
     /// # Errors
-    /// [`Timeout`], with the output so far, if `expected` has not come within `limit` cycles.
+    /// [`Timeout`], with the output so far, if `expected` does not arrive within `limit` cycles.
     fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Timeout>
     where
         Self: Sized,
@@ -88,7 +88,7 @@ pub trait Uart {
     }
 }
 
-/// The expected output or video of a simulated board did not come in time.
+/// The expected output or video of a simulated board did not arrive in time.
 #[derive(Debug, thiserror::Error)]
 #[error("expected {expected} within {cycles} cycles, found {got:?}")]
 pub struct Timeout {
@@ -111,7 +111,7 @@ pub struct Frame {
     pub pixels: Vec<u16>,
 }
 
-/// Functions that the simulated boards have in common.
+/// The functions of every simulated board.
 pub trait Simulation: Uart {
     /// Reads main memory from `address` on into `bytes`.
     ///
@@ -146,8 +146,9 @@ pub trait Simulation: Uart {
     /// The 16 LEDs, one bit each.
     fn leds(&self) -> u16;
 
-    /// The last complete frame on the monitor with the number of its blanking, or `None` if no frame has been shown since the
-    /// blanking number `last` of an earlier call. The first call passes 0.
+    /// The last complete frame on the monitor and its number, which counts vertical blankings.
+    /// Returns `None` if the monitor has shown no frame since the frame with the number `last` of
+    /// an earlier call. The first call passes 0.
     ///
     /// # Errors
     /// The picture on the monitor is not a frame.

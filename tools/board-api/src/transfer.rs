@@ -20,7 +20,8 @@ pub enum TransferError {
     /// An error of the transfer protocol.
     #[error("{0}")]
     Failed(Failure),
-    /// The transfer failed after this program had been stopped, as by the suspension of a laptop.
+    /// The transfer failed after this program had been stopped, for example while a laptop was
+    /// suspended.
     #[error("{0}, after this program had been stopped")]
     Stopped(Failure),
     /// The mesh has more triangles than the board can draw.
@@ -28,10 +29,11 @@ pub enum TransferError {
     Triangles {
         /// Number of triangles of the mesh.
         found: u32,
-        /// Largest number of triangles, from the board.
+        /// Maximum number of triangles, as reported by the board.
         most: u32,
     },
-    /// A transfer through memory on a board that offers no direct access to its memory.
+    /// A transfer through memory was requested, but the board offers no direct access to its
+    /// memory.
     #[error(
         "memory transfer: expected the emulated or the virtual board, found a board with a serial line only"
     )]
@@ -42,7 +44,7 @@ pub enum TransferError {
 pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
 /// Longest wait for bytes from the board in one read, in milliseconds of the board's time.
-const LOOK_MS: u64 = 2;
+const POLL_MS: u64 = 2;
 
 /// Longest time between two polls of the line that counts for the time-outs of a transfer, in milliseconds of the board's time.
 /// A longer time means that this program was stopped, and could not read the board's bytes.
@@ -52,11 +54,11 @@ pub const MODEL: &str = "model";
 /// Maximum number of attempts at a transfer. A transfer is repeated only if it failed after this program had been stopped.
 const ATTEMPTS: u32 = 5;
 
-/// Number of triangles that a mesh may have on every board.
+/// Number of triangles that every board can draw.
 const ANY_BOARD: u32 = 1 << 15;
 
-/// Uploads a mesh under a name, by default `model`, and draws it. A mesh of more triangles than the board draws is refused before its
-/// transfer, which may take minutes.
+/// Uploads a mesh under a name, by default `model`, and draws it. A mesh with more triangles than
+/// the board can draw is refused before the transfer, which may take minutes.
 ///
 /// # Errors
 /// The mesh has too many triangles, the transfer fails or the firmware refuses the mesh; the board then still shows its last frame.
@@ -85,8 +87,9 @@ pub fn upload<B: Board + ?Sized>(
     announce(console, &command, mesh, session, progress, &mut |_| {})
 }
 
-/// Shows the mesh `name` whole, with the axis `up` up on the screen, on the default scene: nothing of the scene before hides it.
-/// Firmware without the command `fit` keeps the camera of the default scene.
+/// Shows the whole mesh `name` with the axis `up` pointing up on the screen. The rest of the scene
+/// is the default scene, so no earlier setting hides the mesh. Firmware without the command `fit`
+/// keeps the camera of the default scene.
 ///
 /// # Errors
 /// The firmware refuses the mesh, or does not answer.
@@ -344,7 +347,7 @@ fn run<B: Board + ?Sized>(
         let (done, all) = endpoint.progress();
         progress(done.into(), all.into());
         match endpoint.state() {
-            State::Running => board.read(pending, LOOK_MS)?,
+            State::Running => board.read(pending, POLL_MS)?,
             State::Done => return Ok(()),
             State::Failed(failure) if stopped_ms > 0 => {
                 return Err(TransferError::Stopped(failure));

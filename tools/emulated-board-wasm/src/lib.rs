@@ -46,7 +46,8 @@ fn send(kind: Kind, bytes: &[u8]) {
     deliver(kind, bytes.as_ptr(), bytes.len());
 }
 
-/// The page's clock. The wait is left to the worker: this module cannot wait.
+/// The page's clock. `wait` returns at once, because this module must not block; the worker delays
+/// the next turn instead.
 struct PageClock;
 
 impl Clock for PageClock {

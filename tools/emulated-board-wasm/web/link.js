@@ -9,7 +9,8 @@ export function startLink({ opened, received, closed }) {
   const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
   let hasEnded = false;
   const end = (reason) => {
-    // A failure of the worker may follow the reason.
+    // The worker may fail after it has sent the reason for the end; only the first text is passed
+    // on.
     if (hasEnded) return;
     hasEnded = true;
     worker.terminate();

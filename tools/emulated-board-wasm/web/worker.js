@@ -7,7 +7,7 @@ const PICTURE = 1;
 const END = 2;
 
 let messages = [];
-// Until the page has taken the last messages, newer pictures replace each other.
+// Whether the page has taken the last messages. Until then, a newer picture replaces an older one.
 let isTaken = true;
 
 function deliver(kind, start, length) {
@@ -51,7 +51,8 @@ addEventListener("message", ({ data }) => {
   }
 });
 
-// A message of the worker to itself is queued after the waiting messages of the page, and has no minimum delay, which timers have.
+// The worker sends itself a message to start the next turn. Unlike a timer, the message has no
+// minimum delay, and it is handled after the queued messages of the page.
 const next = new MessageChannel();
 next.port1.onmessage = turn;
 

@@ -14,8 +14,9 @@ use crate::cpu::{Cpu, Difference, Executed, Pause};
 use crate::devices::Devices;
 use crate::error::Error;
 
-/// Factor by which the devices' time runs faster than the time of the followed board. With this factor an engine whose time is
-/// overestimated also ends before the program starts it again.
+/// Factor by which the devices' time runs faster than the time of the followed board. With this
+/// factor, an engine ends before the program starts it again, even if the estimate of its time is
+/// too long.
 const FOLLOWING: u64 = 16;
 
 /// An emulated board.
@@ -26,7 +27,8 @@ pub struct EmulatedBoard {
 }
 
 impl EmulatedBoard {
-    /// A board in its state after the BIOS: `firmware` is at the start of main memory, where the CPU starts.
+    /// A board in the state after the BIOS has run: `firmware` is at the start of main memory,
+    /// where the CPU starts.
     ///
     /// # Errors
     /// [`Error::Address`] for firmware that exceeds main memory.
@@ -130,7 +132,7 @@ impl Uart for EmulatedBoard {
     /// Runs for at least `cycles` cycles; the last instruction may end later.
     fn run(&mut self, cycles: u64) {
         let end = self.cycles.saturating_add(cycles);
-        self.bus.devices.look();
+        self.bus.devices.update_lines();
         while self.cycles < end {
             let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
             let lines = self.bus.devices.interrupts();

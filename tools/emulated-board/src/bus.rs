@@ -10,7 +10,7 @@ use crate::devices::{Devices, REGISTERS};
 /// Number of clock cycles after which the bus answers an access to an unused address.
 const TIMEOUT: u64 = 1_000_000;
 
-/// Number of words of a cache line of the CPU; a line fill makes one bus access for each word.
+/// Number of words in a cache line of the CPU; a line fill makes one bus access per word.
 const LINE: u32 = 8;
 
 /// First address that bypasses the data cache.
@@ -41,11 +41,8 @@ impl Access {
 
 /// Memories and devices.
 pub struct Bus {
-    /// Main memory.
     pub ram: MainMemory,
-    /// The devices.
     pub devices: Devices,
-    /// The SPI flash.
     pub flash: Flash,
     rom: Vec<u8>,
     sram: Vec<u8>,
@@ -142,7 +139,7 @@ impl Bus {
 
     /// Result of `accesses` bus accesses to unused addresses.
     fn time_out(&mut self, accesses: u32) -> Access {
-        self.devices.count_bus_errors(accesses);
+        self.devices.controller.count_bus_errors(accesses);
         Access {
             value: UNUSED,
             cycles: u64::from(accesses) * TIMEOUT,

@@ -14,8 +14,8 @@ pub const CYCLES: u64 = 1;
 
 /// The CPU.
 pub struct Cpu {
-    /// The registers; results that are discarded are written to the elements from 32 on. The length covers every value of a masked register
-    /// number.
+    /// The registers. Discarded results are written to element 32. The length is a power of 2, so
+    /// that an index masked to 6 bits is always valid.
     x: [u32; 64],
     pc: u32,
     csrs: Csrs,
@@ -65,8 +65,9 @@ impl Cpu {
         self.code.clear();
     }
 
-    /// Runs from cycle `now` to cycle `limit` or slightly beyond. Returns the cycle after the last instruction, and the reason of the
-    /// return. Returns earlier when the CPU sleeps, and after each access to a device, which may change the interrupt `lines`.
+    /// Runs from cycle `now` to cycle `limit` or slightly beyond. Returns the cycle after the last
+    /// instruction, and the reason for the return. Returns before `limit` when the CPU sleeps, and
+    /// after each access to a device, because the access may change the interrupt `lines`.
     pub fn run(&mut self, bus: &mut Bus, now: u64, limit: u64, lines: u32) -> (u64, Pause) {
         self.csrs.lines = lines;
         if self.asleep {

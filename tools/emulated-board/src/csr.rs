@@ -15,7 +15,8 @@ const MSTATUS_BITS: u32 = PRIVILEGE_BEFORE | INTERRUPTS_BEFORE | INTERRUPTS;
 const MCAUSE_BITS: u32 = 1 << 31 | 0xf;
 /// Value of the register that describes VexRiscv's data cache: its size in bytes, and from bit 20 on the size of a line in bytes.
 const CACHE: u32 = 32 << 20 | 4096;
-/// Values of `mvendorid` and `marchid` (those of VexRiscv) and of `mimpid`, by which the firmware identifies the emulated board.
+/// Values of `mvendorid` and `marchid`, equal to VexRiscv's, and of `mimpid`, by which the firmware
+/// identifies the emulated board.
 const IDENTIFIERS: [u32; 3] = [11, 22, litex_pac::EMULATED];
 
 /// Causes of exceptions, as in `mcause`.

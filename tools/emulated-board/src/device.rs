@@ -17,8 +17,12 @@ pub trait Device {
     /// Processes all events up to the cycle `now`. Returns the cycle of the next event, or `u64::MAX` if there is none.
     ///
     /// The bus calls this method before and after each access to the block, and at the cycle that the last call returned.
-    fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64;
+    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
+        u64::MAX
+    }
 
     /// Whether an enabled event is pending: the level of the block's interrupt line.
-    fn interrupt(&self) -> bool;
+    fn interrupt(&self) -> bool {
+        false
+    }
 }

@@ -59,18 +59,13 @@ pub struct Devices {
     pub controller: Controller,
     /// Build id and blocks.
     pub identity: Identity,
-    /// The UART.
     pub uart: Uart,
     timer: Timer,
     /// The I2C master with its sensor.
     pub i2c: I2c,
-    /// The buttons.
     pub buttons: Inputs,
-    /// The switches.
     pub switches: Inputs,
-    /// The LEDs.
     pub leds: Outputs,
-    /// The scan-out.
     pub scanout: Scanout,
     /// The triangle engine with the raymarcher.
     pub triangle: TriangleEngine,
@@ -149,9 +144,9 @@ impl Devices {
 
     fn update(&mut self, number: usize, now: u64, ram: &mut MainMemory) {
         self.next[number] = self.device(number).advance(now, ram);
-        self.look_at(number);
+        self.update_line(number);
         if number == TRIANGLE {
-            self.look_at(RAYMARCH);
+            self.update_line(RAYMARCH);
         }
     }
 
@@ -218,21 +213,16 @@ impl Devices {
     }
 
     /// Updates all interrupt lines, because the host may have sent bytes to the UART or changed the levels of pins.
-    pub fn look(&mut self) {
+    pub fn update_lines(&mut self) {
         for number in 0..BLOCKS.len() {
-            self.look_at(number);
+            self.update_line(number);
         }
     }
 
-    fn look_at(&mut self, number: usize) {
+    fn update_line(&mut self, number: usize) {
         if let Some(interrupt) = BLOCKS[number].1 {
             let line = u32::from(self.device(number).interrupt()) << interrupt as u32;
             self.lines = self.lines & !(1 << interrupt as u32) | line;
         }
-    }
-
-    /// Counts `accesses` bus accesses to unused addresses.
-    pub fn count_bus_errors(&mut self, accesses: u32) {
-        self.controller.count_bus_errors(accesses);
     }
 }

@@ -16,7 +16,7 @@ pub enum Error {
         /// Number of bytes.
         length: usize,
     },
-    /// The frame on the monitor has another width.
+    /// The frame on the monitor has an unexpected width.
     #[error("frame on the monitor: expected {expected} pixels in a line, found {found}")]
     FrameWidth {
         /// Expected number of pixels in a line.

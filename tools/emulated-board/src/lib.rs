@@ -1,4 +1,4 @@
-//! The emulated board: runs the firmware of the real board at about the speed of the real board.
+//! The emulated board: runs the firmware of the real board at about real-time speed.
 //!
 //! ```
 //! use emulated_board::{EmulatedBoard, Uart};

@@ -97,42 +97,21 @@ impl Bench {
             EvEnable::default().with_frame(true).bits(),
         );
         let [width, height] = SIZE.map(|size| size as u16);
+        let size = Size::default().with_width(width).with_height(height);
+        let [a, b] = WINDOWS;
+        let window_a = WindowA::default().with_channel(Channel::Cr);
+        let window_a = window_a.with_lower(a.lower).with_upper(a.upper);
+        let window_b = WindowB::default().with_channel(Channel::Cb);
+        let window_b = window_b.with_lower(b.lower).with_upper(b.upper);
         let Region { first, last } = REGION;
+        let columns = RegionX::default().with_first(first[0]).with_last(last[0]);
+        let rows = RegionY::default().with_first(first[1]).with_last(last[1]);
         for (register, value) in [
-            (
-                offset::SIZE,
-                Size::default().with_width(width).with_height(height).bits(),
-            ),
-            (
-                offset::WINDOW_A,
-                WindowA::default()
-                    .with_channel(Channel::Cr)
-                    .with_lower(140)
-                    .with_upper(200)
-                    .bits(),
-            ),
-            (
-                offset::WINDOW_B,
-                WindowB::default()
-                    .with_channel(Channel::Cb)
-                    .with_lower(70)
-                    .with_upper(120)
-                    .bits(),
-            ),
-            (
-                offset::REGION_X,
-                RegionX::default()
-                    .with_first(first[0])
-                    .with_last(last[0])
-                    .bits(),
-            ),
-            (
-                offset::REGION_Y,
-                RegionY::default()
-                    .with_first(first[1])
-                    .with_last(last[1])
-                    .bits(),
-            ),
+            (offset::SIZE, size.bits()),
+            (offset::WINDOW_A, window_a.bits()),
+            (offset::WINDOW_B, window_b.bits()),
+            (offset::REGION_X, columns.bits()),
+            (offset::REGION_Y, rows.bits()),
             (offset::LEAST_RUN, 3),
             (offset::CONTROL, Control::default().with_enable(true).bits()),
         ] {
@@ -232,7 +211,7 @@ fn faults_are_those_of_the_frames() {
         }
         assert_eq!(bench.status().fault(), Some(expected), "{fault:?}");
         bench.engine.sensor().unwrap().fault = None;
-        assert!(bench.run(4 * FRAME), "whole again after {fault:?}");
+        assert!(bench.run(4 * FRAME), "no complete frame after {fault:?}");
         assert_eq!(bench.status().fault(), Some(Fault::None), "{fault:?}");
     }
 }

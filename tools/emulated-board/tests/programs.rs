@@ -72,7 +72,7 @@ fn started(words: &[u32]) -> EmulatedBoard {
     EmulatedBoard::fast(&bytes(words)).expect("a program that fits")
 }
 
-/// The result number `place`.
+/// The result with the index `place`.
 fn result(board: &mut EmulatedBoard, place: u32) -> u32 {
     let mut word = [0; 4];
     let address = RESULTS + 4 * place;

@@ -128,11 +128,19 @@ impl Bench {
     }
 }
 
+fn subject<'a>(field: &'a Field, appearance: &'a Appearance) -> FieldSubject<'a> {
+    FieldSubject {
+        field,
+        appearance,
+        quality: Quality::default(),
+    }
+}
+
 fn view() -> View {
     Camera::looking([1.0, -2.6, 1.2], [0.0; 3], 0.7, 0.1).rounded()
 }
 
-/// Draws a field by the engine and by the model, and compares the pictures and counts.
+/// Draws a field with the engine and with the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size: Size) {
     let name = format!("{} {size} {stereo:?}", subject.field);
     let frame = Frame {
@@ -182,12 +190,7 @@ fn every_kind_of_field() {
             shadow: true,
             ..Appearance::default()
         };
-        let subject = FieldSubject {
-            field: &field,
-            appearance: &appearance,
-            quality: Quality::default(),
-        };
-        check(&mut bench, subject, None, Size::W320);
+        check(&mut bench, subject(&field, &appearance), None, Size::W320);
     }
 }
 
@@ -207,24 +210,15 @@ fn bent_unions_and_cones_in_lattices_are_left_to_the_soft_core() {
         ("bent:3,box:1,1,0.2+sphere:0.6", Missing::Bend),
         ("union:lattice:1,0.3+cone:0.25,1", Missing::ConeInLattice),
     ] {
-        is_left_to_the_soft_core(text, missing);
+        let mut bench = Bench::new();
+        let (field, appearance) = (Field::parse(text).unwrap(), Appearance::default());
+        let subject = Subject::Field(subject(&field, &appearance));
+        let frame = Frame::new(subject, view(), Size::W320);
+        let constants = frame.constants().unwrap();
+        let field = constants.field().unwrap();
+        let set = set_field(&mut bench.raymarcher, &field.setup, &field.palette, false);
+        assert_eq!(set, Err(missing), "{text}");
     }
-}
-
-fn is_left_to_the_soft_core(text: &str, missing: Missing) {
-    let mut bench = Bench::new();
-    let field = Field::parse(text).unwrap();
-    let appearance = Appearance::default();
-    let subject = FieldSubject {
-        field: &field,
-        appearance: &appearance,
-        quality: Quality::default(),
-    };
-    let frame = Frame::new(Subject::Field(subject), view(), Size::W320);
-    let constants = frame.constants().unwrap();
-    let field = constants.field().unwrap();
-    let set = set_field(&mut bench.raymarcher, &field.setup, &field.palette, false);
-    assert_eq!(set, Err(missing), "{text}");
 }
 
 #[test]
@@ -248,13 +242,8 @@ fn two_eyes_and_large_pictures() {
         ("menger:4", None, Size::W1280),
     ] {
         let field = Field::parse(text).unwrap();
-        let subject = FieldSubject {
-            field: &field,
-            appearance: &appearance,
-            quality: Quality::default(),
-        };
         let stereo = stereo.map(|text| Stereo::parse(text).unwrap());
-        check(&mut bench, subject, stereo, size);
+        check(&mut bench, subject(&field, &appearance), stereo, size);
     }
 }
 
@@ -272,16 +261,11 @@ fn random_fields() {
         if field.is_left_to_soft_core() {
             continue;
         }
-        let subject = FieldSubject {
-            field: &field,
-            appearance: &lit(),
-            quality: Quality::default(),
-        };
-        check(&mut bench, subject, None, Size::W320);
+        check(&mut bench, subject(&field, &lit()), None, Size::W320);
     }
 }
 
-/// Any register contents draw a picture.
+/// Draws a picture from any register contents.
 #[test]
 fn random_registers_do_no_harm() {
     let mut state = 9_u32;
@@ -297,7 +281,7 @@ fn random_registers_do_no_harm() {
             for register in (raymarch::offset::SOLID..=raymarch::offset::FOG_SHIFT).step_by(4) {
                 block.write(register, random(), *now, ram);
             }
-            // With few evaluations of each ray.
+            // Limits the evaluations of each ray, for speed.
             let tuning = raymarch::Tuning::from_bits(random()).with_cap(20);
             block.write(raymarch::offset::TUNING, tuning.bits(), *now, ram);
             for _ in 0..500 {

@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 
 /// Run fuzz targets on generated inputs; a panic is a finding.
 ///
-/// The seed and the number of an input determine its bytes. The input of a finding is written to a file; --only with the input's
-/// number runs it again.
+/// The bytes of an input depend only on its seed and its number. The input of a finding is written
+/// to a file; --only with the input's number runs it again.
 #[derive(Parser)]
 struct Arguments {
     /// Fuzz targets to run [default: all].
@@ -32,7 +32,7 @@ struct Arguments {
     only: Option<u64>,
 }
 
-/// Number of consecutive inputs that a thread takes at a time. `Tally::next` is the first input that no thread has taken.
+/// Number of consecutive inputs that a thread takes at a time.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {
@@ -62,6 +62,7 @@ fn main() -> anyhow::Result<()> {
 /// Counts of the inputs of one target, shared by the threads that run them.
 #[derive(Default)]
 struct Tally {
+    /// Number of the first input that no thread has taken.
     next: AtomicU64,
     done: AtomicU64,
     accepted: AtomicU64,

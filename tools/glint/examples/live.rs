@@ -1,5 +1,5 @@
-//! Prints the number of pictures per second of moving scenes on the emulated board: `cargo run --release -p glint --example live
-//! [SCENE…]`.
+//! Measures the pictures per second of moving scenes on the emulated board: `cargo run --release -p
+//! glint --example live [SCENE…]`.
 
 use glint::board::Uart;
 use std::time::Instant;

@@ -1,4 +1,5 @@
-//! Counters of an accelerator, identified by name: a new counter in the gateware requires no change of the host program.
+//! Counters of an accelerator, identified by name, so that a new counter in the gateware requires
+//! no change of the host program.
 
 use std::fmt;
 
@@ -24,7 +25,7 @@ impl Counters {
     /// The value of a counter.
     ///
     /// # Errors
-    /// There is no counter with that name.
+    /// No counter has this name.
     pub fn get(&self, name: &str) -> Result<u64, MissingCounter> {
         let found = self.0.iter().find(|(known, _)| known == name);
         found.map(|(_, value)| *value).ok_or_else(|| {
@@ -40,7 +41,7 @@ impl Serialize for Counters {
     }
 }
 
-/// A value in the board's statistics: a number is a counter; a text is skipped.
+/// A value in the board's statistics. Only numbers are counters; texts are skipped.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Entry {

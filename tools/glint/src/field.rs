@@ -15,7 +15,8 @@ pub fn file(text: &str) -> Option<&str> {
     text.get(at + KIND.len()..)
 }
 
-/// Replaces `spheres:FILE.json` in a field's text, alone or in a union, by `spheres:X,Y,Z,R;...`. Other text does not change.
+/// Replaces `spheres:FILE.json` in the text of a field, alone or in a union, by
+/// `spheres:X,Y,Z,R;...`. The rest of the text does not change.
 ///
 /// # Errors
 /// The file cannot be read, or [`spheres`] rejects it.

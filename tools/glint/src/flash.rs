@@ -4,12 +4,14 @@
 //! command and a payload. It answers each complete frame with one letter, in order, and drops a frame that is still incomplete
 //! after 250 ms. A frame contains its load address, so it may be sent again at any time.
 //!
-//! The letters contain no frame number, so after a lost answer the host could assign the answer of the next frame to it. The host
-//! therefore sends frames in batches. A batch is complete when the answers are exactly one `K` per frame. Otherwise the host
-//! waits until the line has been quiet for longer than the BIOS's time-out, which resynchronises both sides to the start of a
-//! frame, and sends the whole batch again. After a failure, batches and frames get shorter, because a short frame is damaged less
-//! often. After a success, frames grow up to the size of the BIOS's buffer. Batches grow only if an answer takes at least 2 ms:
-//! with faster answers, long batches save no time, and may overrun the BIOS.
+//! The letters contain no frame number, so after a lost answer the host could take the answer to
+//! the next frame for it. The host therefore sends frames in batches. A batch is complete when the
+//! answers are exactly one `K` per frame. Otherwise the host waits until the line has been quiet
+//! for longer than the BIOS's time-out, which resynchronises both sides to the start of a frame,
+//! and sends the whole batch again. After a failure, batches and frames get shorter, because a
+//! short frame is damaged less often. After a success, frames grow up to the size of the BIOS's
+//! buffer. Batches grow only if an answer takes at least 2 ms: with faster answers, long batches
+//! save no time, and may overrun the BIOS.
 
 mod connect;
 mod frame;
@@ -71,12 +73,12 @@ mod tests {
 
     const ADDRESS: u32 = 0x4000_0000;
 
-    /// Input that the simulated BIOS expects.
+    /// The kind of input that the simulated BIOS expects.
     #[derive(Clone, Copy, PartialEq)]
     enum Mode {
         /// The answer to its request, for 250 ms.
         Answer,
-        /// Frames, for any time.
+        /// Frames, without a time limit.
         Frames,
         /// A command.
         Command,
@@ -89,7 +91,8 @@ mod tests {
         now_ms: u64,
         mode: Mode,
         output: Vec<u8>,
-        /// The received bytes of an incomplete frame or line, and the time of the first byte, or of the request.
+        /// The received bytes of an incomplete frame or line, and the time in milliseconds of the
+        /// first byte or of the request.
         partial: Vec<u8>,
         since_ms: u64,
         memory: BTreeMap<u32, u8>,
@@ -116,7 +119,7 @@ mod tests {
             }
         }
 
-        /// A BIOS in this mode, with output that the host has not read.
+        /// A BIOS in this mode. The host has not read `output` yet.
         fn in_mode(mode: Mode, output: &[u8]) -> Self {
             Self {
                 mode,
@@ -294,7 +297,8 @@ mod tests {
         in_frame.partial = frame(LOAD, &[0; 100])[..50].to_vec();
         for bios in [
             Bios::in_mode(Mode::Command, b"litex> "),
-            // Expired requests: with the output after the time-out, and alone.
+            // Requests that have expired: followed by the output after the time-out, and without
+            // further output.
             Bios::in_mode(Mode::Command, &late),
             Bios::in_mode(Mode::Command, REQUEST),
             Bios::in_mode(Mode::Frames, b""),
@@ -327,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dead_line_is_given_up() {
+    fn a_dead_line_ends_with_an_error() {
         let mut bios = Bios::asking(400, 0);
         let error = flash(&mut bios, &program(1000), ADDRESS, 600_000, &mut |_, _| {}).unwrap_err();
         assert!(

@@ -86,8 +86,8 @@ impl SensorFault {
     }
 }
 
-/// Returns a scene with a hand that moves on an ellipse in the middle of frames of `size` pixels, one turn in 4 s, with sensor
-/// noise.
+/// Returns a scene with sensor noise and a hand that moves on an ellipse in the middle of frames of
+/// `size` pixels, with a period of 4 s.
 #[must_use]
 pub fn moving_hand(size: [usize; 2]) -> Scene {
     let [width, height] = size.map(|length| length as f64);
@@ -108,14 +108,15 @@ pub fn image_sensor(source: impl Source + 'static) -> ImageSensor {
     ImageSensor::new(Model::Ov7670, source, Timing::SHORT)
 }
 
-/// The mask of the hand's colour in a frame of the image sensor, at a smaller size.
+/// Marks the pixels of a downscaled frame of the image sensor that have the hand's colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     /// Number of pixels of a line, a multiple of 8.
     pub width: u32,
     /// Number of lines.
     pub height: u32,
-    /// A bit for each pixel, line by line from the top left; the first pixel is the highest bit.
+    /// One bit per pixel, line by line from the top left; the first of eight pixels is the highest
+    /// bit of a byte.
     pub bits: Vec<u8>,
 }
 
@@ -135,7 +136,7 @@ impl Mask {
     }
 }
 
-/// Maximum width and height of a mask; a line of an OV5640 has 2592 pixels.
+/// Maximum width and height of a mask in pixels. A line of an OV5640 has 2592 pixels.
 const MAX_SIDE: u32 = 4096;
 
 /// Width and height, parsed from a text that separates them by a space.

@@ -3,7 +3,8 @@
 use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
 use crate::scene;
-use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
+use glint_core::deviation::Deviation;
+use glint_core::flash::{Contents, EncodeError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::{Mesh, is_name};
 use glint_core::picture::{Backend, Size};
 use glint_scene::{Board, LineError, Reason, Scene, lines};
@@ -14,18 +15,21 @@ use std::path::Path;
 
 /// Name of the list of scenes in an image; the board shows its first scene after power-up.
 pub const START: &str = "start";
-/// Largest number of commands of a scene. A scene with all options and the most objects and lights has fewer than a hundred; a board
-/// executes them before the first picture.
-pub const MOST_COMMANDS: usize = 1_000;
-/// Name of the built-in cube, which is not one of the shapes.
+/// Maximum number of commands of a scene, which a board executes before the first picture. A scene
+/// with all options and the maximum numbers of objects and lights has fewer than a hundred
+/// commands.
+pub const MAX_COMMANDS: usize = 1_000;
+/// Name of the built-in cube, which is not in the list of shapes.
 const CUBE: &str = "cube";
 
-/// The configuration data of a bitstream file: all bytes of a raw file, the bytes after the header of a `.bit` file.
+/// The configuration data of a bitstream file: all bytes of a raw file, or the bytes after the
+/// header of a `.bit` file.
 ///
 /// # Errors
 /// The header is damaged.
 pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
-    // A field of nine bytes and a field of one byte, which a raw bitstream does not contain.
+    // The start of the header: a field of nine bytes and a field of one byte. A raw bitstream does
+    // not contain them.
     const HEADER: [u8; 13] = [
         0, 9, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0, 0, 1,
     ];
@@ -56,7 +60,8 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
     data.ok_or_else(|| damaged(rest, "the field e with all bytes up to the end of the file"))
 }
 
-/// The items for scenes: each mesh that is not built into the firmware, each scene, and the list of all scenes.
+/// The items of an image for these scenes: each mesh that is not built into the firmware, each
+/// scene, and the list of all scenes.
 ///
 /// # Errors
 /// A mesh cannot be read, or a name is invalid.
@@ -207,11 +212,11 @@ impl Board for ImageBoard<'_> {
     }
 }
 
-/// Checks the commands of a scene, each as a board executes it, and that its meshes exist.
+/// Checks that a board can execute the commands of a scene, and that its meshes exist.
 fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
     let count = text.lines().count();
-    if count > MOST_COMMANDS {
-        let expected = format!("at most {MOST_COMMANDS} commands");
+    if count > MAX_COMMANDS {
+        let expected = format!("at most {MAX_COMMANDS} commands");
         return Err(FormatError::whole(expected, count.to_string()));
     }
     let mut board = ImageBoard {
@@ -257,7 +262,7 @@ fn in_item(item: &Item, error: FormatError) -> FormatError {
     FormatError::whole(format!("{} {name}: {place}{expected}", kind.name()), found)
 }
 
-fn format_error(error: FlashError) -> FormatError {
+fn format_error(error: Deviation) -> FormatError {
     let mut found = String::new();
     // Writing to a `String` does not fail.
     let _ = error.write_found(&mut found);

@@ -1,4 +1,4 @@
-//! Host side of Glint: mesh files and generators, serial and simulated boards, pictures.
+//! The host side of Glint: mesh files and generators, serial and simulated boards, pictures.
 //!
 //! | module | purpose |
 //! |---|---|
@@ -6,10 +6,10 @@
 //! | [`generate`] | generates models |
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
 //! | [`model`], [`view`], [`picture`] | models, cameras and frames of the command line |
-//! | [`render`], [`scene`] | renders a frame by the model or by a board; the built-in scenes |
+//! | [`render`], [`scene`] | renders a frame by the model or by a board; frames of scene files |
 //! | [`image`] | images for a board's SPI flash |
 //! | [`board`] | boards: serial port, or simulation |
-//! | [`program`] | checks files that a board is to run |
+//! | [`program`] | checks program files for boards |
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`wireframe`] | programs of the wireframe simulator |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |

@@ -15,8 +15,8 @@ const BAD_INPUT: u8 = 2;
 /// Exit code for any other failure.
 const FAILED: u8 = 1;
 
-/// The error with its causes on one line, even if a message of the operating system or of a board has several lines. A cause that
-/// the message before it quotes is left out.
+/// Formats an error and its causes on one line, even if a message of the operating system or of a
+/// board has several lines. A cause that is part of the message before it is left out.
 fn one_line(error: &anyhow::Error) -> String {
     let mut messages: Vec<String> = Vec::new();
     for cause in error.chain() {
@@ -28,7 +28,8 @@ fn one_line(error: &anyhow::Error) -> String {
     messages.join(": ").trim_end().replace('\n', " ")
 }
 
-/// Whether an error is one of a file or an option. A frame that no board can draw is described by files and options.
+/// Whether an error concerns a file or an option. Files and options also describe a frame that no
+/// board can draw.
 fn is_bad_input(error: &(dyn std::error::Error + 'static)) -> bool {
     let is_undrawable = matches!(error.downcast_ref(), Some(render::Error::Render(_)));
     is_undrawable

@@ -5,7 +5,7 @@ use glint_model::DepthScale;
 use std::io::{self, Write};
 use virtual_board::Picture;
 
-/// Speed of the colour quantisation of a GIF, from 1 (best) to 30.
+/// Speed of the colour quantisation of a GIF, from 1 (best quality) to 30 (fastest).
 const QUANTISER_SPEED: i32 = 10;
 
 /// Colours and depth codes of a rendered frame.
@@ -53,7 +53,7 @@ impl Image {
     }
 }
 
-/// An endlessly repeating animation of images of one size, written image by image.
+/// An animation that repeats endlessly. Its images have one size, and are written one by one.
 pub enum Animation<W: Write> {
     /// An animated PNG.
     Png(png::Writer<W>),

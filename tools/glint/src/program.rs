@@ -1,4 +1,4 @@
-//! Checks that a file can be a program of a board: a flat binary that begins with an instruction.
+//! Checks that a file can be a program for a board: a flat binary that begins with an instruction.
 
 use crate::error::{FormatError, InputError, quote};
 use crate::formats::read_up_to;
@@ -9,7 +9,7 @@ use std::path::Path;
 const INSTRUCTION: usize = 4;
 /// Size in bytes of the largest main memory of the supported boards.
 const MEMORY: usize = 128 << 20;
-/// Number of bytes at the start that decide whether a file is a text.
+/// Number of bytes at the start of a file that decide whether it is a text.
 const START: usize = 256;
 
 /// Values of the lowest seven bits of an RV32IM instruction.
@@ -20,7 +20,7 @@ const OPCODES: [u8; 11] = [
 /// Reads and checks the file at `path`, or standard input.
 ///
 /// # Errors
-/// The file cannot be read, or those of [`check`].
+/// The file cannot be read, or [`check`] rejects it.
 pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     let bytes = read_up_to(path, MEMORY)?;
     check(&bytes, path)?;

@@ -22,7 +22,7 @@ fn refuse(reason: impl Display) -> FormatError {
     FormatError::whole("a scene that boards can show", reason.to_string())
 }
 
-/// Settings that override those of a scene.
+/// Settings that override the settings of a scene.
 #[derive(Clone, Copy, Default)]
 pub struct Changes {
     /// Shading of meshes.
@@ -33,7 +33,7 @@ pub struct Changes {
     pub size: Option<Size>,
 }
 
-/// Whether a shape that is built into the firmware has this name.
+/// Whether `name` is the name of a shape that is built into the firmware.
 pub fn is_shape(name: &str) -> bool {
     Shape::NAMES.contains(&name)
 }
@@ -41,7 +41,7 @@ pub fn is_shape(name: &str) -> bool {
 /// The mesh of a scene by name: a shape that is built into the firmware, a file in the folder of the scene, or a generator.
 ///
 /// # Errors
-/// Those of [`model::load`].
+/// As for [`model::load`].
 pub fn mesh(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
     match Shape::ALL.into_iter().find(|shape| shape.name() == name) {
         Some(shape) => {
@@ -54,7 +54,8 @@ pub fn mesh(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
     }
 }
 
-/// The path of a scene's mesh in the folder of the scene; its name if it is a generator, and no file has this name.
+/// The path of a scene's mesh in the folder of the scene; for a generator its name, unless a file
+/// has this name.
 pub fn path(name: &str, folder: &Path) -> String {
     let file = folder.join(name);
     let is_generated = generate::is_name(name) && !file.exists();
@@ -172,7 +173,7 @@ mod tests {
         assert!(torus.triangles().triangles_drawn > 300);
         for name in NAMES {
             let stats = stats(name);
-            // The picture of a field contains more than its background.
+            // The picture of a field must contain more than its background.
             assert!(
                 stats
                     .rays

@@ -1,4 +1,4 @@
-//! Cameras from files, and the forms of a camera that only the command line of `glint` accepts.
+//! Cameras from files, and the notations of a camera that only the command line of `glint` accepts.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
@@ -37,7 +37,7 @@ pub fn read(path: &Path) -> Result<View, InputError> {
 /// Parses the bytes of a camera file; see [`read`].
 ///
 /// # Errors
-/// Those of [`read`].
+/// As for [`read`].
 pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
     let file: ViewFile = serde_json::from_slice(bytes).map_err(|error| {
         let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}"#;
@@ -71,7 +71,7 @@ fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError>
     Ok([number(x, name)?, number(y, name)?, number(z, name)?])
 }
 
-/// Rounds a value to the nearest fixed-point number; an error names `name`.
+/// Rounds a value to the nearest fixed-point number. An error states `name`, the name of the value.
 fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
     T::checked_from_num(value).ok_or_else(|| {
         FormatError::whole(
@@ -118,15 +118,16 @@ pub fn look(text: &str) -> Result<View, FormatError> {
     View::look(eye, yaw, pitch, roll).map_err(no_camera)
 }
 
-/// Returns the camera after a turn about the z axis through the origin, from the x axis towards the y axis. Without a turn the
-/// result is `view`.
+/// Returns the camera after a rotation by `by` about the z axis through the origin, from the x axis
+/// towards the y axis. A rotation by 0 returns `view` unchanged.
 ///
 /// # Errors
 /// The eye is at the maximum distance from the origin, and rounding moves it beyond the limit.
 pub fn turned(view: &View, by: Turns) -> Result<View, FormatError> {
     let (sin, cos) = sin_cos_q30(by);
     let [sin, cos] = [sin, cos].map(|x| i128::from(x.to_bits()));
-    // Rounds to nearest. Both coordinates are below 2^38 in magnitude as bits.
+    // Rounds to nearest. The bits of both coordinates are below 2^38 in magnitude, so the products
+    // fit.
     let rotate = |x: i64, y: i64| {
         let [x, y] = [x, y].map(i128::from);
         [cos * x - sin * y, sin * x + cos * y].map(|sum| ((sum + (1 << 29)) >> 30) as i64)
@@ -188,46 +189,34 @@ mod tests {
 
     #[test]
     fn refused_files() {
-        let cases = [
+        for (text, expected) in [
             ("", "EOF while parsing a value at line 1 column 0"),
             ("[", "EOF while parsing a list"),
-            (
-                &GOOD.replace("\"near\":0.1", "\"near\":1e999"),
-                "number out of range",
-            ),
-            (&GOOD.replace("\"near\":0.1", "\"near\":1e300"), "1e300"),
-            (
-                &GOOD.replace("\"near\":0.1", "\"far\":0.1"),
-                "unknown field `far`",
-            ),
-            (&GOOD.replace("[0,1,0]", "[0,1]"), "invalid length 2"),
-            (&GOOD.replace("[0,1,0]", "[0,-1,0]"), "u × v = −n"),
-            (
-                &GOOD.replace("[0,1,0]", "[0,1.001,0]"),
-                "n = (0, 1.001, 0): expected length 1",
-            ),
-            (
-                &GOOD.replace("[1,0,0]", "[1,0.001,0]"),
-                "expected 0 within 1e-4",
-            ),
-            (
-                &GOOD.replace("[0,-3,0]", "[0,-32.1,0]"),
-                "expected within 32 of the origin",
-            ),
-            (&GOOD.replace("[0,-3,0]", "[0,-1e40,0]"), "-1e40"),
-            (&GOOD.replace("0.9", "115.5"), "half_width 115.5"),
-            (&GOOD.replace("0.1}", "0.001}"), "near 0.001"),
-            (
-                &GOOD.replace("0.1}", r#"0.1,"projection":"parallel"}"#),
-                "`perspective` or `orthographic`",
-            ),
-        ];
-        for (text, expected) in cases {
+        ] {
             let message = parse(text.as_bytes()).unwrap_err().to_string();
-            assert!(
-                message.contains(expected) && !message.contains('\n'),
-                "{text}: {message}"
-            );
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+        // The replaced text, its replacement, and a part of the error.
+        let cases = r#"
+            "near":0.1 → "near":1e999 → number out of range
+            "near":0.1 → "near":1e300 → 1e300
+            "near":0.1 → "far":0.1 → unknown field `far`
+            [0,1,0] → [0,1] → invalid length 2
+            [0,1,0] → [0,-1,0] → u × v = −n
+            [0,1,0] → [0,1.001,0] → n = (0, 1.001, 0): expected length 1
+            [1,0,0] → [1,0.001,0] → expected 0 within 1e-4
+            [0,-3,0] → [0,-32.1,0] → expected within 32 of the origin
+            [0,-3,0] → [0,-1e40,0] → -1e40
+            0.9 → 115.5 → half_width 115.5
+            0.1} → 0.001} → near 0.001
+            0.1} → 0.1,"projection":"parallel"} → `perspective` or `orthographic`
+        "#;
+        for case in cases.lines().filter(|case| case.contains('→')) {
+            let cells: Vec<_> = case.split('→').map(str::trim).collect();
+            let text = GOOD.replace(cells[0], cells[1]);
+            let message = parse(text.as_bytes()).unwrap_err().to_string();
+            assert!(message.contains(cells[2]), "{text}: {message}");
+            assert!(!message.contains('\n'), "{message}");
         }
     }
 
@@ -246,7 +235,8 @@ mod tests {
     fn free_look() {
         let view = look("0,-3,0,0,0").unwrap();
         assert_eq!(view, spherical("3,-90,90").unwrap());
-        // Half a turn to the right, and a quarter turn about the direction of view.
+        // Half a turn to the right, and a quarter turn about the direction of view, give this
+        // camera.
         let turned = look("0,3,0,180,0,90").unwrap();
         let [v, n] = [turned.v(), turned.n()].map(|row| row.map(|c| c.to_num::<f64>()));
         assert_eq!((v, n), ([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]));

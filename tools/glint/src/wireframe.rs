@@ -1,4 +1,5 @@
-//! Files of the wireframe simulator's programs, and programs of the edges of a mesh (docs/wireframe.md).
+//! Program files of the wireframe simulator, and programs that draw the edges of a mesh
+//! (docs/wireframe.md).
 
 use crate::convert::{self, Options};
 use crate::error::{FormatError, InputError, Location, quote};
@@ -122,18 +123,18 @@ pub fn text(program: &Program) -> String {
         })
 }
 
-/// A program of the edges of a mesh.
+/// A program that draws the edges of a mesh.
 pub struct Made {
     /// The binary form.
     pub bytes: Vec<u8>,
     /// Number of segments.
     pub segments: usize,
-    /// Number of dropped edges, which have no length in Q5.11.
+    /// Number of dropped edges, whose length is 0 in Q5.11.
     pub dropped: usize,
 }
 
-/// Makes a program of the edges of all polygons, each undirected edge once. Edges between equal positions in Q5.11 count as one
-/// edge, so polygons need not share vertices.
+/// Makes a program that draws each undirected edge of the polygons once. Edges between equal
+/// positions in Q5.11 count as one edge, so polygons need not share vertices.
 ///
 /// The mesh is scaled to a box with the side `extent` about the origin, or keeps its coordinates if `extent` is `None`. Its z
 /// axis, which points up, becomes y, and its y axis points away from the viewer.
@@ -186,7 +187,7 @@ pub fn make(
     })
 }
 
-/// The edges of all polygons, by their end points. An edge of two polygons occurs twice.
+/// The edges of all polygons as pairs of end points. An edge of two polygons occurs twice.
 fn edges(polygons: &Polygons, points: &[Point]) -> Vec<[Point; 2]> {
     let of_face = |face| {
         let corners = polygons
@@ -220,7 +221,7 @@ fn rounded(position: [f64; 3]) -> Result<Point, FormatError> {
 /// Parses `COUNT` comma-separated numbers in Q5.11.
 ///
 /// # Errors
-/// The text has another form than `form` describes.
+/// The text does not have the form that `form` describes.
 pub fn numbers<const COUNT: usize>(text: &str, form: &str) -> Result<[Q5_11; COUNT], FormatError> {
     let refuse = || {
         let range = format!("{form}, each from {} to {}", Q5_11::MIN, Q5_11::MAX);
@@ -311,13 +312,14 @@ impl MotionForm {
     }
 }
 
-/// A program after a script of keys.
+/// The state of a program after a script of keys.
 pub struct Played {
-    /// The binary form of the program; in accumulated motion, its segments are transformed.
+    /// The binary form of the program. With accumulated motion, its segments are already
+    /// transformed.
     pub bytes: Vec<u8>,
     /// The remaining transformation of the segments in `bytes`.
     pub pose: Pose,
-    /// Number of rejected steps, which would have moved segments out of the range.
+    /// Number of rejected steps, which would have moved segments out of the range of Q5.11.
     pub refused: usize,
 }
 
@@ -401,38 +403,26 @@ mod tests {
         let made = make(polygons, None, &usual()).unwrap();
         let program = check(&made.bytes).unwrap();
         let point = |x: i16, y: i16, z: i16| [x, y, z].map(Q5_11::from_num);
-        assert!(
-            program
-                .segments()
-                .flatten()
-                .any(|end| end == point(0, 3, -2))
-        );
+        let mut ends = program.segments().flatten();
+        assert!(ends.any(|end| end == point(0, 3, -2)));
     }
 
     #[test]
     fn refused_programs_of_meshes() {
-        let refused = |name: &str, extent, viewing: &Viewing| {
-            make(generate::named(name).unwrap(), extent, viewing)
-                .err()
-                .unwrap()
-                .to_string()
+        let refused = |name: &str, extent: f64, viewing: &Viewing| {
+            let made = make(generate::named(name).unwrap(), Some(extent), viewing);
+            made.err().unwrap().to_string()
         };
-        assert_eq!(
-            refused("icosphere:64", Some(4.0), &usual()),
-            "expected a mesh of at most 65535 edges, found 122880"
-        );
-        assert_eq!(
-            refused("cube", Some(32.0), &usual()),
-            "expected coordinates from -16 to 15.9995, found 16"
-        );
         let low = Viewing {
             plane: Q5_11::lit("8"),
             ..usual()
         };
-        assert_eq!(
-            refused("cube", Some(4.0), &low),
-            "expected a z of the eye above that of the view plane, 8, found 8"
-        );
+        let edges = "expected a mesh of at most 65535 edges, found 122880";
+        assert_eq!(refused("icosphere:64", 4.0, &usual()), edges);
+        let range = "expected coordinates from -16 to 15.9995, found 16";
+        assert_eq!(refused("cube", 32.0, &usual()), range);
+        let plane = "expected a z of the eye above that of the view plane, 8, found 8";
+        assert_eq!(refused("cube", 4.0, &low), plane);
     }
 
     #[test]
@@ -461,7 +451,8 @@ mod tests {
             .zip(accumulated.0.as_flattened());
         let largest = pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max);
         assert!(largest > 0.0 && largest < 8.0 / 2048.0, "{largest}");
-        // The cube's sides at ±2 reach the limit of Q5.11 after 223 pans; the displacement reaches its own limit after 256.
+        // The cube's sides at ±2 reach the limit of Q5.11 after 223 pans. The displacement reaches
+        // its own limit after 256 pans.
         assert_eq!(end("right:300", MotionForm::Accumulated).1, 300 - 223);
         assert_eq!(end("right:300", MotionForm::DriftFree).1, 300 - 256);
     }
@@ -481,21 +472,10 @@ mod tests {
             ]
         );
         assert_eq!(script("up:100000").unwrap().len(), 100_000);
-        for text in [
-            "",
-            "up,",
-            "jump",
-            "up:x",
-            "up:-1",
-            "rotate:2",
-            "up:100001",
-            "up,up:100000",
-        ] {
+        for text in " up, jump up:x up:-1 rotate:2 up:100001 up,up:100000".split(' ') {
             let error = script(text).unwrap_err().to_string();
-            assert!(
-                error.starts_with("expected ") && error.contains(", found '"),
-                "{error}"
-            );
+            let is_line = error.starts_with("expected ") && error.contains(", found '");
+            assert!(is_line, "{error}");
         }
     }
 }

@@ -1,5 +1,6 @@
-//! The commands of README.md, docs/first-steps.md and docs/gallery.md make their pictures. Needs the build of `cargo xtask firmware`.
-//! With `GLINT_UPDATE` in the environment, the pictures of docs/ are replaced.
+//! Checks that the commands of README.md, docs/first-steps.md and docs/gallery.md make the pictures
+//! of these pages. Requires the build of `cargo xtask firmware`. If the environment variable
+//! `GLINT_UPDATE` is set, the pictures of docs/ are replaced.
 
 use glint_core::field::KINDS;
 use std::collections::HashMap;
@@ -9,8 +10,8 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Limit for the size of all pictures of a page together, in bytes.
-const MOST: u64 = 550_000;
+/// Maximum total size of the pictures of a page in bytes.
+const MAX_BYTES: u64 = 550_000;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -31,7 +32,7 @@ fn updates() -> bool {
     std::env::var_os("GLINT_UPDATE").is_some()
 }
 
-/// Runs a command to its end, in a folder, and replaces what it has written before.
+/// Runs a command in a folder, and replaces existing output files.
 fn glint(folder: &Path, arguments: &[impl AsRef<OsStr> + std::fmt::Debug]) -> Output {
     let output = Command::new(env!("CARGO_BIN_EXE_glint"))
         .args(arguments)
@@ -79,7 +80,8 @@ fn pixels(path: &Path) -> Vec<u8> {
     pixels
 }
 
-/// Checks that a page shows each picture as it has been made, and that they are small together.
+/// Checks that the pictures of a page equal the generated pictures, and that their total size is
+/// small. Each pair is a generated picture and the picture of the page.
 fn check_pictures(pictures: &[(PathBuf, PathBuf)]) {
     let mut bytes = 0;
     for (made, shown) in pictures {
@@ -92,11 +94,11 @@ fn check_pictures(pictures: &[(PathBuf, PathBuf)]) {
         );
         bytes += std::fs::metadata(shown).unwrap().len();
     }
-    assert!(bytes < MOST, "{bytes} bytes of pictures");
+    assert!(bytes < MAX_BYTES, "{bytes} bytes of pictures");
 }
 
-/// Commands of docs/first-steps.md that are not run: the tests of packaging, those of the firmware, and those of the live page do what
-/// they do.
+/// Commands of docs/first-steps.md that are not run here, because other tests cover packaging, the
+/// firmware and the live page.
 const NOT_RUN: [&str; 3] = [
     "cargo install --path tools/glint",
     "cargo xtask firmware",
@@ -220,8 +222,8 @@ fn readme(page: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// No colour takes more than 49 of 50 pixels of a picture, and a picture has at least six colours. The lines of a wireframe have at least
-/// 1,000 pixels.
+/// In each picture no colour covers more than 49 of 50 pixels, and a picture has at least six
+/// colours. The lines of a wireframe have at least 1,000 pixels.
 #[test]
 fn every_picture_of_the_readme_shows_something() {
     let folder = folder("readme");

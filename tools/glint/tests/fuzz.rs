@@ -10,8 +10,8 @@ fn run(target: Target) {
     };
     let inputs = Inputs::new(target, 0x610e);
     let accepted = (0..count).filter(|&number| inputs.run(number)).count();
-    // Requires both rejected and accepted inputs: without accepted inputs, only the parser's first check would be tested; without
-    // rejected inputs, only its path without errors.
+    // The inputs must be partly accepted and partly rejected. Otherwise they would test only the
+    // parser's first check, or only its path without errors.
     let share = accepted as f64 / count as f64;
     assert!(
         (0.005..0.995).contains(&share),
@@ -19,7 +19,7 @@ fn run(target: Target) {
     );
 }
 
-/// A separate test for each target, so that they run in parallel.
+/// Each target has a separate test, so that the targets run in parallel.
 macro_rules! tests {
     ($($name:ident: $target:ident),*) => {
         $(

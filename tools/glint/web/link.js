@@ -1,8 +1,8 @@
 // The link to the board: a WebSocket to the program that serves the page.
 const RETRY_MS = 1000;
 
-// Calls `opened`, `received` with each message, and `closed` with a text for the user. Returns a function that sends a message: a text,
-// or bytes.
+// Calls `opened` when a connection is open, `received` with each message, and `closed` with a text
+// for the user. Returns a function that sends a message, which is a text or bytes.
 export function startLink({ opened, received, closed }) {
   let socket;
   let isOpen = false;

@@ -6,23 +6,25 @@ use std::path::{Component, Path, PathBuf};
 /// Maximum number of missing files that [`Beside::hint`] names.
 const MAX_NAMED: usize = 4;
 
-/// The files of an upload beside its mesh. Records which of them the mesh names and which are missing.
+/// The auxiliary files of an upload. Records which files the mesh requests and which of them are
+/// missing.
 #[derive(Default)]
 pub struct Beside {
     /// Path of the mesh.
     mesh: PathBuf,
-    /// The files with their paths, which have the same origin as that of the mesh.
+    /// The files with their paths, which start at the same folder as the path of the mesh.
     files: Vec<(PathBuf, Vec<u8>)>,
-    /// The requested names, and whether there is a file.
+    /// The requested names, and whether a file was found for each.
     asked: Vec<(String, bool)>,
 }
 
 impl Beside {
-    /// The files beside the mesh of this name. Names are paths with `/`.
+    /// The auxiliary files of the mesh with the path `mesh`. Paths have the separator `/`.
     pub fn new(mesh: &str, files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
         let files = files.into_iter();
         let mut files: Vec<_> = files.map(|(name, data)| (flat(&name), data)).collect();
-        // Of files with equal names, the one nearest to the first folder comes first.
+        // If several files have the requested name, `read` takes the first of them, which is
+        // nearest to the top folder.
         files.sort_by_cached_key(|(path, _)| (path.components().count(), path.clone()));
         Self {
             mesh: flat(mesh),
@@ -31,7 +33,8 @@ impl Beside {
         }
     }
 
-    /// The file that the mesh names: by its path from the folder of the mesh on, otherwise any with this last part, because files that
+    /// Returns the file that the mesh requests: the file with this path relative to the folder of
+    /// the mesh or, if none exists, a file with the same last part of the path, because files that
     /// are dropped without their folders have no paths.
     pub fn read(&mut self, name: &str) -> Option<Vec<u8>> {
         let name = name.replace('\\', "/");
@@ -51,8 +54,9 @@ impl Beside {
         data
     }
 
-    /// The names without a file. A statement of an OBJ may name several files or one whose name has spaces, so parsers request both: the
-    /// whole is missing if each of its words is, and its words are not named beside it.
+    /// The requested names for which no file was found. A statement of an OBJ may name several
+    /// files, or one file whose name has spaces, so parsers request the whole text and each word.
+    /// If all of them are missing, only the whole text is reported.
     fn missing(&self) -> Vec<&str> {
         let is_found = |word: &str| {
             self.asked
@@ -69,7 +73,7 @@ impl Beside {
         missing.map(|(name, _)| name.as_str()).collect()
     }
 
-    /// What to drop on the page if files are missing.
+    /// If files are missing, tells the user which files to drop on the page.
     pub fn hint(&self) -> Option<String> {
         let missing = self.missing();
         let (first, rest) = missing
@@ -92,7 +96,7 @@ impl Beside {
     }
 }
 
-/// A path without `.` and, as far as possible, without `..`.
+/// Resolves `.` and, as far as possible, `..` in a path.
 fn flat(path: &str) -> PathBuf {
     let mut flat = PathBuf::new();
     for component in Path::new(path).components() {
@@ -151,7 +155,7 @@ mod tests {
             hint(&[], &["a.mtl", "sub\\b.png", "sub/b.png"]).unwrap(),
             "drop 'a.obj' together with 'a.mtl', 'sub/b.png', or drop their folder"
         );
-        // `mtllib a b.mtl`.
+        // The requests for the statement `mtllib a b.mtl`.
         let asked = ["a b.mtl", "a", "b.mtl"];
         assert_eq!(
             hint(&[], &asked).unwrap(),

@@ -20,7 +20,7 @@ pub const MAX_REQUESTS: usize = 64;
 pub enum Request {
     /// Enters a line on the console.
     Command(String),
-    /// Shows the choice with this name of a list.
+    /// Shows the choice with this name in a list.
     Choose(List, String),
     /// Cancels the running command.
     Interrupt,
@@ -44,7 +44,8 @@ pub struct Upload {
 }
 
 impl Request {
-    /// The kind of the request, and for a description its command. A later request with the same key replaces a waiting one.
+    /// The kind of the request and, for [`Request::Help`], its command. A later request replaces a
+    /// waiting request with the same key.
     pub fn key(&self) -> (Discriminant<Self>, &str) {
         let command = match self {
             Self::Help(command) => command,
@@ -59,20 +60,21 @@ impl Request {
 pub struct Channels {
     /// The viewers.
     pub hub: Hub,
-    /// The inputs that the viewer with control sets.
+    /// The levels of buttons and switches, which the viewer with control sets.
     pub inputs: Inputs,
     /// The motion sensor and the hand, if the page moves them.
     pub motion: Option<Arc<Motion>>,
     /// The choices of the firmware.
     choices: Mutex<Arc<Choices>>,
-    /// The motion of the camera that the session has not made yet.
+    /// The requested motion of the camera that the session has not executed yet.
     drag: Mutex<Option<Drag>>,
     /// The sender of requests to the session.
     requests: SyncSender<Request>,
 }
 
 impl Channels {
-    /// The channel to the board `name`, for one page or several pages, and the receiver of requests for the session.
+    /// Creates the channel to the board `name`, which several pages may use if `is_shared`, and the
+    /// session's receiver of requests.
     pub fn new(board: &dyn Live, name: &str, is_shared: bool) -> (Self, Receiver<Request>) {
         let (channels, requests) = Self::to_board(board.motion());
         channels.hub.send(&ToPage::Board {
@@ -83,7 +85,7 @@ impl Channels {
         (channels, requests)
     }
 
-    /// The channel to a board whose motion sensor and hand are those of `motion`.
+    /// Creates the channel to a board whose motion sensor and hand follow `motion`.
     #[must_use]
     pub fn to_board(motion: Option<Arc<Motion>>) -> (Self, Receiver<Request>) {
         let (requests, queue) = sync_channel(MAX_REQUESTS);
@@ -102,13 +104,13 @@ impl Channels {
         self.drag.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Moves the camera.
+    /// Adds a motion to the requested motion of the camera.
     pub fn drag(&self, drag: Drag) {
         let mut waiting = self.lock_drag();
         *waiting = Some(waiting.unwrap_or(Drag::NONE).then(&drag));
     }
 
-    /// Takes the motion of the camera since the last call.
+    /// Takes the motion of the camera that was requested since the last call.
     pub fn take_drag(&self) -> Option<Drag> {
         self.lock_drag().take()
     }
@@ -127,9 +129,11 @@ impl Channels {
         *self.lock_choices() = Arc::new(choices);
     }
 
-    /// Passes a request of a viewer to the session; drops it with a notice if the queue is full.
+    /// Passes a request of a viewer to the session. If the queue is full, the request is dropped
+    /// and the viewer receives a notice.
     pub fn request(&self, id: Id, request: Request) {
-        // The session ends only when the program ends.
+        // Other errors mean that the session has ended, which happens only at the end of the
+        // program.
         if let Err(TrySendError::Full(_)) = self.requests.try_send(request) {
             self.hub
                 .notify_one(id, "the board is busy: a command was dropped");

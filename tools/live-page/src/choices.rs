@@ -1,13 +1,15 @@
-//! The choices that the page offers as buttons: scenes, meshes and fields, each with the console commands that show it.
+//! The choices that the page offers as buttons: scenes, meshes and fields. Each choice has the
+//! console commands that show it.
 //!
-//! The names are those that the firmware lists; the examples of fields come from the table of `glint-core`.
+//! The names come from the lists of the firmware, the examples of fields from the table of
+//! `glint-core`.
 
 use glint_core::console::{NameList, Names};
 use glint_core::field::{EXAMPLES, Field, KINDS, MovingSphere, Primitive};
 use glint_core::fixed::Turns;
 use serde::{Deserialize, Serialize};
 
-/// Number of pictures of a full turn of a moving field.
+/// Number of pictures in a full turn of a moving field.
 const STEPS: u32 = 72;
 
 /// The lists of choices.
@@ -29,7 +31,8 @@ pub struct Choice {
     pub name: String,
     /// The console commands that show it.
     pub commands: Vec<String>,
-    /// The commands of the pictures that follow one another while a moving field is shown; empty for all other choices.
+    /// For a moving field, the commands that show its successive pictures; empty for all other
+    /// choices.
     pub frames: Vec<String>,
 }
 
@@ -52,8 +55,9 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// The choices of a board, from its replies to `scene`, `models` and `help field`. `fit` returns the command that shows the whole
-    /// mesh with this name, if the board has it.
+    /// The choices of a board, from its replies to the commands `scene`, `models` and `help field`.
+    /// `fit` returns the command that shows a whole mesh, or `None` if the board does not have this
+    /// command.
     pub fn new(
         fit: &dyn Fn(&str) -> Option<String>,
         scenes: &[String],
@@ -66,7 +70,8 @@ impl Choices {
         let meshes = mesh_names(models);
         let (meshes, scenes): (Vec<_>, Vec<_>) = names.partition(|name| meshes.contains(name));
         let show = |name: &str| format!("scene {name}");
-        // The last line of the description names the argument and its forms: `FIELD: off or sphere:R or ...`.
+        // The last line of the reply lists the forms of the argument: `FIELD: off or sphere:R or
+        // ...`.
         let forms = help.last().and_then(|line| line.split_once(": "));
         let forms: Vec<_> = forms
             .into_iter()
@@ -81,7 +86,7 @@ impl Choices {
                 .into_iter()
                 .map(|name| Choice::new(name, [show(name)]))
                 .collect(),
-            // A mesh keeps the other settings of the scene before.
+            // Showing a mesh keeps all other settings, so the default scene comes first.
             meshes: meshes
                 .into_iter()
                 .map(|name| {
@@ -110,12 +115,13 @@ impl Choices {
     }
 }
 
-/// Whether the raymarcher draws a field. The soft core, which draws the others, takes minutes in a browser.
+/// Whether the raymarcher draws a field. The soft core draws the other fields, which takes minutes
+/// in a browser.
 fn is_drawn_by_engine(field: &str) -> bool {
     Field::parse(field).is_ok_and(|field| !field.is_left_to_soft_core())
 }
 
-/// The names for completion.
+/// Provides the names for completion on the console.
 impl Names for Choices {
     fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
         let lists = match list {

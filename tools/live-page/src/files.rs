@@ -1,6 +1,7 @@
 //! The files of the page.
 //!
-//! The list does not contain `link.js`, the channel for the messages: the program that serves the page adds it.
+//! The list does not contain `link.js`, which transports the messages; the program that serves the
+//! page adds it.
 
 /// Media type of scripts.
 pub const SCRIPT: &str = "text/javascript; charset=utf-8";

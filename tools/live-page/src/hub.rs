@@ -11,7 +11,8 @@ pub const MAX_VIEWERS: usize = 16;
 /// Maximum number of queued bytes for a viewer, in addition to one picture. A viewer with a longer queue is disconnected.
 const MAX_WAITING: usize = 4 << 20;
 
-/// Minimum number of bytes of earlier console output that a new viewer receives, if available.
+/// Minimum number of bytes of earlier console output that a new viewer receives, if there is as
+/// much.
 const TRANSCRIPT: usize = 32 << 10;
 
 /// Identifier of a viewer.
@@ -22,7 +23,7 @@ pub type Id = u64;
 struct Queue {
     messages: VecDeque<Message>,
     bytes: usize,
-    /// The newest picture; it replaces an older one that has not been sent.
+    /// The newest picture; it replaces an older picture that has not been sent.
     picture: Option<Message>,
 }
 
@@ -31,7 +32,7 @@ struct State {
     viewers: BTreeMap<Id, Queue>,
     last: Id,
     holder: Option<Id>,
-    /// The newest message of each kind that describes a state; a new viewer receives all of them.
+    /// The newest messages that describe the board's state; a new viewer receives all of them.
     board: Option<Message>,
     lists: Option<Message>,
     pins: Option<Message>,
@@ -47,7 +48,7 @@ impl State {
         }
     }
 
-    /// Sends the viewer with control to all viewers.
+    /// Tells all viewers who has control.
     fn send_holder(&mut self) {
         for (id, queue) in &mut self.viewers {
             let holder = match self.holder {

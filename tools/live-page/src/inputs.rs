@@ -1,11 +1,13 @@
-//! The levels that the page sets, shared by the threads of the viewers and of the board.
+//! The levels of buttons and switches that the page sets, shared by the threads of the viewers and
+//! of the board.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Minimum time in ms of the board's time that a button stays pressed, so that a slow board does not miss it.
+/// Minimum duration of a press of a button in ms of the board's time, so that a slow board does not
+/// miss it.
 const PRESSED_MS: u64 = 30;
 
-/// The levels that the page sets.
+/// The shared levels of buttons and switches.
 #[derive(Debug, Default)]
 pub struct Inputs(Mutex<Levels>);
 
@@ -37,7 +39,8 @@ impl Inputs {
         self.lock().switches = on;
     }
 
-    /// The levels now. Buttons that were pressed and released since the last call count as pressed.
+    /// Returns the current levels. Buttons that were pressed and released since the last call count
+    /// as pressed.
     pub fn take(&self) -> Levels {
         let mut levels = self.lock();
         let pressed = std::mem::take(&mut levels.pressed);
@@ -55,7 +58,8 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// The held buttons at the time `now` in ms; `pressed` are the pressed buttons.
+    /// Returns the buttons that the board sees as pressed at the time `now` in ms; `pressed` are
+    /// the buttons that the page presses.
     pub fn held(&mut self, pressed: u8, now: u64) -> u8 {
         let mut held = 0;
         for (button, until) in self.until.iter_mut().enumerate() {

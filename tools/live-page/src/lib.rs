@@ -11,7 +11,7 @@
 //! | [`hub`] | passes pictures, texts and levels to all viewers; one of them has control |
 //! | [`inputs`] | the levels that the page sets |
 //! | [`motion`] | the motion sensor that the page turns, and the hand that it moves |
-//! | [`live`] | boards in real time, with their monitor and pins |
+//! | [`live`] | boards that run in real time, with their monitor and pins |
 //! | [`orbit`] | the camera that the page moves by dragging on the picture |
 //! | [`session`] | runs the board, its console and its transfers |
 //!

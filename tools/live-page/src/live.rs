@@ -10,7 +10,7 @@ use glint_board_api::{
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Uninterrupted run time of the board, in ms of the board's time.
+/// Time for which the board runs without interruption, in ms of the board's time.
 const SLICE_MS: u64 = 1;
 
 /// A board for the live page. The board runs during a read from its line, at most at real-time speed.
@@ -39,7 +39,8 @@ pub trait Live: Board {
     /// The time of the clock that limits the board to real time.
     fn clock(&self) -> Duration;
 
-    /// Time by which the board is ahead of its clock, for a clock that cannot wait.
+    /// Time by which the board is ahead of its clock. The caller waits for this time if the clock
+    /// cannot wait.
     fn early(&mut self) -> Duration {
         Duration::ZERO
     }
@@ -57,8 +58,9 @@ pub struct LiveSimulation<S: ?Sized, C> {
 }
 
 impl<S: Simulation + ?Sized, C: Clock> LiveSimulation<S, C> {
-    /// Takes a board whose firmware is running, and connects a motion sensor and a camera. `clock` limits the board to real time.
-    /// `sample_period` is the interval of the measurements on its console.
+    /// Wraps a board whose firmware is running, and connects a motion sensor and a camera to it.
+    /// `clock` limits the board to real time. `sample_period` is the interval of the measurements
+    /// on its console.
     pub fn new(mut board: SimulatedBoard<S>, sample_period: Duration, clock: C) -> Self {
         let motion = Arc::new(Motion::default());
         board.inner().plug(motion.sensor());
@@ -75,7 +77,7 @@ impl<S: Simulation + ?Sized, C: Clock> LiveSimulation<S, C> {
         }
     }
 
-    /// Runs the board for a slice as soon as real time has reached its cycle.
+    /// Waits until real time has reached the board's cycle, and runs the board for a slice.
     fn step(&mut self) {
         let simulation = self.board.inner();
         self.pace.wait(simulation.cycles());

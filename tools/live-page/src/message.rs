@@ -1,4 +1,5 @@
-//! Messages between the page and the board's side: JSON texts, and binary messages for pictures and uploads.
+//! Messages between the page and the program with the board: JSON texts, and binary messages for
+//! pictures and uploads.
 
 use crate::choices::List;
 use glint_board_api::Frame;
@@ -41,13 +42,13 @@ pub struct Entry {
     pub text: String,
 }
 
-/// The viewer with control of the board, as sent to another viewer.
+/// Who has control of the board, from the point of view of the viewer that receives the message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Holder {
-    /// The viewer itself.
+    /// The receiving viewer.
     You,
-    /// Another viewer.
+    /// A different viewer.
     Other,
     /// No viewer.
     Nobody,
@@ -66,7 +67,7 @@ pub enum ToPage {
         /// Whether other pages may show the board too.
         is_shared: bool,
     },
-    /// Lists of the firmware: commands, and what the page can choose.
+    /// The firmware's lists of commands and of choices.
     Lists {
         /// Console commands.
         commands: Vec<Entry>,
@@ -84,9 +85,9 @@ pub enum ToPage {
     },
     /// Levels of the board's pins.
     Pins(Pins),
-    /// The viewer with control.
+    /// A change of control.
     Control {
-        /// The viewer.
+        /// Who has control.
         holder: Holder,
     },
     /// Measurements of the board.
@@ -116,7 +117,7 @@ pub enum ToPage {
     Completions {
         /// The line.
         line: String,
-        /// The words that may stand in place of its last word.
+        /// The words that can replace its last word.
         words: Vec<String>,
     },
     /// Progress of a transfer in bytes.
@@ -176,14 +177,14 @@ pub fn picture(frame: &Frame, number: u32) -> Message {
 pub enum FromPage {
     /// Requests control, which succeeds if no viewer has it.
     Take,
-    /// Gives control up.
+    /// Releases control.
     Release,
     /// Enters a line on the console.
     Command {
         /// The line.
         line: String,
     },
-    /// Shows a scene, a mesh or a field of the lists.
+    /// Shows a scene, a mesh or a field from the lists.
     Choose {
         /// The list.
         list: List,
@@ -226,7 +227,7 @@ pub enum FromPage {
     },
     /// Moves the hand in front of the camera.
     Hand {
-        /// Its centre as fractions of the frame's width and height; null for no hand.
+        /// Centre of the hand as fractions of the frame's width and height; null for no hand.
         place: Option<[f64; 2]>,
     },
     /// Downloads the picture over the console from a board without access to its monitor.

@@ -7,7 +7,7 @@ use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 
 /// Time constant in s with which the sensor follows the page's attitude.
 const FOLLOW: f64 = 0.03;
-/// Maximum rotation rate of the sensor in °/s, within its range of 2000.
+/// Maximum rotation rate of the sensor in °/s, below its range of 2000 °/s.
 const MAX_RATE: f64 = 1500.0;
 /// Width and height of a frame of the camera in pixels.
 const CAMERA: [usize; 2] = [320, 240];
@@ -16,7 +16,7 @@ const CAMERA_TIMING: Timing = Timing {
     clock: 15_000_000,
     ..Timing::OV7670
 };
-/// Noise of the sensor; without noise, the firmware refuses a calibration.
+/// Noise of the sensor; the firmware refuses to calibrate a sensor without noise.
 const NOISE: Imperfections = Imperfections {
     noise: 0.005,
     accel_noise: 0.0004,
@@ -26,7 +26,7 @@ const NOISE: Imperfections = Imperfections {
 /// A quaternion w, x, y, z.
 type Quaternion = [f64; 4];
 
-/// The attitude and the hand position that the page requests.
+/// The attitude and the hand position that the page has set.
 #[derive(Debug)]
 pub struct Motion(Mutex<Wanted>);
 
@@ -52,7 +52,8 @@ impl Motion {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Turns the sensor to an attitude, a quaternion with a length from 0.001 to 1000. Returns whether the quaternion is valid.
+    /// Sets the attitude of the sensor, a quaternion with a length from 0.001 to 1000. Returns
+    /// false if the quaternion is invalid.
     pub fn turn(&self, attitude: Quaternion) -> bool {
         let length = attitude.iter().map(|c| c * c).sum::<f64>().sqrt();
         let is_attitude = (1e-3..1e3).contains(&length);
@@ -62,7 +63,8 @@ impl Motion {
         is_attitude
     }
 
-    /// Moves the hand, or removes it. Returns whether the position is in the frame.
+    /// Moves the hand, or removes it with `None`. Returns false if the position is outside of the
+    /// frame.
     pub fn move_hand(&self, place: Option<[f64; 2]>) -> bool {
         let is_inside = place.is_none_or(|place| place.iter().all(|c| (0.0..=1.0).contains(c)));
         if is_inside {
@@ -109,20 +111,21 @@ impl Motion {
     }
 }
 
-/// A rotating body.
+/// The simulated body that carries the sensor.
 struct Turning {
     time: f64,
     attitude: Quaternion,
 }
 
 impl Turning {
-    /// Turns the body towards `wanted` until the time `time` in s, and returns its motion.
+    /// Turns the body towards `wanted` up to the time `time` in s, and returns its motion at this
+    /// time.
     fn follow(&mut self, time: f64, wanted: Quaternion) -> State {
         let step = (time - self.time).max(1e-6);
         self.time = time;
         let [w, x, y, z] = product(conjugate(self.attitude), wanted);
         let sine = (x * x + y * y + z * z).sqrt();
-        // Selects the shorter rotation.
+        // The absolute value selects the shorter of the two rotations.
         let angle = 2.0 * sine.atan2(w.abs());
         let part = 1.0 - (-step / FOLLOW).exp();
         let turned = (angle * part).min(MAX_RATE.to_radians() * step);

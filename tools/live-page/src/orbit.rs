@@ -1,15 +1,16 @@
-//! The camera that the page moves by dragging on the picture: it goes around the point that it looks at.
+//! The camera that the page moves by dragging on the picture. The camera orbits the point that it
+//! looks at.
 
 use glint_core::camera::{MAX_EYE, Projection, View};
 use glint_core::fixed::{Q32_32, U8_28};
 
 /// Smallest distance of the eye from the point that it looks at, in world units.
-const LEAST: f64 = 0.3;
+const NEAREST: f64 = 0.3;
 /// Largest distance of the eye from the origin, below the limit for meshes.
 const FARTHEST: f64 = 7.9;
 /// Smallest angle between the direction of view and the up axis, in radians.
 const POLE: f64 = 0.05;
-/// Range of an accepted factor of the distance.
+/// Allowed range of [`Drag::zoom`].
 const ZOOM: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
 /// A vector in world units.
@@ -18,9 +19,9 @@ type Vector = [f64; 3];
 /// A motion of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drag {
-    /// Angles in radians by which the subject turns: to the right and down on the screen.
+    /// Angles in radians by which the subject turns to the right and down on the screen.
     pub turn: [f64; 2],
-    /// Factor of the distance between the eye and the subject.
+    /// Factor by which the distance between the eye and the subject changes.
     pub zoom: f64,
 }
 
@@ -36,7 +37,7 @@ impl Drag {
         self.turn.iter().all(|angle| angle.abs() <= 10.0) && ZOOM.contains(&self.zoom)
     }
 
-    /// The motion followed by another motion.
+    /// Combines this motion with the motion `next` after it.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -63,8 +64,8 @@ fn vector<T: Copy + Into<Q32_32>>(vector: [T; 3]) -> Vector {
     vector.map(|c| c.into().to_num())
 }
 
-/// The direction along a coordinate axis that is up on the screen: of the axes across the horizontal of the screen, the one that points
-/// up most.
+/// The coordinate axis, with its sign, that is up on the screen: among the axes with the smallest
+/// tilt to the left or right, the one that points up most.
 pub fn up(view: &View) -> Vector {
     let [u, v] = [view.u(), view.v()].map(vector);
     let mut best = [0.0, 0.0, 1.0];
@@ -80,12 +81,14 @@ pub fn up(view: &View) -> Vector {
     best
 }
 
-/// The camera after a motion, with the direction `up` up on the screen; `None` if there is no such camera.
+/// The camera after a motion, with the direction `up` pointing up on the screen; `None` if no such
+/// camera exists.
 pub fn moved(view: &View, drag: &Drag, up: Vector) -> Option<View> {
     let [eye, forward] = [vector(view.eye()), vector(view.n())];
-    // The point nearest to the origin on the line of sight, if it is ahead.
+    // The pivot is the point on the line of sight that is nearest to the origin, if it is in front
+    // of the eye.
     let distance = -dot(eye, forward);
-    let distance = if distance > LEAST { distance } else { 1.0 };
+    let distance = if distance > NEAREST { distance } else { 1.0 };
     let pivot = combined(1.0, eye, distance, forward);
     let back = forward.map(|c| -c);
     let rise = dot(back, up).clamp(-1.0, 1.0);
@@ -106,7 +109,7 @@ pub fn moved(view: &View, drag: &Drag, up: Vector) -> Option<View> {
     let zoomed = if is_parallel {
         distance
     } else {
-        (distance * drag.zoom).max(LEAST)
+        (distance * drag.zoom).max(NEAREST)
     };
     let at = |distance| combined(1.0, pivot, distance, back);
     let farthest = FARTHEST.max(dot(eye, eye).sqrt()).min(MAX_EYE.into());
@@ -145,7 +148,8 @@ mod tests {
         pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-5)
     }
 
-    /// To the right, the subject turns as if the camera went to the left, about the axis that is up.
+    /// A drag to the right moves the camera to the left around the up axis, so that the subject
+    /// turns to the right.
     #[test]
     fn a_drag_moves_the_camera_around_the_subject() {
         let view = spherical("3", "30", "60");
@@ -164,7 +168,7 @@ mod tests {
         }
     }
 
-    /// The camera does not turn over at the poles, and keeps its distance at the limits.
+    /// The camera stops before the poles, and keeps its distance at the limits of the distance.
     #[test]
     fn motion_has_limits() {
         let view = spherical("3", "30", "60");
@@ -175,7 +179,7 @@ mod tests {
             dot(eye, eye).sqrt()
         };
         assert!((far(100.0) - 3.0).abs() < 1e-6);
-        assert!((far(0.01) - LEAST).abs() < 1e-6);
+        assert!((far(0.01) - NEAREST).abs() < 1e-6);
         for pitch in [9.0, -9.0] {
             let drag = Drag {
                 turn: [0.3, pitch],

@@ -21,14 +21,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-/// Interval in ms of the board's time at which the session polls the page's requests.
-const LOOK_MS: u64 = 2;
+/// Interval at which the session polls the requests of the pages, in ms of the board's time.
+const POLL_MS: u64 = 2;
 
 /// The key Ctrl-C, which cancels the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
-/// Time-out of the first replies of a simulated board in ms of its time. Such a board has just started, and its program need not
-/// have a prompt; a board on a serial port has already answered.
+/// Time-out of the first replies of a simulated board in ms of its time. Such a board has just
+/// started, and its program may be one without a prompt. A board on a serial port has already
+/// answered.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
 /// Interval in ms of the board's time between two pictures of a moving field.
@@ -37,7 +38,7 @@ const FRAME_MS: u64 = 40;
 /// Maximum number of progress reports of a transfer.
 const REPORTS: u64 = 100;
 
-/// A board that sends its picture and its pins to the page while its line is read.
+/// A board whose picture and pin levels are sent to the pages while the serial line is read.
 struct Watched<'a> {
     board: &'a mut dyn Live,
     hub: &'a Hub,
@@ -47,7 +48,7 @@ struct Watched<'a> {
 }
 
 impl Watched<'_> {
-    /// Exchanges pin levels, and sends a new picture.
+    /// Exchanges pin levels with the pages, and sends a new picture, if any.
     fn exchange(&mut self) -> Result<(), BoardError> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(io::Error::from(io::ErrorKind::Interrupted).into());
@@ -72,7 +73,7 @@ impl Board for Watched<'_> {
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
         read_in_steps(self, bytes, wait_ms, |watched, bytes, left| {
             watched.exchange()?;
-            watched.board.read(bytes, left.min(LOOK_MS))
+            watched.board.read(bytes, left.min(POLL_MS))
         })
     }
 
@@ -116,21 +117,24 @@ pub struct Session<'a> {
     waiting: VecDeque<Request>,
     /// The channel to the pages, with the choices of the firmware.
     channels: &'a Channels,
-    /// The commands of the pictures of a moving field; the first one is next.
+    /// The commands that show the pictures of a moving field; the first command is the next.
     frames: VecDeque<String>,
     /// Time of the last picture of a moving field, in ms of the board's time.
     moved_ms: u64,
-    /// The camera that the page has moved last, and its up direction, until another request.
+    /// The camera after the last drag on a page, and its up direction; `None` after any other
+    /// request.
     orbit: Option<(View, [f64; 3])>,
-    /// Time of the last measurement.
+    /// Time of the last measurement on the board's clock.
     sampled: Duration,
     /// The up axis of the last uploaded mesh.
     up: Axis,
     /// Number of uploads, which distinguishes successive transfers.
     uploads: u8,
-    /// Whether a prompt has been received: a program that does not print one gets no commands of the session's own.
+    /// Whether a prompt has been received. The session sends no commands of its own to a program
+    /// without a prompt.
     has_prompt: bool,
-    /// The last bytes of the console's output; empty after the session's own commands, whose replies end with the prompt.
+    /// The last bytes of the console's output; empty after the session's own commands, because
+    /// their replies end with the prompt.
     end: Vec<u8>,
 }
 
@@ -185,7 +189,7 @@ impl<'a> Session<'a> {
     /// The line to the board has failed.
     pub fn step(&mut self) -> Result<(), BoardError> {
         let mut output = Vec::new();
-        self.board.read(&mut output, LOOK_MS)?;
+        self.board.read(&mut output, POLL_MS)?;
         self.pass(&mut output)?;
         if !self.is_idle() {
             return match self.receive()? {
@@ -223,7 +227,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Does what waits for a time without requests: moves the camera, measures, or moves a field.
+    /// Executes one task for which no request may be waiting: moves the camera, measures, or moves
+    /// a field.
     fn use_rest(&mut self) -> Result<(), BoardError> {
         if let Some(drag) = self.channels.take_drag() {
             return self.move_camera(&drag);
@@ -236,8 +241,8 @@ impl<'a> Session<'a> {
         self.move_field()
     }
 
-    /// The next request of a page, after the motion of the camera that came before it. A request that may change the picture ends the
-    /// motion of a field.
+    /// Takes the next request of a page. Motions of the camera from before the request are executed
+    /// first. A request that may change the picture ends the motion of a field.
     fn receive(&mut self) -> Result<Option<Request>, BoardError> {
         let Ok(request) = self.requests.try_recv() else {
             return Ok(None);
@@ -254,7 +259,8 @@ impl<'a> Session<'a> {
         Ok(Some(request))
     }
 
-    /// Types the commands of a choice: the first one at once, as it may end a running program, the others one after another.
+    /// Types the commands of a choice: the first command at once, because it may end a running
+    /// program, and the others one by one.
     fn choose(&mut self, list: List, name: &str) -> Result<(), BoardError> {
         self.waiting
             .retain(|earlier| !matches!(earlier, Request::Command(_)));
@@ -269,7 +275,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Moves the camera around the subject. Before the first motion, sensor and hand no longer steer the camera.
+    /// Moves the camera around the subject. The first motion stops the steering by sensor and hand.
     fn move_camera(&mut self, drag: &Drag) -> Result<(), BoardError> {
         let mut orbit = self.orbit;
         self.ask(|console, _| {
@@ -297,7 +303,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Sets the next picture of a moving field, if one is shown and its time has come.
+    /// Shows the next picture of a moving field, if a moving field is shown and the picture is due.
     fn move_field(&mut self) -> Result<(), BoardError> {
         let now = self.board.now_ms();
         if now < self.moved_ms + FRAME_MS || !self.hub.has_viewers() {
@@ -315,8 +321,9 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Queues a request until the console waits for a command. A request replaces a queued one with the same [`Request::key`].
-    /// Requests for descriptions above the limit are dropped: the firmware has fewer commands.
+    /// Queues a request until the console waits for a command. It replaces a queued request with
+    /// the same [`Request::key`]. A [`Request::Help`] above the limit is dropped, which cannot
+    /// happen to a correct page, because the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting
             .retain(|earlier| earlier.key() != request.key());
@@ -339,7 +346,8 @@ impl<'a> Session<'a> {
         self.hub.send_console(output);
         self.end.append(output);
         self.has_prompt |= self.end.ends_with(PROMPT.as_bytes());
-        // The page cannot serve a transfer that a user has started on the console, so it is cancelled.
+        // The page cannot serve a transfer that a user has started on the console, so the session
+        // cancels the transfer.
         let is_transfer = self.end.ends_with(b"\nready\r\n");
         let kept = self.end.len().saturating_sub(2 * PROMPT.len());
         self.end.drain(..kept);
@@ -359,7 +367,7 @@ impl<'a> Session<'a> {
         self.board.write(format!("\0{line}\r").as_bytes())
     }
 
-    /// Runs a task on the console, up to the next prompt; viewers do not receive the output.
+    /// Runs a task on the console up to the next prompt. The viewers do not receive the output.
     fn ask(
         &mut self,
         task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
@@ -367,14 +375,14 @@ impl<'a> Session<'a> {
         self.try_ask(task).map(drop)
     }
 
-    /// Runs a task as [`ask`](Self::ask), and returns whether it has succeeded.
+    /// Runs a task like [`ask`](Self::ask), and returns whether it has succeeded.
     fn try_ask(
         &mut self,
         task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
     ) -> Result<bool, BoardError> {
         let mut console = Console::new(&mut self.board);
         let result = task(&mut console, self.hub).and_then(|()| Ok(console.greet().map(drop)?));
-        // A line that the firmware prints above its prompt belongs to the output.
+        // A line that the firmware prints before its prompt belongs to the output for the viewers.
         let mut rest = std::mem::take(console.line().1);
         self.end.clear();
         self.pass(&mut rest)?;
@@ -475,7 +483,7 @@ fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), Transfer
     Ok(())
 }
 
-/// Downloads the colours of the last frame, and sends them as a picture to the viewers.
+/// Downloads the last frame, and sends its colours as a picture to the viewers.
 fn send_picture(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
     let command = "info size";
     let lines = console.command(command)?;

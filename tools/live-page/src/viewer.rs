@@ -9,10 +9,11 @@ use glint_core::console::{LINE_MAX, complete};
 use glint_mesh::convert::Options;
 use glint_mesh::model;
 
-/// Maximum size in bytes of the files of an upload.
+/// Maximum total size in bytes of the files of an upload.
 const MAX_UPLOAD: usize = 64 << 20;
 
-/// Maximum number of auxiliary files of an upload. Their names fit a message, whatever their characters.
+/// Maximum number of auxiliary files of an upload. With names of any characters, the list of these
+/// files fits a message.
 const MAX_BESIDE: usize = 192;
 
 /// Maximum number of characters of a file's path.
@@ -21,7 +22,7 @@ const MAX_NAME: usize = 100;
 /// The reason to close a page's connection.
 pub type Reason = &'static str;
 
-/// A mesh file, with its auxiliary files, that the page is sending.
+/// A mesh file and its auxiliary files, which the page is sending.
 struct Sent {
     /// The files; the first one is the mesh.
     files: Vec<FileHead>,
@@ -32,7 +33,7 @@ struct Sent {
 }
 
 impl Sent {
-    /// The upload that a page announces; `None` if it is too large.
+    /// Starts an upload that a page announces; `None` if it is too large.
     fn new(mesh: FileHead, beside: Vec<FileHead>) -> Option<Self> {
         let is_short = |file: &FileHead| file.name.chars().count() <= MAX_NAME;
         let is_mesh = mesh.bytes > 0 && beside.len() <= MAX_BESIDE;
@@ -47,7 +48,7 @@ impl Sent {
     /// Converts the mesh of a complete upload.
     ///
     /// # Errors
-    /// A file violates its format, or a buffer is missing. The error is a line for the user.
+    /// A file violates its format, or a buffer is missing. The error is one line for the user.
     fn converted(self) -> Result<Upload, String> {
         let mut rest = self.data;
         let mut files = self.files.into_iter().map(|file| {
@@ -151,7 +152,7 @@ impl Viewer {
                     hub.send_one(self.id, &ToPage::Completions { line, words });
                 }
             }
-            // Messages of a page that has just lost control may still arrive.
+            // Messages from a page that has just lost control may still arrive; they are ignored.
             _ if !hub.has_control(self.id) => {}
             FromPage::Command { line } => {
                 if self.is_line(&line, channels) {
@@ -201,7 +202,7 @@ impl Viewer {
     /// Receives bytes of an announced file from the page, and passes the complete file to the session.
     ///
     /// # Errors
-    /// No file has been announced, or it has fewer bytes.
+    /// No file has been announced, or more bytes arrive than announced.
     pub fn receive_bytes(&mut self, bytes: &[u8], channels: &Channels) -> Result<(), Reason> {
         let expected = "expected the bytes of an announced file";
         let file = self.upload.as_mut().ok_or(expected)?;
@@ -292,7 +293,8 @@ mod tests {
         assert!(queue.try_recv().is_err());
     }
 
-    /// The next page with control does not inherit pressed buttons, and receives the state of sensor and hand.
+    /// The next page with control does not take over pressed buttons, and receives the state of
+    /// sensor and hand.
     #[test]
     fn control_passes_on_with_released_buttons_and_the_motion() {
         let motion = Arc::<Motion>::default();

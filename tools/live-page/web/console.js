@@ -1,10 +1,10 @@
-// The console: output, a line with history, and completion by the lists of the firmware.
+// The console: output, an input line with history, and completion with the lists of the firmware.
 const MAX_LOG = 64 << 10;
 const PROMPT = /^(\s*glint> )+/;
-// Control sequences of terminals, and control characters but the line feed.
+// Control sequences of terminals, and all control characters except the line feed.
 const CONTROL = /\x1b\[[0-?]*[ -/]*[@-~]|[\x00-\x09\x0b-\x1f\x7f]/g;
 
-// The longest start that all words have.
+// The longest common prefix of all words.
 function common(words) {
   let start = words[0] ?? "";
   for (const word of words) while (!word.startsWith(start)) start = start.slice(0, -1);
@@ -21,7 +21,8 @@ export function startConsole(send) {
   let commands = [];
   let place = 0;
   let raw = "";
-  // The words that complete a line, whether Tab waits for them, and whether it has found none.
+  // The words that complete a line, whether a press of Tab waits for them, and whether the last
+  // press found none.
   let found = { line: "", words: [] };
   let [waits, isVain] = [false, false];
   // Whether the hint lists completions.
@@ -30,7 +31,7 @@ export function startConsole(send) {
   function show(text) {
     raw = (raw + text).slice(-MAX_LOG);
     const isAtEnd = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
-    // A prompt is shown only before a command.
+    // A prompt is not shown until a command follows it.
     const lines = raw.replace(CONTROL, "").split("\n");
     log.textContent = lines.map((line) => line.replace(PROMPT, "glint> ")).join("\n").replace(/glint> $/, "");
     if (isAtEnd) log.scrollTop = log.scrollHeight;
@@ -42,7 +43,8 @@ export function startConsole(send) {
   }
 
   function run(typed) {
-    // Replaces tabs, and halves of characters that a length limit of the browser has cut.
+    // Replaces tabs, and unpaired surrogates, which the browser's limit on the length leaves of a
+    // character.
     const line = typed.replace(/[\t\p{Surrogate}]/gu, " ");
     if (line.trim() === "") return;
     if (history.at(-1) !== line) history.push(line);
@@ -50,11 +52,11 @@ export function startConsole(send) {
     send({ type: "command", line });
   }
 
-  // Whether `found` are the words for the line.
+  // Whether `found` has the words for the current line.
   const isKnown = () => found.line === input.value;
   const last = () => input.value.split(" ").at(-1);
 
-  // Requests the words that complete the line.
+  // Requests the words that complete the current line.
   function ask() {
     if (!isKnown()) send({ type: "complete", line: input.value });
   }
@@ -79,7 +81,7 @@ export function startConsole(send) {
     showHint();
   }
 
-  // Shows the words for the line, and completes it if Tab has waited for them.
+  // Shows the words for the line, and completes the line if a press of Tab has waited for them.
   function showCompletions({ line, words }) {
     if (line !== input.value || isKnown()) return;
     found = { line, words };
@@ -92,9 +94,9 @@ export function startConsole(send) {
     waits = false;
     const { words } = found;
     isVain = words.length === 0;
-    if (isVain) return list("No completion; Tab leaves the line.");
+    if (isVain) return list("No completion; press Tab again to leave the line.");
     const start = last();
-    // Numbers follow a colon.
+    // A number follows a word that ends in a colon, so no space is added.
     const end = words.length > 1 || words[0].endsWith(":") ? common(words) : `${words[0]} `;
     const isNew = end !== start;
     input.value = input.value.slice(0, input.value.length - start.length) + end;
@@ -109,7 +111,8 @@ export function startConsole(send) {
     hint.textContent = text;
   }
 
-  // Tab completes, and leaves an empty line, a line without a completion at its second press, and any line after Escape.
+  // Tab completes the line. It moves the focus on if the line is empty, if the press before it
+  // found no completion, and after Escape.
   let leaves = false;
   input.addEventListener("keydown", (event) => {
     if (event.key === "Tab" && !event.shiftKey && !leaves && !isVain && input.value.trim() !== "") {
@@ -145,7 +148,7 @@ export function startConsole(send) {
   function setCommands(list) {
     commands = list;
     asked = new Set(helps.keys());
-    // The names may have changed.
+    // The firmware's names may have changed.
     found = { line: null, words: [] };
   }
 

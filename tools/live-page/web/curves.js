@@ -1,7 +1,7 @@
-// Curves over time: duration of a frame, cycles of the engine, attitude.
+// Curves over time: duration of a frame, cycles of the engine, attitude of the sensor.
 const SHOWN_MS = 60_000;
 const COLOURS = ["#3a9bff", "#ff8a3c", "#3fbf7f"];
-// `least` is the range that a curve shows at least, so that noise does not fill it.
+// `least` is the minimum height of a curve's range, so that noise does not fill the curve.
 const CURVES = [
   { id: "time", unit: "ms", least: [0, 1], names: ["frame"], values: ({ stats }) => [stats && (stats.cycles / stats.clock) * 1000] },
   { id: "engine", unit: "kcycles", least: [0, 1], names: ["busy", "stalled"], values: ({ stats }) => [stats?.cycles_busy, stats?.cycles_stalled].map((c) => c / 1000) },
@@ -15,7 +15,7 @@ function angles([w, x, y, z]) {
   return [yaw, pitch, roll].map((angle) => (angle * 180) / Math.PI);
 }
 
-// Draws the values of samples over the time before `now`.
+// Draws the values of the samples of the last minute before `now`.
 function draw(canvas, samples, now, count, least) {
   const context = canvas.getContext("2d");
   const { width, height } = canvas;
@@ -34,7 +34,7 @@ function draw(canvas, samples, now, count, least) {
   }
 }
 
-// A number with one decimal, without the sign of a rounded zero.
+// Formats a number with one decimal, and without the minus sign of a value that rounds to zero.
 const decimal = (value) => (Number.isFinite(value) ? (Math.round(value * 10) / 10 || 0).toFixed(1) : "–");
 
 export function startCurves() {

@@ -1,4 +1,4 @@
-// The monitor: draws pictures of RGB565 colours, and counts them.
+// The monitor: draws pictures of RGB565 colours, and counts the pictures.
 const HEAD = 8;
 const canvas = document.getElementById("monitor");
 const context = canvas.getContext("2d", { alpha: false });

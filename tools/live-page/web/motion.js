@@ -1,4 +1,5 @@
-// The motion sensor, turned with the mouse, with keys or with this device, and the hand in front of the camera.
+// The motion sensor, which the mouse, keys or this device turn, and the hand in front of the
+// camera.
 const STEP = Math.PI / 36;
 const PLATE = [[-1, -0.65, 0], [1, -0.65, 0], [1, 0.65, 0], [-1, 0.65, 0]];
 const ARROW = [[0, -0.4, 0.02], [0, 0.45, 0.02], [-0.2, 0.2, 0.02], [0, 0.45, 0.02], [0.2, 0.2, 0.02]];
@@ -31,7 +32,7 @@ export function startMotion(send, notify) {
     const context = sensor.getContext("2d");
     const { width, height } = sensor;
     const style = getComputedStyle(sensor);
-    // Seen from the front and above.
+    // Projects a point as seen from the front and above.
     const seen = ([x, y, z]) => [width / 2 + 0.36 * width * x, height / 2 - 0.36 * width * (0.5 * y + 0.87 * z)];
     const path = (points) => {
       context.beginPath();
@@ -81,7 +82,7 @@ export function startMotion(send, notify) {
   });
   document.getElementById("level").addEventListener("click", () => turn([1, 0, 0, 0]));
 
-  // The angles of a device are turns about z, then x, then y.
+  // The angles of a device are rotations about z, then x, then y.
   function follow({ alpha, beta, gamma }) {
     if (alpha === null) return;
     clearTimeout(patience);
@@ -89,7 +90,7 @@ export function startMotion(send, notify) {
     const [z, x, y] = [alpha, beta, gamma].map((angle) => (angle * Math.PI) / 180);
     turn(product(product(about(2, z), about(0, x)), about(1, y)));
   }
-  // Browsers do not tell why there are no events.
+  // Browsers do not report why they send no events, so a time-out detects this.
   let patience;
   function fail() {
     use.checked = false;
@@ -142,7 +143,8 @@ export function startMotion(send, notify) {
   });
   document.getElementById("away").addEventListener("click", () => moveHand(null));
 
-  // Shows the attitude and the hand that were set last, maybe by another page.
+  // Shows the attitude and the position of the hand that a page, possibly another one, has set
+  // last.
   function showLast(motion) {
     attitude = motion.attitude;
     place = motion.hand;

@@ -1,4 +1,4 @@
-// The camera, moved on the picture with mouse, touch, wheel or keys.
+// Moves the camera by mouse, touch, wheel or keys on the picture.
 const RADIANS_A_WIDTH = Math.PI;
 const STEP = Math.PI / 36;
 const ZOOM = 1.1;
@@ -24,7 +24,7 @@ export function startOrbit(send) {
     const last = pressed.get(event.pointerId);
     if (!last || !isMine()) return;
     const next = [event.clientX, event.clientY];
-    // One finger turns, two fingers zoom.
+    // One pointer turns the camera; two pointers zoom.
     const before = pressed.size === 2 && spread();
     pressed.set(event.pointerId, next);
     if (before) return move(0, 0, before / spread());
@@ -37,7 +37,7 @@ export function startOrbit(send) {
     (event) => {
       if (!isMine() || event.deltaY === 0) return;
       event.preventDefault();
-      // A notch of a wheel has about 100 units, a step of a touchpad less.
+      // A notch of a mouse wheel has about 100 units, a step of a touchpad fewer.
       move(0, 0, ZOOM ** Math.min(Math.max(event.deltaY / 100, -3), 3));
     },
     { passive: false },

@@ -12,7 +12,7 @@ const element = (id) => document.getElementById(id);
 let holder = "nobody";
 let sendData;
 
-// Messages after which the last notice is out of date.
+// Messages that make the last notice obsolete.
 const CLEARING = ["command", "choose", "picture", "upload"];
 
 function send(message) {
@@ -20,7 +20,7 @@ function send(message) {
   sendData(JSON.stringify(message));
 }
 
-// Shows a notice, in place of the last one; an empty text shows none.
+// Shows a notice in place of the last notice; an empty text clears it.
 function notify(text, isError = true) {
   const notice = element("notice");
   notice.role = isError ? "alert" : "status";
@@ -37,14 +37,14 @@ startOrbit(send);
 
 const HOLDERS = { you: "You have control.", other: "Another page has control; this one only watches.", nobody: "No page has control." };
 
-// Shows who has control. Without it the controls are disabled.
+// Shows who has control. A page without control has disabled controls.
 function setHolder(found) {
   if (found !== holder) panel.release();
   holder = found;
   const isMine = holder === "you";
   document.body.dataset.holder = holder;
   element("holder").textContent = HOLDERS[holder];
-  element("control").textContent = isMine ? "Give up control" : "Take control";
+  element("control").textContent = isMine ? "Release control" : "Take control";
   element("control").disabled = holder === "other";
   for (const control of document.querySelectorAll("main :is(input, button)")) control.disabled = !isMine;
 }
@@ -76,7 +76,8 @@ function choice(list, name) {
   return button;
 }
 
-// Shows why the soft core drew the picture, or set it up for the engine, and why most triangles are not drawn.
+// Shows why the soft core drew the picture or computed the triangles for the engine, and why most
+// triangles are not drawn.
 function showRemarks({ stats }) {
   const by = stats?.backend === "cpu" ? "Drawn" : "Set up";
   const fallback = stats?.fallback && `${by} by the soft core, which is slow: ${stats.fallback}.`;

@@ -1,11 +1,11 @@
 // The panel: LEDs, digits, switches and buttons.
 const SVG = "http://www.w3.org/2000/svg";
-// The segments a to g in a box of 60 by 100, and the point.
+// Outlines of the segments a to g, in a box of 60 by 100 units.
 const SEGMENTS = [
   "M14 4H46L40 12H20Z", "M54 8V46L50 50L44 44V18Z", "M54 54V92L44 82V56L50 50Z", "M14 96H46L40 88H20Z",
   "M6 54V92L16 82V56L10 50Z", "M6 8V46L10 50L16 44V18Z", "M16 46H44L48 50L44 54H16L12 50Z",
 ];
-// The purpose of each button, of docs/boards.md.
+// The function of each button, from docs/boards.md.
 const BUTTONS = ["fire 1", "fire 2", "left: calibrate the sensor", "right: recentre the camera"];
 const VALUES = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f, 0x77, 0x7c, 0x39, 0x5e, 0x79, 0x71];
 
@@ -21,7 +21,7 @@ function digit() {
   return made;
 }
 
-// The digits as text: `-` for segments that are no hexadecimal digit.
+// The digits as text, with `-` for segments that do not form a hexadecimal digit.
 function text(segments) {
   const character = (lit) => (lit & 0x7f ? (VALUES.indexOf(lit & 0x7f).toString(16).replace("-1", "-")) : " ");
   return segments.map((lit) => character(lit) + (lit & 0x80 ? "." : "")).join("");
@@ -89,7 +89,7 @@ export function startPanel(send) {
     buttons.forEach((button, bit) => button.setAttribute("aria-pressed", Boolean((pins.buttons >> bit) & 1)));
   }
 
-  // Forgets the pressed buttons, which are released when control passes on.
+  // Clears the pressed buttons; the board's side releases them when control passes to another page.
   const release = () => (pressed = 0);
 
   return { show, release };

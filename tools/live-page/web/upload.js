@@ -1,10 +1,11 @@
-// Uploads of a model, dropped on the page or chosen, as files or as a folder.
+// Uploads a model that the user drops on the page or chooses, as files or as a folder.
 const CHUNK = 64 << 10;
 const MAX_BYTES = 64 << 20;
-// Most auxiliary files and longest name that the board's side accepts.
+// Maximum number of auxiliary files and maximum length of a name that the receiver accepts.
 const MAX_BESIDE = 192;
 const MAX_NAME = 100;
-// Most files and folders that are looked at: a folder that was dropped by mistake may have millions.
+// Maximum number of files and folders to search: a folder that was dropped by mistake may contain
+// millions.
 const MAX_ENTRIES = 20000;
 // Auxiliary files of a mesh: materials of an OBJ, buffers of a glTF, pictures of textures.
 const BESIDE = [".mtl", ".bin", ".png", ".jpg", ".jpeg"];
@@ -13,7 +14,7 @@ const extension = (path) => path.slice(path.lastIndexOf(".")).toLowerCase();
 const depth = (path) => path.split("/").length;
 const order = (a, b) => depth(a.path) - depth(b.path) || (a.path < b.path ? -1 : a.path > b.path ? 1 : 0);
 
-// Files with their paths, of files and folders: entries of a file system, or files.
+// Returns all files with their paths. `entries` are files, or files and folders of a file system.
 async function filesOf(entries) {
   const found = [];
   for (let i = 0; i < entries.length; i++) {
@@ -22,7 +23,7 @@ async function filesOf(entries) {
     if (entry.isDirectory) {
       const reader = entry.createReader();
       const read = () => new Promise((done, fail) => reader.readEntries(done, fail));
-      // A call returns some of the entries, and none at the end.
+      // Each call returns some of the entries, and no entry at the end.
       for (let some = await read(); some.length > 0; some = await read()) entries.push(...some);
     } else if (entry.isFile) {
       const file = await new Promise((done, fail) => entry.file(done, fail));
@@ -34,7 +35,7 @@ async function filesOf(entries) {
   return found;
 }
 
-// Removes the folders that all paths share.
+// Removes the folders that are common to all paths.
 function withoutCommonFolders(files) {
   const [first, ...others] = files.map(({ path }) => path.split("/"));
   let shared = 0;
@@ -47,7 +48,7 @@ export function startUpload(send, sendBytes, notify) {
   const inputs = { files: document.getElementById("file"), folder: document.getElementById("folder") };
   const MESHES = inputs.files.accept.split(",").filter((name) => !BESIDE.includes(name));
 
-  // The mesh, in the folder nearest to the first, and its auxiliary files.
+  // The mesh nearest to the top folder, and its auxiliary files.
   function modelOf(found) {
     const sorted = found.sort(order);
     const mesh = sorted.find(({ path }) => MESHES.includes(extension(path)));
@@ -78,7 +79,7 @@ export function startUpload(send, sendBytes, notify) {
         });
         contents.push(bytes);
       }
-      // Of a long path, its end.
+      // A long path is cut to its end.
       heads = files.map(({ path }, i) => ({ name: [...path].slice(-MAX_NAME).join(""), bytes: contents[i].byteLength }));
     } catch ({ message }) {
       return notify(message);
@@ -99,7 +100,7 @@ export function startUpload(send, sendBytes, notify) {
   addEventListener("drop", (event) => {
     if (!hasFile(event)) return;
     event.preventDefault();
-    // The items are only valid during the event.
+    // The items are valid only during the event.
     const items = [...event.dataTransfer.items].filter(({ kind }) => kind === "file");
     upload(items.map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile()).filter(Boolean));
   });

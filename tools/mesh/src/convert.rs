@@ -23,7 +23,7 @@ pub use textures::{TextureOptions, TextureReport};
 /// Options of a conversion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// Keeps the coordinates, instead of scaling the mesh to the 1×1×1 box about the origin.
+    /// Keeps the coordinates. Otherwise the mesh is scaled to the 1×1×1 box about the origin.
     pub keep_scale: bool,
     /// Keeps the triangles in the order of the file. Otherwise they are reordered if this reduces the number of vertices that the engine
     /// fetches.
@@ -76,7 +76,8 @@ pub struct Report {
 /// Converts polygons with checked indices to the board's memory layout.
 ///
 /// # Errors
-/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large, also with its textures.
+/// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle of non-zero area, or
+/// is too large, including its textures.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
     let unusual = Unusual::of(polygons).filter(|_| !options.keep_scale);
     let polygons = &*prepared(polygons, options, unusual)?;
@@ -137,8 +138,8 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// The polygons with usual magnitudes, with repaired winding if `options` requests it, and with back faces of double-sided faces if
-/// they can be visible.
+/// Prepares a copy of the polygons: scales unusual magnitudes, repairs the winding if `options`
+/// requests it, and adds back faces of double-sided faces that can be visible.
 fn prepared(
     polygons: &Polygons,
     options: Options,
@@ -159,7 +160,8 @@ fn prepared(
     Ok(polygons)
 }
 
-/// Translates and scales the points, and reverses and adds faces, like [`convert`], but without rounding and in the order of the file.
+/// Translates and scales the points, repairs the winding and adds back faces like [`convert`], but
+/// without rounding and in the order of the file.
 ///
 /// # Errors
 /// The mesh has no extent, or too many triangles.
@@ -190,8 +192,8 @@ struct FlatTriangle {
     face: usize,
 }
 
-/// Returns all triangles with a non-zero area after rounding, the number of triangles of area 0, and a remark on faces that cross
-/// themselves.
+/// Returns all triangles of non-zero area after rounding, the number of triangles of area 0, and a
+/// remark on self-intersecting faces.
 fn flat_triangles(
     polygons: &Polygons,
     rounded: &Rounded,
@@ -216,7 +218,7 @@ fn flat_triangles(
     (triangles, degenerate, crossing.remark())
 }
 
-/// Faces that cross themselves: their number, and the first of them, counted from 1.
+/// Self-intersecting faces: how many exist, and the number of the first of them, counted from 1.
 #[derive(Default)]
 struct Crossing {
     count: usize,
@@ -224,7 +226,8 @@ struct Crossing {
 }
 
 impl Crossing {
-    /// Counts the face that was cut into triangles last.
+    /// Counts the face with this number if its triangulation, which has just filled `scratch`,
+    /// found a self-intersection.
     fn count(&mut self, number: usize, scratch: &triangulate::Scratch) {
         if scratch.crosses {
             self.count += 1;
@@ -248,7 +251,8 @@ impl Crossing {
     }
 }
 
-/// Returns the unit normal of a triangle, from its corners before rounding; `None` for a triangle without area after rounding.
+/// Returns the unit normal of a triangle, from its corners before rounding; `None` for a triangle
+/// of area 0 after rounding.
 fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Option<Vector> {
     // Differences of rounded coordinates have 17 bits, and their products are exact in f64, so `unit` returns `None` exactly for
     // an area of zero.
@@ -256,8 +260,8 @@ fn normal(polygons: &Polygons, rounded: &Rounded, corners: [Corner; 3]) -> Optio
         corners.map(|corner| rounded.position(corner).map(f64::from)),
     ))?;
     let before = unit(area_vector(corners.map(|corner| polygons.point(corner))));
-    // Rounding may flip a very narrow triangle. The normal is then computed from the rounded corners, because the rounded triangle is
-    // drawn.
+    // Rounding may flip a very narrow triangle. The normal is then computed from the rounded
+    // corners, because the board draws the rounded triangle.
     Some(
         before
             .filter(|before| dot(*before, after) > 0.0)
@@ -370,7 +374,7 @@ fn point_colour(polygons: &Polygons, corner: Corner) -> Option<Rgb8> {
     polygons.point_colours.get(corner.point as usize).copied()
 }
 
-/// Mean of the corners' colours, as the flat colour of a triangle whose points have colours.
+/// Flat colour of a triangle whose points have colours: the mean of its corners' colours.
 fn mean_colour(polygons: &Polygons, corners: [Corner; 3]) -> Option<Rgb8> {
     let mut sums = [0_u16; 3];
     for corner in corners {
@@ -401,21 +405,16 @@ mod tests {
         polygons
     }
 
-    const KEEP: Options = Options {
-        keep_scale: true,
-        keep_order: false,
-        fix_winding: false,
-        textures: TextureOptions {
-            left_out: false,
-            format: None,
-            largest_side: 1024,
-            filter: None,
-        },
-    };
+    fn keep() -> Options {
+        Options {
+            keep_scale: true,
+            ..Options::default()
+        }
+    }
 
     #[test]
     fn scaled_to_the_unit_box() {
-        // No face uses the last point, so it has no influence on the scale.
+        // No face uses the last point, so it does not affect the scale.
         let polygons = soup(
             &[
                 [10.0, 0.0, 0.0],
@@ -431,14 +430,8 @@ mod tests {
             (report.vertices, report.triangles, report.error_max),
             (3, 1, 0.0)
         );
-        let mesh = glm::check(&bytes).unwrap();
-        let positions: Vec<[i16; 3]> = mesh
-            .chunks()
-            .next()
-            .unwrap()
-            .vertices()
-            .map(|v| v.position)
-            .collect();
+        let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
+        let positions: Vec<[i16; 3]> = chunk.vertices().map(|v| v.position).collect();
         assert_eq!(
             positions,
             [[-8192, -4096, 0], [8192, -4096, 0], [-8192, 4096, 0]]
@@ -447,23 +440,12 @@ mod tests {
 
     #[test]
     fn kept_scale_is_refused_where_it_does_not_fit() {
-        let fits = 2.0 - 1.0 / ONE;
-        assert!(
-            convert(
-                &soup(
-                    &[[-2.0, 0.0, 0.0], [fits, 0.0, 0.0], [0.0, 1.0, 0.0]],
-                    &[&[0, 1, 2]]
-                ),
-                KEEP
-            )
-            .is_ok()
-        );
-        let beyond = soup(
-            &[[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            &[&[0, 1, 2]],
-        );
-        let error = convert(&beyond, KEEP).unwrap_err();
-        assert_eq!(error.found, "point 1 at (2, 0, 0)");
+        let triangle = |x: f64| {
+            let points = [[-2.0, 0.0, 0.0], [x, 0.0, 0.0], [0.0, 1.0, 0.0]];
+            convert(&soup(&points, &[&[0, 1, 2]]), keep())
+        };
+        assert!(triangle(2.0 - 1.0 / ONE).is_ok());
+        assert_eq!(triangle(2.0).unwrap_err().found, "point 1 at (2, 0, 0)");
     }
 
     #[test]
@@ -476,15 +458,18 @@ mod tests {
             [tiny, 0.0, 0.0],
             [0.5, 0.0, 0.0],
         ];
-        let (_, report) =
-            convert(&soup(&points, &[&[0, 1, 2], &[0, 3, 2], &[0, 4, 1]]), KEEP).unwrap();
+        let (_, report) = convert(
+            &soup(&points, &[&[0, 1, 2], &[0, 3, 2], &[0, 4, 1]]),
+            keep(),
+        )
+        .unwrap();
         assert_eq!(
             (report.triangles, report.degenerate, report.vertices),
             (1, 2, 3)
         );
         assert!((report.error_max_lsb - 0.2).abs() < 1e-9);
         assert!((report.error_rms_lsb - 0.2 / 5f64.sqrt()).abs() < 1e-9);
-        let error = convert(&soup(&points, &[&[0, 3, 2]]), KEEP).unwrap_err();
+        let error = convert(&soup(&points, &[&[0, 3, 2]]), keep()).unwrap_err();
         assert_eq!(error.found, "only degenerate ones (1)");
     }
 
@@ -509,7 +494,7 @@ mod tests {
         );
     }
 
-    /// A mesh of any magnitude becomes the same mesh.
+    /// The magnitude of the coordinates does not affect the result.
     #[test]
     fn every_finite_magnitude() {
         let converted = |exponent: i32| {
@@ -531,31 +516,28 @@ mod tests {
         for exponent in [-1022, -600, -201, -100, 100, 201, 600, 1022] {
             assert!(converted(exponent) == usual, "{exponent}");
         }
-        // The smallest number above 0, and the largest.
+        // The smallest positive number, and the largest number.
         for size in [f64::from_bits(1), f64::MAX] {
-            let polygons = soup(
-                &[[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]],
-                &[&[0, 1, 2]],
-            );
-            assert_eq!(
-                convert(&polygons, Options::default()).unwrap().1.triangles,
-                1
-            );
+            let points = [[-size, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]];
+            let polygons = soup(&points, &[&[0, 1, 2]]);
+            let (_, report) = convert(&polygons, Options::default()).unwrap();
+            assert_eq!(report.triangles, 1);
         }
     }
 
     #[test]
     fn no_extent() {
-        let error = convert(&soup(&[[1.0; 3]; 3], &[&[0, 1, 2]]), Options::default()).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "expected a mesh with an extent, found extent 0e0"
-        );
+        let polygons = soup(&[[1.0; 3]; 3], &[&[0, 1, 2]]);
+        let error = convert(&polygons, Options::default())
+            .unwrap_err()
+            .to_string();
+        assert_eq!(error, "expected a mesh with an extent, found extent 0e0");
     }
 
     #[test]
     fn normals_of_a_corner() {
-        // Three faces at a cube's corner: the shared normal is the diagonal, for any triangulation of the faces.
+        // Three faces at a cube's corner: for any triangulation of the faces, the shared normal is
+        // the diagonal of the cube.
         let polygons = soup(
             &[
                 [0.0, 0.0, 0.0],
@@ -568,7 +550,7 @@ mod tests {
             ],
             &[&[0, 1, 4, 2], &[0, 2, 5, 3], &[0, 3, 6, 1]],
         );
-        let (bytes, _) = convert(&polygons, KEEP).unwrap();
+        let (bytes, _) = convert(&polygons, keep()).unwrap();
         let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
         let corner = chunk.vertices().find(|v| v.position == [0; 3]).unwrap();
         let diagonal = (ONE / 3f64.sqrt() + 0.5).floor() as i16;
@@ -587,25 +569,16 @@ mod tests {
         );
         polygons.faces[0].colour = Some(Rgb8([255, 0, 0]));
         let colours = |polygons: &Polygons| -> (Vec<u16>, u32) {
-            let (bytes, report) = convert(polygons, KEEP).unwrap();
+            let (bytes, report) = convert(polygons, keep()).unwrap();
             let chunk = glm::check(&bytes).unwrap().chunks().next().unwrap();
-            (
-                chunk.triangles().map(|t| t.colour.0).collect(),
-                report.vertices,
-            )
+            let colours = chunk.triangles().map(|t| t.colour.0);
+            (colours.collect(), report.vertices)
         };
         let default = Rgb565::from_rgb888(Rgb8::DEFAULT.0).0;
         // Points between faces of different colours become two vertices each.
         assert_eq!(colours(&polygons), (vec![0xf800, default], 6));
-        polygons.point_colours = vec![
-            Rgb8([0, 0, 255]),
-            Rgb8([0, 0, 255]),
-            Rgb8([0, 255, 255]),
-            Rgb8([0, 255, 255]),
-        ];
-        assert_eq!(
-            colours(&polygons),
-            (vec![0xf800, Rgb565::from_rgb888([0, 170, 255]).0], 4)
-        );
+        polygons.point_colours = [0, 0, 255, 255].map(|green| Rgb8([0, green, 255])).into();
+        let mean = Rgb565::from_rgb888([0, 170, 255]).0;
+        assert_eq!(colours(&polygons), (vec![0xf800, mean], 4));
     }
 }

@@ -1,15 +1,18 @@
-//! Errors in input files, and limits of input files. An error is one line: the position, the expected content, and the found content.
+//! Errors in input files, and limits of input files. An error is one line with the position, the
+//! expected content and the found content.
 
 use std::fmt;
 use std::path::Path;
 
-/// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as fit a board's mesh memory.
+/// Maximum size of a file in bytes. An ASCII STL of this size has about as many triangles as a
+/// board's mesh memory can hold.
 pub const MAX_FILE: usize = 512 << 20;
-/// Maximum length of a line in bytes; a polygon of [`MAX_POLYGON`] corners fits.
+/// Maximum length of a line in bytes. A line with a polygon of [`MAX_POLYGON`] corners fits.
 pub const MAX_LINE: usize = 64 << 10;
 /// Maximum number of points in a mesh: three for each of [`MAX_TRIANGLES`].
 pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
-/// Maximum number of triangles in a mesh: at 16 bytes each they fill a board's 32 MiB for a mesh.
+/// Maximum number of triangles in a mesh. At 16 bytes each they fill the 32 MiB that a board has
+/// for a mesh.
 pub const MAX_TRIANGLES: usize = 1 << 21;
 /// Maximum number of corners of a polygon.
 pub const MAX_POLYGON: usize = 8192;
@@ -67,7 +70,7 @@ impl FormatError {
         }
     }
 
-    /// Creates an error about the whole file.
+    /// Creates an error that concerns the whole file.
     pub fn whole(expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self::new(Location::Whole, expected, found)
     }
@@ -80,7 +83,8 @@ impl FormatError {
         }
     }
 
-    /// Adds the path of the file to the error, escaped to one line.
+    /// Adds the path of the file to the error, with control characters escaped, so that the error
+    /// stays one line.
     pub fn in_path(self, path: &Path) -> InputError {
         self.in_file(path.display().to_string().escape_debug().to_string())
     }
@@ -96,7 +100,7 @@ pub struct InputError {
     pub error: FormatError,
 }
 
-/// Quotes input in a message: printable, short, on one line.
+/// Quotes input for a message, in shortened and printable form on one line.
 pub fn quote(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     match bytes.get(..SHOWN) {

@@ -5,7 +5,7 @@
 //! | [`formats`], [`polygons`] | reads OBJ, STL, PLY, glTF and GLM, and writes all but glTF |
 //! | [`generate`] | generates models |
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
-//! | [`model`] | a mesh for boards, by the name of a file or a generator |
+//! | [`model`] | loads a mesh for boards by the name of a file or a generator |
 //! | [`error`] | errors and limits of input files |
 #![forbid(unsafe_code)]
 

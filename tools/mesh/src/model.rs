@@ -14,9 +14,9 @@ use std::path::Path;
 pub struct Model {
     /// The mesh in the board's memory layout.
     pub mesh: Vec<u8>,
-    /// The report of the conversion; `None` for a `.glm` file that needs none.
+    /// The report of the conversion; `None` for a `.glm` file that is not converted.
     pub report: Option<Report>,
-    /// The axis that points up, by the format of the file; z for a generator.
+    /// The axis that points up in the format of the file; z for a generator.
     pub up: Axis,
 }
 
@@ -31,7 +31,8 @@ impl Model {
         self.report.as_ref().map_or(&[], |report| &report.remarks)
     }
 
-    /// A remark on a mesh that is closed and inside out: from outside, only its far side is drawn.
+    /// Returns a remark if the mesh is closed and inside out, because only its far side is then
+    /// drawn.
     pub fn inside_out(&self) -> Option<&'static str> {
         let mesh = Mesh::new_checked(&self.mesh).ok()?;
         is_inside_out(&mesh).then_some(
@@ -41,8 +42,8 @@ impl Model {
     }
 }
 
-/// Whether a mesh is closed, and its faces look inwards: the sum of the areas as vectors, which is exact, is 0, and the volume is
-/// negative.
+/// Whether a mesh is closed and its faces point inwards: the exact sum of its area vectors is 0,
+/// and its volume is negative.
 fn is_inside_out(mesh: &Mesh) -> bool {
     let mut area = [0_i128; 3];
     let mut volume = 0_i128;
@@ -71,7 +72,8 @@ fn is_generated(name: &str) -> bool {
     generate::is_name(name) && !Path::new(name).exists()
 }
 
-/// Checks that a name without an extension is the name of a file, since it may be a mistyped generator.
+/// Checks that a name without an extension is the name of an existing file, because it may be a
+/// misspelt generator.
 ///
 /// # Errors
 /// The name has no extension, and no file has this name. The error lists the generators.
@@ -112,10 +114,11 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
     }
 }
 
-/// Reads or generates a model and converts it. A `.glm` file is kept as it is, except its textures if the options are about them.
+/// Reads or generates a model and converts it. A `.glm` file remains unchanged, except that its
+/// textures are converted if the options change them.
 ///
 /// # Errors
-/// Those of [`polygons`] and [`convert::convert`].
+/// As for [`polygons`] and [`convert::convert`].
 pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
     if is_generated(name) {
@@ -135,7 +138,7 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
 /// Converts a mesh file in memory. The extension of its name selects the format; `beside` reads auxiliary files by their names.
 ///
 /// # Errors
-/// Those of [`load`].
+/// As for [`load`].
 pub fn of_file(
     name: &str,
     bytes: Vec<u8>,
@@ -172,7 +175,7 @@ fn of_bytes(
     converted(path, &polygons, options)
 }
 
-/// The axis that points up in a file, by its extension.
+/// The axis that points up in files with the extension of `path`.
 fn up_of(path: &Path) -> Axis {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.and_then(upright).map_or(Axis::Z, |(up, _)| up)
@@ -192,7 +195,7 @@ fn converted(path: &Path, polygons: &Polygons, options: Options) -> Result<Model
 mod tests {
     use super::*;
 
-    /// The remark on an OBJ of a cube after a change of its lines.
+    /// The remark on an OBJ file of a cube; `change` edits each line.
     fn remark(change: impl Fn(&str) -> String) -> Option<&'static str> {
         let mut obj = Vec::new();
         let mut cube = generate::named("cube").unwrap();
@@ -204,7 +207,7 @@ mod tests {
         model.inside_out()
     }
 
-    /// The line of a face with its corners in reverse order.
+    /// Reverses the order of the corners in the line of a face.
     fn reversed(line: &str) -> String {
         let Some(corners) = line.strip_prefix("f ") else {
             return line.to_owned();

@@ -17,7 +17,8 @@ impl NormalSums {
         }
     }
 
-    /// Adds the normal of a triangle to the sums of its points, whose indices are `numbers` and whose positions are `places`.
+    /// Adds the normal of a triangle to the sums at its points; `numbers` are the indices and
+    /// `places` the positions of the points.
     pub fn add(&mut self, numbers: [usize; 3], places: [Vector; 3], normal: Vector) {
         let [a, b, c] = places;
         for (number, [a, b, c]) in numbers.into_iter().zip([[a, b, c], [b, c, a], [c, a, b]]) {

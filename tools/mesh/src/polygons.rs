@@ -19,7 +19,8 @@ impl Rgb8 {
     /// Colour of surfaces without a colour: a light warm grey.
     pub const DEFAULT: Self = Self([0xd8, 0xd8, 0xd0]);
 
-    /// Converts three intensities from 0 to 1; values outside this range saturate. A colour that is not a number counts as none.
+    /// Converts three intensities from 0 to 1; values outside this range saturate. A colour with a
+    /// NaN counts as missing.
     pub fn from_unit(rgb: [f64; 3]) -> Self {
         if rgb.iter().any(|c| c.is_nan()) {
             return Self::DEFAULT;
@@ -27,7 +28,8 @@ impl Rgb8 {
         Self(rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
 
-    /// Converts all colours of a file, which does not state their full intensity: it is 1, or 255 if a component exceeds 1.
+    /// Converts all colours of a file that does not state the value of full intensity: the value is
+    /// 255 if a component exceeds 1, and 1 otherwise.
     pub fn from_floats(colours: &[Option<[f32; 3]>]) -> Vec<Self> {
         let components = colours.iter().flatten().flatten().copied();
         let largest = components.filter(|c| c.is_finite()).fold(0.0, f32::max);
@@ -57,7 +59,7 @@ impl Corner {
     /// Index that marks a corner without texture coordinates.
     pub const NO_COORDINATES: u32 = u32::MAX;
 
-    /// A corner without a normal and texture coordinates.
+    /// A corner without normal and texture coordinates.
     pub fn at(point: u32) -> Self {
         Self {
             point,
@@ -76,7 +78,7 @@ pub struct Face {
     pub count: u32,
     /// Colour of the face, if any. The colours of its texture are multiplied by it.
     pub colour: Option<Rgb8>,
-    /// Number of the texture in [`Polygons::textures`], from 1; 0 for none.
+    /// Number of the texture in [`Polygons::textures`], counted from 1; 0 for none.
     pub texture: u8,
     /// Whether the face is visible from both sides.
     pub double_sided: bool,
@@ -87,9 +89,9 @@ pub struct Face {
 pub struct Texture {
     /// The name of its file, or its number in the file of the mesh, for messages.
     pub name: String,
-    /// What it shows.
+    /// The picture.
     pub content: Content,
-    /// How it is read.
+    /// Wrap modes and filter.
     pub sampler: Sampler,
     /// Opacity, 0 to 1, below which texels are transparent; `None` for an opaque texture.
     pub cutoff: Option<f32>,
@@ -100,7 +102,7 @@ pub struct Texture {
 pub enum Content {
     /// The bytes of an image file, not checked.
     Picture(Arc<Vec<u8>>),
-    /// A checked texture in a board's memory layout, whose header states how it is read.
+    /// A checked texture in a board's memory layout. Its header states wrap modes and filter.
     Board(Vec<u8>),
 }
 
@@ -125,7 +127,8 @@ pub struct Polygons {
     pub point_colours: Vec<Rgb8>,
     /// Normals from the file. Their vectors may have any length; a normal of length 0 counts as none.
     pub normals: Vec<Vector>,
-    /// Texture coordinates: s across and t down, from the upper left corner of the texture, whose sides have the length 1.
+    /// Texture coordinates s to the right and t down from the upper left corner of the texture, in
+    /// units of its width and height.
     pub coordinates: Vec<[f64; 2]>,
     /// The textures; at most [`MAX_TEXTURES`].
     pub textures: Vec<Texture>,
@@ -143,15 +146,15 @@ pub struct Polygons {
     largest_coordinates: Largest,
 }
 
-/// Maximum number of textures of a mesh: a triangle has 8 bits for the number of its texture.
+/// Maximum number of textures of a mesh: a triangle stores the number of its texture in 8 bits.
 pub const MAX_TEXTURES: usize = 255;
 
-/// The largest index that a face has used so far, and the position of that face. Faces may use points or normals that come later in the
-/// file, so this index is checked at the end of the file.
+/// The largest index that a face has used so far, and the position of that face. It is checked at
+/// the end of the file, because faces may use points that come later in the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Largest(Option<(u32, Location)>);
 
-/// Number of occurrences of a fault that gives one remark, and the position of the first occurrence.
+/// Number of occurrences of a fault, and the position of the first. One remark reports all of them.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally(Option<(usize, Location)>);
 
@@ -198,7 +201,8 @@ impl Polygons {
         push(&mut self.points, point, "points", place)
     }
 
-    /// Adds a normal and returns its index. A normal that is infinite or not a number counts as none.
+    /// Adds a normal and returns its index. A normal with an infinite component or a NaN counts as
+    /// missing.
     ///
     /// # Errors
     /// There are more than [`MAX_POINTS`] normals.
@@ -208,7 +212,8 @@ impl Polygons {
         push(&mut self.normals, normal, "normals", place)
     }
 
-    /// Adds texture coordinates and returns their index. Coordinates that are infinite or not a number become 0, with a remark.
+    /// Adds texture coordinates and returns their index. Infinite and NaN coordinates become 0, and
+    /// add a remark.
     ///
     /// # Errors
     /// There are more than [`MAX_POINTS`] texture coordinates.
@@ -230,8 +235,8 @@ impl Polygons {
         )
     }
 
-    /// Adds a texture and returns its number, from 1. If the bytes of all textures exceed [`MAX_FILE`], the texture is left out with a
-    /// remark, and the number is 0.
+    /// Adds a texture and returns its number, from 1. If the total size of the textures exceeds
+    /// [`MAX_FILE`] bytes, the texture is left out, a remark is added, and the number is 0.
     ///
     /// # Errors
     /// There are more than [`MAX_TEXTURES`] textures.
@@ -239,7 +244,7 @@ impl Polygons {
         let bytes: usize = self.textures.iter().map(|one| one.content.len()).sum();
         if bytes + texture.content.len() > MAX_FILE {
             self.remark(format!(
-                "texture {}: expected at most {MAX_FILE} bytes of all textures, found more: its faces have their colours",
+                "texture {}: expected at most {MAX_FILE} bytes of all textures, found more: its faces keep their own colours",
                 texture.name
             ));
             return Ok(0);
@@ -303,8 +308,9 @@ impl Polygons {
         Ok(())
     }
 
-    /// Checks that a face exists and that the points of all corners exist, and removes indices of normals and texture coordinates that do
-    /// not exist. Adds remarks on them, on texture coordinates that are no numbers, and on skipped faces.
+    /// Checks that the mesh has a face and that the points of all corners exist. Removes indices of
+    /// missing normals and texture coordinates. Adds remarks on these indices, on texture
+    /// coordinates that are not finite, and on skipped faces.
     ///
     /// # Errors
     /// There is no face, or the index of a point is out of range; the error has the position of the largest index.
@@ -321,13 +327,13 @@ impl Polygons {
         if let Err(error) = check {
             let count = self.remove_missing_coordinates();
             self.remark(format!(
-                "{}{count} corners have texture coordinates that do not exist: their faces have their colours",
+                "{}{count} corners have texture coordinates that do not exist: their faces keep their own colours",
                 error.place
             ));
         }
         if let Some((count, first)) = self.invalid_coordinates.0 {
             self.remark(format!(
-                "{first}{count} texture coordinates are no finite numbers: they are 0"
+                "{first}{count} texture coordinates are not finite: they become 0"
             ));
         }
         if let Some((count, first)) = self.skipped_faces.0 {
@@ -342,7 +348,7 @@ impl Polygons {
         Ok(())
     }
 
-    /// Returns the number of corners whose normals did not exist.
+    /// Removes the indices of missing normals, and returns the number of such corners.
     fn remove_missing_normals(&mut self) -> usize {
         let normals = self.normals.len();
         let corners = self.corners.iter_mut();
@@ -354,7 +360,7 @@ impl Polygons {
             .count()
     }
 
-    /// Returns the number of corners whose texture coordinates did not exist.
+    /// Removes the indices of missing texture coordinates, and returns the number of such corners.
     fn remove_missing_coordinates(&mut self) -> usize {
         let count = self.coordinates.len();
         let corners = self.corners.iter_mut();

@@ -1,7 +1,8 @@
 //! Triangulation of polygons.
 //!
-//! Ear clipping that always gives n − 2 triangles and uses every corner, so that a closed mesh stays closed: dropping a
-//! collinear corner would leave a neighbour's vertex in the middle of an edge.
+//! Ear clipping that always gives n − 2 triangles and uses every corner, so that a closed mesh
+//! stays closed: without a collinear corner, a vertex of a neighbouring face would lie in the
+//! middle of an edge.
 
 mod tree;
 
@@ -16,21 +17,22 @@ pub struct Scratch {
     next: Vec<usize>,
     previous: Vec<usize>,
     is_ear: Vec<bool>,
-    /// Queue of ears; it also holds corners that are no longer ears.
+    /// Queue of ears. It may also contain corners that are no longer ears.
     ears: VecDeque<usize>,
     tree: Tree,
     triangles: Vec<[Corner; 3]>,
-    /// Whether the last face crosses itself, so that its triangles overlap.
+    /// Whether the last face intersects itself, so that its triangles overlap.
     pub crosses: bool,
 }
 
-/// Area above which overlapping triangles are more than rounding errors, as a fraction of the square around the polygon.
+/// Overlapping area above which a polygon counts as self-intersecting, as a fraction of the square
+/// around the polygon. A smaller overlap is a rounding error.
 const OVERLAP: f64 = 1e-6;
 /// Area of a polygon below which its normal is only rounding error, as a fraction of the square around the polygon.
 const NO_AREA: f64 = 1e-12;
 
-/// Vector perpendicular to a triangle, with twice its area as length. Seen from the side to which it points, the corners are
-/// counter-clockwise.
+/// Vector perpendicular to a triangle; its length is twice the triangle's area. The corners are
+/// counter-clockwise as seen from the side to which it points.
 pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
     cross(sub(b, a), sub(c, a))
 }
@@ -54,8 +56,8 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector of length 1 in the direction of `v`; `None` for zero and for infinite or invalid vectors. Also correct for very short and very
-/// long vectors.
+/// Vector of length 1 in the direction of `v`; `None` for a zero vector and for infinite or NaN
+/// components. The result is also correct for very short and very long vectors.
 pub fn unit(v: Vector) -> Option<Vector> {
     let largest = v.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if largest == 0.0 || v.iter().any(|c| !c.is_finite()) {
@@ -105,7 +107,8 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) -> f
     }
     let extent = sub(high, low);
     let square = extent.iter().fold(0.0_f64, |m, c| m.max(*c)).powi(2);
-    // The normals of a polygon that crosses itself can cancel out. The axis of the shortest extent is then nearest to its normal.
+    // The area vectors of a self-intersecting polygon can cancel out. The axis of the shortest
+    // extent is then nearest to its normal.
     let cancels = normal.iter().all(|c| c.abs() <= NO_AREA * square);
     let length = if cancels {
         extent.map(|c| -c)
@@ -128,9 +131,10 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) -> f
     square
 }
 
-/// Clips one ear after the other. The ears wait in a queue, and clipping an ear only updates its two neighbours. If a
-/// self-intersecting polygon has no ears left, any corner is clipped. Returns twice the area of the clockwise triangles, which only such a
-/// polygon has.
+/// Clips one ear after the other. The ears wait in a queue, and clipping an ear updates only its
+/// two neighbours. If a self-intersecting polygon has no ears left, an arbitrary corner is clipped.
+/// Returns twice the area of the clockwise triangles; only a self-intersecting polygon has such
+/// triangles.
 fn clip_ears(corners: &[Corner], scratch: &mut Scratch) -> f64 {
     let n = corners.len();
     scratch.next.clear();
@@ -166,8 +170,8 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) -> f64 {
             }
             scratch.is_ear[i] = ear;
         }
-        // The next ear, other than the corner `after` if possible: the triangles would otherwise often form a fan of narrow triangles
-        // around one corner.
+        // The next ear is not the corner `after` if possible, because the result would otherwise
+        // often be a fan of narrow triangles around one corner.
         if scratch.ears.front() == Some(&after) {
             scratch.ears.rotate_left(1);
         }
@@ -356,7 +360,7 @@ mod tests {
                 .map(|i| (points[i], points[(i + 1) % n]))
                 .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
                 .sum();
-            // The ears of a simple polygon add up to its area, and none is reversed.
+            // The triangles of a simple polygon add up to its area, and none is clockwise.
             let sum: f64 = areas.iter().map(|area| area.abs()).sum();
             assert!(
                 (sum - whole.abs()).abs() < 1e-9 * sum,
@@ -365,8 +369,8 @@ mod tests {
         }
     }
 
-    /// The searches for corners in ears visit few nodes of the tree: 20 to 56 per corner of a polygon. An exhaustive search would visit
-    /// 8,000, and there are up to three searches per corner.
+    /// The searches for corners in ears visit few nodes of the tree: 20 to 56 per corner of a
+    /// polygon, in up to three searches. An exhaustive search would visit 8,000 nodes.
     #[test]
     fn the_work_of_260_polygons_of_8000_corners_is_bounded() {
         let n = 8000;

@@ -26,16 +26,16 @@ def stiff(errors):
 
 
 def worst_runs(runs):
-    """The largest error of each way to compute positions in a texture, over all scenes."""
+    """The largest error of each method of computing positions in a texture, over all scenes."""
     forms = runs.groupby("form", sort=False)
     return forms.agg(max_err=("max_err", "max"), divisions=("divisions", "first"), shipped=("shipped", "first")).reset_index().assign(
         family=lambda forms: np.where(forms.form.str.endswith("linear"), "linear", forms.form.where(forms.shipped, "a parabola")))
 
 
 def timeline(frames, lanes):
-    """Bottleneck of each frame, the cycles that it takes, and rates without it.
+    """Bottleneck of each frame, the cycles of the bottleneck, and the frame rates without it.
 
-    The bottleneck is the longest part; in a pass the evaluations or the memory, if they take more than half of it."""
+    The bottleneck is the longest part. If this part is a pass, evaluations or memory that take more than half of it are the bottleneck."""
     passes = frames.geometry + frames.raster
     evaluating = frames.evaluations.fillna(0) / lanes
     is_raster = frames.raster >= frames.geometry
@@ -81,7 +81,7 @@ def qualities(errors, cycles):
 
 
 def frames(scenes, soft_core):
-    """The frames of the triangle engine, drawn back to back and alone, and of the soft core."""
+    """Points of the diagram of frames: drawn by the triangle engine, back to back and alone, and drawn by the soft core."""
     size = scenes.width.astype(str) + "×" + scenes.height.astype(str)
     ways = [("gateware, back to back", scenes.cycles_frame), ("gateware, alone", scenes.cycles_alone), ("soft core", soft_core)]
     points = [
@@ -146,14 +146,14 @@ def cases(rates):
     return found
 
 
-# Scenes of fields that are drawn by exits: eyes, width and quality, required frames a second, and goal.
+# Scenes of fields that are drawn by exits: name, number of eyes, width of the picture, required frames a second, and goal.
 SCENES = [("cubes", 1, 640, 150, 190), ("poor-mans-vr", 2, 640, 180, 250), ("cubes", 1, 1280, 30, 60),
           ("menger", 1, 1280, 30, 60), ("mesh-in-field", 1, 1280, 30, 60), ("poor-mans-vr", 2, 1280, 30, 60)]
 
 
 def targets(rates, cycles, marching):
-    """Frames a second of fields that are drawn by exits, of the slowest view: with marching rays, with marching rays that start at
-    cones, and with exits; None is not measured."""
+    """Frames a second of fields that are drawn by exits, in the slowest view: with marching rays, with marching rays that start at
+    cones, and with exits. A rate is None if it was not measured."""
 
     def slowest(frames):
         return CLOCK / frames.max() if len(frames) else None
@@ -207,7 +207,7 @@ def variants(forms, clocks, costs):
     added = costs[["LUT", "DSP48"]].mul(sign, axis=0).groupby(costs.engine).sum()
     divisions = costs[costs.division_dsp > 0].groupby("engine")[["division_lut", "division_dsp"]].first().set_axis(["LUT", "DSP48"], axis=1)
     eight = "eight divisions a clock, planes of the channels at once"
-    # The cells that planes of the channels one after the other save.
+    # Cells saved by sequential instead of parallel computation of the channels' planes.
     saved = added.loc["a division a clock, planes of the channels at once"] - added.loc["a division a clock, planes one after the other"]
 
     def group(count):

@@ -17,7 +17,7 @@ matplotlib.rcParams.update({
     "font.size": 9,
     "axes.axisbelow": True,
     "axes.grid": True,
-    # A fixed position saves a search.
+    # With a fixed position of the title, matplotlib does not search for one.
     "axes.titley": 1.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -26,7 +26,7 @@ matplotlib.rcParams.update({
     "legend.frameon": False,
 })
 
-# Dark enough for thin text.
+# Colours dark enough for thin text.
 COLOURS = ["#b01830", "#187830", "#1858a8", "#a05800", "#702090", "#484848", "#008088", "#886838"]
 MARKERS = "os^Dv"
 LABEL = 7.5

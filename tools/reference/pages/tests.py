@@ -1,4 +1,4 @@
-"""Tests of the pages' figures, run by the crate's tests."""
+"""Tests of the figures of the pages. The tests of the crate run this file."""
 
 import unittest
 

@@ -1,6 +1,6 @@
 //! References for Glint's computations, written from the specification and not from the model, and the measurements of the report.
 //!
-//! - [`emulated`]: the emulated board with the built firmware.
+//! - [`emulated`]: the emulated board, which runs the built firmware.
 //! - [`errors`]: RMS and maximum of errors.
 //! - [`basis`]: the deviation of a camera's basis from an orthonormal basis.
 //! - [`camera`]: projection, rays, clipping and depth scale of a camera, in f64.

@@ -8,7 +8,7 @@ use glint_scene::{Name, PlacedMesh};
 /// Method of turning an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// That of scenes: rotations keep the shape of the matrix before them.
+    /// The method of scenes: rotations keep the lengths and angles that the object's axes had before the first of the rotations.
     Kept,
     /// Products of matrices alone.
     Products,
@@ -32,9 +32,9 @@ impl Method {
 pub struct Turned {
     /// Number of rotations.
     pub steps: u32,
-    /// Largest error of an entry.
+    /// Largest error of an entry of the matrix.
     pub error: f64,
-    /// Relative change of the length of an object's axis, the largest in magnitude.
+    /// Largest relative change, by magnitude, of the length of an axis of the object.
     pub growth: f64,
 }
 
@@ -96,7 +96,7 @@ fn product(a: Rows, b: Rows) -> Rows {
     a.map(|row| [0, 1, 2].map(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
 }
 
-/// Length of a column: of an axis of the object.
+/// Length of a column, which is an axis of the object.
 fn length(rows: &Rows, column: usize) -> f64 {
     rows.iter()
         .map(|row| row[column] * row[column])

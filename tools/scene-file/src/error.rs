@@ -9,14 +9,15 @@ use std::ops::Range;
 pub struct SceneError {
     /// Name of the file.
     pub file: String,
-    /// All violations, in the order of the file; those of the whole file are first.
+    /// All violations in the order of the file; violations that concern the whole file come first.
     pub violations: Vec<Violation>,
 }
 
-/// A violation of the format. `Display` prints one line: the line of the file, the key, its value, and the allowed values.
+/// A violation of the format. `Display` prints one line: the line number, the key, its value, and
+/// the allowed values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// Number of the line, from 1; `None` for a violation that concerns the whole file.
+    /// Line number, counted from 1; `None` for a violation that concerns the whole file.
     pub line: Option<usize>,
     /// The key with its value, and the allowed values.
     pub message: String,
@@ -40,7 +41,7 @@ impl fmt::Display for Violation {
 
 impl Violation {
     fn new(line: Option<usize>, message: impl Into<String>) -> Self {
-        // The message may quote the file.
+        // The message may quote control characters from the file.
         let message: String = message.into();
         let message = message.replace(char::is_control, " ");
         Self { line, message }
@@ -57,7 +58,7 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Number of the line, from 1, at a byte offset.
+    /// Line number at a byte offset, counted from 1.
     pub fn line(self, offset: usize) -> usize {
         let before = self.text.as_bytes().iter().take(offset);
         1 + before.filter(|&&byte| byte == b'\n').count()
@@ -86,9 +87,10 @@ pub fn quote(text: &str) -> String {
     format!("`{start}{more}`")
 }
 
-/// The known name that a misspelt one resembles, if any.
+/// Returns the known name that is most similar to a misspelt name; `None` if none is similar
+/// enough.
 pub fn resembled<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
-    /// Least similarity, from 0 to 1.
+    /// Minimum similarity of the names, from 0 to 1.
     const LEAST: f64 = 0.75;
     let known = known
         .into_iter()
@@ -98,8 +100,8 @@ pub fn resembled<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Op
     nearest.map(|(_, known)| known)
 }
 
-/// Returns the message for an unknown name. It states the expected kind of name, and the known name that resembles it, or all known
-/// names.
+/// Returns the message for an unknown name. It states the expected kind of name, and the most
+/// similar known name or, if none is similar, all known names.
 pub fn unknown<'n>(
     name: &str,
     expected: &str,

@@ -1,4 +1,4 @@
-//! Parses the TOML of a scene file into keys, and values as arguments of console commands.
+//! Parses the TOML of a scene file: its keys, and its values as arguments of console commands.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -10,8 +10,8 @@ use toml::de::{DeTable, DeValue};
 use crate::error::{SceneError, Source, Violation, quote, resembled, unknown};
 use crate::keys::names;
 
-/// Number of reported violations; a line states the number of further ones.
-const MOST_VIOLATIONS: usize = 20;
+/// Maximum number of violations in a report. An additional line states how many more exist.
+const MAX_VIOLATIONS: usize = 20;
 
 /// A value of the file, and its location.
 pub type Value<'a> = Spanned<DeValue<'a>>;
@@ -20,7 +20,7 @@ pub type Value<'a> = Spanned<DeValue<'a>>;
 pub struct File<'a> {
     pub source: Source<'a>,
     table: DeTable<'a>,
-    /// The keys that misspelt ones resemble.
+    /// The known keys that the misspelt keys of the file resemble.
     meant: Vec<&'static str>,
     /// Lines that are not TOML.
     damaged: Vec<Option<usize>>,
@@ -60,13 +60,14 @@ impl<'a> File<'a> {
     /// Adds a violation at a position of the file.
     pub fn add(&self, span: &Range<usize>, message: impl Into<String>) {
         let violation = self.source.violation(Some(span), message);
-        // A damaged line has a violation already.
+        // A damaged line already has a violation.
         if !self.damaged.contains(&violation.line) {
             self.violations.borrow_mut().push(violation);
         }
     }
 
-    /// Adds a violation of the whole file: a key is missing. It may be one that is misspelt, or on a damaged line.
+    /// Adds a violation for a missing key, unless the file has a misspelt key or a damaged line,
+    /// which may be the missing key.
     pub fn add_missing(&self, message: &str) {
         if self.damaged.is_empty() && self.meant.is_empty() {
             let violation = self.source.violation(None, message);
@@ -74,7 +75,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Adds the violation of a value that is not the `expected` one.
+    /// Adds a violation for a value; `expected` describes the allowed values.
     pub fn refuse(&self, key: &str, value: &Value, expected: &str) {
         let found = self.source.text.get(value.span()).unwrap_or_default();
         let message = format!("{key}: {}: expected {expected}", quote(found));
@@ -91,9 +92,9 @@ impl<'a> File<'a> {
             return Ok(());
         }
         violations.sort_by_key(|violation| violation.line);
-        let further = violations.len().saturating_sub(MOST_VIOLATIONS);
+        let further = violations.len().saturating_sub(MAX_VIOLATIONS);
         if further > 0 {
-            violations.truncate(MOST_VIOLATIONS);
+            violations.truncate(MAX_VIOLATIONS);
             violations.push(
                 self.source
                     .violation(None, format!("{further} further errors")),
@@ -194,7 +195,7 @@ impl<'a> File<'a> {
         members.collect()
     }
 
-    /// The arguments of a key's command in its value, or in each member of a list.
+    /// The command arguments in the value of a key; if the value is a list, those of each member.
     pub fn words(&self, row: &Row) -> Vec<(String, Range<usize>)> {
         let (key, is_list) = (row.key(), row.forms.is_list);
         let Some(value) = self.get(key) else {
@@ -216,13 +217,13 @@ impl<'a> File<'a> {
         words.collect()
     }
 
-    /// The arguments of a key's command in its value, which may be wrong.
+    /// The command arguments in the value of a key. A wrong value adds no violation.
     pub fn peek(&self, row: &Row) -> Option<String> {
         words(self.get(row.key())?)
     }
 }
 
-/// The arguments of a console command in a value.
+/// Converts a value to the arguments of a console command.
 fn words(value: &Value) -> Option<String> {
     let words = match value.get_ref() {
         DeValue::String(text) => text.split_ascii_whitespace().collect::<Vec<_>>().join(" "),
@@ -234,7 +235,7 @@ fn words(value: &Value) -> Option<String> {
     Some(words).filter(|words| !words.is_empty())
 }
 
-/// The form of a key's value, for messages.
+/// An example of a key's value, for messages.
 pub fn such_as(row: &Row) -> String {
     let example = row.forms.example;
     let is_number = example.parse::<f64>().is_ok();

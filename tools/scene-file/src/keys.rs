@@ -1,4 +1,4 @@
-//! The keys of scene files; those that are commands come from the console's table.
+//! The keys of scene files. The keys that are console commands come from the console's table.
 
 use glint_core::console::{FORMS, Row};
 

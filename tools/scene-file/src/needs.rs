@@ -15,27 +15,27 @@ use litex_pac::raymarch::Kind;
 
 use crate::scene::SceneFile;
 
-/// Number of lanes of a raymarcher if no scene sets it.
+/// Default number of lanes of the raymarcher.
 const LANES: u8 = 2;
 
 /// Features that a raymarcher must have: the options `--fields` and `--lanes` of `cargo xtask gateware`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fields {
-    /// Evaluations of the field per clock.
+    /// Evaluations of the field per clock cycle.
     pub lanes: u8,
-    /// The maximum depth of a sponge; 0 without sponges.
+    /// Maximum recursion depth of a Menger sponge; 0 without sponges.
     pub levels: u8,
-    /// Names of the flat fields except the sponge.
+    /// Names of the fields with flat faces, except the sponge.
     pub flat: BTreeSet<&'static str>,
-    /// Spheres of a list.
+    /// A field that is a list of spheres.
     pub spheres: bool,
-    /// Spheres of a lattice.
+    /// A field that is a lattice of spheres.
     pub lattice: bool,
     /// Fillets between spheres and flat fields.
     pub fillets: bool,
-    /// Two eyes.
+    /// Stereo pictures: one view for each eye.
     pub stereo: bool,
-    /// Spheres coloured by their normals.
+    /// Spheres that are coloured by their normals.
     pub normals: bool,
     /// A highlight on spheres.
     pub highlight: bool,
@@ -91,7 +91,8 @@ impl SceneFile {
             let appearance = &scene.appearance;
             Fields {
                 lanes: self.lanes.unwrap_or(LANES),
-                // A mesh in a field is drawn for one eye after the other.
+                // A scene with a mesh in a field is drawn for one eye after the other, without the
+                // raymarcher's stereo.
                 stereo: scene.stereo.is_some() && !has_triangles,
                 normals: field.is_round() && appearance.material == Material::Normal,
                 highlight: field.is_round() && appearance.has_highlight(),
@@ -106,7 +107,7 @@ impl SceneFile {
                 && scene.options.shading == Shading::Flat
                 && has_triangles
                 && self.features().contains(&TEXTURE),
-            // The soft core makes the descriptors of other meshes.
+            // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
                     && scene.options.clip == Clip::Guard
@@ -140,7 +141,7 @@ impl SceneFile {
             textures,
             shading: _,
         } = scene.options;
-        // The soft core makes the descriptors of such meshes, or draws the whole picture.
+        // The soft core computes the descriptors of such meshes, or draws the whole picture.
         if scene.backend == Backend::Cpu
             || !cull
             || textures && features.contains(&TEXTURE)
@@ -156,7 +157,8 @@ impl SceneFile {
 }
 
 impl Needs {
-    /// The combined requirements of these scenes. Scenes with different numbers of lanes require two lanes.
+    /// The combined requirements of several scenes. If their numbers of lanes differ, two lanes are
+    /// required.
     pub fn of(scenes: &[SceneFile]) -> Self {
         scenes
             .iter()

@@ -26,7 +26,7 @@ use crate::error::{SceneError, Source, quote, unknown};
 use crate::file::{File, Value, such_as};
 use crate::keys::{BUDGET, commands};
 
-/// The camera of fields without one.
+/// Camera of a scene that shows a field and does not state a camera.
 const CAMERA: &str = "4 30 60";
 
 /// The control that moves the camera, or the segments of a wireframe program.
@@ -41,10 +41,11 @@ pub enum Steer {
     Command(String),
 }
 
-/// Limits of the build for this scene alone, and of its frames: names from [`BUDGET`] with numbers.
+/// Limits for a build with this scene alone and for the frames of the scene: names from [`BUDGET`],
+/// and numbers.
 pub type Budget = Vec<(&'static str, f64)>;
 
-/// A scene as described by its file.
+/// A scene that a scene file describes.
 #[derive(Clone, Debug)]
 pub struct SceneFile {
     name: String,
@@ -89,7 +90,7 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// The scene of a file, which applies only if the file has no violations.
+    /// Builds the scene of a file. The result is valid only if the file has no violations.
     fn of(name: &str, file: &File, start: Scene, may_be_list: bool) -> Self {
         if let (Some(value), false) = (file.get("scenes"), may_be_list) {
             file.refuse("scenes", value, "a picture");
@@ -219,8 +220,8 @@ impl SceneFile {
         }
     }
 
-    /// Adds the camera that shows all meshes: with the axis of the key `up`, or of the format of the model, up on the screen, and
-    /// from the distance that the key `fov` determines.
+    /// Adds the camera that shows all meshes. The axis that points up on the screen comes from the
+    /// key `up` or from the format of the model, and the distance from the key `fov`.
     fn add_fit(&mut self, file: &File, row: &Row) {
         let stated = file.words(row).pop();
         let model = file.get("model").and_then(|model| model.get_ref().as_str());
@@ -229,7 +230,7 @@ impl SceneFile {
         let mut line = format!("{} {up}", row.command);
         let angle = commands().into_iter().find(|row| row.key() == "fov");
         let angle = angle.and_then(|row| Some(format!("{line} {}", file.peek(row)?)));
-        // The key `fov` reports a wrong angle.
+        // A wrong angle is reported with the key `fov`.
         if let Some(with_angle) = angle.filter(|line| Line::parse(line).is_ok()) {
             line = with_angle;
         }
@@ -251,7 +252,7 @@ impl SceneFile {
             Ok(parsed) => parsed,
             Err(reason) => return refuse(format!("{reason}{}", such_as(row))),
         };
-        // The host or the board fits the camera, when it has the meshes.
+        // The command `fit` needs the meshes, so the host or the board executes it later.
         if !matches!(parsed, Line::Option(Setting::Fit { .. }))
             && let Err(error) = parsed.apply(&mut self.scene, &mut AnyBoard)
         {
@@ -372,13 +373,13 @@ impl SceneFile {
     }
 }
 
-/// The axis that points up on the screen in models of the format of a file with this name, and the format's extension; `None` for
-/// a name of another format, or of a generator.
+/// The axis that points up in models of a file format, and the format's extension, by the name of a
+/// file. `None` for a name of another format or of a generator.
 pub fn upright(model: &str) -> Option<(Axis, &'static str)> {
     framing::upright(Path::new(model).extension()?.to_str()?)
 }
 
-/// A scene of a list of scenes: a built-in single scene.
+/// A member of a list of scenes, which must be a built-in single scene.
 fn member(file: &File, name: &str, span: &Range<usize>) -> Option<SceneFile> {
     let picture = |(name, text): (&str, &str)| {
         let file = &format!("scenes/{name}.toml");
@@ -415,7 +416,8 @@ fn check_list(file: &File) {
     }
 }
 
-/// Whether the file contains the keys that another key requires, and none that it excludes.
+/// Whether the file contains the keys that the row's key requires, and none of the keys that it
+/// excludes.
 fn has_right_others(file: &File, row: &Row) -> bool {
     let (key, forms) = (row.key(), &row.forms);
     let at = |name| file.get(name).map(|value| value.span()).unwrap_or_default();
@@ -433,7 +435,8 @@ fn has_right_others(file: &File, row: &Row) -> bool {
     true
 }
 
-/// The colour, as RRGGBB, that the key `material` gives meshes instead of their own ones. Beside a field the material is the field's.
+/// The colour RRGGBB that the key `material` gives to meshes in place of their own colours. In a
+/// scene with a field, the material applies to the field instead.
 fn mesh_colour(file: &File) -> Option<String> {
     let value = file.get("material").filter(|_| !file.has("field"))?;
     if file.has("edges") {
@@ -473,7 +476,7 @@ fn lanes(file: &File) -> Option<u8> {
     lanes
 }
 
-/// Checks that the scene shows what its animation moves.
+/// Checks that the scene shows the objects or the field that its animation moves.
 fn check_animation(file: &File, value: &Value, scene: &Scene) {
     let Animation {
         azimuth,

@@ -24,7 +24,8 @@ fn with_camera(text: &str) -> SceneFile {
     parse(&format!("title = \"a\"\ncamera = \"3 30 60\"\n{text}")).unwrap()
 }
 
-/// The rows of a table: the lines of a file with `;` between them, and after `→` what they give.
+/// The rows of a table: the lines of a scene file, separated by `;`, and after `→` the expected
+/// result.
 fn rows(table: &str) -> impl Iterator<Item = (String, &str)> {
     let rows = table.lines().filter_map(|row| row.split_once('→'));
     rows.map(|(lines, result)| (lines.trim().replace("; ", "\n"), result.trim()))
@@ -44,15 +45,12 @@ fn the_files_of_the_folder_are_built_in() {
         let text = fs::read_to_string(&path).unwrap();
         let scene = SceneFile::parse(&name, &path.display().to_string(), &text).unwrap();
         assert!(scene.lines().count() > 0, "{name}");
-        // Reads the lines like a board.
+        // A board reads the lines in the same way.
         let text: String = scene.lines().map(|line| format!("{line}\n")).collect();
         let read: Result<Vec<_>, _> = lines(&text).collect();
         let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
-        assert!(
-            read.into_iter()
-                .map(|(line, _)| line)
-                .eq(1..=scene.lines().count())
-        );
+        let numbers = read.into_iter().map(|(line, _)| line);
+        assert!(numbers.eq(1..=scene.lines().count()));
         assert!(built_in(&name).is_some(), "{name}");
         name
     });
@@ -64,10 +62,8 @@ fn the_files_of_the_folder_are_built_in() {
 fn every_key_is_documented() {
     let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
     for key in keys() {
-        assert!(
-            page.contains(&format!("`{key}`")),
-            "docs/scenes.md has no key `{key}`"
-        );
+        let is_documented = page.contains(&format!("`{key}`"));
+        assert!(is_documented, "docs/scenes.md has no key `{key}`");
     }
 }
 
@@ -122,7 +118,7 @@ fn keys_are_console_commands() {
     assert_eq!(*scene.steer(), Steer::Command("orbit 60".to_owned()));
 }
 
-/// A scene with neither quality nor size is balanced; a size overrides the size of the quality.
+/// The default quality is `balanced`; a size overrides the size that the quality sets.
 #[test]
 fn a_scene_has_a_quality() {
     for (text, lines, size) in [
@@ -227,20 +223,15 @@ fn refused_files() {
     for (start, table) in cases {
         for (text, expected) in rows(table) {
             let error = parse(&format!("{start}{text}")).unwrap_err();
-            assert!(
-                error.starts_with("a.toml: ") && error.contains(expected),
-                "{text}: {error}"
-            );
-            assert!(
-                error.lines().all(|line| line.starts_with("a.toml: ")),
-                "{error:?}"
-            );
+            assert!(error.contains(expected), "{text}: {error}");
+            let mut lines = error.lines();
+            assert!(lines.all(|line| line.starts_with("a.toml: ")), "{error:?}");
         }
     }
 }
 
-/// The error states all violations, in the order of the file. Missing keys are not reported if a key is misspelt or a line is
-/// damaged.
+/// The error states all violations, in the order of the file. A missing key is not reported if a
+/// key is misspelt or a line is damaged.
 #[test]
 fn all_violations_of_a_file() {
     let text = "titel = \"a\"\nmodel = \"cube\"\ncamera = \"4,30,70\"\nlight = 3\nsize = \"640\"\nfog = 1\ndepth = 2\n\
@@ -248,6 +239,7 @@ fn all_violations_of_a_file() {
     let camera = r#"camera = `4,30,70`: camera: R is "4,30,70" (column 8): expected a number"#;
     let light = "light = `3`: light: 3: expected";
     let size = "size = `640`: size: H is missing: expected";
+    let limit = "budget: `luts`: expected a limit, did you mean `lut`?";
     let expected = [
         (1, "`titel`: expected a key, did you mean `title`?", ""),
         (3, camera, r#", such as camera = "4 30 70""#),
@@ -255,11 +247,7 @@ fn all_violations_of_a_file() {
         (5, size, r#", such as size = "640 360""#),
         (6, "fog: expected only beside field", ""),
         (7, "depth: `2`: expected true or false", ""),
-        (
-            9,
-            "budget: `luts`: expected a limit, did you mean `lut`?",
-            "",
-        ),
+        (9, limit, ""),
         (10, "budget.ff: `0`: expected a number above 0", ""),
     ];
     let error = parse(text).unwrap_err();
@@ -271,11 +259,8 @@ fn all_violations_of_a_file() {
     }
     let damaged = parse("title = \"a\nfield = menger\ncamera = \"3 30\"\n").unwrap_err();
     let lines: Vec<_> = damaged.lines().map(|line| &line[..16]).collect();
-    assert_eq!(
-        lines,
-        ["a.toml: line 1: ", "a.toml: line 2: ", "a.toml: line 3: "],
-        "{damaged}"
-    );
+    let expected = [1, 2, 3].map(|line| format!("a.toml: line {line}: "));
+    assert_eq!(lines, expected, "{damaged}");
 }
 
 /// Errors quote an example of each key's value.
@@ -284,14 +269,13 @@ fn each_example_is_valid() {
     for Row { command, forms } in FORMS {
         let action = forms.action.unwrap_or_default();
         let line = format!("{command} {action} {}", forms.example);
-        assert!(
-            *command == "program" || Command::parse(&line).is_ok(),
-            "{line}"
-        );
+        let is_valid = *command == "program" || Command::parse(&line).is_ok();
+        assert!(is_valid, "{line}");
     }
 }
 
-/// Without a camera, the scene shows whole meshes with the axis of their format up; a field has the camera of `glint render`.
+/// Without the key `camera`, a scene shows whole meshes with the axis of their file format up, and
+/// a field with the default camera of `glint render`.
 #[test]
 fn automatic_cameras() {
     let table = r#"
@@ -306,12 +290,8 @@ fn automatic_cameras() {
     "#;
     for (text, expected) in rows(table) {
         let scene = parse(&format!("title = \"a\"\n{text}")).unwrap();
-        let lines: Vec<_> = scene.lines().collect();
-        assert_eq!(
-            lines.join("; "),
-            format!("quality balanced; {expected}"),
-            "{text}"
-        );
+        let lines = scene.lines().collect::<Vec<_>>().join("; ");
+        assert_eq!(lines, format!("quality balanced; {expected}"), "{text}");
         let fits = scene.needs().features.contains(&FIT);
         assert_eq!(fits, expected.contains("fit "), "{text}");
     }
@@ -329,12 +309,9 @@ fn materials_of_meshes() {
     for (text, expected) in rows(table) {
         let expected = expected.replace("JADE", &format!("{r:02x}{g:02x}{b:02x}"));
         let scene = with_camera(&text);
-        let lines: Vec<_> = scene.lines().collect();
-        let lines = lines.join("; ");
-        assert_eq!(
-            lines,
-            format!("quality balanced; camera 3 30 60; {expected}")
-        );
+        let lines = scene.lines().collect::<Vec<_>>().join("; ");
+        let expected = format!("quality balanced; camera 3 30 60; {expected}");
+        assert_eq!(lines, expected);
     }
 }
 
@@ -419,8 +396,8 @@ fn several_scenes_need_what_each_needs() {
     assert!(needs.geometry && !needs.depths);
     let fields = needs.fields.unwrap();
     assert_eq!(
-        (fields.names().as_str(), fields.lanes),
-        ("menger:4,spheres", 2)
+        (fields.names(), fields.lanes),
+        ("menger:4,spheres".into(), 2)
     );
     assert_eq!(built_in("menger").unwrap().needs().fields.unwrap().lanes, 4);
     let demo = built_in("demo").unwrap().needs();

@@ -6,14 +6,14 @@ use std::fmt;
 const WORDS: usize = 16;
 
 /// A value of up to 512 bits. The value of a narrower port is in the lowest bits.
+///
+/// Methods panic when a field is not within the 512 bits, a value does not fit its field, or a
+/// number does not fit the result.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Bits([u32; WORDS]);
 
 impl Bits {
     /// Makes a value from 32-bit words, lowest first; missing words are 0.
-    ///
-    /// # Panics
-    /// The value has more than 512 bits.
     #[must_use]
     pub fn from_words(words: &[u32]) -> Self {
         let mut bits = Self::default();
@@ -51,9 +51,6 @@ impl Bits {
     }
 
     /// Returns the field of `width` bits from bit `low` up as a number; `width` is at most 64.
-    ///
-    /// # Panics
-    /// When `width` is above 64, or the bits are not within the 512 bits.
     #[must_use]
     pub(crate) fn field(&self, low: usize, width: usize) -> u64 {
         assert!(width <= 64 && low + width <= 32 * WORDS);
@@ -64,18 +61,12 @@ impl Bits {
     }
 
     /// Returns the field of `width` bits from bit `low` up, shifted to bit 0; `width` may be above 64.
-    ///
-    /// # Panics
-    /// When the bits are not within the 512 bits.
     #[must_use]
     pub fn slice(&self, low: usize, width: usize) -> Self {
         Self::default().with_words(0, self, low, width)
     }
 
     /// Replaces the field of `width` bits from bit `low` up by the lowest `width` bits of `bits`.
-    ///
-    /// # Panics
-    /// When the bits are not within the 512 bits.
     #[must_use]
     pub fn with_slice(self, low: usize, width: usize, bits: Self) -> Self {
         self.with_words(low, &bits, 0, width)
@@ -94,9 +85,6 @@ impl Bits {
     }
 
     /// Returns the whole value as one number.
-    ///
-    /// # Panics
-    /// When the number does not fit 64 bits.
     #[must_use]
     pub fn number(&self) -> u64 {
         assert!(self.fits(64), "{self:?} in 64 bits");
@@ -104,18 +92,12 @@ impl Bits {
     }
 
     /// Returns field `index` of a value that [`pack`](Self::pack) made from fields of `width` bits.
-    ///
-    /// # Panics
-    /// When the field is not within the 512 bits, or `width` is above 64.
     #[must_use]
     pub fn element(&self, width: usize, index: usize) -> u64 {
         self.field(width * index, width)
     }
 
     /// Concatenates fields of `width` bits each, the first in the lowest bits.
-    ///
-    /// # Panics
-    /// When the fields have more than 512 bits, or one of `values` does not fit `width` bits.
     #[must_use]
     pub fn pack(width: usize, values: impl IntoIterator<Item: Into<i128>>) -> Self {
         let lows = (0..).step_by(width);
@@ -126,9 +108,6 @@ impl Bits {
     }
 
     /// Returns the field of `width` bits from bit `low` up as a two's complement number.
-    ///
-    /// # Panics
-    /// As [`field`](Self::field), and when `width` is 0.
     #[must_use]
     pub(crate) fn signed(&self, low: usize, width: usize) -> i64 {
         let unused = 64 - width;
@@ -136,9 +115,6 @@ impl Bits {
     }
 
     /// Replaces the field of `width` bits from bit `low` up by `value`, in two's complement if `value` is negative.
-    ///
-    /// # Panics
-    /// When the bits are not within the 512 bits, or `value` fits `width` bits neither as a signed nor as an unsigned number.
     #[must_use]
     pub(crate) fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
         let value = value.into();

@@ -2,7 +2,8 @@
 
 use crate::{Bits, Module, Port};
 
-/// The counters of a module: for each member of the port, the sum over all sampled clocks.
+/// The counters of a module: for each member of the port, the sum over all sampled clocks. Methods
+/// panic when there is no port or member of the given name.
 pub struct Counters {
     events: Port,
     /// For each member of the port: its name, its bits within the port, and its sum so far.
@@ -11,9 +12,6 @@ pub struct Counters {
 
 impl Counters {
     /// Creates the counters of the struct on the port `name`; they start at 0.
-    ///
-    /// # Panics
-    /// When there is no such port.
     #[must_use]
     pub fn new(module: &Module, name: &str) -> Self {
         let members = module.record(name).layout().member_names();
@@ -27,7 +25,8 @@ impl Counters {
         }
     }
 
-    /// Adds the increments of the current clock; call it between [`Module::settle`] and [`Module::clock`].
+    /// Adds the increments of the current clock; call this method between [`Module::settle`] and
+    /// [`Module::clock`].
     pub fn sample(&mut self, module: &Module) {
         let events = module.get(self.events);
         if events == Bits::default() {
@@ -39,9 +38,6 @@ impl Counters {
     }
 
     /// Returns the sum of a member over all sampled clocks.
-    ///
-    /// # Panics
-    /// When there is no such member.
     #[must_use]
     pub fn get(&self, member: &str) -> u64 {
         let found = self.counts.iter().find(|(name, ..)| name == member);

@@ -25,6 +25,6 @@ pub use library::{Instance, LoadError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};
 pub use rasterizer::Rasterizer;
-pub use raymarcher::{Raymarcher, Taken};
+pub use raymarcher::{FrameCost, Raymarcher};
 pub use record::Record;
 pub use stream::{Pipe, Sink, Source, Stalls, exchange, step};

@@ -20,7 +20,7 @@ const VERSION: u32 = 1;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file is missing or is not a library, or the library lacks a function.
+    /// The file is missing or is not a library, or a function of the interface is missing.
     #[error("{}: {source}", path.display())]
     Library {
         /// The file.
@@ -101,7 +101,8 @@ pub struct Instance {
     free: unsafe extern "C" fn(*mut c_void),
     eval: unsafe extern "C" fn(*mut c_void),
     path: PathBuf,
-    // The last field: the library must be unloaded after the other fields, which point into it.
+    // Must be the last field: the other fields point into the library and must be dropped before it
+    // is unloaded.
     library: Library,
 }
 
@@ -238,7 +239,7 @@ impl Instance {
     pub fn set_value(&mut self, port: usize, value: u64) {
         let Slot { width, .. } = self.ports[port];
         self.check_input(port, width >= 64 || value >> width == 0, value);
-        // Fixed lengths, because a copy of variable length is a function call.
+        // Copies fixed lengths, because a copy of variable length compiles to a function call.
         let bytes = value.to_le_bytes();
         match self.bytes_mut(port) {
             [byte] => *byte = bytes[0],
@@ -290,11 +291,11 @@ impl Instance {
         unsafe { (self.eval)(self.handle.as_ptr()) }
     }
 
-    /// Starts writing waveforms to a file; to be called before the first evaluation. Returns `false` if the library was built
-    /// without waveforms, or the file cannot be written.
+    /// Starts writing waveforms to a file; call it before the first evaluation. Returns `false` if
+    /// the library was built without waveforms, or the file cannot be written.
     ///
     /// # Errors
-    /// When the library lacks the function.
+    /// When the function is missing in the library.
     pub fn write_waveforms(&mut self, path: &Path) -> Result<bool, LoadError> {
         let Ok(path) = CString::new(path.as_os_str().as_encoded_bytes()) else {
             return Ok(false);

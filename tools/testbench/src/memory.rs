@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::{Bits, Module, Port, Stalls};
 
-/// Contents of the memory, in words of 16 bytes.
+/// Contents of the memory, in words of 16 bytes. Methods panic for addresses beyond the memory.
 pub struct Memory {
     words: Vec<[u8; 16]>,
 }
@@ -19,9 +19,6 @@ impl Memory {
     }
 
     /// Writes bytes from the start of word `address` on.
-    ///
-    /// # Panics
-    /// When the bytes do not end within the memory.
     pub fn write(&mut self, address: u32, bytes: &[u8]) {
         for (i, chunk) in bytes.chunks(16).enumerate() {
             self.words[address as usize + i][..chunk.len()].copy_from_slice(chunk);
@@ -29,26 +26,12 @@ impl Memory {
     }
 
     /// Returns word `address`.
-    ///
-    /// # Panics
-    /// When the address is beyond the memory.
     #[must_use]
     pub fn word(&self, address: u32) -> Bits {
-        let bytes = self.words[address as usize];
-        Bits::from_words(
-            &bytes
-                .as_chunks()
-                .0
-                .iter()
-                .map(|&b| u32::from_le_bytes(b))
-                .collect::<Vec<_>>(),
-        )
+        Bits::from_bytes(&self.words[address as usize])
     }
 
     /// Writes the bytes of `data` whose `strobe` bits are set to word `address`.
-    ///
-    /// # Panics
-    /// When the address is beyond the memory.
     pub fn store(&mut self, address: u32, data: Bits, strobe: u16) {
         for (i, byte) in self.words[address as usize].iter_mut().enumerate() {
             if strobe >> i & 1 == 1 {
@@ -58,9 +41,6 @@ impl Memory {
     }
 
     /// Returns entry `index` of an array of 32-bit entries that starts at word `address`.
-    ///
-    /// # Panics
-    /// When the address is beyond the memory.
     #[must_use]
     pub fn entry(&self, address: u32, index: u32) -> u32 {
         self.word(address + index / 4)
@@ -71,12 +51,12 @@ impl Memory {
 /// Default latency of a read port: clocks from a command to its data.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a module's read port, the structs `NAME_read_request` and `NAME_read_answer`. The module must take each
-/// word in the clock in which the memory delivers it.
+/// The memory's side of a module's read port, which consists of the structs `NAME_read_request` and
+/// `NAME_read_answer`. The module must take each word in the clock in which the memory delivers it.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Words requested and not yet delivered: the earliest cycle of delivery, and the address.
+    /// Requested words that are not delivered yet: the earliest cycle of delivery, and the address.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
     /// Minimum number of clocks from a command to its data.
@@ -131,12 +111,13 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a module's write port, the structs `NAME_write_request` and `NAME_write_answer`. The memory takes a
-/// command's data in any later clock, in which the data must be valid.
+/// The memory's side of a module's write port, which consists of the structs `NAME_write_request`
+/// and `NAME_write_answer`. The memory takes a command's data in any later clock; the data must be
+/// valid in that clock.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
-    /// Addresses of the commands whose data were not taken yet.
+    /// Addresses of the commands whose data are not taken yet.
     owed: VecDeque<u32>,
     takes: bool,
     stalls: Stalls,

@@ -16,9 +16,13 @@ pub struct Port {
 }
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
+///
+/// Methods panic when there is no port, part or type of the given name; the message lists the valid
+/// names. Methods that drive inputs panic when the port is an output or the value does not fit, and
+/// methods that read panic when the port does not fit the result.
 pub struct Module {
     instance: Instance,
-    /// The port `clk`; `None` for a module with other clocks, driven by the test bench.
+    /// The port `clk`; `None` for a module whose clocks the test bench drives.
     clock: Option<Port>,
     cycles: u64,
 }
@@ -42,8 +46,8 @@ impl Module {
         module
     }
 
-    /// Loads the module `name` with all inputs low and without evaluating it, for a test bench that drives clocks and resets. The
-    /// first [`settle`](Self::settle) evaluates the module.
+    /// Loads the module `name` with all inputs low, without evaluating it, for a test bench that
+    /// drives clocks and resets itself. The first [`settle`](Self::settle) evaluates the module.
     ///
     /// # Panics
     /// When the module has not been built.
@@ -70,9 +74,6 @@ impl Module {
     }
 
     /// Finds a port, or part of a port, by its path: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
-    ///
-    /// # Panics
-    /// When there is no such port or part; the message lists the valid names.
     #[must_use]
     pub fn port(&self, path: &str) -> Port {
         self.part(path).0
@@ -95,9 +96,6 @@ impl Module {
     }
 
     /// Finds a type of a SystemVerilog package by its name, such as `raymarch_pkg::end_t`.
-    ///
-    /// # Panics
-    /// When there is no such type; the message lists the valid names.
     #[must_use]
     pub fn packed_type(&self, name: &str) -> &Layout {
         let types = &self.instance.description().types;
@@ -108,51 +106,33 @@ impl Module {
     }
 
     /// Makes an all-zero record of the type of a port, or of a part of a port.
-    ///
-    /// # Panics
-    /// When there is no such part.
     #[must_use]
     pub fn record(&self, path: &str) -> Record {
         self.part(path).1.record()
     }
 
     /// Drives an input, or part of an input, with a number: `stereo`, `solid.levels`, `origins[0][2]`. See [`Record`] for paths.
-    ///
-    /// # Panics
-    /// When there is no such part, or the number does not fit.
     pub fn drive(&mut self, path: &str, value: impl Into<i128>) {
         self.change(path, |record| record.set("", value));
     }
 
-    /// Drives an array with numbers in the order of its indices.
-    ///
-    /// # Panics
-    /// When there is no such array, its length differs from the number of values, or a number does not fit.
+    /// Drives an array with numbers in the order of its indices, one for each element.
     pub fn drive_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
         self.change(path, |record| record.set_all("", values));
     }
 
     /// Drives an input, or part of an input, with bits, such as those of a record.
-    ///
-    /// # Panics
-    /// When there is no such part, or the bits do not fit.
     pub fn drive_bits(&mut self, path: &str, bits: impl Into<Bits>) {
         self.set(self.port(path), bits);
     }
 
     /// Reads a port, or part of a port, as an unsigned number.
-    ///
-    /// # Panics
-    /// When there is no such part, or it has more than 64 bits.
     #[must_use]
     pub fn read(&self, path: &str) -> u64 {
         self.value(self.port(path))
     }
 
     /// Reads a port, or part of a port, as a record of its type.
-    ///
-    /// # Panics
-    /// When there is no such part.
     #[must_use]
     pub fn read_record(&self, path: &str) -> Record {
         let (port, layout) = self.part(path);
@@ -166,9 +146,6 @@ impl Module {
     }
 
     /// Drives an input, or part of an input, with a value.
-    ///
-    /// # Panics
-    /// When the port is an output, or the value does not fit.
     pub fn set(&mut self, port: Port, value: impl Into<Bits>) {
         let mut value = value.into();
         let Port {
@@ -186,9 +163,6 @@ impl Module {
     }
 
     /// Drives an input, or part of an input, of at most 64 bits.
-    ///
-    /// # Panics
-    /// When the port is an output, or the value does not fit.
     pub fn set_value(&mut self, port: Port, value: u64) {
         if port.whole {
             self.instance.set_value(port.index, value);
@@ -208,9 +182,6 @@ impl Module {
     }
 
     /// Returns the value of a port of at most 64 bits.
-    ///
-    /// # Panics
-    /// When the port has more than 64 bits.
     #[must_use]
     pub fn value(&self, port: Port) -> u64 {
         if port.whole {

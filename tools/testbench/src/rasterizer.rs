@@ -15,10 +15,11 @@ pub struct Rasterizer {
 }
 
 impl Rasterizer {
-    /// Values of a group at the output.
+    /// Names of the payload's ports in the output stream of groups.
     pub const GROUP: [&str; 6] = ["row", "mask", "codes", "colours", "line", "column"];
 
-    /// Loads the variant of the module for flat triangles, or that for flat and smooth ones.
+    /// Loads the variant of the module for flat triangles, or the variant for flat and smooth
+    /// triangles.
     ///
     /// # Panics
     /// When the module has not been built.
@@ -44,8 +45,9 @@ impl Rasterizer {
         self.pipe.module.port(name)
     }
 
-    /// Draws triangles, each with its colour, in the band with this first line, number of lines and number of groups in a line. `each`
-    /// is called in every clock. Returns the number of clocks and the groups.
+    /// Draws triangles, each with its colour, in a band. `settings` are the first line of the band,
+    /// its number of lines, and the number of groups per line. Calls `each` in every clock. Returns
+    /// the number of clocks and the groups.
     ///
     /// # Panics
     /// When the rasterizer does not become idle.

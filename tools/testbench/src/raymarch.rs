@@ -1,4 +1,6 @@
-//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, results of rays, and pixels.
+//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays,
+//! results of rays, and pixels. docs/raymarch.md explains the two kinds of rays: rays by exits, and
+//! marching rays.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{FixedCone, Solid, Surface, magnitude};
@@ -29,7 +31,7 @@ impl RayPlace {
         record.set("place.column", self.column);
     }
 
-    /// The place as a number, as the member `place` of a ray by exits has it.
+    /// Packs the place into a number, as the member `place` of an `exit_pkg::ray_t`.
     #[must_use]
     pub fn bits(&self) -> u32 {
         u32::from(self.odd) << 18 | (self.eye as u32) << 17 | self.line << 11 | self.column
@@ -56,7 +58,8 @@ pub fn ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     record.bits()
 }
 
-/// What a marching ray has of an `exit_pkg::ray_t`: its place, its height, the first 18 bits of its direction, and the start, if it is not over.
+/// Packs the members of an `exit_pkg::ray_t` that a marching ray uses: place, height, the upper 18
+/// bits of the direction, and the start of a ray that has not ended.
 pub fn marching_ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     let mut record = layout.record();
     record.set("place", place.bits());
@@ -73,7 +76,7 @@ pub fn marching_ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     record.bits()
 }
 
-/// Clears what a marching ray does not have of an `exit_pkg::ray_t`.
+/// Clears the members of an `exit_pkg::ray_t` that a marching ray does not use.
 #[must_use]
 pub fn marching_part(layout: &Layout, found: &Record) -> Bits {
     let mut record = layout.record();
@@ -91,8 +94,8 @@ pub fn marching_part(layout: &Layout, found: &Record) -> Bits {
     record.bits()
 }
 
-/// Packs a ray by exits, before its first evaluation, as an `exit_pkg::ray_t`: in a build with spheres with the one that it meets in
-/// its `cones`.
+/// Packs a ray by exits, before its first evaluation, as an `exit_pkg::ray_t`. In a build with
+/// spheres, `cones` are the cones of both eyes, and the ray contains the sphere that it meets.
 pub fn exit_ray(
     layout: &Layout,
     exits: &Exits,
@@ -121,7 +124,7 @@ pub fn exit_ray(
     record.set("down", down.map(|axis| 1_u32 << axis).sum::<u32>());
     for axis in 0..3 {
         record.set(&format!("speed[{axis}]"), beam.speed[axis] >> 5);
-        record.set(&format!("inverse[{axis}]"), reciprocal(beam.inverse[axis]));
+        record.set(&format!("inverse[{axis}]"), beam.inverse[axis].word());
     }
     if solid.rule.is_lattice() {
         set_length(&mut record, beam);
@@ -129,7 +132,7 @@ pub fn exit_ray(
     if solid.rule == Rule::Octahedron {
         record.set("down_sum", beam.down[3]);
     }
-    // A ray that is over has no start.
+    // A ray that has ended has no start.
     if !is_over {
         record.set("start", start.t);
         record.set("axis", start.face as u64);
@@ -140,7 +143,8 @@ pub fn exit_ray(
     record.bits()
 }
 
-/// Sets the square of the direction's length and its reciprocal, which a ray in a lattice has.
+/// Sets the members that only rays in lattices use: the square of the direction's length, and its
+/// reciprocal.
 fn set_length(record: &mut Record, beam: &Beam) {
     let short = (beam.square + (1 << 7)) >> 8;
     record.set("length.square", short.min((1 << 17) - 1));
@@ -150,13 +154,8 @@ fn set_length(record: &mut Record, beam: &Beam) {
     record.set("inverse_square.mantissa", mantissa >> 4 & ((1 << 18) - 1));
 }
 
-/// The bits of a reciprocal: its mantissa, shifted by its exponent modulo 8, and a scale of powers of 2^8.
-#[must_use]
-pub fn reciprocal(inverse: Inverse) -> u64 {
-    inverse.word().into()
-}
-
-/// Clears what has no meaning: the start of a ray that is over, the number of no sphere, and the length of a direction outside of lattices.
+/// Clears the members that have no meaning: the start of a ray that has ended, the sphere number of
+/// a ray that meets no sphere, and the direction's length outside of lattices.
 #[must_use]
 pub fn with_meaning(record: &Record, exits: &Exits) -> Bits {
     let mut record = record.clone();
@@ -215,8 +214,9 @@ impl Kind {
     }
 }
 
-/// End of a marching ray: the result from a lane. Unused members are 0: all but `steps` and `t` without a hit, `t` of an undecided ray,
-/// `face` at a hit on a pure sphere.
+/// End of a marching ray: the result from a lane. Unused members are 0: without a hit, all members
+/// except `steps` and `t`; for an undecided ray, also `t`; at a hit on a sphere outside of fillets,
+/// `face`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Whether the ray missed, hit or stayed undecided.
@@ -227,7 +227,7 @@ pub struct End {
     pub face: u64,
     /// Weight of the sphere in the surface, u0.8: 0 on a face, 255 on a sphere, between 0 and 255 on a fillet.
     pub share: u64,
-    /// T, u14.14; after a miss, the height of the sky.
+    /// Ray parameter T of the hit, u14.14; after a miss, the height of the sky.
     pub t: u64,
     /// Number of evaluations of the field; 255 stands for 255 or more.
     pub steps: u64,
@@ -288,15 +288,6 @@ impl End {
     }
 }
 
-/// The constants of a frame whose rays march.
-///
-/// # Panics
-/// If the rays of the frame go by exits.
-#[must_use]
-pub fn marching(setup: &FieldSetup) -> &Marching {
-    setup.marching().expect("marching rays")
-}
-
 fn solid(mut solid: Record, marching: &Marching) -> Record {
     let blend = marching.beside.blend;
     solid.set("blend_inverse", blend.inverse);
@@ -320,7 +311,7 @@ fn set_spheres(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
         let mut sphere = module.record("sphere");
         let cone = spheres.cone(i as u8);
         sphere.set_all("centre", cone.map_or(one.centre, FixedCone::apex));
-        // Rays by exits need no radius, which may be longer.
+        // Rays by exits need no radius, and a radius may have more bits than the port.
         if setup.marching().is_some() {
             sphere.set("radius", one.radius);
         }
@@ -371,7 +362,7 @@ fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>;
 
 /// Drives the frame constants of a lane for marching rays.
 pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
-    let marching = marching(setup);
+    let marching = setup.marching().expect("marching rays");
     let record = module
         .record("tuning")
         .with("cap", marching.cap)
@@ -385,7 +376,8 @@ pub fn set_lane(module: &mut Module, setup: &FieldSetup) {
     set_spheres(module, setup, &Palette::default().lights);
 }
 
-/// The name in the gateware and the number of levels of a solid by exits.
+/// A solid of rays by exits in the gateware: the name of its rule, the number of the rule, and the
+/// number of levels.
 #[must_use]
 pub fn rule(rule: Rule) -> (&'static str, u64, u32) {
     let (name, number) = match rule {
@@ -397,7 +389,7 @@ pub fn rule(rule: Rule) -> (&'static str, u64, u32) {
     (name, number, rule.levels())
 }
 
-/// Drives the solid of a raymarcher's rays by exits.
+/// Drives the solid for the rays by exits.
 fn set_solid(module: &mut Module, exits: &Exits) {
     let solid = exits.solid.unwrap_or_default();
     let (_, number, levels) = rule(solid.rule);
@@ -407,7 +399,8 @@ fn set_solid(module: &mut Module, exits: &Exits) {
     module.drive_all("borders", solid.borders());
 }
 
-/// Writes the cones of one eye or of two, each changed by `change`, to the ports whose names begin with `prefix`.
+/// Changes each cone of the first `eyes` eyes by `change`, and writes the cones to the ports whose
+/// names begin with `prefix`.
 pub fn set_cones(
     module: &mut Module,
     prefix: &str,
@@ -432,7 +425,7 @@ pub fn set_cones(
         }
         for cone in cones.list() {
             let cone = change(cone);
-            // Only bits that the gateware does not read may be lost.
+            // The words must contain all bits that the gateware reads.
             assert_eq!(Cone::of_words(&cone.words()), cone);
         }
         for (number, words) in words.iter().enumerate() {
@@ -513,7 +506,7 @@ pub fn set_raymarcher(module: &mut Module, setup: &FieldSetup) {
     set_rays(module, setup);
 }
 
-/// Drives the rays to the first light.
+/// Drives the constants of the rays to the first light.
 pub fn set_shadow(module: &mut Module, exits: &Exits) {
     let mut record = module.record("shadow");
     record.set("enable", u64::from(exits.sun.is_some()));
@@ -568,7 +561,7 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     set_cones(module, "cone_", exits, count, |cone| *cone);
 }
 
-/// Packs the `end_t` of a ray that ends on no sphere from the model's end.
+/// Packs the model's end of a ray, which is not on a sphere, as an `end_t`.
 pub fn exit_end(layout: &Layout, place: RayPlace, end: &RayEnd) -> Bits {
     let mut record = layout.record();
     let (kind, surface, t) = match end.state {
@@ -616,7 +609,8 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel as the band buffer accepts it: a group of eight pixels in which only this pixel is drawn.
+/// A pixel in the form of the band buffer's input: a group of eight pixels in which only this pixel
+/// is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// Eye: 0 for the left or only eye, 1 for the right eye.

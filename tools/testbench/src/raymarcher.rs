@@ -1,4 +1,5 @@
-//! Drives the whole raymarcher: every pixel comes once, equal to the model's, while `band_open` is high for its band.
+//! Drives a whole raymarcher, and checks its pixels: each pixel must equal the model's pixel, and
+//! must come exactly once, while `band_open` is high for its band.
 
 use std::collections::HashMap;
 
@@ -29,12 +30,12 @@ pub struct Raymarcher {
 
 /// Cost of a frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Taken {
+pub struct FrameCost {
     /// Clocks from the start of the frame to its end.
     pub clocks: u64,
-    /// Sum over the lanes of the clocks in which a lane had room for a ray and no ray came.
+    /// Number of clocks in which a lane could accept a ray but none came, summed over the lanes.
     pub idle: u64,
-    /// Statistics of the model, which the module's counters confirm.
+    /// Statistics of the model, which the module's counters have matched.
     pub stats: FieldStats,
 }
 
@@ -83,8 +84,8 @@ impl Raymarcher {
         self.module.drive("size", setup.width / 640);
     }
 
-    /// Draws a frame and compares its pixels with the model's. The output stream stalls, and `band_open` waits before each band, for
-    /// `random` times; without random numbers, neither does.
+    /// Draws a frame and compares its pixels with the model's. With `random`, the output stream
+    /// stalls at random, and `band_open` rises after a random delay in each band.
     ///
     /// # Panics
     /// When a pixel or a counter differs from the model's.
@@ -93,7 +94,7 @@ impl Raymarcher {
         mut random: Option<&mut Random>,
         setup: &FieldSetup,
         palette: &Palette,
-    ) -> Taken {
+    ) -> FrameCost {
         self.set(setup, palette);
         let lines = band_rows(setup.width);
         let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
@@ -164,7 +165,7 @@ impl Raymarcher {
         assert_eq!(
             self.module.get(events),
             Bits::default(),
-            "events of no frame"
+            "events after the end of the frame"
         );
         let counted = self.counted();
         let [clocks, idle, counters @ ..]: [u64; 8] =
@@ -183,14 +184,14 @@ impl Raymarcher {
             "{:?} of {setup:?}",
             &COUNTERS[2..]
         );
-        Taken {
+        FrameCost {
             clocks,
             idle,
             stats,
         }
     }
-    /// Draws a frame for a number of clocks, and gives it up.
-    pub fn give_up(&mut self, setup: &FieldSetup, clocks: u32) {
+    /// Draws a frame for a number of clocks, and cancels it.
+    pub fn cancel(&mut self, setup: &FieldSetup, clocks: u32) {
         self.set(setup, &Palette::default());
         self.module.drive("band_open", 1);
         self.module.drive("group_ready", 1);
@@ -202,7 +203,7 @@ impl Raymarcher {
         self.counted = self.counted();
     }
 
-    /// Number of clocks so far in which a pixel waited to be taken.
+    /// Number of clocks so far in which the output of pixels was stalled.
     #[must_use]
     pub fn stalled(&self) -> u64 {
         self.counters.get("cycles_stalled")

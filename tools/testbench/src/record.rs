@@ -9,6 +9,8 @@ use crate::layout::{Layout, Member};
 /// A value of a packed type. A path names a part of the value, such as `place.line`, `half[2]` or `[1][0]`; `""` names the whole value.
 ///
 /// Every method with a path panics when the type has no such part; the message lists the valid names.
+/// Methods that write panic when the value does not fit the part, and methods that read panic when
+/// the part does not fit the result.
 #[derive(Clone)]
 pub struct Record {
     layout: Layout,
@@ -22,10 +24,7 @@ impl Layout {
         self.record_of(Bits::default())
     }
 
-    /// Makes a record of this type from its bits.
-    ///
-    /// # Panics
-    /// When a bit above the type's width is set.
+    /// Makes a record of this type from its bits. Bits above the width of the type must be 0.
     #[must_use]
     pub fn record_of(&self, bits: Bits) -> Record {
         Record::new(self.clone(), bits)
@@ -55,9 +54,6 @@ impl Record {
     }
 
     /// Returns the record with a part set to a signed or unsigned number.
-    ///
-    /// # Panics
-    /// When there is no such part, or the number does not fit.
     #[must_use]
     pub fn with(mut self, path: &str, value: impl Into<i128>) -> Self {
         self.set(path, value);
@@ -65,18 +61,12 @@ impl Record {
     }
 
     /// Sets a part to a signed or unsigned number.
-    ///
-    /// # Panics
-    /// When there is no such part, or the number does not fit.
     pub fn set(&mut self, path: &str, value: impl Into<i128>) {
         let Member { low, layout } = self.find(path);
         self.bits = with_number(self.bits, path, low, layout, value.into());
     }
 
-    /// Sets an array to numbers in the order of its indices.
-    ///
-    /// # Panics
-    /// When there is no such array, its length differs from the number of values, or a number does not fit.
+    /// Sets an array to numbers in the order of its indices, one for each element.
     pub fn set_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
         let Member { low, layout } = self.find(path);
         let (mut bits, mut found) = (self.bits, 0);
@@ -95,9 +85,6 @@ impl Record {
     }
 
     /// Sets an enumeration to its value of this name.
-    ///
-    /// # Panics
-    /// When there is no such part, or its type has no value of that name.
     pub fn set_name(&mut self, path: &str, name: &str) {
         let Member { low, layout } = self.find(path);
         let values = layout.values();
@@ -115,9 +102,6 @@ impl Record {
     }
 
     /// Sets a part to bits, such as those of another record.
-    ///
-    /// # Panics
-    /// When there is no such part, or the bits do not fit.
     pub fn set_bits(&mut self, path: &str, bits: impl Into<Bits>) {
         let (part, bits) = (self.find(path), bits.into());
         let (low, width) = (part.low, part.layout.width());
@@ -129,9 +113,6 @@ impl Record {
     }
 
     /// Returns a part of at most 64 bits as an unsigned number.
-    ///
-    /// # Panics
-    /// When there is no such part, or it has more than 64 bits.
     #[must_use]
     pub fn get(&self, path: &str) -> u64 {
         let part = self.find(path);
@@ -139,9 +120,6 @@ impl Record {
     }
 
     /// Returns a part of at most 64 bits as a two's complement number.
-    ///
-    /// # Panics
-    /// When there is no such part, or it has more than 64 bits.
     #[must_use]
     pub fn signed(&self, path: &str) -> i64 {
         let part = self.find(path);
@@ -149,9 +127,6 @@ impl Record {
     }
 
     /// Whether a one-bit part is set.
-    ///
-    /// # Panics
-    /// When there is no such part, or it has more than one bit.
     #[must_use]
     pub fn is_set(&self, path: &str) -> bool {
         let part = self.find(path);
@@ -160,9 +135,6 @@ impl Record {
     }
 
     /// Returns the name of an enumeration's value; `None` for a number without a name.
-    ///
-    /// # Panics
-    /// When there is no such part, or its type is not an enumeration.
     #[must_use]
     pub fn name(&self, path: &str) -> Option<&str> {
         let part = self.find(path);
@@ -174,9 +146,6 @@ impl Record {
     }
 
     /// Returns a part as a separate record.
-    ///
-    /// # Panics
-    /// When there is no such part.
     #[must_use]
     pub fn part(&self, path: &str) -> Self {
         let part = self.find(path);

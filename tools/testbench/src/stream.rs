@@ -1,8 +1,9 @@
-//! The test bench's ends of a module's streams: sources and sinks. A stream has the ports `valid` and `ready`, and the ports of
-//! its payload.
+//! The test bench's side of a module's streams: sources and sinks. A stream has the ports `valid`
+//! and `ready`, and the ports of its payload.
 //!
-//! Steps of a test bench in each cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`]. [`step`] does
-//! these steps for a module that has only streams as ports.
+//! In each cycle, a test bench calls `drive` of all sources and sinks, [`Module::settle`], `sample`
+//! of all sources and sinks, and [`Module::clock`]. [`step`] does this for a module whose ports are
+//! all streams.
 
 use std::collections::VecDeque;
 
@@ -17,7 +18,8 @@ pub fn step(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut 
     module.clock();
 }
 
-/// Drives the ends of streams, settles the module's outputs, and samples the ends; the clock edge is left to the caller.
+/// Drives sources and sinks, settles the module's outputs, and samples sources and sinks. The
+/// caller then advances the clock.
 pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut Sink]) {
     sources.iter_mut().for_each(|source| source.drive(module));
     sinks.iter_mut().for_each(|sink| sink.drive(module));
@@ -26,7 +28,8 @@ pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&
     sinks.iter_mut().for_each(|sink| sink.sample(module));
 }
 
-/// Random stalls of one end of a stream: runs of random length that make up a given share of the cycles.
+/// Random stalls of a source or a sink: runs of random length that make up a given share of the
+/// cycles.
 pub struct Stalls {
     random: Pcg64Mcg,
     share: f64,
@@ -143,7 +146,7 @@ impl Source {
         }
     }
 
-    /// Removes the item on the ports from the queue if the module takes it in this cycle.
+    /// Removes the first item from the queue if the module takes it in this cycle.
     pub fn sample(&mut self, module: &Module) {
         if self.ports.moves(module) {
             self.items.pop_front();

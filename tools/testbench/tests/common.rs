@@ -2,7 +2,8 @@
 
 use glint_testbench::{Bits, Pipe};
 
-/// Sends numbers through a buffer with stalls on both sides, and expects all numbers in order. Returns the number of clocks.
+/// Sends numbers through a buffer with stalls on both sides, and checks that all numbers arrive in
+/// order. Returns the number of clocks.
 fn passes_all_in_order(name: &str, stalls: [f64; 2]) -> u64 {
     const COUNT: u64 = 500;
     let mut pipe = Pipe::new(name, 1, ("in", &["data"]), ("out", &["data"]), stalls);

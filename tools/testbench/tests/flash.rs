@@ -7,9 +7,11 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use virtual_flash::{Flash, MAX_BYTES, Pins};
 
-/// Clocks of a word: eight half bytes of two clocks each, its request and its end.
+/// Number of clocks to read a word: eight half bytes of two clocks each, and one clock each for the
+/// request and the end.
 const WORD: u64 = 2 * 8 + 2;
-/// Clocks of a command before its first word: eight idle clocks, 32 bits and eight dummy clocks.
+/// Number of clocks of a command before its first word: eight idle clocks, 32 bits and eight dummy
+/// clocks, of two clocks each.
 const COMMAND: u64 = 2 * (8 + 32 + 8);
 
 struct Bench {
@@ -20,7 +22,7 @@ struct Bench {
     answer: [Port; 2],
     /// CS#, clock, level of line 0, output enable of line 0, and the input lines.
     pins: [Port; 5],
-    /// Levels driven by the flash, delayed on the way to the reader.
+    /// Levels driven by the flash that have not reached the reader yet.
     way: Option<u8>,
     rng: Pcg64Mcg,
     /// Rising edges of the flash's clock since it was deselected.
@@ -53,7 +55,8 @@ impl Bench {
         self.module.set(self.rst, 0);
     }
 
-    /// Advances by one clock. Levels take almost a clock in each direction; undriven lines have unknown levels.
+    /// Advances by one clock. A level takes almost one clock to reach the other side; undriven
+    /// lines have random levels.
     fn clock(&mut self) {
         let [cs_n, clk, command, sending, lines] = self.pins;
         let is_high = |port| self.module.is_high(port);
@@ -65,7 +68,10 @@ impl Bench {
             clk,
             lines: if sending { sent } else { 0xf },
         });
-        assert!(!(sending && self.way.is_some()), "both drive the lines");
+        assert!(
+            !(sending && self.way.is_some()),
+            "flash and reader drive the lines at the same time"
+        );
         let level = answer.unwrap_or_else(|| self.rng.random::<u8>() & 0xf);
         self.module.set(lines, u64::from(level));
         self.module.clock();
@@ -76,14 +82,14 @@ impl Bench {
                     self.idle_clocks >= 3,
                     "STARTUPE2 drops the first three clocks"
                 );
-                assert!(!clk && !rises, "the clock moves with CS#");
+                assert!(!clk && !rises, "the clock has an edge together with CS#");
             }
             self.idle_clocks = 0;
         }
         self.idle_clocks += u32::from(rises);
     }
 
-    /// Reads the word with this number, and returns the clocks of the access.
+    /// Reads the word with this number, and returns the number of clocks of the access.
     fn read(&mut self, number: u32) -> u64 {
         let start = self.module.cycles();
         self.module.set(self.request[0], 1);

@@ -1,4 +1,5 @@
-//! Tests of the I2C engine with a virtual MPU-6050 on the bus, or with SCL and SDA driven by the test.
+//! Tests of the I2C engine. A virtual MPU-6050 is on the bus, or the test itself drives SCL and
+//! SDA.
 
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
@@ -154,7 +155,10 @@ impl Bench {
         self.clock();
         while self.module.is_high(self.ports.busy) {
             self.clock();
-            assert!(self.module.cycles() - start < LONG, "it does not end");
+            assert!(
+                self.module.cycles() - start < LONG,
+                "the transfer does not end"
+            );
         }
         self.module.cycles() - start
     }
@@ -177,7 +181,7 @@ impl Bench {
         let ended = self.ended;
         self.push(commands);
         self.finish();
-        assert_eq!(self.ended, ended + 1, "one event for each end");
+        assert_eq!(self.ended, ended + 1, "one event per transfer");
         self.failure()
     }
 
@@ -191,7 +195,7 @@ impl Bench {
         self.push(commands);
     }
 
-    /// Runs for `clocks` clocks; returns the clocks of start conditions.
+    /// Runs for `clocks` clocks; returns the numbers of the clocks with start conditions.
     fn starts(&mut self, clocks: u64) -> Vec<u64> {
         let [_, scl_out, _, sda_out] = self.ports.wires;
         let mut starts = Vec::new();
@@ -273,7 +277,7 @@ fn rounds_begin_at_their_times() {
 
 #[test]
 fn a_round_that_is_not_over_in_time_is_an_error() {
-    // The transfer takes 34,883 clocks, longer than the period.
+    // The transfer takes 34,883 clocks, more than the period.
     let mut bench = Bench::new(None);
     bench.repeat(&transfer(&[0x3a], 15), 34_000, 1);
     bench.starts(3 * 34_000);

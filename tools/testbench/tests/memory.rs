@@ -1,4 +1,5 @@
-//! Test of the whole way to main memory: CPU, engines and scan-out on one crossbar, with the timing and the refreshes of the memory.
+//! Test of the whole path to main memory: CPU, engines and scan-out on one crossbar, with the
+//! timing and the refreshes of the memory.
 
 use std::collections::VecDeque;
 
@@ -9,17 +10,20 @@ use rand_pcg::Pcg64Mcg;
 const CLOCKS: u64 = 400_000;
 /// Clocks between two refreshes: 64 ms for 8192 rows, at 81.25 MHz.
 const REFRESH: u64 = 635;
-/// Words of 16 bytes of a line of 1280 pixels, and the clocks of such a line at 60 frames a second.
+/// Number of 16-byte words of a line of 1280 pixels.
 const LINE: u64 = 160;
+/// Number of clocks of such a line at 60 frames per second.
 const LINE_CLOCKS: u64 = 1650 * 8125 / 7425;
-/// Words of 16 bytes of the part of memory of each client. Parts begin in the same bank, and each goes through all banks.
+/// Number of 16-byte words of each client's part of memory. All parts begin in the same bank, and
+/// each part covers all banks.
 const PART: u64 = 4096;
 const DATA: u64 = 0;
 const INSTRUCTIONS: u64 = 1;
 const SCANOUT: u64 = 2;
 const ENGINES: [u64; 2] = [3, 4];
-/// Words of 32 bits of a line of the CPU's caches, and of the parts of the CPU that are used.
+/// Number of 32-bit words of a line of the CPU's caches.
 const CACHE_LINE: u64 = 8;
+/// Number of 32-bit words that the CPU uses in each of its parts.
 const CPU_WORDS: u64 = 2048;
 
 /// Contents of a word that never changes.
@@ -91,7 +95,7 @@ impl Bus {
         }
     }
 
-    /// Takes the acknowledgement of this clock; `words` is what reads must return.
+    /// Takes the acknowledgement of this clock. `words` are the expected contents of the memory.
     fn take(&mut self, module: &Module, words: &mut [u32]) {
         let Some(access) = self.access.filter(|_| self.pause == 0) else {
             return;
@@ -121,15 +125,17 @@ impl Bus {
     }
 }
 
-/// A port of the crossbar for one direction, with the words that it still has to ask for, and their data.
+/// A client of a port of the crossbar for one direction.
 struct Client {
     valid: Port,
     ready: Port,
     addr: Port,
     data: Port,
-    /// Valid of read data, ready of written data.
+    /// `word_valid` of read data, or `word_ready` of written data.
     moves: Port,
+    /// Addresses of the words that are not requested yet.
     asks: VecDeque<u64>,
+    /// Data that were read, or that are still to be written.
     words: VecDeque<Bits>,
 }
 
@@ -162,7 +168,7 @@ impl Client {
         match (module.is_high(self.moves), writes) {
             (true, true) => {
                 let word = self.words.pop_front();
-                assert!(word.is_some(), "data that no command is for");
+                assert!(word.is_some(), "data without a command");
             }
             (true, false) => self.words.push_back(module.get(self.data)),
             (false, _) => {}
@@ -170,7 +176,8 @@ impl Client {
     }
 }
 
-/// What an engine does: it writes a run of words, waits until they are in memory, and reads them again.
+/// State of an engine, which writes a run of words, waits until they are in memory, and reads them
+/// back.
 enum Work {
     Writes,
     Waits(u32),
@@ -247,7 +254,7 @@ fn no_word_is_lost_and_each_line_is_in_time() {
     let refreshed = module.port("refreshed");
     let instruction_start = INSTRUCTIONS * PART * 4;
     let mut words: Vec<u32> = (0..instruction_start + CPU_WORDS).map(constant).collect();
-    // The CPU fills its parts, and engine 0 that of scan-out.
+    // The CPU fills its parts of memory; engine 0 fills the part of scan-out.
     let mut fill: VecDeque<u64> = (0..CPU_WORDS)
         .chain(instruction_start..instruction_start + CPU_WORDS)
         .collect();

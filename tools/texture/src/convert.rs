@@ -1,4 +1,4 @@
-//! A picture as a texture in a board's memory layout, with a report.
+//! Converts a picture to a texture in a board's memory layout, and reports on the conversion.
 
 use crate::error::PictureError;
 use crate::levels::{Level, Texel, colour};
@@ -60,11 +60,12 @@ impl fmt::Display for Report {
 
 /// Converts a picture to a texture with all mip levels: the sides become powers of two, and levels are averages in linear light.
 ///
-/// With a cutoff, texels are transparent where their opacity, averaged over the picture's texels, is below the cutoff. Smaller levels have
-/// the same share of opaque texels, as far as possible. The value that marks transparent texels is one that no opaque texel has.
+/// With a cutoff, a texel is transparent if the average opacity of the picture's texels under it is
+/// below the cutoff. Smaller levels keep the share of opaque texels as far as possible. No opaque
+/// texel has the value that marks transparent texels.
 ///
 /// # Errors
-/// The picture has no texel, or the largest side of the options is outside of [`MIN_SIDE`] to [`MAX_SIDE`].
+/// The picture has no texel, or `largest_side` is outside of [`MIN_SIDE`] to [`MAX_SIDE`].
 pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report), PictureError> {
     let [width, height] = picture.size;
     if picture.texels.len() as u64 != u64::from(width) * u64::from(height)
@@ -129,7 +130,7 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
         levels: values,
     };
     let bytes = encode(&source).map_err(|error| {
-        // The checks above exclude all of its errors.
+        // The checks above exclude all errors of the encoder.
         PictureError::new("a texture", error.to_string())
     })?;
     let report = Report {
@@ -147,11 +148,11 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
     Ok((bytes, report))
 }
 
-/// Converts a texture again, from its largest level; `format`: `None` keeps its own. A texture that is as the options state is kept, with
-/// all its levels.
+/// Converts a texture again from its largest level; `format: None` keeps its format. A texture that
+/// already satisfies the options is kept unchanged with all its levels.
 ///
 /// # Errors
-/// Those of [`convert`].
+/// As for [`convert`].
 pub fn again(
     texture: &Texture,
     format: Option<Format>,
@@ -168,7 +169,7 @@ pub fn again(
         format,
         largest_side,
         sampler,
-        // Between the opacities of opaque and transparent texels.
+        // Half-way between the opacities 0 of transparent and 1 of opaque texels.
         cutoff: Some(0.5),
     };
     convert(&largest_level(texture), &options)
@@ -192,9 +193,10 @@ fn kept(texture: &Texture) -> Report {
     }
 }
 
-/// Base-2 logarithm of the power of two from [`MIN_SIDE`] to `largest` that has the smallest ratio to a side.
+/// Base-2 logarithm of the power of two from [`MIN_SIDE`] to `largest` that is nearest to a side by
+/// ratio.
 fn side_log2(side: u32, largest: u32) -> u8 {
-    // The squares of larger sides could exceed 64 bits, and no power of two above the largest is chosen.
+    // Larger sides give the largest power of two, too; clamping keeps the square within 64 bits.
     let side = u64::from(side.clamp(MIN_SIDE, MAX_SIDE));
     let below = side.ilog2();
     // side / 2^below > √2
@@ -204,8 +206,9 @@ fn side_log2(side: u32, largest: u32) -> u8 {
 
 /// The colours of the opaque texels of all levels, rounded; `None` for transparent texels.
 ///
-/// A fence of thin bars would vanish in small levels, whose texels have the average opacity of bars and gaps. Therefore each level has the
-/// share of opaque texels of the largest level: those with the most opacity, and of equal ones some in an even pattern.
+/// A fence of thin bars would vanish in small levels, whose texels have the average opacity of bars
+/// and gaps. Therefore each level has the same share of opaque texels as the largest level. The
+/// texels with the highest opacity are chosen, and among equal opacities texels in an even pattern.
 fn opaque(levels: &[Level], cutoff: f32) -> Vec<Vec<Option<[u8; 3]>>> {
     let rounded = |texel: Texel| colour(texel).map(|value| value.round() as u8);
     let is_opaque = |texel: &Texel| texel[3] > 0.0 && texel[3] >= cutoff;
@@ -241,7 +244,8 @@ fn opaque(levels: &[Level], cutoff: f32) -> Vec<Vec<Option<[u8; 3]>>> {
     std::iter::once(of_largest).chain(smaller).collect()
 }
 
-/// Order of places in which the first ones of any number are evenly distributed (Bayer's matrix).
+/// Rank of a texel in Bayer's matrix: for any n, the n texels of the lowest ranks are evenly
+/// distributed.
 fn even_order(x: usize, y: usize) -> u32 {
     (0..MAX_SIDE.ilog2()).fold(0, |order, bit| {
         let [x, y] = [x, y].map(|c| (c >> bit) as u32 & 1);
@@ -249,14 +253,14 @@ fn even_order(x: usize, y: usize) -> u32 {
     })
 }
 
-/// The values of the texels of all levels.
+/// The encoded texels of all levels.
 struct Values {
     palette: Vec<Rgb565>,
     key: Option<u16>,
     levels: Vec<Vec<u16>>,
 }
 
-/// Colours, and a key that no opaque texel has.
+/// Encodes texels as colours, with a key value that no opaque texel has.
 fn coloured(texels: &[Vec<Option<[u8; 3]>>], cut_out: bool) -> Values {
     let value = |texel: &Option<[u8; 3]>| texel.map(|rgb| Rgb565::from_rgb888(rgb).0);
     if !cut_out {
@@ -276,7 +280,8 @@ fn coloured(texels: &[Vec<Option<[u8; 3]>>], cut_out: bool) -> Values {
     for value in texels.iter().flatten().filter_map(value) {
         counts[usize::from(value)] += 1;
     }
-    // The first of the rarest values. If opaque texels have it, as in a picture with all values, they get a colour one step of blue away.
+    // The key is the first of the rarest values. If opaque texels have this value, as in a picture
+    // with all 65536 values, their blue changes by one step.
     let rarest = (0..=u16::MAX).min_by_key(|&value| counts[usize::from(value)]);
     let key = rarest.unwrap_or(0);
     let marked = |texel: &Option<[u8; 3]>| match value(texel) {
@@ -294,7 +299,7 @@ fn coloured(texels: &[Vec<Option<[u8; 3]>>], cut_out: bool) -> Values {
     }
 }
 
-/// Indices of a palette for the colours of all levels. The last index marks transparent texels.
+/// Encodes texels as indices of a palette for all levels. The last index marks transparent texels.
 fn indexed(texels: &[Vec<Option<[u8; 3]>>], format: Format, cut_out: bool) -> Values {
     let colours: Vec<[u8; 3]> = texels.iter().flatten().flatten().copied().collect();
     let palette = palette(&colours, format.colours() - usize::from(cut_out));
@@ -313,7 +318,7 @@ fn indexed(texels: &[Vec<Option<[u8; 3]>>], format: Format, cut_out: bool) -> Va
     }
 }
 
-/// Root mean square and maximum of the differences between the largest level before and after rounding.
+/// Root mean square and maximum of the rounding errors of the largest level.
 fn errors(
     levels: &[Level],
     values: &[Vec<u16>],
@@ -350,6 +355,13 @@ mod tests {
         })
     }
 
+    fn cut_out() -> Options {
+        Options {
+            cutoff: Some(0.5),
+            ..Options::default()
+        }
+    }
+
     #[test]
     fn sides_become_the_nearest_powers_of_two() {
         for (side, largest, power) in [
@@ -384,16 +396,10 @@ mod tests {
             assert_eq!(texture.size_log2().map(|side| 1 << side), expected);
             assert_eq!((report.size, report.levels), (expected, levels));
             assert_eq!(report.bytes, bytes.len());
-            let resized = if size == expected {
-                vec![]
-            } else {
-                let [width, height] = size;
-                let [to_width, to_height] = expected;
-                vec![format!(
-                    "resized from {width}×{height} to {to_width}×{to_height}"
-                )]
-            };
-            assert_eq!(report.remarks, resized);
+            let [[width, height], [to_width, to_height]] = [size, expected];
+            let resized = format!("resized from {width}×{height} to {to_width}×{to_height}");
+            let remarks: &[String] = if size == expected { &[] } else { &[resized] };
+            assert_eq!(report.remarks, remarks);
             let stated = TextureHeader::from_bytes(bytes.first_chunk().unwrap()).checksum;
             assert_eq!(stated, checksum(&bytes));
         }
@@ -452,11 +458,11 @@ mod tests {
         let holes = Picture::drawn([16, 16], |x, y| {
             [(16 * x) as u8, (16 * y) as u8, 0, opacity(x)]
         });
+        let clear = Picture::drawn([8, 8], |_, _| [1, 2, 3, 0]);
         for format in Format::ALL {
             let options = Options {
                 format,
-                cutoff: Some(0.5),
-                ..Options::default()
+                ..cut_out()
             };
             let (bytes, report) = convert(&holes, &options).unwrap();
             assert!(report.cut_out);
@@ -467,24 +473,10 @@ mod tests {
                     assert_eq!(colour.is_some(), x % 4 < 2, "{format:?} {x} {y}");
                 }
             }
-            let opaque = Options {
-                cutoff: None,
-                ..options
-            };
-            assert!(!convert(&holes, &opaque).unwrap().1.cut_out);
-            let zero = Options {
-                cutoff: Some(0.0),
-                ..options
-            };
-            assert!(!convert(&holes, &zero).unwrap().1.cut_out);
-        }
-        let clear = Picture::drawn([8, 8], |_, _| [1, 2, 3, 0]);
-        for format in Format::ALL {
-            let options = Options {
-                format,
-                cutoff: Some(0.5),
-                ..Options::default()
-            };
+            for cutoff in [None, Some(0.0)] {
+                let opaque = Options { cutoff, ..options };
+                assert!(!convert(&holes, &opaque).unwrap().1.cut_out);
+            }
             let (_, report) = convert(&clear, &options).unwrap();
             assert_eq!(report.remarks, ["each texel is transparent"]);
             assert_eq!((report.error_rms, report.error_max), (0.0, 0.0));
@@ -496,12 +488,8 @@ mod tests {
         // Thin bars in one direction, dots, and texels with the same opacity.
         let bars = |x: u32, _: u32| x.is_multiple_of(5);
         let dots = |x: u32, y: u32| (x * x + 3 * y * y + x * y) % 7 < 2;
-        let options = Options {
-            cutoff: Some(0.5),
-            ..Options::default()
-        };
         let shares = |picture: &Picture| -> Vec<f64> {
-            let (bytes, _) = convert(picture, &options).unwrap();
+            let (bytes, _) = convert(picture, &cut_out()).unwrap();
             let texture = Texture::new_checked(&bytes).unwrap();
             let share = |level| {
                 let [width, height] = texture.level_log2(level).map(|side| 1 << side);
@@ -519,14 +507,10 @@ mod tests {
                 assert!((share - found[0]).abs() <= 0.5 / texels, "{found:?}");
             }
         }
-        assert_eq!(
-            shares(&Picture::drawn([8, 8], |_, _| [9, 9, 9, 100])),
-            [0.0; 4]
-        );
-        assert_eq!(
-            shares(&Picture::drawn([8, 8], |_, _| [9, 9, 9, 200])),
-            [1.0; 4]
-        );
+        for (opacity, share) in [(100, 0.0), (200, 1.0)] {
+            let even = Picture::drawn([8, 8], |_, _| [9, 9, 9, opacity]);
+            assert_eq!(shares(&even), [share; 4]);
+        }
     }
 
     #[test]
@@ -540,21 +524,11 @@ mod tests {
             size: [256, 256],
             texels: texels.collect(),
         };
-        let options = Options {
-            cutoff: Some(0.5),
-            ..Options::default()
-        };
-        let (bytes, _) = convert(&all, &options).unwrap();
+        let (bytes, _) = convert(&all, &cut_out()).unwrap();
         let texture = Texture::new_checked(&bytes).unwrap();
-        let mut transparent = Vec::new();
-        for y in 0..256 {
-            for x in 0..256 {
-                if texture.colour(0, [x, y]).is_none() {
-                    transparent.push([x, y]);
-                }
-            }
-        }
-        assert_eq!(transparent, [[0, 128]]);
+        let places = (0..256).flat_map(|y| (0..256).map(move |x| [x, y]));
+        let transparent = places.filter(|&place| texture.colour(0, place).is_none());
+        assert_eq!(transparent.collect::<Vec<_>>(), [[0, 128]]);
     }
 
     #[test]

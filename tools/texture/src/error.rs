@@ -1,10 +1,11 @@
 //! Errors in image files.
 
-/// An image file that cannot be used. `Display` prints one line: the expected content, and the found content.
+/// An image file that cannot be used. `Display` prints one line with the expected and the found
+/// content.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected {expected}, found {found}")]
 pub struct PictureError {
-    /// The requirement on the file.
+    /// The requirement that the file violates.
     pub expected: String,
     /// The content of the file.
     pub found: String,

@@ -1,13 +1,15 @@
 //! Resizing and mip levels, in linear light.
 //!
-//! Averages of sRGB values are too dark: half of the area in white and half in black reflects as much light as the value 188, not 128.
-//! Therefore sRGB values are converted to intensities of light, averaged, and converted back.
+//! Averages of sRGB values are too dark: an area that is half white and half black reflects as much
+//! light as the sRGB value 188, not 128. Therefore sRGB values are converted to intensities of
+//! light, averaged, and converted back.
 
 use crate::picture::Picture;
 use glint_core::texture::Wrap;
 use std::sync::LazyLock;
 
-/// Intensities of red, green and blue, 0 to 1, times the weight of the texel, and this weight.
+/// Linear intensities of red, green and blue from 0 to 1, multiplied by the texel's weight, and the
+/// weight.
 pub type Texel = [f32; 4];
 
 /// A picture in linear light.
@@ -37,7 +39,7 @@ pub fn linear(value: u8) -> f32 {
     LINEAR[usize::from(value)]
 }
 
-/// The sRGB value of an intensity, 0 to 255, not rounded.
+/// The sRGB value of an intensity: 0 to 255, not rounded.
 pub fn srgb(linear: f32) -> f32 {
     let linear = linear.clamp(0.0, 1.0);
     let value = if linear <= 0.003_130_8 {
@@ -54,9 +56,9 @@ pub fn colour([red, green, blue, weight]: Texel) -> [f32; 3] {
 }
 
 impl Level {
-    /// The picture in linear light with another size. A side that shrinks has the averages of the parts of texels under each new one
-    /// (a box filter), a side that grows has values between the nearest two texels. `by_opacity`: the weight of a texel is its opacity,
-    /// so that transparent texels have no influence on colours; otherwise it is 1.
+    /// The picture in linear light, resized. A box filter shrinks a side, and linear interpolation
+    /// enlarges a side. With `by_opacity` the weight of a texel is its opacity, so that transparent
+    /// texels do not affect colours; otherwise the weight is 1.
     pub fn resized(picture: &Picture, size: [u32; 2], wrap: [Wrap; 2], by_opacity: bool) -> Self {
         let [from_width, from_height] = picture.size.map(|side| side as usize);
         let size = size.map(|side| side as usize);
@@ -121,7 +123,8 @@ fn add(sum: &mut Texel, texel: Texel, part: f32) {
     }
 }
 
-/// For each of `from` texels the texels of `to` to which it contributes, and its part of each. The parts of a texel of `to` add up to 1.
+/// For each of `from` source texels, the output texels to which it contributes, and its weight in
+/// each. The weights of each of the `to` output texels add up to 1.
 fn spread(from: usize, to: usize, wrap: Wrap) -> Vec<Vec<(usize, f32)>> {
     let mut spread = vec![Vec::new(); from];
     if to <= from {
@@ -139,7 +142,7 @@ fn spread(from: usize, to: usize, wrap: Wrap) -> Vec<Vec<(usize, f32)>> {
     }
     let inside = |place: i64| match wrap {
         Wrap::Repeat => place.rem_euclid(from as i64),
-        // The reverse of the texture begins with the texel at the side.
+        // The mirrored texture begins with the edge texel.
         Wrap::Mirror | Wrap::Clamp => place.clamp(0, from as i64 - 1),
     };
     for output in 0..to {

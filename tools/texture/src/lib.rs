@@ -3,8 +3,8 @@
 //! | module | purpose |
 //! |---|---|
 //! | [`picture`] | pictures of PNG and JPEG files in memory, and PNG files of pictures |
-//! | [`mod@convert`] | a picture as a texture in a board's memory layout, with a report |
-//! | [`options`] | options of a conversion, and their words on command lines |
+//! | [`mod@convert`] | converts a picture to a texture in a board's memory layout, and reports on the conversion |
+//! | [`options`] | options of a conversion, and their names on command lines |
 //! | [`levels`] | resizing and mip levels, in linear light |
 //! | [`palette`] | palettes for the colours of a picture |
 //! | [`sheet`] | the levels of a texture side by side, as a board shows them |

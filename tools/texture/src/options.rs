@@ -1,10 +1,10 @@
-//! Options of a conversion, and their words on command lines.
+//! Options of a conversion, and their names on command lines.
 
 use glint_core::texture::{Filter, Format, SIDES_LOG2, Sampler, Wrap};
 
-/// Largest side of a texture.
+/// Largest side of a texture in texels.
 pub const MAX_SIDE: u32 = 1 << *SIDES_LOG2.end();
-/// Smallest side of a texture.
+/// Smallest side of a texture in texels.
 pub const MIN_SIDE: u32 = 1 << *SIDES_LOG2.start();
 
 /// Options of a conversion.
@@ -12,11 +12,13 @@ pub const MIN_SIDE: u32 = 1 << *SIDES_LOG2.start();
 pub struct Options {
     /// The representation of the texels: colours, or indices of a palette.
     pub format: Format,
-    /// The largest side. A texture has the power of two up to this number that is nearest to the picture's side.
+    /// The largest side in texels. A side of the texture is the power of two, at most this number,
+    /// that is nearest to the picture's side.
     pub largest_side: u32,
-    /// How the texture is read.
+    /// Wrap modes and filter of the texture.
     pub sampler: Sampler,
-    /// Opacity, 0 to 1, below which texels are transparent. `None`: the texture is opaque, and the picture's opacity has no effect.
+    /// Opacity, 0 to 1, below which texels are transparent. With `None` the texture is opaque, and
+    /// the picture's opacity has no effect.
     pub cutoff: Option<f32>,
 }
 
@@ -31,7 +33,7 @@ impl Default for Options {
     }
 }
 
-/// The word for a representation of texels.
+/// The command-line name of a representation of texels.
 pub const fn format_name(format: Format) -> &'static str {
     match format {
         Format::Rgb565 => "rgb565",
@@ -40,7 +42,7 @@ pub const fn format_name(format: Format) -> &'static str {
     }
 }
 
-/// The word for the texels beyond a side.
+/// The command-line name of a wrap mode.
 pub const fn wrap_name(wrap: Wrap) -> &'static str {
     match wrap {
         Wrap::Repeat => "repeat",
@@ -49,7 +51,7 @@ pub const fn wrap_name(wrap: Wrap) -> &'static str {
     }
 }
 
-/// The word for a filter.
+/// The command-line name of a filter.
 pub const fn filter_name(filter: Filter) -> &'static str {
     match filter {
         Filter::Nearest => "nearest",

@@ -5,8 +5,9 @@ use quantette::deps::palette::Srgb;
 use quantette::{PaletteSize, Pipeline, QuantizeMethod};
 use std::collections::{BTreeSet, HashMap};
 
-/// A palette of at most `most` colours, 1 to 256, for these colours: exact if they have no more in RGB565, otherwise Wu's division of the
-/// Oklab colour space. Colours are distinct. Without colours the palette is empty.
+/// A palette of at most `most` (1 to 256) distinct colours. The palette is exact if the given
+/// colours have at most `most` different RGB565 values; otherwise Wu's colour quantisation in the
+/// Oklab colour space chooses it. Without colours the palette is empty.
 pub fn palette(colours: &[[u8; 3]], most: usize) -> Vec<Rgb565> {
     let exact = |colours: &mut dyn Iterator<Item = [u8; 3]>| {
         let mut distinct = BTreeSet::new();
@@ -23,7 +24,7 @@ pub fn palette(colours: &[[u8; 3]], most: usize) -> Vec<Rgb565> {
         .unwrap_or_default()
 }
 
-/// The colours of Wu's division.
+/// The colours that Wu's quantisation chooses.
 fn divided(colours: &[[u8; 3]], most: usize) -> Option<Vec<[u8; 3]>> {
     let most = u16::try_from(most)
         .ok()
@@ -46,7 +47,7 @@ pub struct Nearest<'p> {
 }
 
 impl<'p> Nearest<'p> {
-    /// The nearest colours of this palette.
+    /// Creates the search for a palette.
     pub fn new(palette: &'p [Rgb565]) -> Self {
         Self {
             palette,
@@ -54,7 +55,8 @@ impl<'p> Nearest<'p> {
         }
     }
 
-    /// The index of the colour of the palette nearest to a colour, the first of several; 0 in an empty palette.
+    /// Index of the palette's colour that is nearest to `rgb`, the lowest of several; 0 for an
+    /// empty palette.
     pub fn index(&mut self, rgb: [u8; 3]) -> u16 {
         *self.known.entry(rgb).or_insert_with(|| {
             let distance = |colour: Rgb565| -> u32 {

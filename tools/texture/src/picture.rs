@@ -9,9 +9,9 @@ use image::{
 };
 use std::io::Cursor;
 
-/// Largest width and height of a picture.
+/// Largest width and height of a picture in texels.
 pub const MAX_SIDE: u32 = 8192;
-/// Largest number of bytes of a picture's decoded colours.
+/// Maximum size of a decoded picture in bytes.
 pub const MAX_BYTES: u64 = 256 << 20;
 /// Maximum number of characters of a decoder's message in an error.
 const MAX_MESSAGE: usize = 200;
@@ -26,7 +26,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture whose texels `texel` computes from their columns and rows.
+    /// A picture whose texels `texel` computes from column and row.
     pub fn drawn(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
         let [width, height] = size;
         let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
@@ -34,11 +34,12 @@ impl Picture {
         Self { size, texels }
     }
 
-    /// Decodes a PNG or JPEG file. The contents decide the format. Of an animation this is the first picture.
+    /// Decodes a PNG or JPEG file; the content determines the format. An animation gives its first
+    /// frame.
     ///
     /// # Errors
-    /// The file is neither PNG nor JPEG, is damaged, or exceeds [`MAX_SIDE`] or [`MAX_BYTES`]. Sides and bytes are checked before
-    /// memory for the picture is taken.
+    /// The file is neither PNG nor JPEG, is damaged, or exceeds [`MAX_SIDE`] or [`MAX_BYTES`].
+    /// Sides and size are checked before memory for the picture is allocated.
     pub fn decode(file: &[u8]) -> Result<Self, PictureError> {
         let format = match image::guess_format(file) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
@@ -105,7 +106,7 @@ fn start_of(file: &[u8]) -> String {
     }
 }
 
-/// The error of a decoder in the project's words.
+/// Converts an error of a decoder.
 fn refused(format: &str, error: &ImageError) -> PictureError {
     match error {
         ImageError::Limits(limit) if limit.kind() == LimitErrorKind::DimensionError => {
@@ -162,34 +163,25 @@ mod tests {
         assert_eq!(with_size([3, 2]), file);
         let mut jpeg = Vec::new();
         let grey = [200_u8; 3 * 16 * 8];
-        let encoder = JpegEncoder::new(&mut jpeg);
-        encoder
-            .write_image(&grey, 16, 8, ExtendedColorType::Rgb8)
-            .unwrap();
+        let written =
+            JpegEncoder::new(&mut jpeg).write_image(&grey, 16, 8, ExtendedColorType::Rgb8);
+        written.unwrap();
         let decoded = Picture::decode(&jpeg).unwrap();
         assert_eq!(decoded.size, [16, 8]);
-        assert!(
-            decoded
-                .texels
-                .iter()
-                .all(|&[r, .., a]| r.abs_diff(200) <= 1 && a == 255)
-        );
+        let mut texels = decoded.texels.iter();
+        assert!(texels.all(|&[r, .., a]| r.abs_diff(200) <= 1 && a == 255));
     }
 
     #[test]
     fn files_of_other_types() {
-        assert_eq!(
-            error(b""),
-            "expected a PNG or JPEG file, found an empty file"
-        );
-        assert_eq!(
-            error(b"GIF89a"),
-            "expected a PNG or JPEG file, found 'GIF89a'"
-        );
-        assert_eq!(
-            error(b"\0\x01 a long text"),
-            "expected a PNG or JPEG file, found '\\x00\\x01 a lon…'"
-        );
+        for (file, found) in [
+            (&b""[..], "an empty file"),
+            (b"GIF89a", "'GIF89a'"),
+            (b"\0\x01 a long text", "'\\x00\\x01 a lon…'"),
+        ] {
+            let expected = format!("expected a PNG or JPEG file, found {found}");
+            assert_eq!(error(file), expected);
+        }
     }
 
     #[test]
@@ -201,34 +193,26 @@ mod tests {
             assert!(message.starts_with(expected), "{length}: {message}");
         }
         let message = error(b"\xff\xd8\xff\xe0");
-        assert!(
-            message.starts_with("expected a JPEG file without damage, found "),
-            "{message}"
-        );
+        let expected = "expected a JPEG file without damage, found ";
+        assert!(message.starts_with(expected), "{message}");
     }
 
     #[test]
     fn bombs_of_pixels_take_no_memory() {
         for size in [[8193, 1], [1, 8193], [u32::MAX >> 1, u32::MAX >> 1]] {
-            assert_eq!(
-                error(&with_size(size)),
-                "expected a picture of at most 8192×8192, found a larger one",
-                "{size:?}"
-            );
+            let expected = "expected a picture of at most 8192×8192, found a larger one";
+            assert_eq!(error(&with_size(size)), expected, "{size:?}");
         }
-        // 16 bits a channel: 512 MiB.
+        // With 16 bits per channel the picture has 512 MiB.
         let mut file = with_size([8192, 8192]);
         file[24] = 16;
         repair_png(&mut file);
-        assert_eq!(
-            error(&file),
-            "expected a picture of at most 268435456 bytes, found 8192×8192, 536870912 bytes"
-        );
+        let expected =
+            "expected a picture of at most 268435456 bytes, found 8192×8192, 536870912 bytes";
+        assert_eq!(error(&file), expected);
         for size in [[0, 0], [0, 1], [1, 0]] {
-            assert!(
-                error(&with_size(size)).starts_with("expected a P"),
-                "{size:?}"
-            );
+            let message = error(&with_size(size));
+            assert!(message.starts_with("expected a P"), "{message}");
         }
     }
 
@@ -236,9 +220,7 @@ mod tests {
     fn a_picture_with_missing_texels_is_no_file() {
         let mut picture = small();
         picture.texels.pop();
-        assert_eq!(
-            picture.png().unwrap_err().to_string(),
-            "expected 3×2 texels, found 5"
-        );
+        let error = picture.png().unwrap_err().to_string();
+        assert_eq!(error, "expected 3×2 texels, found 5");
     }
 }

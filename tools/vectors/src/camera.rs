@@ -20,13 +20,12 @@ pub struct Ray {
 
 impl Ray {
     /// Returns the point with the parameter `t`.
-    #[must_use]
     pub fn at(&self, t: f64) -> Vector {
         add_scaled(self.origin, self.direction, t)
     }
 }
 
-/// One of the two eyes of a stereo picture.
+/// An eye of a stereo picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The left eye, at eye − offset·u, where `eye` and `u` are fields of `Camera`, and `offset` of `Stereo`.
@@ -111,9 +110,7 @@ impl Camera {
 
     /// Makes a camera at `eye` that looks at `target`, with +z up.
     ///
-    /// `half_width` and `near` become the camera's fields of these names. If the line of sight is parallel to z, u and v
-    /// are NaN.
-    #[must_use]
+    /// If the line of sight is parallel to z, u and v are NaN.
     pub fn looking(eye: Vector, target: Vector, half_width: f64, near: f64) -> Self {
         let n = normalised(subtract(target, eye));
         let u = normalised(cross(n, [0.0, 0.0, 1.0]));
@@ -129,7 +126,6 @@ impl Camera {
 
     /// Returns this camera rotated about its eye, as [`View::look`] rotates a view. `angles` are in degrees and apply in this
     /// order: yaw to the right, pitch downwards, roll.
-    #[must_use]
     pub fn turned(&self, angles: Vector) -> Self {
         let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
         // The right, up and forward axes of the rotated camera before the roll, in coordinates of this camera.
@@ -148,13 +144,13 @@ impl Camera {
         }
     }
 
-    /// Converts the camera to a view. Rounds each number to the nearest number of its fixed-point format.
+    /// Converts the camera to a view. Each number is rounded to nearest in its fixed-point format.
     ///
     /// # Errors
     /// The errors of [`View::new_checked`].
     ///
     /// # Panics
-    /// When a number is outside the range of its format.
+    /// If a number is outside the range of its format.
     pub fn view(&self) -> Result<View, ViewError> {
         let row = |row: Vector| row.map(Q2_23::from_num);
         View::new_checked(
@@ -171,14 +167,12 @@ impl Camera {
     ///
     /// # Panics
     /// If a `View` cannot represent the camera.
-    #[must_use]
     pub fn rounded(&self) -> View {
         let view = self.view();
         view.unwrap_or_else(|error| panic!("{self:?}: {error}"))
     }
 
     /// Converts the fixed-point numbers of a view to f64, exactly.
-    #[must_use]
     pub fn of(view: &View) -> Self {
         Self {
             eye: view.eye().map(|c| c.to_num()),
@@ -194,7 +188,6 @@ impl Camera {
     /// Integers are pixel centres.
     ///
     /// The ray's direction has a component of 1 along n, so the parameter t of a point of the ray is the point's depth.
-    #[must_use]
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
         let width = f64::from(size.width);
         let right = (2.0 * x + 1.0 - width) / width * self.half_width;
@@ -208,7 +201,6 @@ impl Camera {
 
     /// Returns the ray from one eye of a stereo pair through a point of the picture. `pixel` is the column and
     /// the row of the point, as in [`Self::ray`].
-    #[must_use]
     pub fn stereo_ray(&self, side: Side, stereo: Stereo, pixel: [f64; 2], size: Size) -> Ray {
         let offset = match side {
             Side::Left => -stereo.offset,
@@ -222,14 +214,12 @@ impl Camera {
     }
 
     /// Converts a point from world to camera coordinates: right of, below and in front of the eye, in world units.
-    #[must_use]
     pub fn coordinates(&self, point: Vector) -> Vector {
         let d = subtract(point, self.eye);
         [dot(d, self.u), dot(d, self.v), dot(d, self.n)]
     }
 
     /// Projects a point in camera coordinates, in front of the eye, to a screen position in pixels from the top left.
-    #[must_use]
     pub fn screen(&self, point: Vector, size: Size) -> [f64; 2] {
         let scale = self.pixels_per_unit(size);
         [
@@ -239,14 +229,12 @@ impl Camera {
     }
 
     /// Number of pixels per world unit in the image plane, horizontally and vertically.
-    #[must_use]
     pub fn pixels_per_unit(&self, size: Size) -> f64 {
         f64::from(size.width) / 2.0 / self.half_width
     }
 
     /// Clips a convex polygon in camera coordinates: returns its part on or beyond the near plane. The method of Sutherland and
     /// Hodgman (1974), applied before the division by z.
-    #[must_use]
     pub fn clip_near(&self, polygon: &[Vector]) -> Vec<Vector> {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (i, &a) in polygon.iter().enumerate() {
@@ -257,18 +245,14 @@ impl Camera {
             }
             if (da >= 0.0) != (db >= 0.0) {
                 let t = da / (da - db);
-                kept.push([
-                    a[0] + (b[0] - a[0]) * t,
-                    a[1] + (b[1] - a[1]) * t,
-                    self.near,
-                ]);
+                let [x, y] = [0, 1].map(|i: usize| a[i] + (b[i] - a[i]) * t);
+                kept.push([x, y, self.near]);
             }
         }
         kept
     }
 
     /// Projects a position onto a picture of this size: returns x and y in pixels, and the distance z along the viewing direction.
-    #[must_use]
     pub fn project(&self, position: [f64; 3], width: u32, height: u32) -> [f64; 3] {
         let d = [0, 1, 2].map(|i| position[i] - self.eye[i]);
         let (half, z) = (f64::from(width) / 2.0, dot(self.n, d));
@@ -284,7 +268,6 @@ impl Camera {
     /// significant bits. The factor 1 + 2^-13 covers lengths of n slightly above 1.
     ///
     /// `radius` is the radius of a sphere about the origin that contains the scene, in world units.
-    #[must_use]
     pub fn depth_scale(&self, radius: f64) -> f64 {
         let nearest = (-dot(self.eye, self.n) - radius * (1.0 + 1.0 / 8192.0)).max(self.near);
         let full = f64::from((1 << 18) - 4) * nearest;
@@ -364,21 +347,11 @@ mod tests {
         let inside = [[0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]];
         assert_eq!(CAMERA.clip_near(&inside), inside);
         let one_out = [[0.0, 0.0, 0.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]];
-        let cut = CAMERA.clip_near(&one_out);
-        assert_eq!(
-            cut,
-            [
-                [0.5, 0.0, 1.0],
-                [1.0, 0.0, 2.0],
-                [0.0, 1.0, 2.0],
-                [0.0, 0.5, 1.0]
-            ]
-        );
-        assert!(
-            CAMERA
-                .clip_near(&[[0.0, 0.0, 0.5], [1.0, 0.0, -2.0], [0.0, 1.0, 0.0]])
-                .is_empty()
-        );
+        let [_, b, c] = one_out;
+        let cut = [[0.5, 0.0, 1.0], b, c, [0.0, 0.5, 1.0]];
+        assert_eq!(CAMERA.clip_near(&one_out), cut);
+        let behind = [[0.0, 0.0, 0.5], [1.0, 0.0, -2.0], [0.0, 1.0, 0.0]];
+        assert!(CAMERA.clip_near(&behind).is_empty());
     }
 
     #[test]

@@ -1,13 +1,11 @@
 //! Operations on vectors of three `f64`.
 
 /// Inner product of two vectors.
-#[must_use]
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Cross product of two vectors.
-#[must_use]
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [
         a[1] * b[2] - a[2] * b[1],
@@ -17,13 +15,11 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// The difference a − b.
-#[must_use]
 pub fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// The sum a + b·factor.
-#[must_use]
 pub fn add_scaled(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
     [
         a[0] + b[0] * factor,
@@ -33,20 +29,17 @@ pub fn add_scaled(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
 }
 
 /// Length of a vector.
-#[must_use]
 pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// Unit vector in the direction of `v`.
-#[must_use]
 pub fn normalised(v: [f64; 3]) -> [f64; 3] {
     let length = length(v);
     v.map(|x| x / length)
 }
 
 /// Converts a position of a mesh from Q2.14 to world units.
-#[must_use]
 pub fn world(position: [i16; 3]) -> [f64; 3] {
     position.map(|x| f64::from(x) / 16384.0)
 }

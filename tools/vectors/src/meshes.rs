@@ -1,4 +1,5 @@
-//! Meshes of triangles that share no vertices, and a square with a texture, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in memory").
+//! Meshes of triangles that share no vertices, and a square with a texture, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in
+//! memory").
 
 use glint_core::camera::View;
 use glint_core::mesh::{self, Attribute, ChunkHeader, IndexedTriangle, MeshHeader, Rgb565, Vertex};
@@ -15,7 +16,6 @@ pub const ONE: i32 = 1 << 14;
 pub type Triangle = ([[i16; 3]; 3], u16);
 
 /// Encodes a mesh of `triangles`, each with its own three vertices, in chunks of at most `most` vertices.
-#[must_use]
 pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     let mut body = Vec::new();
     let per_chunk = most / 3;
@@ -77,7 +77,6 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
 }
 
 /// Camera at (0, -2, 0) that looks along +y: a point (x, y, z) has depth y + 2; larger x is farther right, larger z is higher.
-#[must_use]
 pub fn ahead(half_width: f64, near: f64) -> View {
     let camera = Camera {
         eye: [0.0, -2.0, 0.0],
@@ -91,7 +90,6 @@ pub fn ahead(half_width: f64, near: f64) -> View {
 }
 
 /// Converts a point from world units to mesh coordinates.
-#[must_use]
 pub fn at(x: f64, y: f64, z: f64) -> [i16; 3] {
     [x, y, z].map(|c| (c * f64::from(ONE)).round() as i16)
 }
@@ -102,25 +100,21 @@ pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
     (0..count)
         .map(|_| {
             let centre: [i32; 3] = std::array::from_fn(|_| random.random_range(-ONE..ONE));
-            let corner = |random: &mut Pcg64Mcg| {
+            let corners = [(); 3].map(|()| {
                 centre.map(|c| {
                     (c + random.random_range(-reach..=reach)).clamp(-2 * ONE, 2 * ONE - 1) as i16
                 })
-            };
-            (
-                [corner(random), corner(random), corner(random)],
-                random.random(),
-            )
+            });
+            (corners, random.random())
         })
         .collect()
 }
 
-/// A white square from (−2, −2, 0) to (2, 2, 0) with a texture, or with two for its two halves, which have `repeats` repeats in a world
-/// unit.
+/// A white square from (−2, −2, 0) to (2, 2, 0) with one texture, or with a texture for each of its halves. A texture has `repeats` repeats
+/// per world unit.
 ///
 /// # Panics
 /// If the textures are too large for a mesh.
-#[must_use]
 pub fn textured_square(textures: &[Vec<u8>], repeats: f64) -> Vec<u8> {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let up = [0, 0, 1 << 14];

@@ -17,7 +17,6 @@ pub struct Model {
 
 impl Model {
     /// Makes a model of triangles that share no vertices.
-    #[must_use]
     pub fn soup(triangles: &[[[i16; 3]; 3]]) -> Self {
         let positions = triangles.concat();
         let triangles = (0..triangles.len() as u32)
@@ -33,16 +32,12 @@ impl Model {
     /// of them cross the near plane or the guard band.
     pub fn random(random: &mut Random, triangles: usize, reach: i64) -> Self {
         let mut corner = || [0; 3].map(|_| random.integer(-reach, reach - 1) as i16);
-        Self::soup(
-            &(0..triangles)
-                .map(|_| [corner(), corner(), corner()])
-                .collect::<Vec<_>>(),
-        )
+        let triangles = (0..triangles).map(|_| [corner(), corner(), corner()]);
+        Self::soup(&triangles.collect::<Vec<_>>())
     }
 
     /// A cube about the origin with half the edge length `half`, in Q2.14. Its triangles are counter-clockwise seen from
     /// outside.
-    #[must_use]
     pub fn cube(half: i16) -> Self {
         let positions = (0..8)
             .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half }))
@@ -66,7 +61,6 @@ impl Model {
 
     /// A closed sphere about the origin, made of `rings` rings; `radius` is in world units. Its triangles are
     /// counter-clockwise seen from outside.
-    #[must_use]
     pub fn sphere(radius: f64, rings: u32) -> Self {
         let around = 2 * rings;
         let quantised = |x: f64| (x * radius * 16384.0).round() as i16;
@@ -86,12 +80,8 @@ impl Model {
         let mut triangles = Vec::new();
         for ring in 0..rings {
             for i in 0..around {
-                let (a, b, c, d) = (
-                    at(ring, i),
-                    at(ring + 1, i),
-                    at(ring + 1, i + 1),
-                    at(ring, i + 1),
-                );
+                let (a, b) = (at(ring, i), at(ring + 1, i));
+                let (c, d) = (at(ring + 1, i + 1), at(ring, i + 1));
                 triangles.extend((ring + 1 < rings).then_some([a, b, c]));
                 triangles.extend((ring > 0).then_some([a, c, d]));
             }
@@ -103,7 +93,6 @@ impl Model {
     }
 
     /// This model with the three corners of each triangle cyclically shifted by `turns` positions.
-    #[must_use]
     pub fn rotated(&self, turns: usize) -> Self {
         let mut model = self.clone();
         model
@@ -114,7 +103,6 @@ impl Model {
     }
 
     /// This model with each triangle's winding order reversed.
-    #[must_use]
     pub fn flipped(&self) -> Self {
         let mut model = self.clone();
         model.triangles.iter_mut().for_each(|t| t.swap(1, 2));
@@ -125,7 +113,6 @@ impl Model {
     ///
     /// # Panics
     /// If the model has no vertex, a triangle's position index is out of range, or the mesh would be too large.
-    #[must_use]
     pub fn encoded(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self
             .positions

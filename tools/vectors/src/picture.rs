@@ -19,7 +19,7 @@ pub struct Picture {
     pub depth: Vec<u32>,
     /// The model's counts of triangles and pixels.
     pub stats: Stats,
-    /// The triangles that reached the walker (the stage that enumerates pixels), in drawing order.
+    /// The triangles that reached the walker (the stage that finds pixels), in drawing order.
     pub drawn: Vec<DrawnTriangle>,
 }
 
@@ -28,7 +28,6 @@ pub const CLEAR: u16 = 0x0841;
 
 impl Picture {
     /// A cleared picture.
-    #[must_use]
     pub fn blank((width, height): (u32, u32)) -> Self {
         let pixels = (width * height) as usize;
         Self {
@@ -55,7 +54,6 @@ impl Picture {
     ///
     /// # Panics
     /// If the bytes are not a valid mesh, or if the renderer's statistics contradict each other.
-    #[must_use]
     pub fn of_bytes(bytes: &[u8], view: &View, size: (u32, u32), cull: bool) -> Self {
         let options = Options {
             cull,
@@ -69,38 +67,26 @@ impl Picture {
     ///
     /// # Panics
     /// As [`Self::of_bytes`].
-    #[must_use]
     pub fn with_options(bytes: &[u8], view: &View, size: (u32, u32), options: &Options) -> Self {
         let mesh = Mesh::new_checked(bytes).unwrap();
-        let mut scratch =
-            vec![Projected::Behind; mesh.chunks().map(|c| c.vertex_count()).max().unwrap()];
+        let mut scratch = vec![Projected::Behind; mesh.largest_chunk()];
         let mut picture = Self::blank(size);
         // Initial values that the renderer must overwrite in every pixel, the background included.
         picture.colour.fill(0xDEAD);
         picture.depth.fill(0xDEAD);
-        let mut drawn = Vec::new();
-        let stats = trace(
-            &mesh,
-            view,
-            &mut picture.target(),
-            &mut scratch,
-            options,
-            |t| drawn.push(*t),
-        )
-        .unwrap();
+        let (mut drawn, target) = (Vec::new(), &mut picture.target());
+        let show = |triangle: &DrawnTriangle| drawn.push(*triangle);
+        let stats = trace(&mesh, view, target, &mut scratch, options, show).unwrap();
         assert_eq!(stats.triangles_in, mesh.triangle_count());
         assert_eq!(stats.culled + stats.drawn, stats.triangles_in);
-        assert!(
-            stats.pixels_tested >= Some(stats.pixels_covered)
-                && stats.pixels_covered >= stats.pixels_drawn
-        );
+        assert!(stats.pixels_tested >= Some(stats.pixels_covered));
+        assert!(stats.pixels_covered >= stats.pixels_drawn);
         picture.stats = stats;
         picture.drawn = drawn;
         picture
     }
 
     /// Renders a model.
-    #[must_use]
     pub fn of(model: &Model, view: &View, size: (u32, u32), cull: bool) -> Self {
         Self::of_bytes(&model.encoded(), view, size, cull)
     }
@@ -109,7 +95,6 @@ impl Picture {
     ///
     /// # Panics
     /// If the renderer refuses the frame.
-    #[must_use]
     pub fn of_frame(frame: &Frame) -> Self {
         let [width, height] = frame.size.pixels();
         let mut picture = Self::blank((width, height));
@@ -122,13 +107,11 @@ impl Picture {
     }
 
     /// Whether each pixel is covered by a triangle, line by line.
-    #[must_use]
     pub fn coverage(&self) -> Vec<bool> {
         self.depth.iter().map(|&code| code != 0).collect()
     }
 
     /// Number of pixels covered by a triangle.
-    #[must_use]
     pub fn covered(&self) -> usize {
         self.depth.iter().filter(|&&code| code != 0).count()
     }

@@ -1,4 +1,4 @@
-//! Single rays by exits, from an exact place in an exact direction.
+//! Single rays by exits, with an exact origin and direction.
 
 use glint_core::camera::View;
 use glint_core::field::Field;
@@ -12,7 +12,7 @@ pub const ONE: i32 = (1 << 27) - 1;
 /// the eye.
 ///
 /// # Panics
-/// If the text is no field, or the eye is beyond a camera's range.
+/// If the text is not a field, or the eye is beyond a camera's range.
 pub fn frame(field: &str, eye: [i32; 3], direction: [i32; 3]) -> Exits {
     let field = Field::parse(field).expect("a field");
     let old = View::spherical(Q32_32::from_num(4), Default::default(), Default::default())

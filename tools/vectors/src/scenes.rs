@@ -11,7 +11,6 @@ use crate::meshes::{self, Triangle, ahead, at};
 pub type Scene = (&'static str, Vec<u8>, View, bool);
 
 /// A wide-angle view from near the middle of a model.
-#[must_use]
 pub fn inside() -> View {
     let camera = Camera {
         eye: [0.21, -0.1, 0.05],
@@ -32,16 +31,18 @@ fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
     };
     (0..parts)
         .map(|part| {
-            (
-                [at(0.01, y, 0.02), rim(part), rim(part + 1)],
-                0x1111 * (part as u16 % 15 + 1),
-            )
+            let corners = [at(0.01, y, 0.02), rim(part), rim(part + 1)];
+            (corners, 0x1111 * (part as u16 % 15 + 1))
         })
         .collect()
 }
 
+/// Triangles with these colours and corners, in world units.
+fn coloured<const N: usize>(colours: [u16; N], corners: [[[f64; 3]; 3]; N]) -> [Triangle; N] {
+    std::array::from_fn(|i| (corners[i].map(|[x, y, z]| at(x, y, z)), colours[i]))
+}
+
 /// Makes all scenes. `generated` returns the mesh of the model with a given name, such as `icosphere:6`.
-#[must_use]
 pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
     let many = usize::from(u16::MAX);
@@ -55,58 +56,36 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
             );
             let thin = 0.5e-3;
             let corners = [(1.0, 0.0), (0.0, 1.0), (-1.0, -1.0)];
-            (
-                corners.map(|(long, across)| {
-                    at(
-                        x + long * cos - across * thin * sin,
-                        0.0,
-                        z + long * sin + across * thin * cos,
-                    )
-                }),
-                0x1081_u16.wrapping_mul(i as u16 + 1),
-            )
+            let corner = |(long, across): (f64, f64)| {
+                let across = across * thin;
+                at(
+                    x + long * cos - across * sin,
+                    0.0,
+                    z + long * sin + across * cos,
+                )
+            };
+            (corners.map(corner), 0x1081_u16.wrapping_mul(i as u16 + 1))
         })
         .collect();
-    let screen = [
-        (
-            [
-                at(-1.9, -1.0, -1.9),
-                at(1.9, -1.0, -1.9),
-                at(1.9, -1.0, 1.9),
-            ],
-            0xf800,
-        ),
-        (
-            [
-                at(-1.9, -1.0, -1.9),
-                at(1.9, -1.0, 1.9),
-                at(-1.9, -0.9, 1.9),
-            ],
-            0x07e0,
-        ),
-    ];
+    let screen = coloured(
+        [0xf800, 0x07e0],
+        [
+            [[-1.9, -1.0, -1.9], [1.9, -1.0, -1.9], [1.9, -1.0, 1.9]],
+            [[-1.9, -1.0, -1.9], [1.9, -1.0, 1.9], [-1.9, -0.9, 1.9]],
+        ],
+    );
     // A point that projects onto a pixel centre at 320x180, where a world unit spans 128 pixels, and onto a pixel corner in
     // larger pictures.
     let centre = |x: i32, z: i32| {
-        at(
-            f64::from(2 * x + 1) / 256.0,
-            -1.0,
-            f64::from(2 * z + 1) / 256.0,
-        )
+        let [x, z] = [x, z].map(|c| f64::from(2 * c + 1) / 256.0);
+        at(x, -1.0, z)
     };
     let centres: Vec<Triangle> = (-12..12)
         .flat_map(|i| {
             let (x, z) = (8 * i, 3 * i);
-            [
-                (
-                    [centre(x, z), centre(x + 8, z), centre(x + 8, z + 5)],
-                    0xffe0,
-                ),
-                (
-                    [centre(x, z), centre(x + 8, z + 5), centre(x, z + 5)],
-                    0x001f,
-                ),
-            ]
+            let [a, b] = [centre(x, z), centre(x + 8, z)];
+            let [c, d] = [centre(x + 8, z + 5), centre(x, z + 5)];
+            [([a, b, c], 0xffe0), ([a, c, d], 0x001f)]
         })
         .collect();
     let equal: Vec<Triangle> = (0..6)
@@ -118,46 +97,22 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
         .iter()
         .map(|&([a, b, c], colour)| ([a, c, b], colour))
         .collect();
-    let at_near = [
-        (
-            [
-                at(-0.5, -1.0, -0.5),
-                at(0.5, -1.0, -0.5),
-                at(0.0, -1.0, 0.5),
-            ],
-            0xffff,
-        ),
-        (
-            [
-                at(-0.5, -1.0 - 1.0 / 16384.0, 0.0),
-                at(0.5, -1.0, -0.4),
-                at(0.0, 0.5, 0.5),
-            ],
-            0x07ff,
-        ),
-    ];
-    let wide = [
-        (
-            [at(-1.99, -1.93, 0.3), at(1.0, 1.0, -0.6), at(0.3, 1.5, 0.5)],
-            0xf81f,
-        ),
-        (
-            [
-                at(1.99, -1.95, -0.8),
-                at(0.2, 0.1, 0.4),
-                at(-0.4, 0.2, -0.3),
-            ],
-            0x7bef,
-        ),
-        (
-            [
-                at(-1.5, -1.99, -1.5),
-                at(1.5, -1.99, -1.5),
-                at(0.0, 1.0, 1.5),
-            ],
-            0x39e7,
-        ),
-    ];
+    let before_near = -1.0 - 1.0 / 16384.0;
+    let at_near = coloured(
+        [0xffff, 0x07ff],
+        [
+            [[-0.5, -1.0, -0.5], [0.5, -1.0, -0.5], [0.0, -1.0, 0.5]],
+            [[-0.5, before_near, 0.0], [0.5, -1.0, -0.4], [0.0, 0.5, 0.5]],
+        ],
+    );
+    let wide = coloured(
+        [0xf81f, 0x7bef, 0x39e7],
+        [
+            [[-1.99, -1.93, 0.3], [1.0, 1.0, -0.6], [0.3, 1.5, 0.5]],
+            [[1.99, -1.95, -0.8], [0.2, 0.1, 0.4], [-0.4, 0.2, -0.3]],
+            [[-1.5, -1.99, -1.5], [1.5, -1.99, -1.5], [0.0, 1.0, 1.5]],
+        ],
+    );
     let full = meshes::random(&mut random, many / 3, 0.02);
     let beyond = meshes::random(&mut random, many / 3 + 400, 0.02);
     let tiny = meshes::random(&mut random, 3000, 0.002);

@@ -19,9 +19,8 @@ fn vertex([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     }
 }
 
-/// Makes a random segment in or near a picture with a size code. Most have up to 60 pixels, some lie anywhere in the guard band,
+/// Makes a random segment in or near a picture of the size `SIZES[size]`. Most have up to 60 pixels, some lie anywhere in the guard band,
 /// and a third lie on coarse grids, where they touch pixel centres and borders and cause ties.
-#[must_use]
 pub fn random(random: &mut Pcg64Mcg, size: usize) -> Segment {
     let grid = [1, 1, 1, 1, 64, 128][random.random_range(0..6usize)];
     let (width, height) = SIZES[size];
@@ -61,7 +60,6 @@ pub fn random(random: &mut Pcg64Mcg, size: usize) -> Segment {
 
 /// Makes horizontal, vertical and diagonal segments, in both directions: of length 0, within a pixel, across the picture and
 /// across the whole range of positions, with end points on and beside pixel centres and borders.
-#[must_use]
 pub fn difficult(size: usize) -> Vec<Segment> {
     let (width, height) = SIZES[size];
     let [right, bottom] = [width, height].map(|n| 256 * n as i32);
@@ -76,19 +74,11 @@ pub fn difficult(size: usize) -> Vec<Segment> {
         }
     };
     let (low, high) = (-(1 << 19), (1 << 19) - 1);
-    for place in [
-        -1,
-        0,
-        1,
-        127,
-        128,
-        129,
-        255,
-        256,
-        bottom - 129,
-        bottom - 1,
-        bottom,
-    ] {
+    let at_bottom = [bottom - 129, bottom - 1, bottom];
+    for place in [-1, 0, 1, 127, 128, 129, 255, 256]
+        .into_iter()
+        .chain(at_bottom)
+    {
         add([0, place], [right, place]);
         add([low, place], [high, place]);
         add([place, 0], [place, bottom]);
@@ -100,22 +90,16 @@ pub fn difficult(size: usize) -> Vec<Segment> {
         add([low, place], [high, bottom - place]);
         add([place, low], [place + 300, high]);
     }
-    for [x, y] in [
-        [low, low],
-        [low, high],
-        [0, 0],
-        [right, 0],
-        [right - 1, bottom - 1],
-    ] {
-        for [to_x, to_y] in [[high, low], [high, high], [right, bottom], [0, bottom]] {
-            add([x, y], [to_x, to_y]);
+    let last = [right - 1, bottom - 1];
+    for from in [[low, low], [low, high], [0, 0], [right, 0], last] {
+        for to in [[high, low], [high, high], [right, bottom], [0, bottom]] {
+            add(from, to);
         }
     }
     segments
 }
 
 /// Makes segments of 50 pixels in all directions, inside the picture.
-#[must_use]
 pub fn of_50_pixels(size: usize, count: usize) -> Vec<Segment> {
     let mut random = Pcg64Mcg::new(7);
     let (width, height) = SIZES[size];

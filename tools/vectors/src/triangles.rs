@@ -12,7 +12,6 @@ pub const SIZE: (u32, u32) = SIZES[0];
 pub const FLAT: u32 = 1000 * 64;
 
 /// Makes a vertex at the position (`x`, `y`) in units of 1/256 pixel, with the depth [`FLAT`].
-#[must_use]
 pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     ScreenVertex {
         x: x as i32,
@@ -23,7 +22,6 @@ pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
 
 /// Sets up a triangle for a picture of the given size. Returns `None` if the triangle has no area, or no pixel centre of the
 /// picture in its bounds.
-#[must_use]
 pub fn set_up(
     vertices: [ScreenVertex; 3],
     (width, height): (u32, u32),

@@ -13,7 +13,8 @@ use virtual_board::{Error, VirtualBoard};
 
 /// Number of cycles of one measurement.
 const TURN: u64 = 100_000;
-/// Number of measurements of each kind; their median ignores pauses of the host.
+/// Number of measurements of each kind. The example prints their median, which pauses of the host
+/// do not affect.
 const TURNS: usize = 15;
 
 fn main() -> Result<ExitCode, Error> {
@@ -26,11 +27,11 @@ fn main() -> Result<ExitCode, Error> {
     for monitor in [false, false, true] {
         let start = Instant::now();
         let mut board = VirtualBoard::builder().build()?;
-        eprintln!("a board in {:.3} s", start.elapsed().as_secs_f64());
+        eprintln!("created a board in {:.3} s", start.elapsed().as_secs_f64());
         if monitor {
             board.monitor().turn_on();
         }
-        // When the measurements begin, all boards are at the same cycle of the same program.
+        // All boards begin the measurements at the same cycle of the same program.
         board.run(TURN);
         boards.push(board);
     }

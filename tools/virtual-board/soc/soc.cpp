@@ -24,15 +24,17 @@ extern "C" const uint8_t glint_bios_end[] __attribute__((visibility("hidden")));
 
 namespace {
 
-// Ratio of the clocks' frequencies: pix_clk / sys_clk = PIXEL_TICKS / PIXEL_PERIOD, in units of 250 kHz.
+// Ratio of the clock frequencies: pix_clk / sys_clk = PIXEL_TICKS / PIXEL_PERIOD, in units of 250
+// kHz.
 constexpr uint32_t CLOCK_UNIT = 250'000;
 constexpr uint32_t PIXEL_TICKS = 74'250'000 / CLOCK_UNIT;
 constexpr uint32_t PIXEL_PERIOD = CONFIG_CLOCK_FREQUENCY / CLOCK_UNIT;
 static_assert(CONFIG_CLOCK_FREQUENCY % CLOCK_UNIT == 0 && PIXEL_TICKS < PIXEL_PERIOD);
 
-// Levels of the image sensor's port in a period of PCLK, as for soc_camera_send, and the first bit of its SCCB wires in soc_outputs.
+// Flags in the levels of the image sensor's port, as for soc_camera_send.
 constexpr uint16_t CAMERA_STILL = 1 << 10;
 constexpr uint16_t CAMERA_INVERTED = 1 << 11;
+// First bit of the image sensor's SCCB wires in soc_outputs.
 constexpr int CAMERA_OUTPUTS = 2;
 
 // Levels of the flash's data lines while nothing drives them.
@@ -50,7 +52,8 @@ struct Soc : Harness {
     std::deque<uint8_t> uart_out;
     uint8_t i2c_released = 3;
     uint8_t camera_released = 3;
-    // PCLK has camera_ticks periods in PIXEL_PERIOD cycles of sys_clk. Each of its periods has the levels of one entry.
+    // PCLK has camera_ticks periods in PIXEL_PERIOD cycles of sys_clk. Each period of PCLK has one
+    // entry in camera_levels.
     uint32_t camera_ticks = 0;
     uint32_t camera_phase = 0;
     bool camera_second_half = false;
@@ -111,7 +114,7 @@ struct Soc : Harness {
                         uint32_t(top.vga_r) << 16 | uint32_t(top.vga_g) << 8 | uint32_t(top.vga_b));
     }
 
-    // Records the instruction that leaves the last stage of the CPU at the coming edge, if there is one.
+    // Records the instruction that leaves the last stage of the CPU at the next edge, if any.
     void record_instruction() {
         const auto *root = top.rootp;
         if (!root->glint_virtual__DOT__VexRiscv__DOT__lastStageIsFiring) return;
@@ -137,7 +140,7 @@ struct Soc : Harness {
         camera_second_half = !camera_second_half;
     }
 
-    // Outputs to devices that answer edge by edge, coded as for soc_outputs.
+    // Outputs to devices that react to each edge, coded as for soc_outputs.
     uint8_t outputs() const {
         return top.i2c_scl_out | top.i2c_sda_out << 1 | top.camera_scl_out << 2 | top.camera_sda_out << 3 |
                top.camera_reset_n << 4 | top.camera_power_down << 5 | top.flash_cs_n << 6 | top.flash_clk << 7;
@@ -191,14 +194,14 @@ struct Soc : Harness {
         std::memcpy(rom, bytes, std::min(length, sizeof rom));
     }
 
-    // The contents of DDR3, which lie in the order of their addresses.
+    // The contents of DDR3, in the order of their addresses.
     uint8_t *ddr() const {
         auto &memory = top.rootp->glint_virtual__DOT__ddr3.m_storage;
         static_assert(sizeof memory == MAIN_RAM_SIZE);
         return reinterpret_cast<uint8_t *>(memory);
     }
 
-    // Empties both caches of the CPU, while no line is filled: see soc_ddr_write.
+    // Invalidates both caches of the CPU; no line fill may be in progress (see soc_ddr_write).
     void drop_caches() {
         // The lowest bit of a tag is its valid bit.
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__ways_0_tags.m_storage) tag = 0;

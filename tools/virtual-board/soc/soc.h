@@ -12,7 +12,7 @@
 
 extern "C" {
 
-/* Everything else in the library is hidden. */
+/* All other symbols of the library are hidden. */
 #pragma GCC visibility push(default)
 
 struct Soc;
@@ -22,10 +22,10 @@ uint32_t soc_build_id(void);
 /* Frequency of sys_clk in Hz. */
 uint32_t soc_clock_hz(void);
 
-/* Runs `cycles` cycles of sys_clk; pix_clk runs along at 74.25 MHz. */
+/* Runs `cycles` cycles of sys_clk; pix_clk advances in proportion, at 74.25 MHz. */
 void soc_run(Soc *soc, uint64_t cycles);
-/* Runs as soc_run does, but only moves the clocks and evaluates the model, to measure what the rest of the harness costs. Serial
- * output of the SoC in these cycles is lost. */
+/* Like soc_run, but only drives the clocks and evaluates the model, to measure the cost of the rest of the harness. The SoC's
+ * serial output of these cycles is lost. */
 void soc_run_bare(Soc *soc, uint64_t cycles);
 /* Cycles of sys_clk so far. */
 uint64_t soc_cycles(const Soc *soc);
@@ -41,19 +41,19 @@ size_t soc_uart_read(Soc *soc, uint8_t *bytes, size_t capacity);
 void soc_i2c_drive(Soc *soc, uint8_t released);
 /* Levels of the I2C wires: SCL in bit 0, SDA in bit 1. */
 uint8_t soc_i2c_wires(const Soc *soc);
-/* Outputs of the SoC to devices that answer each edge. Bits 0 and 1: SCL and SDA of the I2C bus, bits 2 and 3: SCL and SDA of the
+/* Outputs of the SoC to devices that react to each edge. Bits 0 and 1: SCL and SDA of the I2C bus, bits 2 and 3: SCL and SDA of the
  * image sensor's SCCB bus, each coded as for soc_i2c_drive. Bit 4: the image sensor's RESET_N, bit 5: its PWDN. Bit 6: CS# of the
  * flash, bit 7: its clock. */
 uint8_t soc_outputs(const Soc *soc);
-/* Runs as soc_run does, but stops after the first cycle in which the value of soc_outputs changes. Returns the number of
+/* Like soc_run, but stops after the first cycle in which the value of soc_outputs changes. Returns the number of
  * cycles run. */
 uint64_t soc_run_to_edge(Soc *soc, uint64_t cycles);
 
 /* Sets how the image sensor drives its SCCB wires, coded as for soc_i2c_drive. */
 void soc_camera_drive(Soc *soc, uint8_t released);
-/* Queues levels of the image sensor's port, one entry for each period of PCLK. `frequency` is that of PCLK in Hz, a multiple of 250 kHz
+/* Queues levels of the image sensor's port, one entry for each period of PCLK. `frequency` is the frequency of PCLK in Hz, a multiple of 250 kHz
  * and at most the frequency of sys_clk. The levels change at the beginning of the period, PCLK rises in its middle. Bits 7:0: data,
- * bit 8: HREF, bit 9: VSYNC, bit 10: PCLK stands still, bit 11: PCLK is inverted. While the queue is empty, nothing changes. */
+ * bit 8: HREF, bit 9: VSYNC, bit 10: PCLK is stopped, bit 11: PCLK is inverted. While the queue is empty, nothing changes. */
 void soc_camera_send(Soc *soc, uint32_t frequency, const uint16_t *levels, size_t count);
 /* Number of queued periods. */
 size_t soc_camera_queued(const Soc *soc);
@@ -63,7 +63,7 @@ uint64_t soc_camera_clocks(const Soc *soc);
 
 /* Sets the levels of the flash's four data lines as the SoC sees them; all are high at first. */
 void soc_flash_drive(Soc *soc, uint8_t lines);
-/* Levels with which the SoC drives these lines, high where it does not. */
+/* Levels with which the SoC drives these lines; lines that it does not drive are high. */
 uint8_t soc_flash_lines(const Soc *soc);
 
 /* Turns the recording of the video pins on or off; it is off at first. */
@@ -75,26 +75,27 @@ void soc_video_clear(Soc *soc);
 
 /* An instruction that the CPU has executed. */
 struct SocInstruction {
-    uint64_t cycle;         /* Cycle of sys_clk in which it ended. */
-    uint32_t pc;            /* Its address. */
-    uint32_t rd;            /* Number of the register that it wrote, 0 for none. */
-    uint32_t value;         /* Value that it wrote there. */
+    uint64_t cycle;         /* Cycle of sys_clk in which the instruction ended. */
+    uint32_t pc;            /* Address of the instruction. */
+    uint32_t rd;            /* Number of the register that the instruction wrote, 0 for none. */
+    uint32_t value;         /* Value that the instruction wrote to the register. */
 };
 /* Turns the recording of executed instructions on or off; it is off at first. */
 void soc_instructions_record(Soc *soc, int on);
-/* Instructions since the last call of soc_instructions_clear, in their order. Valid until the next run or clear. */
+/* Instructions since the last call of soc_instructions_clear, in the order of execution. Valid until the next run or clear. */
 const SocInstruction *soc_instructions(const Soc *soc, size_t *count);
 void soc_instructions_clear(Soc *soc);
 
-/* Whether the CPU fills a line of a cache, which holds old data of the line. */
+/* Whether the CPU is filling a cache line. The fill uses the memory's old data, even if soc_ddr_write changes them. */
 int soc_filling(const Soc *soc);
 /* Reads or writes DDR3, `offset` bytes into main RAM; offset + length must be at most 128 MiB. A store of the CPU reaches memory within a
- * thousand cycles. A write empties the CPU's caches, so that later loads and fetches of instructions see the new data; it must not be
- * called while soc_filling. */
+ * thousand cycles. A write invalidates the CPU's caches, so that later loads and instruction fetches see the new data; it must not be
+ * called while soc_filling returns 1. */
 void soc_ddr_read(Soc *soc, uint32_t offset, uint8_t *bytes, size_t length);
 void soc_ddr_write(Soc *soc, uint32_t offset, const uint8_t *bytes, size_t length);
 
-/* Replaces the whole ROM, zero after `length`, which must be at most that of the ROM; before the first cycle. */
+/* Replaces the contents of the ROM, filled up with zeros. `length` must be at most the size of the ROM. Call this before the
+ * first cycle. */
 void soc_rom_write(Soc *soc, const uint8_t *bytes, size_t length);
 
 #pragma GCC visibility pop

@@ -26,7 +26,8 @@ const SETTLE: u64 = 1000;
 /// Levels of the undriven data lines of the flash.
 const FLASH_RELEASED: u8 = 0xf;
 
-/// Minimum number of PCLK periods queued for the sensor's port. This exceeds the number of periods in a slice, so that no period is late.
+/// Minimum number of PCLK periods that are queued for the image sensor's port: more than the
+/// periods in a slice, so that no period is late.
 const PORT_QUEUE: usize = 2 * SLICE as usize;
 
 /// Number of cycles without a period of the image sensor's master clock after which the clock counts as stopped.
@@ -135,7 +136,8 @@ pub struct VirtualBoard {
     flash: Option<Flash>,
     sensor: Option<Wires>,
     image_sensor: Option<ImageSensor>,
-    /// Number of periods of the image sensor's master clock so far, and the cycle in which its last change was seen.
+    /// Number of periods of the image sensor's master clock so far, and the cycle in which this
+    /// number last changed.
     camera_clock: (u64, u64),
     digits: Digits,
     /// Serial output of the SoC that the user of the board has not read yet.
@@ -218,7 +220,7 @@ impl VirtualBoard {
     /// Reads new serial output, video and the state of the digits from the SoC.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
-        self.digits.look(self.soc.cycles(), self.soc.digits());
+        self.digits.update(self.soc.cycles(), self.soc.digits());
         if self.monitor.is_on() {
             let monitor = &mut self.monitor;
             self.soc.video_take(|samples| monitor.watch(samples));
@@ -431,7 +433,7 @@ impl Simulation for VirtualBoard {
         let Some(picture) = self.monitor().take_picture() else {
             return Ok(None);
         };
-        // If larger blocks have equal pixels, the frame is smaller.
+        // If the pixels of each larger block are equal, scan-out has enlarged a smaller frame.
         let mut scales = [4, 2].into_iter();
         let smaller = scales.find_map(|scale| Some((scale, picture.scaled_back(scale).ok()?)));
         let (scale, pixels) = match smaller {

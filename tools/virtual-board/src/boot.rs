@@ -1,6 +1,7 @@
 //! ROM contents for the preloaded start: a few instructions instead of the BIOS.
 
 use litex_pac::memories::MAIN_RAM;
+use litex_pac::register::Value;
 
 /// Numbers of CPU registers, named as in the ABI.
 const T0: u32 = 5;
@@ -19,11 +20,7 @@ pub(crate) fn stub() -> Vec<u8> {
     [
         // `sw` adds the low 12 bits of the address as a signed number, so the upper bits are rounded, not truncated.
         lui(T0, control.wrapping_add(0x800) >> 12),
-        addi(
-            T1,
-            ZERO,
-            litex_pac::register::Value::bits(controller_in_charge),
-        ),
+        addi(T1, ZERO, controller_in_charge.bits()),
         sw(T1, T0, control & 0xfff),
         lui(T0, MAIN_RAM.base >> 12),
         jalr(ZERO, T0, 0),

@@ -108,6 +108,46 @@ pub(crate) struct Soc {
     instance: Instance,
 }
 
+/// Defines methods of [`Soc`] that pass numbers to the library's functions of the same names.
+macro_rules! methods {
+    ($(
+        $(#[$doc:meta])*
+        fn $name:ident($self:ident: $receiver:ty $(, $argument:ident: $type:ty)*) $(-> $result:ty)?;
+    )*) => {
+        impl Soc {
+            $(
+                $(#[$doc])*
+                pub fn $name($self: $receiver $(, $argument: $type)*) $(-> $result)? {
+                    // SAFETY: the handle belongs to a live SoC, which the borrow of `self` protects.
+                    unsafe { ($self.functions.$name)($self.raw() $(, $argument)*) }
+                }
+            )*
+        }
+    };
+}
+
+methods! {
+    fn run(self: &mut Self, cycles: u64);
+    /// Only advances the clocks; serial output and video are lost.
+    fn run_bare(self: &mut Self, cycles: u64);
+    fn cycles(self: &Self) -> u64;
+    fn uart_queued(self: &Self) -> usize;
+    fn i2c_drive(self: &mut Self, released: u8);
+    fn i2c_wires(self: &Self) -> u8;
+    /// Runs until the SoC changes one of its [`Outputs`], but at most `cycles` cycles. Returns the number of cycles run.
+    fn run_to_edge(self: &mut Self, cycles: u64) -> u64;
+    fn camera_drive(self: &mut Self, released: u8);
+    fn camera_queued(self: &Self) -> usize;
+    fn camera_clear(self: &mut Self);
+    fn camera_clocks(self: &Self) -> u64;
+    /// Levels with which the SoC drives the data lines of the flash; undriven lines are high.
+    fn flash_lines(self: &Self) -> u8;
+    /// Sets the levels that the SoC reads from the flash's data lines.
+    fn flash_drive(self: &mut Self, lines: u8);
+    fn video_clear(self: &mut Self);
+    fn instructions_clear(self: &mut Self);
+}
+
 impl Soc {
     /// Loads the library and creates a SoC before its first clock edge.
     pub fn load(path: &Path) -> Result<Self, Error> {
@@ -145,30 +185,9 @@ impl Soc {
         Ok(self.instance.write_waveforms(path)?)
     }
 
-    pub fn run(&mut self, cycles: u64) {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.run)(self.raw(), cycles) }
-    }
-
-    /// Only advances the clocks; serial output and video are lost.
-    pub fn run_bare(&mut self, cycles: u64) {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.run_bare)(self.raw(), cycles) }
-    }
-
-    pub fn cycles(&self) -> u64 {
-        // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.cycles)(self.raw()) }
-    }
-
     pub fn uart_write(&mut self, bytes: &[u8]) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses; the bytes are copied during the call.
         unsafe { (self.functions.uart_write)(self.raw(), bytes.as_ptr(), bytes.len()) }
-    }
-
-    pub fn uart_queued(&self) -> usize {
-        // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.uart_queued)(self.raw()) }
     }
 
     /// Appends the unread serial output of the SoC to `output`.
@@ -210,16 +229,6 @@ impl Soc {
         })
     }
 
-    pub fn i2c_drive(&mut self, released: u8) {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.i2c_drive)(self.raw(), released) }
-    }
-
-    pub fn i2c_wires(&self) -> u8 {
-        // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.i2c_wires)(self.raw()) }
-    }
-
     /// Outputs of the SoC to devices that react to each edge, in the order of their bits.
     pub fn outputs(&self) -> Outputs {
         // SAFETY: the handle belongs to a live SoC.
@@ -235,17 +244,6 @@ impl Soc {
         }
     }
 
-    /// Runs until the SoC changes one of its [`Outputs`], but at most `cycles` cycles. Returns the number of cycles run.
-    pub fn run_to_edge(&mut self, cycles: u64) -> u64 {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.run_to_edge)(self.raw(), cycles) }
-    }
-
-    pub fn camera_drive(&mut self, released: u8) {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.camera_drive)(self.raw(), released) }
-    }
-
     /// Queues levels of the image sensor's port, one per period of PCLK. The frequency of PCLK in Hz must be a multiple of 250 kHz.
     pub fn camera_send(&mut self, frequency: u32, levels: &[Levels]) {
         let levels: Vec<u16> = levels.iter().map(|levels| levels.0).collect();
@@ -253,33 +251,6 @@ impl Soc {
         unsafe {
             (self.functions.camera_send)(self.raw(), frequency, levels.as_ptr(), levels.len());
         }
-    }
-
-    pub fn camera_queued(&self) -> usize {
-        // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.camera_queued)(self.raw()) }
-    }
-
-    pub fn camera_clear(&mut self) {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.camera_clear)(self.raw()) }
-    }
-
-    pub fn camera_clocks(&self) -> u64 {
-        // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.camera_clocks)(self.raw()) }
-    }
-
-    /// Levels with which the SoC drives the data lines of the flash; undriven lines are high.
-    pub fn flash_lines(&self) -> u8 {
-        // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.flash_lines)(self.raw()) }
-    }
-
-    /// Sets the levels that the SoC reads from the flash's data lines.
-    pub fn flash_drive(&mut self, lines: u8) {
-        // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.flash_drive)(self.raw(), lines) }
     }
 
     pub fn video_record(&mut self, on: bool) {
@@ -297,8 +268,7 @@ impl Soc {
             // during the borrow of `self`.
             consume(unsafe { slice::from_raw_parts(samples, count) });
         }
-        // SAFETY: the handle belongs to a live SoC that nothing else uses; the slice is gone.
-        unsafe { (self.functions.video_clear)(self.raw()) }
+        self.video_clear();
     }
 
     pub fn instructions_record(&mut self, on: bool) {
@@ -315,8 +285,7 @@ impl Soc {
             // SAFETY: the library keeps `count` instructions at this address until the next run or clear.
             list.extend_from_slice(unsafe { slice::from_raw_parts(instructions, count) });
         }
-        // SAFETY: the handle belongs to a live SoC that nothing else uses; the slice is gone.
-        unsafe { (self.functions.instructions_clear)(self.raw()) }
+        self.instructions_clear();
     }
 
     /// Whether the CPU is filling a cache line.

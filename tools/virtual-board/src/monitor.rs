@@ -103,7 +103,8 @@ pub struct Monitor {
     on: bool,
     /// Ticks since the start of the frame; `None` before the first vsync.
     position: Option<usize>,
-    /// Pins at the last tick. `None` (no tick yet) counts as vsync, so that the first frame starts at a leading edge of vsync.
+    /// Pins at the last tick. `None` before the first tick; it counts as vsync, so that the first
+    /// frame starts at a leading edge of vsync.
     last: Option<Pins>,
     /// Pixels of the current frame so far, three bytes each.
     pixels: Vec<u8>,

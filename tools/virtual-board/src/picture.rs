@@ -62,7 +62,7 @@ impl Picture {
     /// When the number of bytes does not match the size.
     #[must_use]
     pub fn new(width: usize, height: usize, rgb: Vec<u8>) -> Self {
-        assert_eq!(rgb.len(), 3 * width * height, "three bytes a pixel");
+        assert_eq!(rgb.len(), 3 * width * height, "three bytes per pixel");
         Self { width, height, rgb }
     }
 

@@ -46,7 +46,8 @@ impl<B: Uart + Send + 'static> Pty<B> {
         Self::watched(board, |_, _| ())
     }
 
-    /// Moves the board to a new thread, and starts it. Calls `watch` with the bytes that have been passed: to the board, and from it.
+    /// Moves the board to a new thread, and starts it. Calls `watch` with the bytes passed to the
+    /// board and the bytes passed from the board.
     ///
     /// # Errors
     /// When the system provides no pseudo-terminal.
@@ -98,10 +99,7 @@ impl<B: Uart + Send + 'static> Pty<B> {
     #[must_use]
     pub fn stop(mut self) -> B {
         self.tasks = None;
-        let thread = self
-            .thread
-            .take()
-            .expect("the thread is there until it is stopped");
+        let thread = self.thread.take().expect("the thread runs until `stop`");
         thread
             .join()
             .expect("the virtual board's thread has panicked")
@@ -164,7 +162,7 @@ fn run<B: Uart>(
                     board.uart_write(&input[..count]);
                     watch(&input[..count], &[]);
                 }
-                Err(error) if is_passing(&error) => {}
+                Err(error) if is_temporary(&error) => {}
                 Err(error) => panic!("reading the virtual board's terminal: {error}"),
             }
         }
@@ -174,7 +172,7 @@ fn run<B: Uart>(
         board.uart_read(&mut output);
         match terminal.write(&output) {
             Ok(count) => drop(output.drain(..count)),
-            Err(error) if is_passing(&error) => {}
+            Err(error) if is_temporary(&error) => {}
             Err(error) => panic!("writing the virtual board's terminal: {error}"),
         }
         if output.len() > UNREAD {
@@ -184,7 +182,7 @@ fn run<B: Uart>(
 }
 
 /// Whether the error only means that no data can be transferred at present, so that the thread continues.
-fn is_passing(error: &io::Error) -> bool {
+fn is_temporary(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }
 

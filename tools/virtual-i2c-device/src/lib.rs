@@ -21,17 +21,20 @@ pub trait Device {
     fn number_bytes(&self) -> u8;
     /// Sets the current fault.
     fn set_fault(&mut self, fault: Option<Self::Fault>);
-    /// Advances the time to `now`, in ns.
-    fn advance(&mut self, now: u64);
+    /// Advances the time to `now`, in ns. A `now` before the current time has no effect.
+    fn advance(&mut self, _now: u64) {}
     /// Notifies the device of the start or end of a transfer.
-    fn set_addressed(&mut self, is_addressed: bool);
+    fn set_addressed(&mut self, _is_addressed: bool) {}
     /// Whether the device acknowledges `address`.
     fn answers(&self, address: u8) -> bool;
     /// Whether the device acknowledges the bytes after its address.
     fn acknowledges(&self) -> bool;
     /// Time in ns for which the device stretches the clock after each acknowledged byte from the master.
-    fn stretch(&self) -> Option<u64>;
-    /// Whether the device still holds SDA low after this number of clocks from the master since the fault was set.
+    fn stretch(&self) -> Option<u64> {
+        None
+    }
+    /// Whether the device still holds SDA low after `clocks` clocks of the master since the fault
+    /// was set.
     fn is_stuck(&self, clocks: u32) -> bool;
     /// Reads a register.
     fn read(&mut self, register: u16) -> u8;
@@ -292,20 +295,12 @@ mod tests {
 
         fn set_fault(&mut self, _fault: Option<()>) {}
 
-        fn advance(&mut self, _now: u64) {}
-
-        fn set_addressed(&mut self, _is_addressed: bool) {}
-
         fn answers(&self, _address: u8) -> bool {
             false
         }
 
         fn acknowledges(&self) -> bool {
             false
-        }
-
-        fn stretch(&self) -> Option<u64> {
-            None
         }
 
         fn is_stuck(&self, clocks: u32) -> bool {
@@ -319,7 +314,8 @@ mod tests {
         fn write(&mut self, _register: u16, _value: u8) {}
     }
 
-    /// At 1,000 samples per second, a sensor sees 2^32 clocks in 8.3 hours.
+    /// At 1,000 samples per second, the master sends 2^32 clocks in 8.3 hours, so the count must
+    /// saturate.
     #[test]
     fn the_number_of_clocks_stays_at_its_largest() {
         let mut wires = Wires::new(Stuck);

@@ -264,8 +264,6 @@ impl Device for Chip {
         self.now = self.now.max(now);
     }
 
-    fn set_addressed(&mut self, _: bool) {}
-
     fn answers(&self, address: u8) -> bool {
         address == self.model.address()
             && self.fault != Some(ChipFault::Absent)
@@ -275,10 +273,6 @@ impl Device for Chip {
 
     fn acknowledges(&self) -> bool {
         self.fault != Some(ChipFault::NoAcknowledge)
-    }
-
-    fn stretch(&self) -> Option<u64> {
-        None
     }
 
     fn is_stuck(&self, _: u32) -> bool {

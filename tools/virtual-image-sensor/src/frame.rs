@@ -99,7 +99,7 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
 
 /// A source of frames: the view of the sensor.
 pub trait Source: Send {
-    /// The frame that is exposed at `time`, in s. All frames have the same size.
+    /// Returns the frame exposed at `time`, in s. All frames have the same size.
     fn frame(&mut self, time: f64) -> Frame;
 }
 
@@ -109,7 +109,7 @@ impl Source for Box<dyn Source> {
     }
 }
 
-/// Pictures that are shown in turn, one per frame, in a loop.
+/// Pictures that are sent one after another, one per frame, in a loop.
 pub struct Images {
     frames: Vec<Frame>,
     next: usize,

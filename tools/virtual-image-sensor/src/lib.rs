@@ -9,8 +9,8 @@
 //! The caller passes the current time. Equal calls with an equal seed give equal levels.
 //!
 //! # Limits
-//! The source determines the size of a frame, [`Timing`] the frame rate; the chip's registers of size, scaling, clock, exposure and colour
-//! only store the written values.
+//! The source determines the size of a frame, [`Timing`] the frame rate; the chip's
+//! registers for size, scaling, clock, exposure and colour only store the written values.
 
 #![forbid(unsafe_code)]
 

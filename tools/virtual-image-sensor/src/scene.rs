@@ -11,7 +11,7 @@ use crate::frame::{Frame, Source, rgb565};
 const SKIN: [f64; 3] = [224.0, 172.0, 140.0];
 /// Colour of the wall in full light, at its top and at its bottom.
 const WALL: [[f64; 3]; 2] = [[120.0, 132.0, 150.0], [70.0, 84.0, 96.0]];
-/// Each pixel has this number of samples in each direction.
+/// Number of samples per pixel in each direction.
 const SAMPLES: usize = 4;
 
 /// A hand in a frame.
@@ -85,7 +85,8 @@ pub struct Scene {
     pub light: Over<f64>,
     /// Standard deviation of the noise of each channel, in units of 1/255 of its range.
     pub noise: f64,
-    /// Fraction of the pixels that are noise: each has at random the hand's colour or black.
+    /// Fraction of the pixels that are salt-and-pepper noise: at random black or of the hand's
+    /// colour.
     pub salt: f64,
     random: Pcg64Mcg,
 }

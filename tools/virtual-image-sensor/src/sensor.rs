@@ -87,12 +87,12 @@ pub enum Fault {
     NoSync,
     /// The middle of a line loses or repeats bytes.
     Slip {
-        /// Number of the line.
+        /// Index of the line.
         line: usize,
         /// Number of bytes lost in the middle of a line; if negative, number of repetitions of a byte.
         bytes: isize,
     },
-    /// The frame has this number of lines too few, or too many if negative.
+    /// Number of lines that the frame lacks; if negative, number of excess lines.
     Lines(isize),
     /// VSYNC cuts the frame in the middle of this line.
     Cut(usize),
@@ -142,8 +142,9 @@ impl ImageSensor {
         chip.is_awake != was_awake
     }
 
-    /// Returns the levels of the next frame, which begins at `time` in s: VSYNC, the lines, and the blanking before the next frame. For a
-    /// sensor that sends nothing, returns some periods without PCLK.
+    /// Returns the levels of the next frame, which begins at `time` in s: VSYNC, the lines, and the
+    /// blanking before the next frame. If the sensor sends nothing, returns some periods without
+    /// PCLK.
     pub fn frame(&mut self, time: f64) -> Vec<Levels> {
         let chip = &self.wires.chip;
         let absent = chip.fault == Some(ChipFault::Absent) || self.fault == Some(Fault::Unplugged);

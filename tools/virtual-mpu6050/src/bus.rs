@@ -5,6 +5,8 @@ use std::rc::Rc;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
 
+use virtual_i2c_device::Device;
+
 use crate::chip::{Chip, Fault};
 
 /// Time in ns of a byte and its acknowledge bit at 400 kHz.

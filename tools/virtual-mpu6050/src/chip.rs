@@ -154,7 +154,8 @@ pub enum Fault {
     NoAcknowledge,
     /// The chip holds SDA low until the master has sent this number of clocks; with 0, forever.
     StuckData(u32),
-    /// The chip stretches the clock for this time in ns after each byte; on its [`Wires`](crate::Wires), only after those of the master.
+    /// The chip stretches the clock for this time in ns after each byte; on its
+    /// [`Wires`](crate::Wires), only after bytes from the master.
     Stretched(u64),
     /// The data registers do not change, but INT_STATUS still announces new data.
     Frozen,
@@ -162,7 +163,7 @@ pub enum Fault {
     Stalled,
     /// WHO_AM_I reads as this value.
     Identity(u8),
-    /// The chip sends this number of bytes, and is missing from then on: the released bus reads as ones.
+    /// The chip sends this number of bytes, and is then missing: the released bus reads as ones.
     Vanishing(u32),
 }
 
@@ -227,32 +228,6 @@ impl Chip {
         self.newest = None;
         self.next = None;
         self.answers = self.now + RESET_TIME;
-    }
-
-    /// Whether the chip acknowledges `address`.
-    #[must_use]
-    pub fn answers(&self, address: u8) -> bool {
-        address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
-    }
-
-    /// Advances the time to `now`, in ns. A `now` before the current time has no effect.
-    pub fn advance(&mut self, now: u64) {
-        while let Some(time) = self.next
-            && time <= now
-        {
-            self.next = Some(time + self.period());
-            if self.fault != Some(Fault::Stalled) {
-                self.measure(time);
-            }
-        }
-        self.now = self.now.max(now);
-        self.refresh();
-    }
-
-    /// Notifies the chip of the start or end of a transfer; the data registers do not change during a transfer.
-    pub fn set_addressed(&mut self, is_addressed: bool) {
-        self.is_addressed = is_addressed;
-        self.refresh();
     }
 
     /// Sample period in ns.
@@ -393,15 +368,25 @@ impl Device for Chip {
     }
 
     fn advance(&mut self, now: u64) {
-        Self::advance(self, now);
+        while let Some(time) = self.next
+            && time <= now
+        {
+            self.next = Some(time + self.period());
+            if self.fault != Some(Fault::Stalled) {
+                self.measure(time);
+            }
+        }
+        self.now = self.now.max(now);
+        self.refresh();
     }
 
     fn set_addressed(&mut self, is_addressed: bool) {
-        Self::set_addressed(self, is_addressed);
+        self.is_addressed = is_addressed;
+        self.refresh();
     }
 
     fn answers(&self, address: u8) -> bool {
-        Self::answers(self, address)
+        address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
     }
 
     fn acknowledges(&self) -> bool {

@@ -147,7 +147,7 @@ fn errors_match_the_imperfections() {
     let mut bus = bus_of(motion, imperfections);
     wake(&mut bus);
     let mean = |bus: &mut Bus| {
-        // The current sample may have been measured before the chip was configured, so it is skipped.
+        // Skips the current sample, because the chip may have measured it before it was configured.
         bus.delay_ms(2);
         burst(bus);
         let (mut sum, mut squares, mut count) = ([0.0; 3], 0.0, 0.0);

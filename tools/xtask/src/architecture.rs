@@ -5,7 +5,7 @@ use std::fs;
 
 use crate::paths::root;
 
-/// Cell of a file that a block does not have, such as the model of a block that computes nothing.
+/// Text of a cell if the block has no such file: a block that computes nothing has no model.
 const ABSENT: &str = "–";
 
 /// Cells of a table row, without backquotes.
@@ -28,7 +28,7 @@ fn table() -> Vec<Vec<String>> {
 }
 
 #[test]
-fn every_part_of_a_block_bears_its_name_and_exists() {
+fn every_part_of_a_block_has_its_name_and_exists() {
     let table = table();
     let (header, rows) = table.split_first().expect("the page has the table");
     assert_eq!(

@@ -49,7 +49,7 @@ pub fn bootstrap() -> Result<()> {
     all([debian_packages(), rust_targets(), python_environment()])
 }
 
-/// Installs the prerequisites of the Rust crates: all of [`bootstrap`] but the Python environment.
+/// Installs the prerequisites of the Rust crates: those of [`bootstrap`] without the Python environment.
 ///
 /// # Errors
 /// Those of [`bootstrap`].
@@ -103,7 +103,7 @@ fn debian_packages() -> Result<()> {
     .with_context(|| format!("Debian packages: run: {by_hand}"))
 }
 
-/// Whether the program of a package runs. The program may come from another source than this package.
+/// Whether the program of a package runs. The program may have been installed without the package.
 fn is_present(package: &str) -> bool {
     match package {
         "gcc-riscv64-unknown-elf" => {

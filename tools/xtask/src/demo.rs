@@ -13,7 +13,7 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     firmware::build(Board::Virtual, &[])?;
-    // The default folder is the demo's own.
+    // Only the demo writes to its default folder, so it may replace the files there.
     let mut arguments = arguments.to_vec();
     if !arguments
         .iter()

@@ -25,7 +25,7 @@ fn pages_in(folder: &str) -> Vec<(PathBuf, Page)> {
     paths.into_iter().map(read).collect()
 }
 
-/// The pages outside the report.
+/// All pages outside the report: README.md, the changelog and the pages of docs.
 fn pages_of_users() -> Vec<(PathBuf, Page)> {
     ["", "docs", "docs/formats"].map(pages_in).concat()
 }
@@ -61,7 +61,7 @@ fn is_report(path: &Path) -> bool {
     path.starts_with("docs/report") || generated.iter().any(|page| path == Path::new(page))
 }
 
-/// Claims of the page at this path whose block does not link to the report, with their positions.
+/// Claims of the page at this path in blocks without a link to the report, with their positions.
 fn unlinked(path: &Path, page: &Page) -> Vec<String> {
     let leads_to_report =
         |link: &String| target(path, link).is_some_and(|(target, _)| is_report(&target));

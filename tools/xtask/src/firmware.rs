@@ -18,7 +18,7 @@ use crate::{paths, run};
 /// Package of the firmware.
 const FIRMWARE: &str = "glint-firmware";
 
-/// Feature with kernels of other crates for comparison.
+/// Feature that adds kernels of other crates, for comparison by the console command `bench`.
 const PEERS: &str = "peers";
 
 /// Rust target of the soft core: RV32IM without an operating system.
@@ -67,9 +67,9 @@ pub fn build(board: Board, features: &[&str]) -> Result<Image> {
     compile(board, features, true, features, for_speed)
 }
 
-/// Checks that the firmware with the report's kernels compiles and fits the memory: it needs more SRAM of the soft core than any other
-/// build. Unlike [`build`] it compiles the other crates with the standard optimisation. All code in the SRAM comes from the firmware's
-/// crate.
+/// Checks that the firmware with the report's kernels compiles and fits the memory: this build needs more SRAM of the soft core than any
+/// other. Unlike [`build`], the check compiles the other crates with the standard optimisation, because all code in the SRAM comes
+/// from the firmware's crate.
 ///
 /// # Errors
 /// Those of [`build`].

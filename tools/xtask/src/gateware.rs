@@ -38,7 +38,7 @@ impl Board {
         }
     }
 
-    /// Whether the board has the pins of the block. The ULX3S has no digits, and its SoC cannot read the flash.
+    /// Whether the board has the block's pins. The ULX3S has no digits, and its SoC cannot read the flash.
     const fn has(self, block: Block) -> bool {
         match self {
             Self::Virtual | Self::Urbana => true,
@@ -46,7 +46,8 @@ impl Board {
         }
     }
 
-    /// What scenes need of the blocks for which the board has pins. The SPI flash, from which a board starts without a host, is one.
+    /// The needs of scenes, without blocks for which the board has no pins, and with the SPI flash, from which a board starts without a
+    /// host.
     pub fn needs(self, scenes: &[SceneFile]) -> Needs {
         let mut needs = Needs::of(scenes);
         needs.blocks.insert(Block::Flash);
@@ -83,7 +84,7 @@ pub struct Options {
     /// `menger:LEVELS`, `box`, `octahedron`, `spheres`, `lattice`, `fillets`, `stereo`, `normals`, `highlight`, `shadow`, `cone` [default: all; faces for a board with an FPGA]
     #[arg(long)]
     fields: Option<String>,
-    /// Evaluations of the field per clock: 1, 2 or 4 [default: those of the fields]
+    /// Evaluations of the field per clock: 1, 2 or 4 [default: depends on the fields]
     #[arg(long)]
     lanes: Option<String>,
     /// Frequency of the system clock in MHz, a multiple of 0.25 [default: the scenes' frequency, else 81.25, or 40 for the ulx3s]
@@ -107,37 +108,28 @@ impl Options {
         if !self.scene.is_empty() {
             let scenes = scenes::read(&self.scene)?;
             let mut needs = board.needs(&scenes);
-            let further = Block::ALL
-                .into_iter()
-                .filter(|block| self.blocks.iter().any(|name| name == block.name()));
-            needs.blocks.extend(further);
-            needs.geometry |= needs.blocks.contains(&Block::Line)
-                || self
-                    .blocks
-                    .iter()
-                    .any(|name| name == Block::Triangle.name());
+            let is_further = |block: &Block| self.blocks.iter().any(|name| name == block.name());
+            needs
+                .blocks
+                .extend(Block::ALL.into_iter().filter(is_further));
+            needs.geometry |= needs.blocks.contains(&Block::Line) || is_further(&Block::Triangle);
             needs.depths |= needs.blocks.contains(&Block::Triangle);
             arguments = needs.options();
-            clock = match clock {
-                None => scenes::clock(&scenes)?.map(|clock| clock.to_string()),
-                clock => clock,
-            };
-        }
-        if self.scene.is_empty() && !self.blocks.is_empty() {
+            if clock.is_none() {
+                clock = scenes::clock(&scenes)?.map(|clock| clock.to_string());
+            }
+        } else if !self.blocks.is_empty() {
             arguments.push("--blocks".to_owned());
             arguments.extend(self.blocks.iter().cloned());
         }
-        if self.smooth {
-            arguments.push("--smooth".to_owned());
-        }
-        if self.texture {
-            arguments.push("--texture".to_owned());
-        }
-        if self.no_geometry {
-            arguments.push("--no-geometry".to_owned());
-        }
-        if self.no_depths {
-            arguments.push("--no-depths".to_owned());
+        let flags = [
+            ("--smooth", self.smooth),
+            ("--texture", self.texture),
+            ("--no-geometry", self.no_geometry),
+            ("--no-depths", self.no_depths),
+        ];
+        for (name, _) in flags.into_iter().filter(|(_, is_set)| *is_set) {
+            arguments.push(name.to_owned());
         }
         let values = [
             ("--fields", &self.fields),
@@ -145,17 +137,15 @@ impl Options {
             ("--clock", &clock),
         ];
         for (name, value) in values {
-            arguments.extend(
-                value
-                    .iter()
-                    .flat_map(|value| [name.to_owned(), value.clone()]),
-            );
+            if let Some(value) = value {
+                arguments.extend([name.to_owned(), value.clone()]);
+            }
         }
         Ok(arguments)
     }
 }
 
-/// Builds the gateware of `board`, if out of date.
+/// Builds the gateware of `board`, if it is out of date.
 ///
 /// # Errors
 /// A tool is missing or fails. The output of a failed tool is printed.
@@ -237,7 +227,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
-            // Caches objects, because LiteX compiles the same C library again in another folder for each BIOS.
+            // A cache of objects, because LiteX compiles the same C library again in another folder for each BIOS.
             .env("CCACHE", "ccache")
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
@@ -247,8 +237,8 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Writes the committed files that follow from the descriptions of blocks, records and shared numbers. With `check` nothing is written:
-/// the files must be up to date.
+/// Writes the committed files that are generated from the descriptions of blocks, records and shared numbers. With `check`, writes
+/// nothing and fails if a file is stale.
 ///
 /// # Errors
 /// A description is wrong, or (with `check`) a file is stale.
@@ -266,7 +256,7 @@ pub enum Library {
     Profiled,
     /// Little optimisation and no profile: a shorter build for a board that runs only a few frames.
     Quick,
-    /// With output of waveforms.
+    /// Writes waveforms, and is slower.
     Waveforms,
 }
 
@@ -321,7 +311,7 @@ fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
     )
 }
 
-/// Numbers of used and available cells by kind.
+/// Numbers of used and of available cells, by kind of cell.
 pub type Cells = BTreeMap<String, [u64; 2]>;
 
 /// Counts the cells of the ULX3S's build with `options` of `glint_soc` in `target/gateware/ulx3s-NAME`. The build stops before place and
@@ -417,7 +407,7 @@ mod tests {
         blocks.map(String::as_str).collect()
     }
 
-    /// A board that runs alone starts from its flash, so every build for scenes can read it.
+    /// A board without a host starts from its flash, so every build for scenes needs the block `flash`.
     #[test]
     fn builds_for_scenes_start_from_the_flash() {
         for name in glint_scene_file::NAMES

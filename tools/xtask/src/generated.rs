@@ -6,8 +6,8 @@ use anyhow::{Context, Result, bail};
 
 use crate::paths;
 
-/// Writes generated files, given by their paths from the root of the checkout. With `check` nothing is written: the files must have the
-/// generated texts. `command` is the one that writes them.
+/// Writes generated files, each given by its path from the root of the checkout and its text. With `check`, writes nothing and compares
+/// the files with the texts. The error message names `command`, the command line that writes the files.
 ///
 /// # Errors
 /// A file cannot be written, or (with `check`) is stale.

@@ -50,7 +50,7 @@ enum Task {
         #[arg(long, conflicts_with_all = ["scene", "smooth", "texture", "no_depths", "fields", "lanes", "clock", "blocks"])]
         waveforms: bool,
     },
-    /// Generate what follows from the gateware's descriptions: register access crate, register map, packages of the RTL, records
+    /// Generate files from the gateware's descriptions: register access crate, register map, RTL packages, records
     Pac {
         /// Write nothing; fail if a generated file is stale
         #[arg(long)]
@@ -88,18 +88,18 @@ enum Task {
     },
     /// Build everything and run every test
     Test {
-        /// Run only the tests on the virtual board, with this frequency of its system clock, a multiple of 0.25 above 74.25
+        /// Run only the tests on the virtual board, at this frequency of its system clock in MHz: a multiple of 0.25 above 74.25
         #[arg(long, value_name = "MHZ")]
         clock: Option<String>,
     },
     /// Check the sources: no circular dependencies between modules, no `#[path]`
     Modules,
-    /// Measure the FPGA resources of the gateware; fail beyond the limits of gateware/budget.toml
+    /// Measure the FPGA resources of the gateware; fail if a block exceeds its limit in gateware/budget.toml
     Resources(resources::Options),
     /// Build the virtual board for each scene and with each single block; fail if a board does not answer, or draws its scene
     /// differently or in more cycles than the complete build
     Walk {
-        /// Builds to walk: names of scenes, and `only-BLOCK` [default: all]
+        /// Builds to test: names of scenes, and `only-BLOCK` [default: all]
         builds: Vec<String>,
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
@@ -111,7 +111,7 @@ enum Task {
         /// Measure samples only; write to target/report
         #[arg(long)]
         quick: bool,
-        /// Number of parallel jobs, without a page
+        /// Number of parallel jobs of the whole report
         #[arg(long, value_name = "N", default_value_t = 2)]
         workers: u32,
         /// Options of the page, which `cargo xtask report PAGE -- --help` lists; without a page, targets and options of Snakemake
@@ -131,7 +131,7 @@ fn main() -> Result<()> {
             let options = options.arguments(board)?;
             let options: Vec<_> = options.iter().map(String::as_str).collect();
             if board == gateware::Board::Ulx3s {
-                // The set-up installs all tools of the ULX3S build.
+                // The ULX3S build needs the tools that the set-up installs.
                 bootstrap::bootstrap()?;
             }
             gateware::build_with(board, &options)?;

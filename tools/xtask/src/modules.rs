@@ -262,7 +262,7 @@ impl Crate {
         dependencies
     }
 
-    /// The dependencies within cycles, or on a path between cycles.
+    /// The dependencies that are part of a cycle, or of a path between two cycles.
     fn cycles(&self) -> Vec<String> {
         let mut dependencies = self.dependencies();
         loop {
@@ -286,8 +286,8 @@ impl Crate {
 }
 
 impl Module {
-    /// Reads tokens below `level` inline modules. With `has_items` the tokens are those of a module, whose items are the names
-    /// after `fn`, `struct` and so on.
+    /// Reads tokens below `level` inline modules. With `has_items`, the tokens are those of a module, and a name after `fn`, `struct` and
+    /// so on defines an item of the module.
     fn scan(&mut self, tokens: TokenStream, level: usize, has_items: bool) {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let (mut at, mut is_public) = (0, false);

@@ -12,11 +12,11 @@ use crate::{bootstrap, firmware, paths, run};
 /// The Snakemake description of the workflow.
 const WORKFLOW: &str = "tools/reference/workflow/Snakefile";
 
-/// File with the checksums of all files that the jobs run.
+/// File with the checksums of all files that the jobs execute.
 const STAMP: &str = "inputs.sha256";
 
 /// Builds everything, makes the measurements of the report's page `name`, and writes the page. The name `pages` writes all pages from the
-/// tables of earlier measurements; the argument `--help` lists the options of the page. Both build only the report program.
+/// tables of earlier measurements; the argument `--help` lists the options of the page. These two build only the report program.
 ///
 /// # Errors
 /// A build or a measurement fails.
@@ -71,11 +71,11 @@ fn model(module: &str) -> Result<()> {
 }
 
 /// Builds everything and runs the whole report with `workers` jobs at a time, into docs/report; `quick` measures samples only,
-/// into target/report/quick/pages. Jobs finished by an interrupted run are skipped, unless a file that the jobs run has changed.
-/// `arguments`, such as other targets, are passed to Snakemake; with any, docs/report does not change.
+/// into target/report/quick/pages. Jobs finished by an interrupted run are skipped, unless a file that the jobs execute has changed.
+/// `arguments`, such as other targets, are passed to Snakemake. If there are arguments, docs/report does not change.
 ///
 /// # Errors
-/// A build or a job fails, or another report runs.
+/// A build or a job fails, or another report is running.
 pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
@@ -136,7 +136,8 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the checksums of all files that the jobs run to a file, which is an input of the jobs.
+/// Writes the checksums of all files that the jobs execute to a file that is an input of each job, so that a new build makes the jobs
+/// run again.
 fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     let target = paths::target();
     let mut files = vec![

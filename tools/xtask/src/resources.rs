@@ -1,5 +1,5 @@
-//! `cargo xtask resources`: FPGA resources of the gateware and its clock rates. `gateware/resources` measures and prints them; this
-//! module makes the builds that it measures.
+//! `cargo xtask resources`: FPGA resources of the gateware and its clock rates. This module makes the builds;
+//! `gateware/resources` measures them and prints the results.
 
 mod scenes;
 
@@ -17,7 +17,7 @@ const SOC: &str = "soc";
 #[derive(clap::Args)]
 pub struct Options {
     /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all; with `--route`,
-    /// the own blocks]
+    /// the project's own blocks]
     blocks: Vec<String>,
     /// Place and route on an ECP5 instead: clock rates of the blocks and of VexRiscv
     #[arg(long)]
@@ -69,7 +69,8 @@ pub fn resources(options: &Options) -> Result<()> {
     measure(&arguments, write)
 }
 
-/// Measures this project's own blocks, and the clock rates of those that have a minimum in the budget, and compares them with it.
+/// Measures the sizes of this project's own blocks, and the clock rates of the blocks with a minimum rate in the budget. Compares both
+/// with the budget.
 ///
 /// # Errors
 /// Those of [`resources`].

@@ -38,8 +38,8 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Returns the cargo command of a check. The build is not incremental: a clean build only loses time and space by it. It omits
-/// debug information, which takes a tenth of the time and is not needed for the line numbers of panics.
+/// Returns the cargo command of a check. The build is not incremental, because incremental compilation costs a clean build time and
+/// space. The build has no debug information, which would take a tenth of the time and is not needed for the line numbers of panics.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
     command

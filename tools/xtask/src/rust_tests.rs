@@ -17,14 +17,14 @@ use crate::{paths, run};
 /// Number of programs that run at a time.
 const AT_A_TIME: usize = 3;
 
-/// Options of cargo for little optimisation of the references. Full optimisation, as for the report, would take more time than it
-/// saves in the tests.
+/// Cargo options that compile the references with little optimisation. Full optimisation, as for the report, takes more time than
+/// the tests save by it.
 const QUICK_BUILD: [&str; 2] = [
     "--config",
     "profile.dev.package.glint-reference.opt-level=1",
 ];
 
-/// The longest-running programs, by package and target, longest first. They start first, because a long program would otherwise
+/// The longest-running programs, by package and target, longest first. These programs start first; otherwise a long program would
 /// run alone at the end.
 const LONGEST: [(&str, &str); 5] = [
     ("glint", "board"),

@@ -42,26 +42,26 @@ pub fn test() -> Result<()> {
             ));
             let _ = models_are_built.send(());
             results.add(gateware_check("proofs", &["gateware/formal/run.py"]));
-            results.add(resources::check().map(|()| 1));
+            results.add(resources::check());
         });
         firmware::build(Board::Virtual, &[])?;
         web::build(None)?;
-        results.add(scenes::generate(true).map(|()| 1));
-        results.add(modules::check().map(|()| 1));
+        results.add(scenes::generate(true));
+        results.add(modules::check());
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
         results.add(linted("clippy", &["check", "--all-targets"]));
         let firmware = ["--package", "glint-firmware", "--features", "peers"];
         let firmware = [&["check", "--target", firmware::TARGET], &firmware[..]].concat();
         results.add(linted("clippy of the firmware", &firmware));
-        results.add(firmware::check_peers().map(|_| 1));
+        results.add(firmware::check_peers().map(|_| ()));
         let documentation = ["doc", "--no-deps", "--document-private-items"];
         results.add(linted("rustdoc", &documentation));
         let tests = Programs::build(&[])?;
         gateware_builds.recv().expect("the builds do not panic")?;
-        scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)).map(|()| 1)));
+        scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned))));
         models.recv().expect("the gateware's checks do not panic");
-        results.add(tests.run(&[]));
-        results.add(rust_tests::run_examples());
+        results.add_tests(tests.run(&[]));
+        results.add_tests(rust_tests::run_examples());
         Ok(())
     })?;
 
@@ -93,7 +93,13 @@ struct CheckResults {
 }
 
 impl CheckResults {
-    fn add(&self, outcome: Result<u32>) {
+    /// Adds the outcome of one check.
+    fn add(&self, outcome: Result<()>) {
+        self.add_tests(outcome.map(|()| 1));
+    }
+
+    /// Adds the outcome of tests, with the number of passed tests.
+    fn add_tests(&self, outcome: Result<u32>) {
         match outcome {
             Ok(count) => {
                 self.passed.fetch_add(count, Ordering::Relaxed);
@@ -122,26 +128,23 @@ impl CheckResults {
 }
 
 /// Runs a cargo command as a check.
-fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
-    run::step(name, &mut run::cargo(arguments))?;
-    Ok(1)
+fn cargo(name: &str, arguments: &[&str]) -> Result<()> {
+    run::step(name, &mut run::cargo(arguments))
 }
 
 /// Runs a cargo command as a check with clippy as the compiler and warnings as errors. `cargo clippy` uses another compiler than
 /// `cargo doc`, which would then compile every crate again.
-fn linted(name: &str, arguments: &[&str]) -> Result<u32> {
+fn linted(name: &str, arguments: &[&str]) -> Result<()> {
     run::step(
         name,
         run::cargo(arguments)
             .env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver")
             .env("CLIPPY_ARGS", "-Dwarnings")
             .env("RUSTDOCFLAGS", "-Dwarnings"),
-    )?;
-    Ok(1)
+    )
 }
 
 /// Runs a Python program as a check, such as the gateware tests or the proofs.
-fn gateware_check(name: &str, program: &[&str]) -> Result<u32> {
-    run::step(name, &mut run::python(program))?;
-    Ok(1)
+fn gateware_check(name: &str, program: &[&str]) -> Result<()> {
+    run::step(name, &mut run::python(program))
 }

@@ -34,10 +34,10 @@ const BIOS_PROMPT: &str = "litex";
 /// Prefix of the name of a build with a single block.
 const ONLY: &str = "only-";
 
-/// The builds of a test run, one of each kind: for a scene, and with a single block.
+/// The builds of `cargo xtask test`, one of each kind: for a scene, and with a single block.
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
-/// A command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
+/// One command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
 const COMMANDS: [(Feature, &str); 21] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
@@ -169,18 +169,18 @@ fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     ))
 }
 
-/// A program that ends with this value.
+/// A child process, killed on drop.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended before.
+        // The process may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// The text on a board's serial port up to the first prompt, or until `end`.
+/// Reads a board's serial port up to the first prompt, or until the time `end`.
 fn said_at_power_up(port: &Path, end: Instant) -> Result<String> {
     let mut line = File::open(port).with_context(|| format!("opening {}", port.display()))?;
     let (sender, receiver) = mpsc::channel();
@@ -209,9 +209,11 @@ fn said_at_power_up(port: &Path, end: Instant) -> Result<String> {
     }
 }
 
-/// Path of the program `glint`.
-fn glint() -> PathBuf {
-    paths::target().join("debug/glint")
+/// The program `glint` with these arguments.
+fn glint(arguments: &[&str]) -> Command {
+    let mut command = Command::new(paths::target().join("debug/glint"));
+    command.args(arguments).current_dir(paths::root());
+    command
 }
 
 /// The folder of pictures and images.
@@ -268,13 +270,11 @@ impl Build {
         let bits: u32 = blocks.iter().map(|block| block.bit()).sum();
         let expected = format!("blocks {bits:#x}");
         let mut reply = Vec::new();
-        let arguments = ["console", "virtual", "--send", "info blocks"].map(Path::new);
         run::watched_step(
             &format!("info of {}", self.name),
-            &mut self.glint(&arguments),
-            |line| {
-                reply.push(line.to_owned());
-            },
+            self.glint(&["console"])
+                .args(["virtual", "--send", "info blocks"]),
+            |line| reply.push(line.to_owned()),
         )?;
         ensure!(
             reply.iter().any(|line| line.trim() == expected),
@@ -306,10 +306,8 @@ impl Build {
 
     /// Fails unless a board refuses the last of these commands with an error that contains `expected`.
     fn refuses(&self, board: &str, commands: &[&str], expected: &str) -> Result<()> {
-        let mut arguments = vec!["console", board];
-        arguments.extend(commands.iter().flat_map(|command| ["--send", command]));
-        let arguments: Vec<_> = arguments.into_iter().map(Path::new).collect();
-        let output = self.glint(&arguments).output()?;
+        let sends = commands.iter().flat_map(|command| ["--send", command]);
+        let output = self.glint(&["console", board]).args(sends).output()?;
         let error = String::from_utf8_lossy(&output.stderr);
         ensure!(
             !output.status.success() && error.contains(expected),
@@ -319,29 +317,26 @@ impl Build {
         Ok(())
     }
 
-    /// Fails unless the firmware, on the emulated board, accepts a wireframe program of a user and draws it.
+    /// Fails unless the firmware, on the emulated board, accepts an uploaded wireframe program and draws it.
     fn draws_other_programs(&self) -> Result<()> {
         let folder = folder()?;
         let program = folder.join("ball.wfb");
-        let step =
-            |name: &str, command: &mut Command| run::step(name, command.current_dir(paths::root()));
-        let make = ["wireframe", "make", "icosphere:2", "--force", "--out"];
-        step(
+        run::step(
             "wireframe program",
-            Command::new(glint()).args(make).arg(&program),
+            glint(&["wireframe", "make", "icosphere:2", "--force", "--out"]).arg(&program),
         )?;
         let [own, expected] = ["board", "model"].map(|by| folder.join(format!("ball-{by}.png")));
-        let render = [Path::new("wireframe"), Path::new("render"), &program];
-        let out = [Path::new("--force"), Path::new("--out")];
-        step(
+        let render = ["wireframe", "render", "--force"];
+        run::step(
             "wireframe program by the model",
-            Command::new(glint()).args(render).args(out).arg(&expected),
+            glint(&render).arg(&program).arg("--out").arg(&expected),
         )?;
-        let mut arguments = [&render[..], &["--board", "emulated"].map(Path::new), &out].concat();
-        arguments.push(&own);
-        step(
+        run::step(
             &format!("wireframe program by the firmware of {}", self.name),
-            &mut self.glint(&arguments),
+            self.glint(&render)
+                .arg(&program)
+                .args(["--board", "emulated", "--out"])
+                .arg(&own),
         )?;
         ensure!(
             fs::read(&own)? == fs::read(&expected)?,
@@ -350,29 +345,23 @@ impl Build {
         Ok(())
     }
 
-    /// Fails unless the BIOS of the build, on the emulated board, starts the firmware with all parts from an image with the scene, without an error.
+    /// Fails unless the BIOS of the build, on the emulated board, starts the complete firmware from a flash image with the scene, without an
+    /// error.
     fn runs_alone(&self, scene: &SceneFile) -> Result<()> {
         let folder = folder()?;
         let [image, port] =
             ["bin", "port"].map(|kind| folder.join(scene.name()).with_extension(kind));
-        let mut make = Command::new(glint());
-        make.args([
-            "image",
-            "make",
-            "--force",
-            "--scene",
-            scene.name(),
-            "--firmware",
-        ])
-        .arg(firmware_image("glint"))
-        .arg("--out")
-        .arg(&image)
-        .current_dir(paths::root());
-        run::step(&format!("image of {}", scene.name()), &mut make)?;
+        run::step(
+            &format!("image of {}", scene.name()),
+            glint(&["image", "make", "--force", "--scene", scene.name()])
+                .arg("--firmware")
+                .arg(firmware_image("glint"))
+                .arg("--out")
+                .arg(&image),
+        )?;
         let start = Instant::now();
-        let mut board = Command::new(glint());
+        let mut board = glint(&["board", "--board", "emulated", "--flash"]);
         board
-            .args(["board", "--board", "emulated", "--flash"])
             .arg(&image)
             .arg("--ready-file")
             .arg(&port)
@@ -401,20 +390,13 @@ impl Build {
     fn draw(&self, scene: &SceneFile) -> Result<Frame> {
         let picture = folder()?.join(format!("{}-{}.png", scene.name(), self.name));
         let stats = picture.with_extension("json");
-        let words = [
-            "render",
-            "--board",
-            "virtual",
-            "--scene",
-            scene.name(),
-            "--force",
-            "--stats",
-        ];
-        let mut arguments: Vec<_> = words.into_iter().map(Path::new).collect();
-        arguments.extend([&stats, Path::new("--out"), &picture]);
         run::step(
             &format!("frame of {} on {}", scene.name(), self.name),
-            &mut self.glint(&arguments),
+            self.glint(&["render", "--board", "virtual", "--scene", scene.name()])
+                .args(["--force", "--stats"])
+                .arg(&stats)
+                .arg("--out")
+                .arg(&picture),
         )?;
         let read =
             |path: &Path| fs::read(path).with_context(|| format!("reading {}", path.display()));
@@ -425,15 +407,13 @@ impl Build {
         })
     }
 
-    /// `glint` with these arguments, for this build and its firmware.
-    fn glint(&self, arguments: &[&Path]) -> Command {
-        let mut command = Command::new(glint());
+    /// `glint` with these arguments, on boards of this build with its firmware.
+    fn glint(&self, arguments: &[&str]) -> Command {
+        let mut command = glint(arguments);
         command
-            .args(arguments)
             .arg("--firmware")
             .arg(&self.firmware)
-            .env("GLINT_VIRTUAL_BOARD", &self.folder)
-            .current_dir(paths::root());
+            .env("GLINT_VIRTUAL_BOARD", &self.folder);
         command
     }
 }

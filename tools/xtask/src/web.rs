@@ -16,13 +16,13 @@ const PROFILE: &str = "wasm";
 /// Folders with the files of the page and of its web worker.
 const SOURCES: [&str; 2] = ["tools/live-page/web", "tools/emulated-board-wasm/web"];
 
-/// The emulated board's file in the output folder, by which this command recognises its own output.
+/// Name of the emulated board's file. A folder with this file is the output of an earlier build.
 const BOARD: &str = "board.wasm";
 
-/// Builds the folder `out`, by default `target/web`. It replaces an earlier build.
+/// Builds the folder `out`, by default `target/web`, and replaces an earlier build there.
 ///
 /// # Errors
-/// A build fails, or the folder has other files.
+/// A build fails, or the folder has files but no earlier build.
 pub fn build(out: Option<&Path>) -> Result<()> {
     bootstrap::rust_targets()?;
     firmware::build(Board::Virtual, &[])?;

@@ -12,16 +12,16 @@ pub enum Move {
     Previous,
 }
 
-/// The present scene of a list, and the end of its time. Times are in milliseconds since start.
+/// The current scene of a list, and the end of its time. Times are in milliseconds since start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Demo {
     /// Number of scenes; 0 while the demo is off.
     count: usize,
-    /// Index of the present scene.
+    /// Index of the current scene.
     number: usize,
-    /// Whether the present scene is not yet shown.
+    /// Whether the current scene must still be shown.
     is_due: bool,
-    /// Time at which the present scene ends.
+    /// Time at which the current scene ends.
     end: u64,
     is_held: bool,
 }
@@ -49,7 +49,7 @@ impl Demo {
         self.count > 0
     }
 
-    /// Index of the present scene, from 0; `None` while the demo is off.
+    /// Index of the current scene, from 0; `None` while the demo is off.
     pub fn number(&self) -> Option<usize> {
         self.is_on().then_some(self.number)
     }
@@ -59,12 +59,12 @@ impl Demo {
         self.count
     }
 
-    /// Whether the shown scene stays.
+    /// Whether the demo holds the shown scene.
     pub const fn is_held(&self) -> bool {
         self.is_held
     }
 
-    /// Sets whether the shown scene stays. At the end of a hold the scene stays for another [`TURN_MS`].
+    /// Starts or ends a hold of the shown scene. After a hold the scene stays for another [`TURN_MS`].
     pub const fn hold(&mut self, now: u64, held: bool) {
         if self.is_held && !held {
             self.end = now.saturating_add(TURN_MS);
@@ -72,7 +72,7 @@ impl Demo {
         self.is_held = held;
     }
 
-    /// Moves to another scene; during a hold that scene stays.
+    /// Moves to another scene. A hold continues with that scene.
     pub fn go(&mut self, step: Move) {
         let last = self.count.saturating_sub(1);
         self.number = match step {

@@ -15,7 +15,7 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// Converts whether a task has worked to the result of its turn.
+    /// The result of the turn of a task that has worked (`true`) or had no work (`false`).
     pub const fn worked(worked: bool) -> Self {
         if worked { Self::Again } else { Self::Wait }
     }
@@ -33,7 +33,8 @@ fn pass<T>(all: &mut T, tasks: &[fn(&mut T) -> Turn]) -> Turn {
 }
 
 /// Gives each of the tasks a turn, and sleeps if all tasks wait. `interrupts` returns the number of interrupts so far. `sleep`
-/// gets this number from before the first turn, and must return at once if the number has changed.
+/// gets the number that was read before the first turn, and must return at once if the number has
+/// changed since.
 pub fn step<T>(
     all: &mut T,
     tasks: &[fn(&mut T) -> Turn],

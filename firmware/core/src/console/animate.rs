@@ -19,7 +19,7 @@ impl WordArgument for Rate {
     }
 }
 
-/// The axis of a turn, or the number of the object that turns, after which the axis follows.
+/// The word after `turn`: an axis, or the number of an object that an axis follows.
 enum Turned {
     Axis(Axis),
     Object(u32),

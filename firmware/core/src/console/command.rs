@@ -45,7 +45,7 @@ commands! {
         help Help(command: Option<CommandName>): "list the commands, or explain one";
         info Info(key: Option<Name>): "show the state of the machine, or one entry of it";
         selftest SelfTest(): "test clock, memory, sensors, scan-out, and a picture of every engine against its stored checksum";
-        echo Echo(word: Name): "print a word; a program finds the end of earlier output by it";
+        echo Echo(word: Name): "print a word, which marks the end of earlier output for a program";
         leds Leds(value: u16): "set the 16 LEDs";
         buttons Buttons(): "show buttons and switches";
         reboot Reboot(): "reset the SoC";
@@ -59,7 +59,7 @@ commands! {
         load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh (binary) under a name (default model) and show it";
         models Models() in UPLOAD: "list the meshes and the memory for uploads";
         unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh";
-        program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; alone: show the last one"
+        program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; without arguments, show the last one"
             => key(Order::Subject, "cube");
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
     }
@@ -82,10 +82,10 @@ commands! {
             => key(Order::Subject, "torus scale 0.5 move 1,0,0").action("add").list().without(&["field", "program"]);
         material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours by direction, mixed gives each sphere its own colour"
             => key(Order::Option, "jade").with(LIT)
-                .host(option("material", "MATERIAL", "Material of a field; `normal` colours by the normal, `mixed` gives successive spheres different colours [default: normal]. Without a field, the colour of meshes instead of their own ones"));
+                .host(option("material", "MATERIAL", "Material of a field; `normal` colours by the normal, `mixed` gives successive spheres different colours [default: normal]. Without a field, a colour that replaces the colours of meshes"));
         light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default"
             => key(Order::Option, "1,-2,3,fff0d8").list().with(LIT)
-                .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; of several, the first one lights the mesh in a field")
+                .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; if there are several, the first one lights the mesh in a field")
                     .expects("a light"));
         ambient Ambient(colour: Or<Default, Rgb>) or show in LIGHT: "show or set the ambient light"
             => key(Order::Option, "404040").with(LIT)
@@ -97,7 +97,7 @@ commands! {
                     .expects("a highlight STRENGTH,EXPONENT such as 0.6,32"));
         shadow Shadow(on: bool) or show in LIGHT: "turn the shadows of the first light in a field on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
-                .host(switch("shadow", "on", "Shadows of the first light in a field: sponges, `boxes` and `cubes` throw shadows on their own faces. `normal` without a --light has none"));
+                .host(switch("shadow", "on", "Shadows of the first light in a field: sponges, `boxes` and `cubes` cast shadows on their own faces. `normal` without a --light has none"));
         background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes, which have one colour"
             => key(Order::Option, "sky").with(LIT)
                 .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")
@@ -109,7 +109,7 @@ commands! {
         occlusion Occlusion(on: bool) or show in FIELD: "turn ambient occlusion of a field on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
                 .host(switch("occlusion", "on", "Ambient occlusion: darken a field's surface where other surfaces are close"));
-        undecided Undecided(on: bool) or show in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting"
+        undecided Undecided(on: bool) or show in FIELD: "turn the magenta colour of a field's rays at the step limit on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
                 .host(switch("undecided", "on", "Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour"));
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn) in VIEW: "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
@@ -144,7 +144,7 @@ commands! {
         orbit Orbit(frames: Option<Whole<3_600>>) in VIEW: "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
     options {
-        animate Animate(animation: Animate) or show in ANIMATE: "show or set what moves by the time: azimuth of the camera, orbit of a sphere, turn of objects"
+        animate Animate(animation: Animate) or show in ANIMATE: "show or set the motion: azimuth of the camera, orbit of a sphere, turn of objects"
             => key(Order::Option, "azimuth 30").with(LIT);
     }
 
@@ -159,7 +159,7 @@ commands! {
 
     /// Commands for steering by a hand in front of the image sensor.
     GestureCommands {
-        gesture Gesture(action: Option<GestureAction>) in GESTURE: "show what the hand does; let it steer the camera, calibrate its colour, or send its mask (binary)";
+        gesture Gesture(action: Option<GestureAction>) in GESTURE: "show the state of the hand; let it steer the camera, calibrate its colour, or send its mask (binary)";
     }
     options {
         quality Quality(quality: Quality) or show: "show or set the quality: the picture size, and the precision of a field's rays"
@@ -178,13 +178,13 @@ commands! {
             => key(Order::Option, "10").with(MESHES)
                 .host(option("far", "DISTANCE", "Clip triangles to the picture, the near plane and a far plane at this distance, instead of to the near plane and the engine's guard band")
                     .expects("a distance from 0 to below 256"));
-        winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)"
+        winding Winding(rule: Winding) in MESH: "set the rule for the visible side of a triangle: mesh (order of its vertices) or screen (all are visible)"
             => key(Order::Option, "screen").with(MESHES)
-                .host(option("winding", "WINDING", "The rule for the seen side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the upper left vertex: all triangles are seen, and none is culled) [default: mesh]"));
+                .host(option("winding", "WINDING", "The rule for the visible side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the upper left vertex: all triangles are visible, and none is culled) [default: mesh]"));
         textures Textures(on: bool) in TEXTURE: "turn textures of meshes on or off"
             => key(Order::Option, "off").with(MESHES)
                 .host(switch("no-textures", "off", "Draw meshes without their textures"));
-        edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces"
+        edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh: hidden (only edges that no face hides) or over (on the shaded faces)"
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
         overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";
@@ -246,7 +246,8 @@ impl WordArgument for CommandName {
 }
 
 impl Setting<'_> {
-    /// A note for the user on a setting that this release accepts, without effect, for the last time. The console and `glint` print it.
+    /// A note for the user on a setting that this release accepts without effect, and that the next
+    /// release rejects. The console and `glint` print the note.
     /// `None` for a setting with an effect.
     pub const fn note(&self) -> Option<&'static str> {
         match self {
@@ -300,7 +301,7 @@ pub(super) fn find(name: &str) -> Option<&'static Syntax> {
 }
 
 /// The words that the command accepts as its first argument, without a keyword that may replace the value; `None` for an argument
-/// that is no list of words.
+/// that is not one of a list of words.
 pub fn accepted_words(command: &str) -> Option<&'static [&'static str]> {
     match &find(command)?.parameters.first()?.shape {
         Shape::Word(WordKind::Words(words) | WordKind::Either(_, WordKind::Words(words))) => {

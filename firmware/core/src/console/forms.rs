@@ -37,7 +37,7 @@ pub struct HostOption {
     pub name: &'static str,
     /// Name of the value in the help.
     pub value: &'static str,
-    /// Value that an option without a value stands for; `None` for an option with a value.
+    /// Value of the setting for an option that takes no value; `None` for an option that takes one.
     pub switch: Option<&'static str>,
     /// Help.
     pub help: &'static str,
@@ -62,7 +62,8 @@ pub enum Order {
     Fit,
 }
 
-/// Makes a key that has the command's name, whose command is executed at this position, and an example of its value.
+/// Makes a key with the command's name: its position in the order of execution, and an example of its
+/// value.
 pub const fn key(order: Order, example: &'static str) -> Forms {
     Forms {
         key: None,

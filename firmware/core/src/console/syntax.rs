@@ -11,7 +11,7 @@ pub struct Syntax {
     pub summary: &'static str,
     /// Parameters in their order. Only the last parameter may be optional.
     pub parameters: &'static [Parameter],
-    /// Whether the line may end before the parameters, which shows the present setting.
+    /// Whether the line may end before the parameters, which shows the current setting.
     pub is_shown: bool,
 }
 
@@ -58,9 +58,10 @@ pub enum WordKind {
     Either(&'static str, &'static WordKind),
     /// The name of a command.
     Command,
-    /// A name, usually one of a list that the machine has, with the description of the names.
+    /// A name, usually from this list of the machine, and the description of the names.
     Name(NameList, &'static (dyn Display + Sync)),
-    /// A name from this table, a colon and numbers. An entry is the form, with names in place of the numbers, and its description.
+    /// A name from this table, a colon and numbers. An entry has the form, with names in place of the
+    /// numbers, and its description.
     Forms(&'static [(&'static str, &'static str)]),
 }
 
@@ -143,7 +144,7 @@ impl Syntax {
         }
     }
 
-    /// Sets whether the command without arguments shows the present setting.
+    /// Sets whether the command without arguments shows the current setting.
     pub const fn or_show(self, is_shown: bool) -> Self {
         Self { is_shown, ..self }
     }

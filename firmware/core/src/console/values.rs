@@ -369,7 +369,7 @@ pub enum ImuAction {
     Stream(Option<u32>),
     /// Let the sensor steer the camera in this mode; `None` stops the steering.
     Follow(Option<Follow>),
-    /// Turn the steered camera about the vertical, back to heading 0.
+    /// Turn the steered camera about the vertical axis, back to heading 0.
     Recentre,
 }
 

@@ -1,4 +1,4 @@
-//! Motion of a picture by the time: the rates of camera, objects and a sphere on its orbit.
+//! Motion of a picture over time: the rates of camera, objects and a sphere on its orbit.
 //!
 //! The text form is a list of parts with their rates in degrees a second, such as `azimuth 30 turn z -45`, or `off`.
 
@@ -28,10 +28,11 @@ impl Rate {
         self.0.to_bits() == 0
     }
 
-    /// The angle after `time` seconds: the product, rounded to nearest, modulo one turn. It comes from the whole time, so errors do
+    /// The angle after `time` seconds: the product, rounded to nearest, modulo one turn. It is computed from the total time, so errors do
     /// not add up: up to a year it differs by at most one unit of [`Turns`] from the exact angle.
     pub const fn angle(self, time: U32_32) -> Turns {
-        // Turns a second with 62 fraction bits, of degrees with 32: a factor of 2^30/360 = 2^27/45. At most 2^62 in magnitude.
+        // From degrees a second with 32 fraction bits to turns a second with 62 fraction bits: times
+        // 2^30/360 = 2^27/45. The result is at most 2^62 in magnitude.
         let degrees = self.0.to_bits();
         let turns = ((degrees / 45) << 27) + ((degrees % 45) << 27) / 45;
         // A product has 94 fraction bits, an angle 32; the conversion to 32 bits drops the whole turns.
@@ -47,12 +48,12 @@ impl fmt::Display for Rate {
     }
 }
 
-/// A turn of objects, each about its own origin.
+/// A rotation of objects, each about its own origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ObjectTurn {
-    /// Number of the object that turns, from 1; `None` if all turn.
+    /// Number of the rotating object, from 1; `None` for all objects.
     pub object: Option<u32>,
-    /// The axis of the world whose direction the axis of the turn has.
+    /// The world axis to which the axis of rotation is parallel.
     pub axis: Axis,
     /// The rate, positive in the direction of [`Matrix::rotation`](crate::matrix::Matrix::rotation).
     pub rate: Rate,
@@ -72,14 +73,14 @@ choices!(Part {
     Turn: "turn",
 });
 
-/// The rates of everything that moves by the time. By default nothing moves.
+/// The rates of all motion over time. By default nothing moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Animation {
     /// Rate of the azimuth of the camera on a sphere.
     pub azimuth: Rate,
     /// Rate of the angle of a sphere on an orbit.
     pub orbit: Rate,
-    /// Turn of objects.
+    /// Rotation of objects.
     pub turn: Option<ObjectTurn>,
 }
 

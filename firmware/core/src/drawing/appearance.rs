@@ -20,7 +20,7 @@ pub struct Appearance {
     pub ambient: Option<Rgb>,
     /// Highlight of the first light on a field.
     pub highlight: Option<Highlight>,
-    /// Whether the first light throws shadows in a field.
+    /// Whether the first light casts shadows in a field.
     pub shadow: bool,
     /// Background; `None` selects white for a field and black for meshes.
     pub background: Option<Background>,
@@ -52,13 +52,13 @@ impl Appearance {
         }
     }
 
-    /// Whether fields have a highlight: there is one if there are lights.
+    /// Whether fields have a highlight, which requires lights.
     pub fn has_highlight(&self) -> bool {
         let lighting = self.lighting();
         lighting.highlight.is_some() && !lighting.lights.is_empty()
     }
 
-    /// Whether fields may have shadows: there are some if there are lights.
+    /// Whether fields may have shadows, which require lights.
     pub fn has_shadows(&self) -> bool {
         self.shadow && !self.lighting().lights.is_empty()
     }

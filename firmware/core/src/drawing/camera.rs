@@ -284,8 +284,8 @@ impl View {
         }
     }
 
-    /// The position of the eye in world units, at most 32 from the origin; the eyes of a stereo pair are at most 1 beside such a
-    /// position.
+    /// The position of the eye in world units, at most 32 from the origin; an eye of a stereo pair may be
+    /// up to 1 farther.
     pub const fn eye(&self) -> [Q32_32; 3] {
         self.eye
     }

@@ -41,13 +41,8 @@ pub struct BoundingSphere {
 /// Reason why no camera shows a whole sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FramingError {
-    /// The sphere extends too far from the origin: no allowed position of the eye is outside of the sphere.
-    TooFar {
-        /// The centre.
-        centre: [Q32_32; 3],
-        /// The radius.
-        radius: Q32_32,
-    },
+    /// The sphere extends too far from the origin: no allowed position of the eye is outside of it.
+    TooFar(BoundingSphere),
     /// The field of view is out of range.
     View(ViewError),
 }
@@ -55,14 +50,15 @@ pub enum FramingError {
 impl fmt::Display for FramingError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::TooFar {
-                centre: [x, y, z],
-                radius,
-            } => write!(
-                f,
-                "meshes in a sphere of radius {radius:.3} about ({x:.3}, {y:.3}, {z:.3}): expected an eye outside of it within {:.1} of the origin",
-                world(FARTHEST)
-            ),
+            Self::TooFar(sphere) => {
+                let [x, y, z] = sphere.centre.map(world);
+                write!(
+                    f,
+                    "meshes in a sphere of radius {:.3} about ({x:.3}, {y:.3}, {z:.3}): expected an eye outside of it within {:.1} of the origin",
+                    world(sphere.radius),
+                    world(FARTHEST)
+                )
+            }
             Self::View(error) => error.fmt(f),
         }
     }
@@ -96,7 +92,7 @@ impl BoundingSphere {
         })
     }
 
-    /// Returns a camera in whose picture the sphere takes 80 % of the height, with the axis `up` up on the screen. The direction
+    /// Returns a camera in whose picture the sphere fills 80 % of the height, with the axis `up` up on the screen. The direction
     /// to the camera has an angle of 60° from this axis, and an azimuth of 30° plus `turned` about it.
     ///
     /// A given horizontal field of view determines the distance of the eye; otherwise the distance is 3.5 radii, which determines
@@ -120,10 +116,7 @@ impl BoundingSphere {
             FARTHEST - length_squared(centre).isqrt() as Length,
         );
         if least > most {
-            return Err(FramingError::TooFar {
-                centre: centre.map(world),
-                radius: world(radius),
-            });
+            return Err(FramingError::TooFar(*self));
         }
         let distance = wanted.clamp(least, most);
         let [[sp, cp], [st, ct]] = [POLAR, AZIMUTH.wrapping_add(turned)].map(sines);
@@ -144,17 +137,18 @@ impl BoundingSphere {
     }
 }
 
-/// Length of a tangent from the eye to a sphere of this radius that takes 80 % of the height with this field of view; at most
+/// Length of a tangent from the eye to a sphere of this radius that fills 80 % of the height with this field of view; at most
 /// [`FARTHEST`].
 fn tangent_length(radius: Length, angle: Turns) -> Length {
     let [sin, cos] = sines(Turns(angle.0 / 2)).map(i64::unsigned_abs);
-    // A half width h means a half height of 9/16·h, and 80 % of this are 9/20·h. As a radius is below 2^29, the products are
+    // A half width h means a half height of 9/16·h, and 80 % of this is 9/20·h. As a radius is below 2^29, the products are
     // below 2^64.
     let length = radius.unsigned_abs() * cos * 20 / (sin * 9).max(1);
     length.min(FARTHEST as u64) as Length
 }
 
-/// The half width with which a sphere of this radius takes 80 % of the height at this distance. The distance is larger than the
+/// The half width of the image plane with which a sphere of this radius fills 80 % of the height at
+/// this distance. The distance is larger than the
 /// radius.
 fn half_width(radius: Length, distance: Length) -> U8_28 {
     let touching = ((distance - radius) * (distance + radius)).isqrt().max(1);

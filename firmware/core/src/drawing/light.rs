@@ -2,7 +2,8 @@
 //!
 //! Faces perpendicular to the axes have only six directions, so their six lit colours are computed once per frame, and no
 //! lighting is computed per pixel. Spheres are lit per pixel, and meshes per triangle or vertex, in `glint-model` and in the
-//! gateware. Light depends only on the angles between the normal, the direction to the light and that to the camera, and on shadows.
+//! gateware. Light depends only on the angles between
+//! the normal, the direction to the light and the direction to the camera, and on shadows.
 
 use core::fmt;
 
@@ -99,7 +100,7 @@ impl Light {
     /// # Errors
     /// The text has another form, or the direction is 0.
     pub fn parse(text: &str) -> Result<Self, LightError<'_>> {
-        let form = LightError::Form { text };
+        let form = LightError::Form(text);
         let mut words = text.split(',');
         let mut direction = [Q32_32::ZERO; 3];
         let is_at_camera = words.clone().next() == Some(CAMERA);
@@ -171,11 +172,8 @@ pub fn parse_rgb(text: &str) -> Option<Rgb> {
 /// Reason why a text is not the text form of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightError<'a> {
-    /// The text does not have the form that `FORM` states.
-    Form {
-        /// The text.
-        text: &'a str,
-    },
+    /// This text does not have the form that `FORM` states.
+    Form(&'a str),
     /// All components of the direction are 0.
     Nowhere,
 }
@@ -183,7 +181,7 @@ pub enum LightError<'a> {
 impl fmt::Display for LightError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Form { text } => write!(f, "{text}: expected {FORM}"),
+            Self::Form(text) => write!(f, "{text}: expected {FORM}"),
             Self::Nowhere => f.write_str("direction 0,0,0: expected a non-zero direction"),
         }
     }
@@ -200,7 +198,7 @@ pub struct Lighting {
     pub lights: Vec<Light, MAX_LIGHTS>,
     /// Highlight of the first light.
     pub highlight: Option<Highlight>,
-    /// Direction halfway between those to the first light and to the camera, s1.14, of length 1; 0 if they are opposite, and before
+    /// Direction halfway between the directions to the first light and to the camera, s1.14, of length 1; 0 if they are opposite, and before
     /// [`seen_from`](Self::seen_from).
     pub half: [i16; 3],
 }
@@ -237,7 +235,8 @@ impl Lighting {
         }
     }
 
-    /// Returns the lighting as seen from a camera: sets the directions of lights at the camera, and that of the highlight.
+    /// Returns the lighting as seen from a camera: sets the directions of the highlight and of lights at
+    /// the camera.
     #[must_use]
     pub fn seen_from(mut self, view: &View) -> Self {
         for light in &mut self.lights {
@@ -265,7 +264,7 @@ impl Lighting {
         })
     }
 
-    /// Computes the colours of the faces perpendicular to the axes x, y and z that are turned to the first light and in its shadow.
+    /// Computes the shadowed colours of the faces perpendicular to x, y and z that face the first light.
     pub fn shadows(&self, faces: &[Rgb; 6]) -> [Rgb; 3] {
         let Some((first, rest)) = self.lights.split_first() else {
             return [[0; 3]; 3];
@@ -362,14 +361,14 @@ impl Highlight {
         54 * self.exponent as u16 + 40
     }
 
-    /// The highlight's colour where it is brightest, from that of the light. Rounded to nearest.
+    /// The colour at the centre of the highlight, from the colour of the light, rounded to nearest.
     pub fn colour(self, light: Rgb) -> Rgb {
         light.map(|part| ((u32::from(part) * u32::from(self.strength) + 500) / 1_000) as u8)
     }
 }
 
-/// The share of a highlight with this steepness, u5.8, in 255ths, for a cosine with 16 fraction bits, at most 1. Each product is rounded
-/// down.
+/// Brightness of a highlight relative to its strength, in units of 1/255, for a steepness in u5.8 and
+/// a cosine with 16 fraction bits, at most 1. Each product is rounded down.
 pub const fn highlight_share(steepness: u16, cosine: i32) -> u8 {
     const FULL: i32 = (1 << 16) - 1;
     let below = if cosine > FULL {
@@ -425,7 +424,7 @@ pub enum Material {
     /// The colour depends on the normal.
     #[default]
     Normal,
-    /// Successive spheres have the colours of the materials of one colour; faces are those of `Ivory`.
+    /// Successive spheres have the colours of the single-colour materials; faces have that of `Ivory`.
     Mixed,
     /// Reddish brown.
     Clay,
@@ -494,7 +493,8 @@ impl Material {
         colours
     }
 
-    /// The colours of the spheres in full light, by their numbers. Those of `Normal` depend on the normal instead.
+    /// The colours of the spheres in full light, by their numbers. With `Normal`, the colour of a sphere
+    /// depends on the normal instead.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Mixed = self {

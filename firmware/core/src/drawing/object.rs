@@ -124,7 +124,7 @@ impl Place {
         Ok(place)
     }
 
-    /// Composes two placements: this placement is applied first, `next` second. The colour of `next` replaces the present colour,
+    /// Composes two placements: this placement is applied first, `next` second. The colour of `next` replaces the current colour,
     /// if set.
     ///
     /// # Errors

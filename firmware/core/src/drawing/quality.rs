@@ -21,7 +21,8 @@ choices!(Quality {
     Exact: "exact",
 });
 
-/// The threshold of a hit by a marching ray: it has hit if the distance is below `base` + z·2^−`footprint` at the depth z.
+/// Threshold of a marching ray: the ray hits if the distance is below `base` + z·2^−`footprint` at the
+/// depth z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threshold {
     /// The constant part of the threshold, in field units with 12 fraction bits.

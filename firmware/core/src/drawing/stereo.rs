@@ -100,7 +100,7 @@ impl Stereo {
         let mut words = text.split(',');
         let mut number = || Q32_32::from_str(words.next()?).ok();
         let (Some(half_separation), Some(zero_parallax)) = (number(), number()) else {
-            return Err(StereoError::Form { text });
+            return Err(StereoError::Form(text));
         };
         let tint = match words.next() {
             None => Some(Tint::default()),
@@ -113,7 +113,7 @@ impl Stereo {
                 tint,
             }
             .checked(),
-            _ => Err(StereoError::Form { text }),
+            _ => Err(StereoError::Form(text)),
         }
     }
 }
@@ -133,11 +133,8 @@ impl fmt::Display for Stereo {
 /// Reason why a text does not describe stereo settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StereoError<'a> {
-    /// The text does not have the form that `FORM` states.
-    Form {
-        /// The text.
-        text: &'a str,
-    },
+    /// This text does not have the form that `FORM` states.
+    Form(&'a str),
     /// The half separation is out of range.
     HalfSeparation(Q32_32),
     /// The distance of zero parallax is too small.
@@ -152,7 +149,7 @@ pub enum StereoError<'a> {
 impl fmt::Display for StereoError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Form { text } => write!(f, "{text}: expected {FORM}"),
+            Self::Form(text) => write!(f, "{text}: expected {FORM}"),
             Self::HalfSeparation(x) => write!(
                 f,
                 "E {x}: expected {} to {}",

@@ -6,10 +6,11 @@ mod draw;
 #[cfg(feature = "alloc")]
 mod encode;
 
-use core::fmt;
-use core::ops::RangeInclusive;
+use core::ops::{Range, RangeInclusive};
 
 use crate::colour::Rgb565;
+use crate::deviation::Expected::{AtMost, Exactly, Magic, OneOr, Within};
+use crate::deviation::{self, Deviation, Expected};
 pub use crate::records::TextureHeader;
 use crate::records::WORD;
 use crate::wire::crc_32_without;
@@ -21,9 +22,7 @@ pub use encode::{Source, encode};
 pub const MAGIC: [u8; 4] = *b"GLT1";
 /// Base-2 logarithms of the sides that a texture may have.
 pub const SIDES_LOG2: RangeInclusive<u8> = 3..=10;
-/// Largest number of mip levels.
-pub const MAX_LEVELS: usize = *SIDES_LOG2.end() as usize + 1;
-/// Bytes of a block, the unit for a cache of texels.
+/// Number of bytes of a block, the unit of texel caches.
 pub const BLOCK_BYTES: usize = 2 * WORD;
 
 /// The representation of a texel.
@@ -70,23 +69,23 @@ impl Format {
     }
 }
 
-/// The texels beyond the sides of a texture.
+/// Rule for texture coordinates beyond the sides of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// The texture again.
+    /// Repeats the texture.
     #[default]
     Repeat,
-    /// The texture again, every other time reversed.
+    /// Repeats the texture, mirrored every other time.
     Mirror,
-    /// The texels at the side.
+    /// Clamps to the texels at the side.
     Clamp,
 }
 
 impl Wrap {
-    /// All kinds, by their numbers in the header.
+    /// All rules, by their numbers in the header.
     pub const ALL: [Self; 3] = [Self::Repeat, Self::Mirror, Self::Clamp];
 
-    /// The column or row in a level of 2^`side_log2` texels that stands for `place`, which may be outside of the level.
+    /// Maps a column or row, which may be outside of a level of 2^`side_log2` texels, to one inside.
     pub fn place(self, place: i32, side_log2: u32) -> u32 {
         let side = 1 << side_log2;
         let inside = place & (side - 1);
@@ -100,13 +99,13 @@ impl Wrap {
     }
 }
 
-/// The colour between texels.
+/// Rule for the colour between texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
     /// The colour of the nearest texel.
     #[default]
     Nearest,
-    /// The average of the four nearest texels, by their distances.
+    /// The average of the four nearest texels, weighted by their distances.
     Bilinear,
 }
 
@@ -115,12 +114,12 @@ impl Filter {
     pub const ALL: [Self; 2] = [Self::Nearest, Self::Bilinear];
 }
 
-/// How a texture is read.
+/// The rules by which a texture is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sampler {
-    /// Beyond the left and right side, and beyond the upper and lower side.
+    /// The rule beyond the left and right sides, and the rule beyond the upper and lower sides.
     pub wrap: [Wrap; 2],
-    /// Between texels.
+    /// The filter between texels.
     pub filter: Filter,
 }
 
@@ -141,66 +140,58 @@ impl<'a> Texture<'a> {
     ///
     /// # Errors
     /// The first deviation from the format, with its position.
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, TextureError> {
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, Deviation> {
         let found = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
-        let short = |expected: usize| TextureError {
-            offset: 0,
-            expected: Expected::Bytes(expected as u32),
-            found,
+        let short = |expected: usize| {
+            deviation::Format::Texture.deviation(0, Exactly("bytes", expected as u32), found)
         };
         let record = bytes.first_chunk().ok_or(short(TextureHeader::BYTES))?;
         let header = TextureHeader::from_bytes(record);
         let magic = u32::from_le_bytes(header.magic);
-        expect(
-            TextureHeader::MAGIC.start,
-            Expected::Magic,
-            magic,
-            header.magic == MAGIC,
-        )?;
-        let sides = [
-            (TextureHeader::WIDTH_LOG2.start, header.width_log2),
-            (TextureHeader::HEIGHT_LOG2.start, header.height_log2),
-        ];
-        for (at, side) in sides {
-            expect(
-                at,
-                Expected::SideLog2,
-                side.into(),
-                SIDES_LOG2.contains(&side),
-            )?;
-        }
+        expect(TextureHeader::MAGIC, Magic(MAGIC), magic)?;
+        let [least, most] = [SIDES_LOG2.start(), SIDES_LOG2.end()].map(|side| u32::from(*side));
+        let side = Within("the logarithm of a side", least, most);
         let size_log2 = [header.width_log2, header.height_log2].map(u32::from);
-        let all = 1 + size_log2[0].max(size_log2[1]);
+        expect(TextureHeader::WIDTH_LOG2, side, size_log2[0])?;
+        expect(TextureHeader::HEIGHT_LOG2, side, size_log2[1])?;
         let levels = u32::from(header.levels);
-        expect(
-            TextureHeader::LEVELS.start,
-            Expected::Levels(all),
-            levels,
-            levels == 1 || levels == all,
+        let all = OneOr("mip levels", 1 + size_log2[0].max(size_log2[1]));
+        expect(TextureHeader::LEVELS, all, levels)?;
+        let format = one_of(
+            TextureHeader::FORMAT,
+            "(format)",
+            header.format,
+            &Format::ALL,
         )?;
-        let format = one_of(TextureHeader::FORMAT.start, header.format, &Format::ALL)?;
         let wrap = TextureHeader::WRAP.start;
         let sampler = Sampler {
             wrap: [
-                one_of(wrap, header.wrap[0], &Wrap::ALL)?,
-                one_of(wrap + 1, header.wrap[1], &Wrap::ALL)?,
+                one_of(wrap..wrap + 1, "(wrap)", header.wrap[0], &Wrap::ALL)?,
+                one_of(wrap + 1..wrap + 2, "(wrap)", header.wrap[1], &Wrap::ALL)?,
             ],
-            filter: one_of(TextureHeader::FILTER.start, header.filter, &Filter::ALL)?,
+            filter: one_of(
+                TextureHeader::FILTER,
+                "(filter)",
+                header.filter,
+                &Filter::ALL,
+            )?,
         };
-        let cut_out = one_of(TextureHeader::CUT_OUT.start, header.cut_out, &[false, true])?;
-        let key = u32::from(header.key);
+        let cut_out = one_of(
+            TextureHeader::CUT_OUT,
+            "(cut-out)",
+            header.cut_out,
+            &[false, true],
+        )?;
         let largest = if cut_out { (1 << format.bits()) - 1 } else { 0 };
         expect(
-            TextureHeader::KEY.start,
-            Expected::AtMost(largest),
-            key,
-            key <= largest,
+            TextureHeader::KEY,
+            AtMost("(key)", largest),
+            header.key.into(),
         )?;
         let reserved = record.get(TextureHeader::RESERVED).unwrap_or_default();
         let reserved = reserved.iter().copied().find(|&byte| byte != 0);
         let reserved = u32::from(reserved.unwrap_or(0));
-        let at = TextureHeader::RESERVED.start;
-        expect(at, Expected::AtMost(0), reserved, reserved == 0)?;
+        expect(TextureHeader::RESERVED, Exactly("(reserved)", 0), reserved)?;
         let texture = Self {
             bytes,
             format,
@@ -211,10 +202,9 @@ impl<'a> Texture<'a> {
         };
         let length = texture.level_start(levels);
         expect(
-            TextureHeader::LENGTH.start,
-            Expected::Bytes(length as u32),
+            TextureHeader::LENGTH,
+            Exactly("bytes", length as u32),
             header.length,
-            header.length == length as u32,
         )?;
         let bytes = bytes.get(..length).ok_or(short(length))?;
         Ok(Self { bytes, ..texture })
@@ -225,12 +215,12 @@ impl<'a> Texture<'a> {
         self.bytes
     }
 
-    /// The representation of its texels.
+    /// The format of the texels.
     pub const fn format(&self) -> Format {
         self.format
     }
 
-    /// How it is read.
+    /// The sampling rules.
     pub const fn sampler(&self) -> Sampler {
         self.sampler
     }
@@ -303,8 +293,9 @@ impl<'a> Texture<'a> {
     }
 }
 
-/// The position of a texel's lowest bit in its block. The texels of even columns and even rows come first, in the first 32 bits of each
-/// word, then those of odd columns and even rows, then odd rows: four neighbours are in different quarters.
+/// The position of a texel's lowest bit in its block. The first 32 bits of each word have the texels of
+/// even columns and even rows, the next 32 bits those of odd columns and even rows, the last 64 bits
+/// those of odd rows. Therefore four neighbours are in different quarters of their words.
 fn texel_bit(format: Format, [x, y]: [u32; 2]) -> usize {
     let [width, height] = format.block_log2();
     let [x, y] = [x & ((1 << width) - 1), y & ((1 << height) - 1)];
@@ -314,7 +305,8 @@ fn texel_bit(format: Format, [x, y]: [u32; 2]) -> usize {
     (in_class / 32) * 128 + class as usize * 32 + in_class % 32
 }
 
-/// The texel in 16 bits of memory that contain its lowest bit, number `bit`, in their lowest byte.
+/// Extracts the texel whose lowest bit is number `bit` in memory. The lowest byte of `bits` contains
+/// this bit.
 const fn texel(format: Format, bits: u16, bit: usize) -> u16 {
     let value = bits >> (bit % 8);
     match format {
@@ -329,77 +321,19 @@ pub fn checksum(texture: &[u8]) -> u32 {
     crc_32_without(texture, TextureHeader::CHECKSUM)
 }
 
-fn expect(offset: usize, expected: Expected, found: u32, holds: bool) -> Result<(), TextureError> {
-    if holds {
-        return Ok(());
-    }
-    Err(TextureError {
-        offset: offset as u32,
-        expected,
-        found,
-    })
+fn expect(field: Range<usize>, expected: Expected, found: u32) -> Result<(), Deviation> {
+    deviation::Format::Texture.expect(field.start as u32, expected, found)
 }
 
-/// The value with a number in the header.
-fn one_of<T: Copy>(offset: usize, number: u8, values: &[T]) -> Result<T, TextureError> {
-    values
-        .get(usize::from(number))
-        .copied()
-        .ok_or(TextureError {
-            offset: offset as u32,
-            expected: Expected::AtMost(values.len() as u32 - 1),
-            found: number.into(),
-        })
+/// The value for which a number in the header stands.
+fn one_of<T: Copy>(
+    field: Range<usize>,
+    name: &'static str,
+    number: u8,
+    values: &[T],
+) -> Result<T, Deviation> {
+    let most = AtMost(name, values.len() as u32 - 1);
+    let value = values.get(usize::from(number)).copied();
+    let offset = field.start as u32;
+    value.ok_or(deviation::Format::Texture.deviation(offset, most, number.into()))
 }
-
-/// Reason why bytes are not a texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TextureError {
-    /// Offset of the error in bytes from the start of the texture.
-    pub offset: u32,
-    /// The content that was expected at this position.
-    pub expected: Expected,
-    /// The number found in the texture.
-    pub found: u32,
-}
-
-/// The content that a texture should have at the offset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Expected {
-    /// The four bytes of [`MAGIC`].
-    Magic,
-    /// A number of [`SIDES_LOG2`].
-    SideLog2,
-    /// One mip level, or this number.
-    Levels(u32),
-    /// A number up to this one.
-    AtMost(u32),
-    /// This number of bytes in all.
-    Bytes(u32),
-}
-
-impl fmt::Display for TextureError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "texture byte {}: expected ", self.offset)?;
-        match self.expected {
-            Expected::Magic => write!(
-                f,
-                "\"{}\", found \"{}\"",
-                MAGIC.escape_ascii(),
-                self.found.to_le_bytes().escape_ascii()
-            ),
-            Expected::SideLog2 => write!(
-                f,
-                "{} to {}, the logarithm of a side, found {}",
-                SIDES_LOG2.start(),
-                SIDES_LOG2.end(),
-                self.found
-            ),
-            Expected::Levels(all) => write!(f, "1 or {all} mip levels, found {}", self.found),
-            Expected::AtMost(largest) => write!(f, "at most {largest}, found {}", self.found),
-            Expected::Bytes(length) => write!(f, "{length} bytes, found {}", self.found),
-        }
-    }
-}
-
-impl core::error::Error for TextureError {}

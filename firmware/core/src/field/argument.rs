@@ -49,7 +49,7 @@ pub(in crate::field) fn check(
 pub(in crate::field) struct NumberText<'a> {
     kind: &'a str,
     words: core::str::Split<'a, char>,
-    /// Text of the groups after the present one; `None` after the last group.
+    /// Text of the groups after the current one; `None` after the last group.
     rest: Option<&'a str>,
     in_group: bool,
 }
@@ -79,7 +79,7 @@ impl<'a> NumberText<'a> {
             .ok_or(FieldError::Missing { kind, name })
     }
 
-    /// Checks that the present group, or the whole text before the first call of `group`, has no further number.
+    /// Checks that the current group, or the whole text before the first call of `group`, has no further number.
     pub fn end(&mut self) -> Result<(), FieldError<'a>> {
         let kind = self.kind;
         self.word()

@@ -49,11 +49,9 @@ pub enum FieldError<'a> {
     Smooth,
     /// The text of a bent union does not name two kinds that a bent union accepts.
     Bent,
-    /// The number of spheres is 0 or too large.
-    Spheres {
-        /// The largest number: [`MAX_SPHERES`](super::MAX_SPHERES), or one less in a union with a lattice.
-        most: usize,
-    },
+    /// The number of spheres is 0, or above this number: [`MAX_SPHERES`](super::MAX_SPHERES), or one less
+    /// in a union with a lattice.
+    Spheres(usize),
     /// A number is out of its range.
     Range {
         /// Name of the number.
@@ -92,7 +90,7 @@ impl fmt::Display for FieldError<'_> {
             Self::Bent => f.write_str(
                 "bent: expected menger or box, +, and sphere, spheres or moving",
             ),
-            Self::Spheres { most } => write!(f, "spheres: expected 1 to {most}"),
+            Self::Spheres(most) => write!(f, "spheres: expected 1 to {most}"),
             Self::Range { name, least, most } => {
                 write!(f, "{name}: expected {least} to {most}")
             }

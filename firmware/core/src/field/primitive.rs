@@ -40,7 +40,7 @@ macro_rules! primitives {
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[expect(
             clippy::large_enum_variant,
-            reason = "there is nowhere to box the spheres"
+            reason = "there is no heap for the spheres"
         )]
         pub enum Primitive {
             $(#[doc = concat!("[`", stringify!($shape), "`].")] $kind($shape),)*
@@ -208,7 +208,7 @@ flat_solids! {
     target_pointer_width = "64",
     expect(
         clippy::large_enum_variant,
-        reason = "there is nowhere to box the spheres"
+        reason = "there is no heap for the spheres"
     )
 )]
 pub enum Solid {

@@ -1,5 +1,5 @@
 //! `union:A+B`, `smooth:K,A+B` and `bent:N,A+B`: the union of a field and of spheres or a cone, sharp, with a fillet (a rounded
-//! transition), or with a distance to the field that is too long.
+//! transition), or bent: with the distance to the field multiplied by a power of two.
 
 use core::fmt;
 
@@ -14,7 +14,7 @@ use crate::fixed::Q32_32;
 /// Smallest and largest accepted width of a fillet, in world units.
 const BLEND: [Q32_32; 2] = [Q32_32::lit("0.01"), Q32_32::lit("0.5")];
 
-/// Largest exponent of a distance that is too long.
+/// Largest exponent of the factor 2^N of a bent union.
 const MOST_BEND: u8 = 6;
 
 /// The union of a field with flat faces, or a lattice, and of spheres or a cone.
@@ -31,7 +31,7 @@ impl Union {
     pub(super) const KINDS: [(&str, &str); 3] = [
         (
             "union:A+B",
-            "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres, moving or cone, both together",
+            "A menger, box, cubes, boxes, planes or lattice, B sphere, spheres, moving or cone, both as one solid",
         ),
         (
             "smooth:K,A+B",
@@ -39,7 +39,7 @@ impl Union {
         ),
         (
             "bent:N,A+B",
-            "A menger or box, with a distance to A that is 2^N times too long, N 1 to 6: planes that bend about B",
+            "A menger or box, with 2^N times the distance to A, N 1 to 6: planes that bend about B",
         ),
     ];
 
@@ -57,7 +57,7 @@ impl Union {
     ///
     /// # Errors
     /// `first` or `spheres` is of a kind that unions do not accept, or that unions with fillets do not accept. The width is out of range.
-    /// In a field with a period, a radius is longer than the formats allow, or there is a sphere too many for a lattice.
+    /// In a field with a period, a radius exceeds its number format, or a lattice has too many spheres.
     pub fn new(
         first: Primitive,
         spheres: Primitive,
@@ -78,7 +78,7 @@ impl Union {
             // The sphere of a lattice takes a place in the list.
             let most = MAX_SPHERES - usize::from(first.is_round());
             if list.count > most {
-                return Err(FieldError::Spheres { most });
+                return Err(FieldError::Spheres(most));
             }
             let height = list.cone.map(|cone| 2 * cone.half);
             let largest = (list.list.iter().take(list.count))
@@ -134,7 +134,8 @@ impl Union {
         self.blend
     }
 
-    /// Exponent of the power of two by which the distance to the first member is too long: 0 for an exact distance, 1 to 6 otherwise.
+    /// Exponent N of the factor 2^N of the distance to the first member: 1 to 6 in a bent union, 0 in
+    /// other unions.
     pub const fn bend(&self) -> u8 {
         self.bend
     }

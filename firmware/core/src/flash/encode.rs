@@ -4,9 +4,9 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::{
-    CONTENTS, FIRMWARE, FlashError, Image, Kind, MAGIC, MAX_FIRMWARE, MAX_ITEMS, list_checksum,
-    list_end,
+    CONTENTS, FIRMWARE, Image, Kind, MAGIC, MAX_FIRMWARE, MAX_ITEMS, list_checksum, list_end,
 };
+use crate::deviation::Deviation;
 use crate::records::{FirmwareHeader, FlashEntry, FlashHeader, WORD};
 use crate::wire::crc32;
 
@@ -29,7 +29,7 @@ pub enum EncodeError {
     /// Too many items: the largest number of items, and their number.
     Items(usize, usize),
     /// A part violates its format.
-    Part(FlashError),
+    Part(Deviation),
 }
 
 impl fmt::Display for EncodeError {

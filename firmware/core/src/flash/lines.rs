@@ -1,4 +1,4 @@
-//! Check of the four data lines of a flash by bytes that are known.
+//! Check of the four data lines of a flash by bytes with known values.
 
 use core::array;
 use core::fmt;
@@ -8,18 +8,19 @@ use super::{CONTENTS, MAGIC, SYNC, SYNC_WITHIN};
 /// Number of data lines.
 const LINES: usize = 4;
 
-/// What the bytes read from a flash show about its data lines.
+/// State of the data lines of a flash, as shown by bytes that were read from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataLines {
     /// All lines carry their data.
     Right,
-    /// Only ones were read: the flash is erased or does not answer.
+    /// All bits were read as 1: the flash is erased or does not answer.
     Erased,
     /// The lines are exchanged: entry k is the number of the line that carries the data of line k.
     Exchanged([u8; LINES]),
     /// Lines 2 and 3 carry no data.
     Two,
-    /// No known bytes were read. The word at the start of the contents, in the order of the bytes.
+    /// No known word was read. The value is the word at the start of the contents, with the first byte in
+    /// the highest bits.
     Unknown(u32),
 }
 
@@ -27,7 +28,7 @@ impl fmt::Display for DataLines {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Right => f.write_str("all data lines carry their data"),
-            Self::Erased => f.write_str("only ones: erased, or no answer"),
+            Self::Erased => f.write_str("all bits read as 1: erased, or no answer"),
             Self::Exchanged([a, b, c, d]) => write!(
                 f,
                 "data of the lines 0 1 2 3 on the lines {a} {b} {c} {d}, expected the same order"
@@ -67,7 +68,8 @@ pub fn data_lines(bytes: &[u8]) -> DataLines {
     result
 }
 
-/// What a word shows about the lines where `known` is expected; `None` for another word.
+/// State of the data lines that explains why `found` was read in place of `known`; `None` if no state
+/// does.
 fn compare(found: &[u8; 4], known: [u8; 4]) -> Option<DataLines> {
     let (found, known) = (carried(found), carried(&known));
     if found == known {

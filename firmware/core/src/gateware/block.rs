@@ -16,11 +16,11 @@ pub enum Block {
     Line = 3,
     /// The gesture engine.
     Gesture = 4,
-    /// The SPI flash in a window of memory.
+    /// The SPI flash, readable in a memory window.
     Flash = 5,
     /// The I2C master, for the motion sensor.
     I2C = 6,
-    /// The displays of digits.
+    /// The seven-segment displays.
     Digits = 7,
 }
 
@@ -36,12 +36,12 @@ choices!(Block {
 });
 
 impl Block {
-    /// The block's bit among the block enable bits.
+    /// Returns the block's bit among the block enable bits, as a mask.
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
 
-    /// The blocks of these bits.
+    /// Yields the blocks whose bits are set in `bits`.
     pub fn of_bits(bits: u32) -> impl Iterator<Item = Self> {
         let all = Self::ALL.into_iter();
         all.filter(move |block| block.bit() & bits != 0)

@@ -6,10 +6,10 @@ use core::ops::Range;
 use crate::bits::Bits;
 use crate::colour::Rgb565;
 
-/// Bytes of a word of memory. Every record begins at a multiple of it, or of its own size if that is smaller.
+/// Size of a memory word in bytes. Every record begins at a multiple of this size, or of its own size if that is smaller.
 pub const WORD: usize = 16;
 
-/// The mark of a piece of a line that is stored as a descriptor.
+/// Value of `mark` in a piece of a line, which is stored in place of a descriptor.
 pub const PIECE_MARK: u64 = 3;
 
 /// The bit in [`MeshHeader::attributes`] of a mesh with textures, which follow the arrays of its attributes.
@@ -26,12 +26,12 @@ impl Attribute {
     /// All attributes, by their numbers.
     pub const ALL: [Self; 1] = [Self::TextureCoordinates];
 
-    /// The attribute's bit in the header.
+    /// Returns the attribute's bit in the header, as a mask.
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
 
-    /// Bytes of an element, the attribute of one vertex.
+    /// Returns the size in bytes of an element, the attribute of one vertex.
     pub const fn bytes(self) -> usize {
         match self {
             Self::TextureCoordinates => TextureCoordinates::BYTES,
@@ -39,8 +39,8 @@ impl Attribute {
     }
 }
 
-/// The bytes of a field that begins at byte `at` of a record.
-// As an array: from single bytes the compiler makes more instructions.
+/// Returns the bytes of the field at byte `at` of a record.
+// Reads an array, because the compiler generates more instructions for single bytes.
 const fn field<const N: usize>(record: &[u8], at: usize) -> [u8; N] {
     match record.split_at(at).1.first_chunk() {
         Some(bytes) => *bytes,
@@ -53,7 +53,7 @@ const fn field<const N: usize>(record: &[u8], at: usize) -> [u8; N] {
 pub struct MeshHeader {
     /// `GLM2`.
     pub magic: [u8; 4],
-    /// Length of the whole in bytes.
+    /// Length of the whole mesh in bytes.
     pub length: u32,
     /// Number of chunks, at least 1.
     pub chunks: u32,
@@ -70,26 +70,26 @@ pub struct MeshHeader {
 }
 
 impl MeshHeader {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 32;
-    /// Place of the field `magic`.
+    /// Byte range of the field `magic`.
     pub const MAGIC: Range<usize> = 0..4;
-    /// Place of the field `length`.
+    /// Byte range of the field `length`.
     pub const LENGTH: Range<usize> = 4..8;
-    /// Place of the field `chunks`.
+    /// Byte range of the field `chunks`.
     pub const CHUNKS: Range<usize> = 8..12;
-    /// Place of the field `vertices`.
+    /// Byte range of the field `vertices`.
     pub const VERTICES: Range<usize> = 12..16;
-    /// Place of the field `triangles`.
+    /// Byte range of the field `triangles`.
     pub const TRIANGLES: Range<usize> = 16..20;
-    /// Place of the field `radius`.
+    /// Byte range of the field `radius`.
     pub const RADIUS: Range<usize> = 20..24;
-    /// Place of the field `checksum`.
+    /// Byte range of the field `checksum`.
     pub const CHECKSUM: Range<usize> = 24..28;
-    /// Place of the field `attributes`.
+    /// Byte range of the field `attributes`.
     pub const ATTRIBUTES: Range<usize> = 28..32;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             magic: field(bytes, 0),
@@ -103,7 +103,7 @@ impl MeshHeader {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let b0 = self.magic[0];
         let b1 = self.magic[1];
@@ -130,16 +130,16 @@ pub struct ChunkHeader {
 }
 
 impl ChunkHeader {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 16;
-    /// Place of the field `vertices`.
+    /// Byte range of the field `vertices`.
     pub const VERTICES: Range<usize> = 0..4;
-    /// Place of the field `triangles`.
+    /// Byte range of the field `triangles`.
     pub const TRIANGLES: Range<usize> = 4..8;
-    /// Place of the field `reserved`.
+    /// Byte range of the field `reserved`.
     pub const RESERVED: Range<usize> = 8..16;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             vertices: u32::from_le_bytes(field(bytes, 0)),
@@ -147,7 +147,7 @@ impl ChunkHeader {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3] = self.vertices.to_le_bytes();
         let [b4, b5, b6, b7] = self.triangles.to_le_bytes();
@@ -167,18 +167,18 @@ pub struct Vertex {
 }
 
 impl Vertex {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 16;
-    /// Place of the field `position`.
+    /// Byte range of the field `position`.
     pub const POSITION: Range<usize> = 0..6;
-    /// Place of the field `normal`.
+    /// Byte range of the field `normal`.
     pub const NORMAL: Range<usize> = 6..12;
-    /// Place of the field `colour`.
+    /// Byte range of the field `colour`.
     pub const COLOUR: Range<usize> = 12..14;
-    /// Place of the field `reserved`.
+    /// Byte range of the field `reserved`.
     pub const RESERVED: Range<usize> = 14..16;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             position: [i16::from_le_bytes(field(bytes, 0)), i16::from_le_bytes(field(bytes, 2)), i16::from_le_bytes(field(bytes, 4))],
@@ -187,7 +187,7 @@ impl Vertex {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let [b0, b1] = self.position[0].to_le_bytes();
         let [b2, b3] = self.position[1].to_le_bytes();
@@ -209,25 +209,25 @@ pub struct Triangle {
     pub colour: Rgb565,
     /// Normal of the face, s2.14.
     pub normal: [i16; 3],
-    /// Number of its texture among those of the mesh, from 1; 0: none.
+    /// Number of its texture in the mesh, from 1; 0: none.
     pub texture: u8,
 }
 
 impl Triangle {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 16;
-    /// Place of the field `indices`.
+    /// Byte range of the field `indices`.
     pub const INDICES: Range<usize> = 0..6;
-    /// Place of the field `colour`.
+    /// Byte range of the field `colour`.
     pub const COLOUR: Range<usize> = 6..8;
-    /// Place of the field `normal`.
+    /// Byte range of the field `normal`.
     pub const NORMAL: Range<usize> = 8..14;
-    /// Place of the field `texture`.
+    /// Byte range of the field `texture`.
     pub const TEXTURE: Range<usize> = 14..15;
-    /// Place of the field `reserved`.
+    /// Byte range of the field `reserved`.
     pub const RESERVED: Range<usize> = 15..16;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             indices: [u16::from_le_bytes(field(bytes, 0)), u16::from_le_bytes(field(bytes, 2)), u16::from_le_bytes(field(bytes, 4))],
@@ -237,7 +237,7 @@ impl Triangle {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let [b0, b1] = self.indices[0].to_le_bytes();
         let [b2, b3] = self.indices[1].to_le_bytes();
@@ -261,14 +261,14 @@ pub struct TextureCoordinates {
 }
 
 impl TextureCoordinates {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 8;
-    /// Place of the field `s`.
+    /// Byte range of the field `s`.
     pub const S: Range<usize> = 0..4;
-    /// Place of the field `t`.
+    /// Byte range of the field `t`.
     pub const T: Range<usize> = 4..8;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             s: i32::from_le_bytes(field(bytes, 0)),
@@ -276,7 +276,7 @@ impl TextureCoordinates {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3] = self.s.to_le_bytes();
         let [b4, b5, b6, b7] = self.t.to_le_bytes();
@@ -289,7 +289,7 @@ impl TextureCoordinates {
 pub struct TextureHeader {
     /// `GLT1`.
     pub magic: [u8; 4],
-    /// Length of the whole in bytes.
+    /// Length of the whole texture in bytes.
     pub length: u32,
     /// CRC-32 of all other bytes.
     pub checksum: u32,
@@ -301,7 +301,7 @@ pub struct TextureHeader {
     pub levels: u8,
     /// Texels: 0 RGB565, 1 indices of 256 colours, 2 indices of 16 colours.
     pub format: u8,
-    /// Beyond the sides, across and down: 0 repeat, 1 mirror, 2 clamp.
+    /// Wrapping across and down: 0 repeat, 1 mirror, 2 clamp.
     pub wrap: [u8; 2],
     /// 0: the nearest texel; 1: bilinear.
     pub filter: u8,
@@ -312,34 +312,34 @@ pub struct TextureHeader {
 }
 
 impl TextureHeader {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 32;
-    /// Place of the field `magic`.
+    /// Byte range of the field `magic`.
     pub const MAGIC: Range<usize> = 0..4;
-    /// Place of the field `length`.
+    /// Byte range of the field `length`.
     pub const LENGTH: Range<usize> = 4..8;
-    /// Place of the field `checksum`.
+    /// Byte range of the field `checksum`.
     pub const CHECKSUM: Range<usize> = 8..12;
-    /// Place of the field `width_log2`.
+    /// Byte range of the field `width_log2`.
     pub const WIDTH_LOG2: Range<usize> = 12..13;
-    /// Place of the field `height_log2`.
+    /// Byte range of the field `height_log2`.
     pub const HEIGHT_LOG2: Range<usize> = 13..14;
-    /// Place of the field `levels`.
+    /// Byte range of the field `levels`.
     pub const LEVELS: Range<usize> = 14..15;
-    /// Place of the field `format`.
+    /// Byte range of the field `format`.
     pub const FORMAT: Range<usize> = 15..16;
-    /// Place of the field `wrap`.
+    /// Byte range of the field `wrap`.
     pub const WRAP: Range<usize> = 16..18;
-    /// Place of the field `filter`.
+    /// Byte range of the field `filter`.
     pub const FILTER: Range<usize> = 18..19;
-    /// Place of the field `cut_out`.
+    /// Byte range of the field `cut_out`.
     pub const CUT_OUT: Range<usize> = 19..20;
-    /// Place of the field `key`.
+    /// Byte range of the field `key`.
     pub const KEY: Range<usize> = 20..22;
-    /// Place of the field `reserved`.
+    /// Byte range of the field `reserved`.
     pub const RESERVED: Range<usize> = 22..32;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             magic: field(bytes, 0),
@@ -356,7 +356,7 @@ impl TextureHeader {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let b0 = self.magic[0];
         let b1 = self.magic[1];
@@ -381,7 +381,7 @@ impl TextureHeader {
 pub mod segment_end {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 128;
     /// X, s12.8.
     pub const X: Bits = Bits::new(0, 20, 20);
@@ -397,7 +397,7 @@ pub mod segment_end {
 pub mod steps {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 42;
     /// Increment of E' for one pixel to the right, s21.
     pub const X: Bits = Bits::new(0, 21, 21);
@@ -409,7 +409,7 @@ pub mod steps {
 pub mod descriptor {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 384;
     /// E' of each edge at the start, s34.
     pub const START: Bits = Bits::new(0, 34, 34);
@@ -441,7 +441,7 @@ pub mod descriptor {
 pub mod plane {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 96;
     /// Accumulator at the start of the triangle, 18.14, modulo 2^32.
     pub const START: Bits = Bits::new(0, 32, 32);
@@ -451,11 +451,11 @@ pub mod plane {
     pub const STEP_Y: Bits = Bits::new(64, 32, 32);
 }
 
-/// Planes of light of a triangle, in three words behind its descriptor and its texture.
+/// Planes of light of a triangle, in the three words after its descriptor.
 pub mod planes {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 289;
     /// Accumulator at the start of the triangle, 18.14, modulo 2^32, of red, green and blue.
     pub const LIGHT_START: Bits = Bits::new(0, 32, 96);
@@ -467,11 +467,11 @@ pub mod planes {
     pub const SMOOTH: Bits = Bits::new(288, 1, 1);
 }
 
-/// Texture of a triangle, in the two words behind its descriptor.
+/// Texture of a triangle, in the two words after its descriptor.
 pub mod texture_planes {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 241;
     /// Accumulator at the start of the triangle, 18.14, modulo 2^32, of s and t.
     pub const PLANES_START: Bits = Bits::new(0, 32, 96);
@@ -483,7 +483,7 @@ pub mod texture_planes {
     pub const LIGHT: Bits = Bits::new(192, 8, 8);
     /// Base-2 logarithms of the ranges of s and t, in repeats.
     pub const RANGE: Bits = Bits::new(216, 4, 4);
-    /// What clamped coordinates s and t are relative to, s4, in units of two repeats.
+    /// Base of clamped coordinates s and t, s4, in units of two repeats.
     pub const PERIODS: Bits = Bits::new(224, 4, 4);
     /// Number of its texture in the frame's table, from 1; 0: none.
     pub const TEXTURE: Bits = Bits::new(232, 8, 8);
@@ -495,7 +495,7 @@ pub mod texture_planes {
 pub mod piece {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 182;
     /// 1: a pixel in each column, otherwise in each row.
     pub const X_MAJOR: Bits = Bits::new(0, 1, 1);
@@ -509,11 +509,11 @@ pub mod piece {
     pub const ROW: Bits = Bits::new(14, 10, 10);
     /// Pixels to the end of the line.
     pub const COUNT: Bits = Bits::new(24, 12, 12);
-    /// Error of the second pixel, s21; from 0 on, the way to it has a step along the minor axis.
+    /// Error of the second pixel, s21; if at least 0, the step to this pixel also moves along the minor axis.
     pub const ERROR: Bits = Bits::new(36, 21, 21);
-    /// Increment of the error for one pixel without such a step.
+    /// Increment of the error for a pixel without a step along the minor axis.
     pub const MINOR: Bits = Bits::new(57, 20, 20);
-    /// Increment of the error for one pixel with such a step, s21: minor − major.
+    /// Increment of the error for a pixel with such a step, s21: minor − major.
     pub const FALL: Bits = Bits::new(77, 21, 21);
     /// Depth accumulator of the first pixel, with the bias and half a code, s20.14.
     pub const DEPTH: Bits = Bits::new(98, 34, 34);
@@ -527,7 +527,7 @@ pub mod piece {
 pub mod stored_piece {
     use super::Bits;
 
-    /// Bits of the record.
+    /// Size of the record in bits.
     pub const BITS: usize = 384;
     /// Bits 0 to 127 of the piece again.
     pub const REPEATS: Bits = Bits::new(0, 128, 128);
@@ -557,18 +557,18 @@ pub struct FlashHeader {
 }
 
 impl FlashHeader {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 16;
-    /// Place of the field `magic`.
+    /// Byte range of the field `magic`.
     pub const MAGIC: Range<usize> = 0..4;
-    /// Place of the field `length`.
+    /// Byte range of the field `length`.
     pub const LENGTH: Range<usize> = 4..8;
-    /// Place of the field `items`.
+    /// Byte range of the field `items`.
     pub const ITEMS: Range<usize> = 8..12;
-    /// Place of the field `checksum`.
+    /// Byte range of the field `checksum`.
     pub const CHECKSUM: Range<usize> = 12..16;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             magic: field(bytes, 0),
@@ -578,7 +578,7 @@ impl FlashHeader {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let b0 = self.magic[0];
         let b1 = self.magic[1];
@@ -605,20 +605,20 @@ pub struct FlashEntry {
 }
 
 impl FlashEntry {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 48;
-    /// Place of the field `kind`.
+    /// Byte range of the field `kind`.
     pub const KIND: Range<usize> = 0..4;
-    /// Place of the field `length`.
+    /// Byte range of the field `length`.
     pub const LENGTH: Range<usize> = 4..8;
-    /// Place of the field `checksum`.
+    /// Byte range of the field `checksum`.
     pub const CHECKSUM: Range<usize> = 8..12;
-    /// Place of the field `reserved`.
+    /// Byte range of the field `reserved`.
     pub const RESERVED: Range<usize> = 12..16;
-    /// Place of the field `name`.
+    /// Byte range of the field `name`.
     pub const NAME: Range<usize> = 16..48;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             kind: u32::from_le_bytes(field(bytes, 0)),
@@ -628,7 +628,7 @@ impl FlashEntry {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3] = self.kind.to_le_bytes();
         let [b4, b5, b6, b7] = self.length.to_le_bytes();
@@ -679,14 +679,14 @@ pub struct FirmwareHeader {
 }
 
 impl FirmwareHeader {
-    /// Bytes of the record.
+    /// Size of the record in bytes.
     pub const BYTES: usize = 8;
-    /// Place of the field `length`.
+    /// Byte range of the field `length`.
     pub const LENGTH: Range<usize> = 0..4;
-    /// Place of the field `checksum`.
+    /// Byte range of the field `checksum`.
     pub const CHECKSUM: Range<usize> = 4..8;
 
-    /// The record with these bytes in memory.
+    /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
         Self {
             length: u32::from_le_bytes(field(bytes, 0)),
@@ -694,7 +694,7 @@ impl FirmwareHeader {
         }
     }
 
-    /// The bytes of the record in memory.
+    /// Returns the bytes of the record in memory.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3] = self.length.to_le_bytes();
         let [b4, b5, b6, b7] = self.checksum.to_le_bytes();

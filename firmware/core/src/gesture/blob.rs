@@ -89,7 +89,7 @@ pub enum Doubt {
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
-            Self::Missing => "no camera frame has come yet",
+            Self::Missing => "no camera frame received yet",
             Self::Faulty => "the camera frame is faulty",
             Self::Few => "no hand: too few pixels have its colour",
             Self::Most => "no hand: most pixels of the frame have its colour",

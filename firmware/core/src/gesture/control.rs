@@ -144,7 +144,7 @@ enum State {
     Held(u32, u32),
 }
 
-/// One of azimuth, polar angle and distance.
+/// Filters of one controlled value: azimuth, polar angle or distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Channel {
     filter: OneEuro,
@@ -202,7 +202,7 @@ pub struct Control {
 }
 
 impl Default for Control {
-    /// Without a hand the camera is at azimuth 0, in the equator's plane, at the distance 3.5.
+    /// Without a hand the camera is at azimuth 0, in the plane of the equator, at the distance 3.5.
     fn default() -> Self {
         let start = [Q4_28::ZERO, Q4_28::lit("0.25"), Q4_28::lit("3.5")];
         Self {
@@ -265,7 +265,7 @@ impl Control {
         // The first frame counts as following a pause of the maximum length.
         let gap = before.and_then(|before| u32::try_from(time.saturating_sub(before)).ok());
         self.take(gap.unwrap_or(u32::MAX), statistics);
-        // An inlined call with an unused result omits this copy.
+        // A separate copy: if the caller ignores the result, the compiler removes the copy after inlining.
         self.seen
     }
 

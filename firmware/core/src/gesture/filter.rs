@@ -2,7 +2,7 @@
 
 use crate::fixed::{Q4_28, U16_16};
 
-/// 2π·2^32/10^6, rounded to nearest: the angle in radians by which 1 Hz advances in one microsecond, with 32 fraction bits.
+/// 2π·2^32/10^6, rounded to nearest: the angle in radians by which an oscillation of 1 Hz advances in 1 µs, with 32 fraction bits.
 const RADIANS: u32 = 26_986;
 /// Minimum and maximum step, in µs.
 const STEPS: [u32; 2] = [1_000, 100_000];
@@ -10,7 +10,7 @@ const STEPS: [u32; 2] = [1_000, 100_000];
 /// The time between two camera frames, converted to the units that the filters need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeStep {
-    /// 2π·step: the angle in radians by which 1 Hz advances in one step, with 32 fraction bits.
+    /// 2π·step: the angle in radians by which an oscillation of 1 Hz advances in one step, with 32 fraction bits.
     radians: u32,
     /// Reciprocal of the step: steps per second, with 12 fraction bits, rounded down.
     rate: u32,

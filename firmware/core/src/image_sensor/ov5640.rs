@@ -2,7 +2,7 @@
 
 use super::step::SetupStep::{self, Check, Wait, Write};
 
-/// Selects the clock of the pin, resets all registers, and sleeps until the end of the set-up.
+/// Selects the external clock XCLK, resets all registers, and puts the chip to sleep for the set-up.
 pub const RESET: &[SetupStep] = &[
     Write(0x3103, 0x11),
     Write(0x3008, 0x82),
@@ -12,7 +12,7 @@ pub const RESET: &[SetupStep] = &[
 
 /// Settings for all sizes: clock, pixel array, format and automatic control.
 pub const COMMON: &[SetupStep] = &[
-    // From here on the PLL generates the clock: pre-divider 3 and root divider 2, times 70, divided by 2.
+    // From here on the PLL generates the clock: input divided by 3 and by 2, times 70, divided by 2.
     Write(0x3103, 0x03),
     Check(0x3034, 0x1a),
     Check(0x3035, 0x21),

@@ -10,7 +10,7 @@ use crate::trig::PI_Q60;
 const STEPS: usize = 36;
 /// The angles of the steps: atan(2^−i) for i = 0…35, in units of 2^−48 turns, rounded to nearest.
 static ANGLES: [u64; STEPS] = angles();
-/// Factor that compensates the lengthening of the vector by all steps: ∏ cos(atan(2^−i)), with 32 fraction bits.
+/// Factor that compensates the growth of the vector's length by all steps: ∏ cos(atan(2^−i)), with 32 fraction bits.
 const SHORTENING: u64 = 0x9B74_EDA8;
 
 /// Number of the highest bit of the larger component after scaling, which precedes the steps. The steps
@@ -48,7 +48,7 @@ pub fn to_polar(x: i64, y: i64) -> (i64, Turns) {
             // A vector along the first axis needs no steps, and its length is exact.
             return ((x >> up) << down, Turns((angle >> 16) as u32));
         } else {
-            // `SHORTENING` compensates the lengthening by all steps, so every step must run, even for a vector that already lies
+            // `SHORTENING` compensates the growth by all steps, so every step must run, even for a vector that already lies
             // on the axis.
             (x, y) = (x + turned, y - right);
             angle = angle.wrapping_add(step);

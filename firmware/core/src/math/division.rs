@@ -1,9 +1,9 @@
-//! Quotients of numbers of 64 bits by divisions of 32 bits, which the soft core has. The division of the compiler's library takes longer: it
+//! Quotients of numbers of 64 bits by divisions of 32 bits, for which the soft core has an instruction. The division of the compiler's library takes longer: it
 //! subtracts bit by bit.
 //!
 //! After D. E. Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D, with digits of 16 bits.
 
-/// The quotient, rounded down. The divisor 0 counts as 1.
+/// The quotient, rounded down. A divisor of 0 is replaced by 1.
 #[inline(never)]
 pub fn quotient(number: u64, divisor: u64) -> u64 {
     let (high, low) = ((divisor >> 32) as u32, divisor as u32);
@@ -35,7 +35,7 @@ fn normalised_quotient(number: u64, divisor: u32) -> u32 {
     let mut rest = (number >> 32) as u32;
     for next in [(number >> 16) as u16, number as u16] {
         let number = u64::from(rest) << 16 | u64::from(next);
-        // Too large by at most 2.
+        // This estimate of the digit is too large by at most 2.
         let mut digit = (rest / (divisor >> 16).max(1)).min(0xFFFF);
         let mut product = u64::from(digit) * u64::from(divisor);
         while product > number {
@@ -59,7 +59,7 @@ mod tests {
             state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1_442_695_040_888_963_407);
-            // The highest bits are the most random ones, and are often all 0 or all 1.
+            // Random numbers of all lengths.
             state.rotate_right(29) >> (state >> 58)
         };
         for _ in 0..1_000_000 {

@@ -172,8 +172,8 @@ impl Matrix {
         )
     }
 
-    /// Returns this matrix turned by `angle` about the mesh's origin, which stays in its place, and about an axis of the world's
-    /// direction. The error of each entry is that of [`then`](Self::then) and [`rotation`](Self::rotation).
+    /// Returns this matrix turned by `angle` about an axis through the mesh's origin that is parallel to a
+    /// world axis. The origin keeps its position. The error of each entry is that of [`then`](Self::then) and [`rotation`](Self::rotation).
     ///
     /// # Errors
     /// The result is out of range or singular.
@@ -198,12 +198,13 @@ impl Matrix {
         !self.mirrors && errors.all(|x| x.abs() < ROTATION_SLACK)
     }
 
-    /// Returns this matrix, which is the product of `shape` and rotations, with the lengths and angles of the columns of `shape`, if
-    /// rounding errors have changed them by more than a few units. Each product of two matrices has rounding errors, which would
-    /// change an object that turns by many small steps.
+    /// Removes rounding errors from this matrix, which is a product of rotations and `shape`. If they have
+    /// changed the lengths or angles of the columns by more than a few units, the result has the lengths
+    /// and angles of `shape`. Without this correction, many small rotations would deform an object.
     ///
-    /// A matrix is the product of a rotation, whose columns are orthonormal by Gram and Schmidt, and of a triangular matrix, which no
-    /// rotation from the left changes. The result has this matrix's rotation and the triangular matrix of `shape`.
+    /// By Gram–Schmidt, a matrix is the product of a rotation and a triangular matrix; a rotation from the
+    /// left does not change the triangular matrix. The result has this matrix's rotation and the
+    /// triangular matrix of `shape`.
     #[must_use]
     pub fn with_shape_of(&self, shape: &Self) -> Self {
         let (axes, found) = triangular(&self.linear);
@@ -285,13 +286,15 @@ impl Matrix {
 /// 2^62.
 const LEAD: u32 = 44;
 
-/// Largest error of a squared length and of a scalar product of rows of a rotation, in units of 2^−48: entries with errors of 4 units.
+/// Largest accepted error of a squared length and of a scalar product of rows of a rotation, in units of
+/// 2^−48. It allows errors of 4 units in the entries.
 const ROTATION_SLACK: i64 = 1 << 27;
 /// Largest accepted change of a shape by rounding errors, in units of 2^−24, for a column of a length below 1.
 const SHAPE_SLACK: i64 = 4;
 
-/// Returns the rotation (its columns, in units of 2^−30) and the triangular matrix (its columns, in units of 2^−24) whose product is
-/// a matrix with these rows. The columns of the result have the components along the axes of the rotation.
+/// Decomposes a matrix, given by its rows, into a rotation and a triangular matrix. Returns the columns
+/// of the rotation, in units of 2^−30, and those of the triangular matrix, in units of 2^−24: a column
+/// has the components of the matrix's column along the axes of the rotation.
 fn triangular(rows: &[[Q8_24; 3]; 3]) -> ([[i32; 3]; 3], [[i64; 3]; 3]) {
     let columns = [0, 1, 2].map(|j| rows.map(|row| row[j].to_bits()));
     let [a, b, _] = columns;

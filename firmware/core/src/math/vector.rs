@@ -30,9 +30,9 @@ pub fn unit<const BITS: u32>(vector: [i64; 3]) -> Option<[i32; 3]> {
     let [upper, lower] = halves(u64::from(inverse).pow(2));
     let found = high * upper + ((high * lower) >> 32) + ((low * upper) >> 32);
     // ε/2 with 46 fraction bits is below 2^31, and its square with 60 bits below 2^30.
-    let lack = (((1 << 60) - found.cast_signed()) >> 15) as i32;
-    let second = ((i64::from(lack) * i64::from(lack)) >> 32) as u32;
-    let factor = lack + ((3 * second) >> 15) as i32;
+    let half_error = (((1 << 60) - found.cast_signed()) >> 15) as i32;
+    let second = ((i64::from(half_error) * i64::from(half_error)) >> 32) as u32;
+    let factor = half_error + ((3 * second) >> 15) as i32;
     let scale = |x: u32| {
         let [whole, fraction] = halves(u64::from(x << 1) * u64::from(inverse));
         // `whole` has 31 fraction bits, its correction 45.

@@ -52,7 +52,7 @@ pub fn encode_with(
             .collect(),
         ..Writer::default()
     };
-    // For each vertex of the mesh: its index in the present chunk; `None` if the chunk does not have the vertex.
+    // For each vertex of the mesh: its index in the current chunk; `None` if the chunk does not have the vertex.
     let mut local = alloc::vec![None; vertices.len()];
     let mut used: Vec<u32> = Vec::new();
     let mut records: Vec<[u8; WORD]> = Vec::new();

@@ -15,7 +15,7 @@ use crate::orientation::{
 };
 use crate::steering::{self, Mounting, Steering};
 
-/// How the sensor steers the camera.
+/// Mode in which the sensor steers the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follow {
     /// The camera turns in place, in the direction of the sensor.
@@ -50,7 +50,7 @@ impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     }
 }
 
-/// State of the last or present calibration. `Going` contains the calibration in progress and its number of samples so far.
+/// State of the last or current calibration. `Going` contains the calibration in progress and its number of samples so far.
 #[derive(Clone, Copy, Debug)]
 enum Calibrating<E> {
     Never,
@@ -178,12 +178,12 @@ impl<E: Copy> Imu<E> {
         }
     }
 
-    /// How the sensor steers the camera.
+    /// Mode in which the sensor steers the camera; `None` if it does not.
     pub const fn follow(&self) -> Option<Follow> {
         self.follow
     }
 
-    /// Sets how the sensor steers the camera; with `None` the sensor does not steer it.
+    /// Sets the mode in which the sensor steers the camera; `None` ends the steering.
     pub const fn set_follow(&mut self, follow: Option<Follow>) {
         self.follow = follow;
         self.moved = true;
@@ -210,7 +210,7 @@ impl<E: Copy> Imu<E> {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Turns the camera about the vertical to the heading 0. From then on the sensor's present attitude corresponds to this
+    /// Turns the camera about the vertical axis to the heading 0. From then on the sensor's current attitude corresponds to this
     /// heading.
     pub fn recentre(&mut self) {
         self.steering.recentre();

@@ -75,7 +75,8 @@ pub enum Identity {
     Mpu9255,
     /// An ICM-20689, which is sold as MPU-6050.
     Icm20689,
-    /// Another chip, with the contents of its register WHO_AM_I, which keeps the configuration of an MPU-6050 and is used as one.
+    /// Another chip, which keeps the configuration of an MPU-6050 and is used as one. The value is the
+    /// contents of its register WHO_AM_I.
     Other(u8),
 }
 
@@ -160,7 +161,7 @@ impl Measurement {
 pub enum Error<E> {
     /// Error of the I2C bus.
     Bus(E),
-    /// The register WHO_AM_I has a value that no chip has, with this value.
+    /// The register WHO_AM_I has this value, which no chip has.
     Identity(u8),
     /// A register does not keep the written value.
     Register {

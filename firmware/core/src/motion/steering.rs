@@ -199,7 +199,7 @@ impl Steering {
         self.camera
     }
 
-    /// Turns the camera about the vertical to the heading 0, the heading of the identity. From then on the sensor's present
+    /// Turns the camera about the vertical axis to the heading 0, the heading of the identity. From then on the sensor's current
     /// attitude corresponds to this heading. The horizon does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());
@@ -207,7 +207,7 @@ impl Steering {
         self.offset = back.times(self.offset);
     }
 
-    /// Makes the sensor's present attitude the centre: the camera's attitude becomes the identity, so the horizon changes too.
+    /// Makes the sensor's current attitude the centre: the camera's attitude becomes the identity, so the horizon changes too.
     pub fn level(&mut self) {
         self.offset = self.seen.unwrap_or(Quaternion::IDENTITY).inverse();
         self.camera = Quaternion::IDENTITY;

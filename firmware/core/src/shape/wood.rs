@@ -1,4 +1,4 @@
-//! The texture of the crate: two sides of boards, side by side.
+//! The texture of the crate: pictures of two of its sides, next to each other.
 
 use crate::colour::Rgb565;
 
@@ -9,18 +9,18 @@ const SIDE: u32 = 1 << SIDE_LOG2;
 /// Base-2 logarithms of the width and height of the texture.
 pub const SIZE_LOG2: [u8; 2] = [SIDE_LOG2 + 1, SIDE_LOG2];
 
-/// Width of a board of the frame.
+/// Width of a board of the frame in texels.
 const FRAME: u32 = 10;
-/// Width of a plank.
+/// Width of a plank in texels.
 const PLANK: u32 = 11;
-/// Half of the width of the board across a side, times √2.
+/// Half the width, times √2, of the diagonal board (brace) of a side, in texels.
 const BRACE: u32 = 7;
-/// Distance of a nail from the sides.
+/// Distance of a nail from the edges of a side, in texels.
 const NAIL: u32 = FRAME / 2;
 /// Distance of a point of the star from its centre, in half texels.
 const STAR: u32 = 39;
 
-// Places in the list of colours.
+// Indices into `COLOURS`.
 const GAP: usize = 0;
 const PLANKS: usize = 1;
 const EDGE: usize = 6;
@@ -51,13 +51,14 @@ const COLOURS: [Rgb565; 16] = [
     Rgb565::from_rgb888([0xFF, 0xF4, 0xA8]),
 ];
 
-/// The colour of a texel: on the left a side with a brace, on the right one with a star.
+/// The colour of a texel. The left half of the texture is the side with a brace, the right half the side
+/// with a star.
 pub fn texel([x, y]: [u32; 2]) -> Rgb565 {
     let colour = COLOURS.get(place(x, y));
     colour.copied().unwrap_or_default()
 }
 
-/// The place of a texel's colour in the list.
+/// Index of a texel's colour in `COLOURS`.
 fn place(x: u32, y: u32) -> usize {
     let (has_star, x) = (x >= SIDE, x % SIDE);
     let [from_left, from_top] = [from_side(x), from_side(y)];
@@ -82,19 +83,20 @@ fn place(x: u32, y: u32) -> usize {
         );
         return colour.unwrap_or_else(|| plank([x, y], shadow));
     }
-    // The brace, from above on the left, throws a shadow too.
+    // The brace, which begins at the upper left, casts a shadow too.
     match x.abs_diff(y) {
         0..BRACE => board([BRACE + x - y, 2 * BRACE], x + y),
         distance => plank([x, y], shadow || y > x && distance < BRACE + 2),
     }
 }
 
-/// The distance from the nearest side.
+/// Distance of a coordinate from the nearer edge of a side.
 fn from_side(c: u32) -> u32 {
     if c < SIDE / 2 { c } else { SIDE - 1 - c }
 }
 
-/// A board at a place across it, of its width, and along it.
+/// Index of the colour of a board, from the position across the board, the board's width, and the
+/// position along it.
 fn board([across, width]: [u32; 2], along: u32) -> usize {
     match across {
         across if across == 0 || across + 1 >= width => EDGE,
@@ -102,7 +104,7 @@ fn board([across, width]: [u32; 2], along: u32) -> usize {
     }
 }
 
-/// A plank behind the frame, in the shadow of a board or not.
+/// Index of the colour of a plank behind the frame.
 fn plank([x, y]: [u32; 2], is_shadow: bool) -> usize {
     let [number, across] = [(x - FRAME) / PLANK, (x - FRAME) % PLANK];
     match across {
@@ -112,7 +114,8 @@ fn plank([x, y]: [u32; 2], is_shadow: bool) -> usize {
     }
 }
 
-/// The star at a place from its centre, in half texels; `None` beside it. Its faces alternate.
+/// Index of the colour of the star at a position relative to its centre, in half texels; `None`
+/// outside the star. The brightness of the star's faces alternates.
 fn star(x: i32, y: i32) -> Option<usize> {
     let [across, down] = [x.unsigned_abs(), y.unsigned_abs()];
     let is_bright = (across > down) == ((x > 0) == (y > 0));
@@ -125,13 +128,14 @@ fn star(x: i32, y: i32) -> Option<usize> {
     }
 }
 
-/// Whether a place is within the curve √across + √down = √radius.
+/// Whether a position is within the curve √across + √down = √radius.
 fn is_within(across: u32, down: u32, radius: u32) -> bool {
     let rest = radius.saturating_sub(across + down);
     4 * across * down < rest * rest
 }
 
-/// The grain of wood, a number below `count`: lines along it that end now and then.
+/// The grain of wood at a position, a pseudo-random number below `count`: lines along the wood, cut
+/// into pieces.
 fn grain(across: u32, along: u32, count: u32) -> usize {
     let line = across.wrapping_mul(0x9E37_79B1);
     let piece = (along + (line >> 27)) / 12;

@@ -1,4 +1,6 @@
-//! Types with a fixed list of named values, such as material and backend.
+//! Types with a fixed list of named values, such as material and backend, and their names.
+
+use core::fmt::{self, Display};
 
 /// A type with a fixed list of values. Each value has a name for the console and the command line of `glint`.
 pub trait Choice: Copy + 'static {
@@ -59,4 +61,17 @@ impl Choice for bool {
 /// Returns the console's word for the state of a switch: `on` or `off`.
 pub const fn switch_name(on: bool) -> &'static str {
     if on { "on" } else { "off" }
+}
+
+/// Displays a value, or this word for `None`.
+#[derive(PartialEq)]
+pub struct OrWord<T>(pub Option<T>, pub &'static str);
+
+impl<T: Display> Display for OrWord<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match &self.0 {
+            Some(value) => value.fmt(f),
+            None => f.write_str(self.1),
+        }
+    }
 }

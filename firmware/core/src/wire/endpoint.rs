@@ -80,7 +80,7 @@ impl<R: Role> Endpoint<R> {
     }
 
     /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, and regularly, because
-    /// timeouts are checked here. `out` needs [`MAX_FRAME`] bytes; to a shorter buffer nothing is written.
+    /// timeouts are checked here. `out` needs [`MAX_FRAME`] bytes; nothing is written to a shorter buffer.
     pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if out.len() < MAX_FRAME {
             return 0;

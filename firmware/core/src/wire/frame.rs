@@ -149,7 +149,7 @@ impl Body<'_> {
 /// Splits a byte stream into frames at zero bytes.
 pub struct FrameReader {
     buffer: [u8; MAX_FRAME],
-    /// Number of bytes received so far of the present frame. A number above the buffer's length means that the frame is too long.
+    /// Number of bytes received so far of the current frame. A number above the buffer's length means that the frame is too long.
     length: usize,
     /// Time in milliseconds at which the last bytes were received.
     last_ms: u64,

@@ -49,8 +49,8 @@ impl FrameLength {
 
 /// The timeouts after which a missing answer is requested again.
 ///
-/// Each timeout is slightly longer than the previous one. The first timeouts are short, which suits a bad line. With a slow other
-/// side, the number of requests grows only with the square root of the time.
+/// Each timeout is slightly longer than the previous one. The first timeouts are short, which suits a bad line. If the other side
+/// is slow, the number of requests grows only with the square root of the time.
 pub struct Backoff {
     since_ms: Option<u64>,
     tries: u64,

@@ -82,7 +82,7 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Role for Receiving<B> {
                 Some(State::Running)
             }
             Message::Close => (opened.verdict == Some(true)).then_some(State::Done),
-            // Only a receiver sends the first two, so such a message is an echo of a frame from this receiver.
+            // Only a receiver sends `Acknowledge` and `Complete`, so this message is an echo of its own frame.
             Message::Acknowledge(_)
             | Message::Complete { .. }
             | Message::Open(_)

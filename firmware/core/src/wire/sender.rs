@@ -95,7 +95,7 @@ impl<D: AsRef<[u8]>> Role for Sending<D> {
             Message::Complete { .. } if self.window.end != self.manifest.blocks() => None,
             Message::Complete { verified: true } => Some(State::Done),
             Message::Complete { verified: false } => Some(self.restart(now_ms)),
-            // Only a sender sends the first three, so such a message is an echo of a frame from this sender.
+            // Only a sender sends `Open`, `Data` and `Close`, so this message is an echo of its own frame.
             Message::Open(_)
             | Message::Data(_)
             | Message::Close

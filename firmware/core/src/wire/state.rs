@@ -1,8 +1,8 @@
-//! States, failures and time-outs of a transfer.
+//! States, failures and timeouts of a transfer.
 
 use core::fmt;
 
-/// Time-outs of a sender or receiver.
+/// Timeouts of a sender or receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Time in milliseconds without a valid frame after which a transfer fails.
@@ -13,12 +13,13 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Time-outs for the board, the side with the console. The second of silence takes about two minutes on a virtual board.
+    /// Timeouts for the board, the side with the console. To simulate one second of silence, a
+    /// virtual board takes about two minutes.
     pub const CONSOLE: Self = Self {
         silence_ms: 1_000,
         quiet_ms: 5,
     };
-    /// Time-outs for the host, the side that uses the board's console.
+    /// Timeouts for the host, the side that uses the board's console.
     pub const HOST: Self = Self {
         silence_ms: 5_000,
         quiet_ms: 0,

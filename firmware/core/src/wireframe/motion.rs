@@ -116,7 +116,7 @@ impl Motion {
         let parts = self
             .rotation
             .map(|x| ((x + (1 << (FRACTION - 31))) >> (FRACTION - 30)) as i32);
-        // Rounding changes the length by less than 2^−29, so the quaternion exists.
+        // Rounding changes the length by less than 2^−29, so the quaternion is accepted.
         Quaternion::exact(parts).unwrap_or(Quaternion::IDENTITY)
     }
 

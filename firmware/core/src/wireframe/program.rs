@@ -5,7 +5,8 @@ use super::format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};
 use super::instruction::Instruction;
 use crate::fixed::Q5_11;
 
-/// The viewing parameters of a program: the eye's z is at least 0 and above that of the view plane, and the window has an area.
+/// The viewing parameters of a program: the eye's z is at least 0 and above that of the view plane, and
+/// the window is not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Viewing {
     /// The eye.

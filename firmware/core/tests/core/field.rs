@@ -48,78 +48,49 @@ fn spheres_are_checked_one_by_one() {
     };
     let all = [sphere(-4, 2); MAX_SPHERES + 1];
     assert!(Spheres::new(&all[1..]).is_ok());
-    assert_eq!(
-        Spheres::new(&all),
-        Err(FieldError::Spheres { most: MAX_SPHERES })
-    );
-    assert_eq!(
-        Spheres::new(&[]),
-        Err(FieldError::Spheres { most: MAX_SPHERES })
-    );
-    assert_eq!(
-        Field::parse("spheres"),
-        Err(FieldError::Spheres { most: MAX_SPHERES })
-    );
+    let wrong_number = FieldError::Spheres(MAX_SPHERES);
+    assert_eq!(Spheres::new(&all), Err(wrong_number));
+    assert_eq!(Spheres::new(&[]), Err(wrong_number));
+    assert_eq!(Field::parse("spheres"), Err(wrong_number));
     assert!(Spheres::new(&[sphere(0, 12)]).is_ok());
     let beyond = Spheres::new(&[sphere(0, 1), sphere(1, 12)]).unwrap_err();
     assert_eq!(beyond.to_string(), "centre: expected 0 to 0");
 }
 
+/// Texts that are not fields, and their errors.
+const MISTAKES: &str = "\
+menger => menger needs one more number: depth
+box:1,2 => box needs one more number: z
+menger:4,4 => menger has one number too many: 4
+menger:x => depth x: expected a number
+menger:0 => depth: expected 1 to 6
+planes:13 => half: expected 0.01 to 12
+boxes:2,1,1 => boxes needs one more number: z
+boxes:2,1,1,1.1 => z: expected 0.01 to 1
+sphere => sphere needs one more number: radius
+sphere:0 => radius: expected 0.01 to 12
+spheres:0,0,0 => spheres needs one more number: radius
+spheres:0,0,0,1;0,x,0,1 => y x: expected a number
+lattice:2,1 => radius: expected 0.01 to 0.9999923704
+moving:11,1.5 => orbit: expected 0 to 1
+cone:1 => cone needs one more number: height
+cone:1,13 => height: expected 0.01 to 12
+smooth:0.1 => smooth: expected menger or box, +, and sphere, spheres or moving
+union:octahedron:1+sphere:1 => union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres, moving or cone
+bent:5,planes:2+sphere:1 => bent: expected menger or box, +, and sphere, spheres or moving
+bent:5,box:1,1,1+cone:1,1 => bent: expected menger or box, +, and sphere, spheres or moving
+bent:7,box:1,1,1+sphere:1 => n: expected 1 to 6
+smooth:0.1,box:1,1,1+cone:1,1 => smooth: expected menger or box, +, and sphere, spheres or moving
+smooth:0.1,cubes:2,0.4+sphere:1 => smooth: expected menger or box, +, and sphere, spheres or moving
+union:lattice:1,0.1+spheres:0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1 => spheres: expected 1 to 7
+union:cubes:0.25,0.1+sphere:4 => radius: expected 0.01 to 3.99609375
+";
+
 #[test]
 fn mistakes_say_what_was_expected() {
     let error = Field::parse("ball:1").expect_err("no kind").to_string();
     assert!(KINDS.iter().all(|(form, _)| error.contains(form)));
-    for (text, expected) in [
-        ("menger", "menger needs one more number: depth"),
-        ("box:1,2", "box needs one more number: z"),
-        ("menger:4,4", "menger has one number too many: 4"),
-        ("menger:x", "depth x: expected a number"),
-        ("menger:0", "depth: expected 1 to 6"),
-        ("planes:13", "half: expected 0.01 to 12"),
-        ("boxes:2,1,1", "boxes needs one more number: z"),
-        ("boxes:2,1,1,1.1", "z: expected 0.01 to 1"),
-        ("sphere", "sphere needs one more number: radius"),
-        ("sphere:0", "radius: expected 0.01 to 12"),
-        ("spheres:0,0,0", "spheres needs one more number: radius"),
-        ("spheres:0,0,0,1;0,x,0,1", "y x: expected a number"),
-        ("lattice:2,1", "radius: expected 0.01 to 0.9999923704"),
-        ("moving:11,1.5", "orbit: expected 0 to 1"),
-        ("cone:1", "cone needs one more number: height"),
-        ("cone:1,13", "height: expected 0.01 to 12"),
-        (
-            "smooth:0.1",
-            "smooth: expected menger or box, +, and sphere, spheres or moving",
-        ),
-        (
-            "union:octahedron:1+sphere:1",
-            "union: expected menger, box, cubes, boxes, planes or lattice, +, and sphere, spheres, moving or cone",
-        ),
-        (
-            "bent:5,planes:2+sphere:1",
-            "bent: expected menger or box, +, and sphere, spheres or moving",
-        ),
-        (
-            "bent:5,box:1,1,1+cone:1,1",
-            "bent: expected menger or box, +, and sphere, spheres or moving",
-        ),
-        ("bent:7,box:1,1,1+sphere:1", "n: expected 1 to 6"),
-        (
-            "smooth:0.1,box:1,1,1+cone:1,1",
-            "smooth: expected menger or box, +, and sphere, spheres or moving",
-        ),
-        (
-            "smooth:0.1,cubes:2,0.4+sphere:1",
-            "smooth: expected menger or box, +, and sphere, spheres or moving",
-        ),
-        (
-            "union:lattice:1,0.1+spheres:0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1;0,0,0,1",
-            "spheres: expected 1 to 7",
-        ),
-        (
-            "union:cubes:0.25,0.1+sphere:4",
-            "radius: expected 0.01 to 3.99609375",
-        ),
-    ] {
+    for (text, expected) in MISTAKES.lines().filter_map(|line| line.split_once(" => ")) {
         let error = Field::parse(text).expect_err(text);
         assert_eq!(error.to_string(), expected);
     }

@@ -159,8 +159,8 @@ fn parts_that_the_format_refuses_are_not_encoded() {
     assert!(one(large).contains("expected at most 16777216 bytes"));
 }
 
-/// The bytes as a reader receives them whose line k is the flash's line `order[k]`, or constant. Only the bytes that the check reads are
-/// changed.
+/// The bytes as read over exchanged lines: line k of the reader is line `order[k]` of the flash, or is
+/// constant for `None`. Only the bytes that the check reads are changed.
 fn through_lines(bytes: &[u8], order: [Option<u32>; 4], constant: u8) -> Vec<u8> {
     let half = |half: u8| {
         (0..4).fold(0, |received, line| {

@@ -54,7 +54,7 @@ fn exact(points: &[Vector]) -> (Vector, f64) {
     (centre, distances.fold(0.0, f64::max))
 }
 
-/// Checks that the camera looks at the centre, with `up` up, and that the sphere takes 80 % of the height. Returns the distance of the eye
+/// Checks that the camera looks at the centre, with `up` up, and that the sphere fills 80 % of the height. Returns the distance of the eye
 /// from the centre.
 fn check(view: &View, (centre, radius): (Vector, f64), up: Axis) -> f64 {
     let eye = view.eye().map(|x| x.to_num::<f64>());

@@ -2,7 +2,7 @@
 
 use glint_core::wire::{self, Failure, MAX_FRAME, Reason, Receiver, Sender, State, Timing};
 
-/// A receiver of 300 bytes in the middle of a transfer: its sender has stopped after the first frame and a part of the second.
+/// A receiver of 300 bytes in the middle of a transfer: the sender has stopped in the second frame.
 fn left_alone(buffer: &mut [u8]) -> Receiver<'_> {
     let data = [0x5A; 300];
     let mut sender = Sender::new(&data, 0, Timing::HOST, 0);

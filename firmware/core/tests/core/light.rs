@@ -152,7 +152,7 @@ fn lights_and_colours_are_read() {
         "cameras",
     ] {
         let error = Light::parse(text).expect_err(text);
-        assert_eq!(error, LightError::Form { text });
+        assert_eq!(error, LightError::Form(text));
         assert_eq!(
             error.to_string(),
             format!("{text}: expected X,Y,Z[,RRGGBB] or camera[,RRGGBB]")
@@ -280,7 +280,7 @@ fn highlights_are_read_and_come_back() {
     }
 }
 
-/// The power of the cosine in the highlight against the exact one, for all exponents.
+/// The approximated power of the cosine in the highlight against the exact power, for all exponents.
 #[test]
 fn the_highlight_is_near_the_power_of_the_cosine() {
     let mut most: [f64; 2] = [0.0; 2];

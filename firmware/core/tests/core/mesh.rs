@@ -49,7 +49,6 @@ fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
         .collect()
 }
 
-/// An optional attribute is an array after the chunks: one element per vertex, in the order of the chunks.
 /// A texture of 8×8 texels, RGB565, without mip levels.
 fn texture(colour: u16) -> Vec<u8> {
     let levels = vec![vec![colour; 64]];
@@ -89,20 +88,11 @@ fn textures_follow_the_arrays() {
     // Vertices 4, 1, 2 and 3 are before the triangles.
     let number = MeshHeader::BYTES + WORD + 4 * WORD + Triangle::TEXTURE.start;
     let text = |bytes: &[u8]| Mesh::new_checked(bytes).map(drop).unwrap_err().to_string();
-    assert_eq!(
-        text(&encode(&textures[..1])),
-        format!(
-            "mesh byte {}: expected at most 1 as the number of a texture, found 2",
-            number + WORD
-        )
-    );
-    assert_eq!(
-        text(&encode(&[])),
-        format!(
-            "mesh byte {}: expected at most 0 as the number of a texture, found 2",
-            number + WORD
-        )
-    );
+    for count in [0, 1] {
+        let expected = format!("expected at most {count} (number of a texture), found 2");
+        let expected = format!("mesh byte {}: {expected}", number + WORD);
+        assert_eq!(text(&encode(&textures[..count])), expected);
+    }
     let first = bytes.len() - 2 * textures[0].len();
     let mut wrong = bytes.clone();
     wrong[first + 12] = 1;
@@ -123,6 +113,8 @@ fn textures_follow_the_arrays() {
     );
 }
 
+/// An optional attribute is an array after the chunks: one element per vertex, in the order of the
+/// chunks.
 #[test]
 fn an_optional_attribute_follows_the_chunks() {
     let vertices: Vec<Vertex> = (0..5).map(vertex).collect();
@@ -153,27 +145,17 @@ fn an_optional_attribute_follows_the_chunks() {
     short.truncate(bytes.len() - 16);
     short[MeshHeader::LENGTH].copy_from_slice(&(bytes.len() as u32 - 16).to_le_bytes());
     let refused = Mesh::new_checked(&short).expect_err("an array that is too short");
-    assert_eq!(
-        refused.to_string(),
-        format!(
-            "mesh byte {}: expected 32 bytes after the last chunk, found 16",
-            plain.len()
-        )
-    );
+    let expected = "expected 32 bytes after the last chunk, found 16";
+    let expected = format!("mesh byte {}: {expected}", plain.len());
+    assert_eq!(refused.to_string(), expected);
 }
 
 #[test]
 fn a_small_mesh_comes_back() {
     let bytes = small();
     let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
-    assert_eq!(
-        (
-            mesh.vertex_count(),
-            mesh.triangle_count(),
-            mesh.chunks().count()
-        ),
-        (4, 2, 1)
-    );
+    let counts = (mesh.vertex_count(), mesh.triangle_count());
+    assert_eq!((counts, mesh.chunks().count()), ((4, 2), 1));
     let chunk = mesh.chunks().next().expect("a chunk");
     assert_eq!((chunk.vertex_count(), chunk.triangle_count()), (4, 2));
     assert!(chunk.vertices().eq((0..4).map(vertex)));
@@ -184,16 +166,9 @@ fn a_small_mesh_comes_back() {
         Some([0, 2, 3])
     );
     assert_eq!(chunk.triangle(2), None);
-    let farthest = (0..4)
-        .map(|i| {
-            vertex(i)
-                .position
-                .iter()
-                .map(|&x| f64::from(x).powi(2))
-                .sum::<f64>()
-                .sqrt()
-        })
-        .fold(0.0, f64::max);
+    let squares = |i| vertex(i).position.map(|x| f64::from(x).powi(2));
+    let lengths = (0..4).map(|i| squares(i).iter().sum::<f64>().sqrt());
+    let farthest = lengths.fold(0.0, f64::max);
     assert_eq!(f64::from(mesh.radius()), farthest.ceil());
 }
 
@@ -218,10 +193,7 @@ fn the_layout_is_that_of_the_formats() {
         1, 0, 0xFE, 0xFF, 3, 0, 0xFC, 0xFF, 5, 0, 0, 0x40, 0x1F, 0xF8, 0, 0,
         0, 0, 0, 0, 0, 0, 0xE0, 0x07, 0, 0x40, 0, 0, 0xFF, 0xFF, 0, 0,
     ];
-    assert_eq!(
-        encode(&vertices, &triangles).expect("a good mesh"),
-        expected
-    );
+    assert_eq!(encode(&vertices, &triangles).unwrap(), expected);
 }
 
 #[test]
@@ -261,32 +233,21 @@ fn a_chunk_is_filled_to_the_last_vertex() {
 #[test]
 fn what_cannot_be_written_is_refused() {
     assert_eq!(encode(&[], &[]), Err(EncodeError::NoVertex));
-    assert_eq!(
-        encode(&[], &[triangle([0; 3])]),
-        Err(EncodeError::Index {
-            triangle: 0,
-            index: 0,
-            vertices: 0
-        })
-    );
     let one = [vertex(1)];
-    assert_eq!(
-        encode(&one, &[triangle([0; 3]), triangle([0, 1, 0])]),
-        Err(EncodeError::Index {
-            triangle: 1,
-            index: 1,
-            vertices: 1
-        })
-    );
-    assert_eq!(
-        encode(&one, &vec![triangle([0; 3]); 2 << 20]),
-        Err(EncodeError::TooLarge)
-    );
+    let triangles = [triangle([0; 3]), triangle([0, 1, 0])];
+    for (vertices, number) in [(&[][..], 0), (&one, 1)] {
+        let error = EncodeError::Index {
+            triangle: number,
+            index: number as u32,
+            vertices: vertices.len(),
+        };
+        assert_eq!(encode(vertices, &triangles), Err(error));
+    }
+    let many = vec![triangle([0; 3]); 2 << 20];
+    assert_eq!(encode(&one, &many), Err(EncodeError::TooLarge));
     let bytes = encode(&one, &[]).expect("a mesh without triangles");
-    assert_eq!(
-        Mesh::new_checked(&bytes).map(|mesh| mesh.triangle_count()),
-        Ok(0)
-    );
+    let mesh = Mesh::new_checked(&bytes).expect("a mesh");
+    assert_eq!(mesh.triangle_count(), 0);
 }
 
 #[test]
@@ -323,30 +284,16 @@ fn the_checksum_covers_every_byte() {
 #[test]
 fn every_field_is_checked() {
     assert_eq!(small().len(), 144);
-    for (at, word, expected) in [
-        (
-            16,
-            1,
-            "16: expected 2 triangles, as the chunks have, found 1",
-        ),
-        (
-            32,
-            7,
-            "32: expected at least 7 records for the chunk's vertices, found 6",
-        ),
-        (
-            36,
-            3,
-            "36: expected at least 3 records for the chunk's triangles, found 2",
-        ),
-        (
-            36,
-            1,
-            "128: expected 0 bytes after the last chunk, found 16",
-        ),
-        (40, 9, "40: expected 0 (reserved), found 9"),
-        (60, 1 << 16, "62: expected 0 (reserved), found 1"),
-        (124, 1 << 24, "127: expected 0 (reserved), found 1"),
+    let vertices = "at least 7 records for the chunk's vertices, found 6";
+    let triangles = "at least 3 records for the chunk's triangles, found 2";
+    for (at, word, place, expected) in [
+        (16, 1, 16, "2 triangles, the sum of the chunks, found 1"),
+        (32, 7, 32, vertices),
+        (36, 3, 36, triangles),
+        (36, 1, 128, "0 bytes after the last chunk, found 16"),
+        (40, 9, 40, "0 (reserved), found 9"),
+        (60, 1 << 16, 62, "0 (reserved), found 1"),
+        (124, 1 << 24, 127, "0 (reserved), found 1"),
     ] {
         let mut bytes = small();
         let field = &mut bytes[at..at + 4];
@@ -354,7 +301,7 @@ fn every_field_is_checked() {
         let word: u32 = if at < 48 { word } else { found | word };
         field.copy_from_slice(&word.to_le_bytes());
         let error = Mesh::new_checked(&bytes).expect_err(expected).to_string();
-        assert_eq!(error, format!("mesh byte {expected}"));
+        assert_eq!(error, format!("mesh byte {place}: expected {expected}"));
     }
     let most = 32 << 20;
     let error = Mesh::new_checked(&vec![0; most + 16]).expect_err("too long");

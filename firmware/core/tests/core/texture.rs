@@ -61,7 +61,8 @@ fn texels_are_read_as_they_were_encoded() {
     }
 }
 
-/// The four neighbours that bilinear filtering averages are in different quarters of words, for four memories that are read at once.
+/// The four neighbours that bilinear filtering averages are in different quarters of words, so that the
+/// gateware reads them at once from four memories.
 #[test]
 fn neighbours_are_in_different_quarters() {
     for format in Format::ALL {
@@ -103,58 +104,32 @@ fn places_beyond_the_sides() {
 #[test]
 fn rubbish_is_refused_with_its_place() {
     let good = encode(&source(Format::Palette16, [3, 4], 5)).unwrap();
-    let with = |at: usize, byte: u8| {
-        let mut bytes = good.clone();
-        bytes[at] = byte;
-        Texture::new_checked(&bytes)
-            .map(drop)
-            .unwrap_err()
-            .to_string()
-    };
-    for (at, byte, expected) in [
-        (0, b'X', "texture byte 0: expected \"GLT1\", found \"XLT1\""),
-        (
-            12,
-            11,
-            "texture byte 12: expected 3 to 10, the logarithm of a side, found 11",
-        ),
-        (
-            13,
-            2,
-            "texture byte 13: expected 3 to 10, the logarithm of a side, found 2",
-        ),
-        (
-            14,
-            2,
-            "texture byte 14: expected 1 or 5 mip levels, found 2",
-        ),
-        (15, 3, "texture byte 15: expected at most 2, found 3"),
-        (17, 3, "texture byte 17: expected at most 2, found 3"),
-        (18, 2, "texture byte 18: expected at most 1, found 2"),
-        (19, 2, "texture byte 19: expected at most 1, found 2"),
-        (20, 16, "texture byte 20: expected at most 15, found 16"),
-        (31, 9, "texture byte 22: expected at most 0, found 9"),
-    ] {
-        assert_eq!(with(at, byte), expected);
-    }
     let length = good.len();
     let text = |bytes: &[u8]| {
-        Texture::new_checked(bytes)
-            .map(drop)
-            .unwrap_err()
-            .to_string()
+        let texture = Texture::new_checked(bytes);
+        texture.map(drop).unwrap_err().to_string()
     };
-    assert_eq!(
-        text(&good[..9]),
-        "texture byte 0: expected 32 bytes, found 9"
-    );
-    assert_eq!(
-        text(&good[..length - 1]),
-        format!(
-            "texture byte 0: expected {length} bytes, found {}",
-            length - 1
-        )
-    );
+    for (at, byte, place, expected) in [
+        (0, b'X', 0, "\"GLT1\", found \"XLT1\""),
+        (12, 11, 12, "3 to 10, the logarithm of a side, found 11"),
+        (13, 2, 13, "3 to 10, the logarithm of a side, found 2"),
+        (14, 2, 14, "1 or 5 mip levels, found 2"),
+        (15, 3, 15, "at most 2 (format), found 3"),
+        (17, 3, 17, "at most 2 (wrap), found 3"),
+        (18, 2, 18, "at most 1 (filter), found 2"),
+        (19, 2, 19, "at most 1 (cut-out), found 2"),
+        (20, 16, 20, "at most 15 (key), found 16"),
+        (31, 9, 22, "0 (reserved), found 9"),
+    ] {
+        let mut bytes = good.clone();
+        bytes[at] = byte;
+        let expected = format!("texture byte {place}: expected {expected}");
+        assert_eq!(text(&bytes), expected);
+    }
+    for (end, expected) in [(9, 32), (length - 1, length)] {
+        let expected = format!("texture byte 0: expected {expected} bytes, found {end}");
+        assert_eq!(text(&good[..end]), expected);
+    }
     // Bytes behind the texture do not belong to it.
     let longer = [&good[..], &[7; 5]].concat();
     assert_eq!(Texture::new_checked(&longer).unwrap().bytes(), good);
@@ -165,23 +140,16 @@ fn rubbish_is_refused_with_its_place() {
 
 #[test]
 fn sizes_that_no_texture_has_are_not_encoded() {
+    let good = source(Format::Rgb565, [3, 3], 1);
     for size_log2 in [[2, 3], [3, 11], [200, 200]] {
-        assert!(
-            encode(&Source {
-                size_log2,
-                ..source(Format::Rgb565, [3, 3], 1)
-            })
-            .is_err()
-        );
+        let wrong = Source {
+            size_log2,
+            ..good.clone()
+        };
+        assert!(encode(&wrong).is_err());
     }
     let levels = vec![Vec::new(); 2];
-    assert!(
-        encode(&Source {
-            levels,
-            ..source(Format::Rgb565, [3, 3], 1)
-        })
-        .is_err()
-    );
+    assert!(encode(&Source { levels, ..good }).is_err());
     // Missing texels are 0, larger values are cut.
     let short = Source {
         levels: vec![vec![0x5E]],

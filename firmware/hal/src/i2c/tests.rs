@@ -304,7 +304,7 @@ const READ: PeriodicRead = PeriodicRead {
 };
 
 /// Polls once for the next periodic read. Returns its time or error, and its bytes; `None` if the read is not over.
-fn look(i2c: &mut I2c) -> Option<(Result<u64, BusError>, [u8; 3])> {
+fn poll_next(i2c: &mut I2c) -> Option<(Result<u64, BusError>, [u8; 3])> {
     let mut bytes = [0; 3];
     let found = {
         let future = pin!(i2c.next(&mut bytes));
@@ -324,25 +324,25 @@ fn periodic_reads_are_taken_one_by_one_with_their_times() {
     let begun = master.borrow().uptime.now;
     // A read every 39,000 clock cycles, and an interrupt after every five reads.
     assert_eq!(master.borrow().repeats, 1 << 31 | 4 << 24 | 38_999);
-    assert!(look(&mut i2c).is_none());
+    assert!(poll_next(&mut i2c).is_none());
     for _ in 0..2 {
         master.borrow_mut().repeat();
     }
     for (index, first) in [(1, 0xa0), (2, 0xa3)] {
-        let (time, bytes) = look(&mut i2c).unwrap();
+        let (time, bytes) = poll_next(&mut i2c).unwrap();
         assert_eq!(
             time,
             Ok(Frequency::DEFAULT.microseconds(begun + index * 39_000))
         );
         assert_eq!(bytes, [first, first + 1, first + 2]);
     }
-    assert!(look(&mut i2c).is_none());
+    assert!(poll_next(&mut i2c).is_none());
     let round = "S d0+ 3a+ S d1+";
     assert_eq!(log(&master).matches(round).count(), 2);
     // Any other transaction ends the periodic reads.
     i2c.write(0x68, &[1, 2]).unwrap();
     assert_eq!(master.borrow().repeats, 0);
-    assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Reads));
+    assert_eq!(poll_next(&mut i2c).unwrap().0, Err(BusError::Reads));
 }
 
 #[test]
@@ -351,8 +351,8 @@ fn an_error_of_periodic_reads_comes_behind_the_received_bytes() {
     i2c.begin(READ).unwrap();
     master.borrow_mut().repeat();
     master.borrow_mut().error = Error::Late;
-    assert!(look(&mut i2c).unwrap().0.is_ok());
-    assert_eq!(look(&mut i2c).unwrap().0, Err(BusError::Late));
+    assert!(poll_next(&mut i2c).unwrap().0.is_ok());
+    assert_eq!(poll_next(&mut i2c).unwrap().0, Err(BusError::Late));
     assert_eq!(master.borrow().repeats, 0);
     // Without progress of the master, the periodic read times out.
     i2c.begin(READ).unwrap();

@@ -143,7 +143,7 @@ fn rays_by_exits_have_the_prism_around_each_eye() {
         .with_rule(Rule::Sponge)
         .with_depth(3)
         .with_right_exit(Exit::Last);
-    // Planes are numbered: by eye, by way, and by axis.
+    // Planes are numbered by eye, direction and axis.
     let start = |number: u32| Start {
         distance: 100 + number,
         there: number.is_multiple_of(2),

@@ -9,11 +9,11 @@ use crate::line::Segment;
 use crate::triangle::{MeshSetup, Projected, project_chunk};
 
 /// Number of triangles between two calls of `progress`.
-const TRIANGLES_A_CALL: usize = 64;
+const TRIANGLES_PER_CALL: usize = 64;
 
 /// Placeholder for the number of an edge of length 0.
 const NONE: u32 = u32::MAX;
-/// Flag in the number of an edge, in the first triangle that has the edge; the edge is drawn with this triangle.
+/// Flag in the number of an edge: set in the first triangle that has the edge. The edge is drawn with this triangle.
 const FIRST: u32 = 1 << 31;
 
 /// The numbers of a triangle's edges, each from a corner to the next corner.
@@ -21,12 +21,12 @@ type Sides = [u32; 3];
 
 /// The edges of a mesh without duplicates: edges between equal pairs of positions count as one edge, even with different vertices.
 ///
-/// The list is made when a mesh is first drawn, in memory of the caller. It needs three words per triangle, and four words times the next
+/// The list is made when a mesh is first drawn, in the caller's memory. It needs three words per triangle, and four words times the next
 /// power of two above the number of edges.
 pub struct EdgeList<'m> {
     /// [`Sides`] for each triangle; then, while the list is made, a [`Table`] of the edges, and later the [`Biases`] of each edge.
     memory: &'m mut [u32],
-    /// Address and length of the mesh.
+    /// Address and length of the listed mesh; `None` for an empty list.
     mesh: Option<(usize, usize)>,
     /// Number of edges.
     count: usize,
@@ -76,7 +76,7 @@ impl<'m> EdgeList<'m> {
         for chunk in mesh.chunks() {
             let numbered = chunk.triangles().zip(sides.by_ref());
             for (index, (triangle, sides)) in numbered.enumerate() {
-                if index % TRIANGLES_A_CALL == 0 {
+                if index % TRIANGLES_PER_CALL == 0 {
                     progress();
                 }
                 let corners = corners(&triangle, |i| Some(chunk.vertex(i)?.position));
@@ -180,7 +180,7 @@ fn each_triangle(
         }
         let numbered = chunk.triangles().zip(numbers.by_ref());
         for (index, (triangle, sides)) in numbered.enumerate() {
-            if index % TRIANGLES_A_CALL == 0 {
+            if index % TRIANGLES_PER_CALL == 0 {
                 progress();
             }
             let of = |i| Some((chunk.vertex(i)?.position, scratch.get(i)?));
@@ -197,7 +197,7 @@ fn split(memory: &mut [u32], triangles: u32) -> Option<(&mut [Sides], &mut [u32]
     Some((sides.as_chunks_mut().0, rest))
 }
 
-/// The results of `of` for the indices of a triangle's vertices. In a checked mesh all indices are valid.
+/// The results of `of` for the vertex indices of a triangle; `None` for an invalid index, which a checked mesh does not have.
 fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T; 3]> {
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| of(usize::from(i))) else {
         return None;

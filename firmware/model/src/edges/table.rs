@@ -1,4 +1,4 @@
-//! A hash table of edges in memory of the caller.
+//! A hash table of edges in the caller's memory.
 
 /// Number of words of an edge's key.
 pub const KEY_WORDS: usize = 3;
@@ -8,7 +8,7 @@ const EMPTY: u32 = u32::MAX;
 
 /// A set of edges, which are numbered in the order of their insertion.
 pub struct Table<'m> {
-    /// Hash slots with edge numbers, each at the index of the edge's hash or after it. The number of slots is a power of two.
+    /// Hash slots with edge numbers, with linear probing: each at the index of the edge's hash or after it. Their number is a power of two.
     slots: &'m mut [u32],
     /// The keys of the edges, by edge number.
     keys: &'m mut [[u32; KEY_WORDS]],
@@ -27,7 +27,7 @@ impl<'m> Table<'m> {
         4 * Self::slots(most)
     }
 
-    /// An empty table in `memory` for up to `most` edges, or fewer in a smaller memory; `None` if no edge fits.
+    /// An empty table in `memory` for up to `most` edges, or for fewer edges if `memory` is smaller; `None` if no edge fits.
     pub fn new(memory: &'m mut [u32], most: usize) -> Option<Self> {
         let room = 1 << (memory.len() / 4).checked_ilog2()?;
         let (slots, keys) = memory.split_at_mut_checked(Self::slots(most).min(room))?;
@@ -46,7 +46,7 @@ impl<'m> Table<'m> {
 
     /// Finds an edge, or inserts it. Returns its number, and whether it was inserted; `None` if the table is full.
     pub fn insert(&mut self, key: [u32; KEY_WORDS]) -> Option<(u32, bool)> {
-        // The hash of FxHasher: the multiplier is 2^32 divided by the golden ratio, and the upper bits are the best mixed.
+        // The hash of FxHasher: the multiplier is 2^32 divided by the golden ratio, and its upper bits are mixed best.
         let hash = key.iter().fold(0u32, |hash, &word| {
             (hash.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B9)
         });

@@ -14,7 +14,7 @@ use crate::triangle::{MeshLight, MeshSetup};
 
 /// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
 ///
-/// The constants take about 3,700 bytes, mostly those of rays by exits and tables of a field's palette. To save time, keep one
+/// The constants take about 3,700 bytes, most of them for the rays of a field and for its palette. To save time, keep one
 /// `FrameConstants` and [update](Self::update) it for each frame instead of moving new ones.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
@@ -47,8 +47,8 @@ impl FrameConstants {
     /// Returns the constants of the mesh with this number in `frame`; `None` after the last mesh. `self` must hold the constants of
     /// `frame`.
     ///
-    /// The constants of an object are computed in `own`, which the caller reuses for all objects of a frame, in order: to copy shared
-    /// constants, or to store the constants of all objects, is slow on the soft core.
+    /// The constants of an object are computed in `own`, which the caller reuses for all objects of a frame, in order: copying the
+    /// shared constants, or storing the constants of all objects, would be slow on the soft core.
     ///
     /// # Errors
     /// A [`RenderError`] for an object that cannot be drawn.
@@ -148,7 +148,7 @@ impl FrameConstants {
             Subject::Mesh(subject) | Subject::Edges(subject, _) if MESH.is_built => {
                 let mesh = self.mesh.get_or_insert_default();
                 mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
-                mesh.set_clip(subject.clip)?;
+                mesh.volume = mesh.volume_of(subject.clip)?;
             }
             Subject::Field(subject) if FIELD.is_built => {
                 self.mesh = None;

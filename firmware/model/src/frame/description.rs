@@ -13,6 +13,7 @@ use glint_core::picture::{Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 
+use crate::options::MeshOptions;
 use crate::raymarch::FieldOptions;
 use crate::triangle::{Clip, MeshLight, Options, Placement};
 use crate::wireframe::WireframeSubject;
@@ -77,7 +78,7 @@ pub struct MeshSubject<'a> {
     pub clip: Clip,
     /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
-    /// Whether triangles have their textures.
+    /// Whether the textures of the mesh are drawn.
     pub textures: bool,
 }
 
@@ -113,21 +114,14 @@ impl<'a> MeshSubject<'a> {
         TEXTURE.is_built && self.textures && self.mesh.has_textures()
     }
 
-    /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
+    /// A mesh with [`MeshOptions::DEFAULT`].
     pub const fn new(mesh: Mesh<'a>) -> Self {
-        Self {
-            mesh,
-            cull: true,
-            shading: Shading::Flat,
-            clip: Clip::Guard,
-            winding: Winding::Mesh,
-            textures: true,
-        }
+        MeshOptions::DEFAULT.subject(mesh)
     }
 }
 
 impl<'a> Subject<'a> {
-    /// A mesh with the default options of [`MeshSubject::new`].
+    /// A mesh with [`MeshOptions::DEFAULT`].
     pub const fn mesh(mesh: Mesh<'a>) -> Self {
         Self::Mesh(MeshSubject::new(mesh))
     }
@@ -162,11 +156,11 @@ impl<'a> Subject<'a> {
     pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
         match self {
             Self::Objects(objects) if OBJECT.is_built => Some(objects),
-            Self::Objects(_)
-            | Self::Mesh(_)
+            Self::Mesh(_)
             | Self::Edges(..)
-            | Self::Field(_)
             | Self::MeshInField(..)
+            | Self::Field(_)
+            | Self::Objects(_)
             | Self::Wireframe(_) => None,
         }
     }
@@ -195,17 +189,17 @@ impl<'a> Subject<'a> {
                 let object = objects.get(number)?;
                 Some((&object.subject, object.colour))
             }
-            Self::Objects(_)
-            | Self::Mesh(_)
+            Self::Mesh(_)
             | Self::Edges(..)
-            | Self::Field(_)
             | Self::MeshInField(..)
+            | Self::Field(_)
+            | Self::Objects(_)
             | Self::Wireframe(_) => self.coloured_part().filter(|_| number == 0),
         }
     }
 
     /// The mesh of a subject without objects, and the colour that replaces its own colours.
-    // Not inlined, so that `coloured_mesh`, which the firmware calls for each object of a frame, is short and loads no table.
+    // Not inlined, so that `coloured_mesh`, which the firmware calls for each object of a frame, is short and has no jump table.
     #[inline(never)]
     fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         let is_hidden = matches!(self, Self::Edges(_, Edges::Hidden));
@@ -236,10 +230,10 @@ impl<'a> Subject<'a> {
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
             Self::Field(field) | Self::MeshInField(_, field) if FIELD.is_built => Some(field),
-            Self::Field(_)
-            | Self::MeshInField(..)
-            | Self::Mesh(_)
+            Self::Mesh(_)
             | Self::Edges(..)
+            | Self::MeshInField(..)
+            | Self::Field(_)
             | Self::Objects(_)
             | Self::Wireframe(_) => None,
         }
@@ -289,15 +283,15 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The lighting of the meshes: the frame's, or for a mesh in a field that of the field's appearance.
+    /// The lighting of the meshes: the frame's lighting or, for a mesh in a field, the lighting of the field's appearance.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {
                 field.appearance.mesh_lighting()
             }
-            Subject::MeshInField(..)
-            | Subject::Mesh(_)
+            Subject::Mesh(_)
             | Subject::Edges(..)
+            | Subject::MeshInField(..)
             | Subject::Field(_)
             | Subject::Objects(_)
             | Subject::Wireframe(_) => self.lighting,

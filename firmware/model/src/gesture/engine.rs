@@ -38,7 +38,7 @@ pub enum Fault {
     Byte,
     /// The frame had too few or too many lines.
     Lines,
-    /// VSYNC came inside a line.
+    /// VSYNC became active inside a line.
     Cut,
     /// Pixels came faster than the engine can process them. This never happens in the model.
     Lost,
@@ -49,7 +49,7 @@ pub enum Fault {
 /// The engine's counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Whole frames.
+    /// Number of whole frames.
     pub frames: u32,
     /// Number of frames with a fault.
     pub frames_dropped: u32,
@@ -101,22 +101,14 @@ pub struct Engine {
 
 impl Engine {
     /// Makes an enabled engine before its first frame; `pins` is the current state of the pins.
-    #[must_use]
-    pub const fn new(polarity: Polarity, settings: Settings, pins: Pins) -> Self {
+    pub fn new(polarity: Polarity, settings: Settings, pins: Pins) -> Self {
         let was_between = pins.vsync != polarity.vsync_low;
         Self {
             settings,
             results: Sums::NONE,
-            counts: Counts {
-                frames: 0,
-                frames_dropped: 0,
-                lines_malformed: 0,
-            },
+            counts: Counts::default(),
             fault: None,
-            seen: Seen {
-                pixels: 0,
-                lines: 0,
-            },
+            seen: Seen::default(),
             polarity,
             is_enabled: true,
             snapshot: Snapshot::new(0, false),
@@ -168,7 +160,6 @@ impl Engine {
     }
 
     /// Whether the engine is on and no frame has begun yet.
-    #[must_use]
     pub const fn is_waiting(&self) -> bool {
         self.is_enabled && !self.is_active
     }
@@ -191,13 +182,8 @@ impl Engine {
     }
 
     /// The requested small picture, once it is complete.
-    #[must_use]
-    pub const fn snapshot(&self) -> Option<&Snapshot> {
-        if self.is_snapshot_ready {
-            Some(&self.snapshot)
-        } else {
-            None
-        }
+    pub fn snapshot(&self) -> Option<&Snapshot> {
+        self.is_snapshot_ready.then_some(&self.snapshot)
     }
 
     fn pixel(&mut self, colour: Rgb565) {

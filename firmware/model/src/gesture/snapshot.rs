@@ -1,8 +1,8 @@
-//! The small picture of one frame.
+//! The small picture of a camera frame.
 
 use glint_core::colour::Rgb565;
 
-/// Number of words of a small picture's memory.
+/// Number of words in the memory of a small picture.
 pub const SNAPSHOT_WORDS: usize = 2048;
 
 /// A small picture: every 2^step-th pixel of every 2^step-th line, as marks or colours.
@@ -18,7 +18,6 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Creates an empty picture. `step` is at most 5.
-    #[must_use]
     pub const fn new(step: u8, is_colour: bool) -> Self {
         Self {
             step,
@@ -30,14 +29,12 @@ impl Snapshot {
         }
     }
 
-    /// The words: RGB565 colours, or marks packed 16 per word, the first in the highest bit.
-    #[must_use]
+    /// The words: RGB565 colours, or marks packed 16 per word, the first mark in the highest bit.
     pub fn words(&self) -> &[u16] {
         &self.words
     }
 
-    /// The number of its frame, counting whole frames from 1.
-    #[must_use]
+    /// The number of the frame that it shows; whole frames are counted from 1.
     pub const fn frame(&self) -> u32 {
         self.frame
     }

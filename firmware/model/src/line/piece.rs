@@ -64,7 +64,7 @@ impl Piece {
         let mut drawn = 0;
         let pixels = LinePixels {
             line: self.line,
-            // The position of each pixel shows whether the band has ended.
+            // No limit: the test of each pixel's position ends the piece at the end of the band.
             last: [i32::MAX; 2],
         };
         let is_inside = |column, row| {

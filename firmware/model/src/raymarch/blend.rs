@@ -1,8 +1,8 @@
 //! Unions of a flat solid (plane faces) and a round solid (spheres), sharp or with a fillet.
 //!
 //! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez,
-//! "smooth minimum"): min(a, b) − h²/4k with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both
-//! gradients, with the weight h/2k for the larger distance. The blended distance therefore changes no faster than
+//! "smooth minimum"): min(a, b) − h²/(4k) with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both
+//! gradients, with the weight h/(2k) for the larger distance. The blended distance therefore changes no faster than
 //! a or b, and the same weight blends the colours of the two surfaces.
 
 use glint_core::field::{FieldSample, FixedSpheres, Surface};
@@ -14,7 +14,7 @@ pub struct Beside {
     pub spheres: FixedSpheres,
     /// The fillet between the spheres and the flat solid.
     pub blend: Blend,
-    /// Exponent of the power of two by which the distance to the flat solid is too long, 0 to 6.
+    /// The distance to the flat solid is 2^`bend` times too long, 0 to 6; above 0 in a bent union.
     pub bend: u32,
 }
 
@@ -22,7 +22,7 @@ pub struct Beside {
 const MOST: i32 = (1 << 21) - 1;
 
 impl Beside {
-    /// Combines the samples of a flat solid and of a sphere at one point. A distance that is too long saturates.
+    /// Combines the samples of a flat solid and of a sphere at one point. A distance beyond the range of s10.12 saturates.
     pub fn union(&self, flat: FieldSample, round: FieldSample) -> FieldSample {
         let distance = i64::from(flat.distance) << self.bend;
         let flat = FieldSample {
@@ -38,7 +38,7 @@ impl Beside {
 pub struct Blend {
     /// Width k, u5.12; 0 for a sharp union.
     pub width: u32,
-    /// 1/2k for the width k, u1.16, to nearest.
+    /// 1/(2k) for the width k, u1.16, rounded to nearest.
     pub inverse: u32,
 }
 

@@ -66,7 +66,7 @@ impl Directions {
     }
 }
 
-/// Checks that rays of a camera can be drawn, in a picture of this size.
+/// Checks that a field can be drawn with this camera, in a picture of this size.
 ///
 /// # Errors
 /// [`RenderError::Size`], [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.

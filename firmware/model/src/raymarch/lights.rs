@@ -9,7 +9,7 @@ use super::exits::{Inverse, Words};
 /// The colour of [`Material::Normal`] on spheres: in each channel this value, plus [`SLOPE`] times a component of the normal.
 const MIDDLE: u8 = 130;
 
-/// Change of a channel with the component of the normal that it shows.
+/// Change of a channel per unit of the component of the normal that it shows.
 const SLOPE: u8 = 95;
 
 /// A directional light.
@@ -21,11 +21,10 @@ pub struct Light {
     pub colour: Rgb,
 }
 
-/// The highlight of the first light: the light has this colour and the direction halfway to the light and to the camera, and a power of
-/// the cosine.
+/// The highlight of the first light: a power of the cosine between the normal and the direction halfway between the light and the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shine {
-    /// Direction and colour.
+    /// The direction halfway between the light and the camera, and the colour of the highlight.
     pub light: Light,
     /// The steepness of the power, u5.8.
     pub steepness: u16,
@@ -44,9 +43,9 @@ pub struct Lights {
     pub materials: [Rgb; MAX_SPHERES],
     /// Colours of the three components of a normal, if the material's colour depends on it. The gateware takes one clock for each.
     pub normals: Option<[Rgb; 3]>,
-    /// The lengths of the axes x, y and z in products with a normal, s1.16: 1.
+    /// The factors of a normal's components x, y and z in `normals`, s1.16: 1 in every valid frame.
     pub axes: [i32; 3],
-    /// The highlight, which takes one clock more.
+    /// The highlight, which takes the gateware one more clock; `None` without a highlight.
     pub highlight: Option<Shine>,
 }
 
@@ -167,7 +166,7 @@ fn widened(direction: [i16; 3]) -> [i32; 3] {
     direction.map(|x| i32::from(x) << 2)
 }
 
-/// A sum of colours with shares, with 8 fraction bits.
+/// A sum of colours, each times a share, with 8 fraction bits.
 struct Sum([i32; 3]);
 
 impl Sum {
@@ -188,7 +187,7 @@ impl Sum {
     }
 }
 
-/// The length of a normal, as the scale of its products.
+/// The length of a normal, in the form by which its scalar products are divided.
 struct Length {
     /// 2^(17 + shift) divided by the length, 17 bits.
     inverse: u32,
@@ -197,7 +196,7 @@ struct Length {
 }
 
 impl Length {
-    /// The distance from a cone's apex along its axis, times 2^−`lead`. `place` leads from the apex to the lateral face.
+    /// The distance from a cone's apex along its axis, times 2^−`lead`. The argument is the vector from the apex to the lateral face.
     fn below_apex(cone: &FixedCone, [_, _, z]: [i32; 3]) -> Self {
         let below = z.saturating_neg().clamp(1, (1 << 23) - 1).cast_unsigned();
         let Inverse { mantissa, exponent } = Inverse::of(below << 3, &Words::CHOSEN);
@@ -209,8 +208,8 @@ impl Length {
         }
     }
 
-    /// The cosine of the angle between a normal and a direction, both as vectors: 16 fraction bits, rounded down in magnitude, at most 1 in
-    /// magnitude. The complement stands for a negative number, as in the gateware.
+    /// The cosine of the angle between a normal and a direction: 16 fraction bits, its magnitude rounded down and at most 1. A negative
+    /// cosine is the bitwise complement of its magnitude, as in the gateware.
     fn cosine(&self, normal: [i32; 3], direction: [i32; 3]) -> i64 {
         let product: i64 = core::iter::zip(normal, direction)
             .map(|(a, b)| i64::from(a) * i64::from(b))

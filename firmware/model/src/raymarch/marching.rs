@@ -19,7 +19,7 @@ pub const MARCH_FRACTION: u32 = 10;
 /// The constants of a frame whose rays march by distances (docs/formats/raymarch.md, "Marching rays"), of a smooth or bent union.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Marching {
-    /// The rays by exits to the bounding box about the origin: their direction and start are those of marching rays.
+    /// Rays by exits that enter the bounding box about the origin: marching rays have the directions and starts of these rays.
     pub entry: Exits,
     /// The flat solid of the union.
     pub solid: Solid,
@@ -27,7 +27,7 @@ pub struct Marching {
     pub beside: Beside,
     /// Threshold: a ray hits if the distance is below `threshold` + T·2^−`footprint`. In field units, 12 fraction bits, below 2^16.
     pub threshold: u32,
-    /// Exponent of the part of the threshold that grows with T, 7 to 22: that of the options plus the exponent e of D.
+    /// Exponent of the part of the threshold that grows with T, 7 to 22: the exponent of the options plus the exponent e of D.
     pub footprint: u32,
     /// Step limit, 1 to 1023: a ray ends undecided after this number of evaluations.
     pub cap: u32,
@@ -49,7 +49,7 @@ impl Marching {
         let bounds = Field::Primitive(Cuboid { half }.into());
         let mut entry = Exits::new(&bounds, view, size, stereo, Words::CHOSEN)?;
         for eye in &mut entry.eyes {
-            // By 2^−18 of D, so that its first 18 bits are rounded to nearest.
+            // Adds 2^−18 to D, so that truncation to 18 bits rounds to nearest.
             eye.first = eye.first.map(|part| part.wrapping_add(1 << 12));
         }
         let Placed { solid, scale, .. } = union.first().placed();
@@ -94,7 +94,8 @@ impl Marching {
     }
 
     /// Evaluates the field at a point, s15.12. Returns the distance and the nearest surface; at equal distances of a face and a sphere, the
-    /// face. A coordinate that exceeds the field's format s10.12 saturates: the solid is within this range, so the distance is not too large.
+    /// face. A coordinate that exceeds the field's format s10.12 saturates: the solid is within this range, so the distance is not too
+    /// large.
     pub fn sample(&self, point: [i32; 3]) -> FieldSample {
         const MOST: i32 = (1 << (9 + FRACTION)) - 1;
         let point = point.map(|x| x.clamp(!MOST, MOST));
@@ -103,8 +104,8 @@ impl Marching {
     }
 }
 
-/// Half side lengths of the box about a union with a bounded first member, that about both members. A fillet extends beyond both by at most a
-/// quarter of its width.
+/// Half side lengths of the box about both members of a union; `None` for an unbounded member. A fillet extends beyond both members by at
+/// most a quarter of its width.
 pub(super) fn extent(union: &Union) -> Option<[Q32_32; 3]> {
     let [first, round] = [union.first(), union.spheres()].map(Primitive::placed);
     first

@@ -1,4 +1,4 @@
-//! Options of drawing a field: colours, fog, one eye or two, and precision of the march.
+//! Options for drawing a field: colours, fog, one eye or two, and the precision of marching rays.
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -13,8 +13,8 @@ use super::palette::Palette;
 /// Precision of marching rays, which determines the errors of a picture and the time to draw it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Threshold: a ray hits if the distance is below `threshold` + z·2^−`footprint` at the depth z. In field units, 12 fraction bits, below
-    /// 2^16.
+    /// Threshold: a ray hits if the distance is below `threshold` + z·2^−`footprint` at the depth z. In field units, 12 fraction bits,
+    /// below 2^16.
     pub threshold: u32,
     /// Footprint: the exponent of the part of the threshold that grows with the depth; 7 to 15.
     pub footprint: u32,
@@ -43,8 +43,8 @@ impl Default for Tuning {
 /// Debug colour of undecided rays: magenta.
 const MARK: [u8; 3] = [255, 0, 255];
 
-/// Options of drawing a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Options for drawing a field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FieldOptions {
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
@@ -52,7 +52,7 @@ pub struct FieldOptions {
     pub tuning: Tuning,
     /// Colours, without fog.
     pub palette: Palette,
-    /// Direction to the first light, s1.14, of length 1, if it throws shadows.
+    /// Direction to the first light, s1.14, of length 1; `None` if it casts no shadows.
     pub sun: Option<[i16; 3]>,
     /// Density of the fog per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog.
     pub fog: U4_28,
@@ -101,18 +101,6 @@ impl FieldOptions {
                 .map(Light::direction),
             fog,
             tuning: Tuning::of(quality),
-        }
-    }
-}
-
-impl Default for FieldOptions {
-    fn default() -> Self {
-        Self {
-            stereo: None,
-            tuning: Tuning::default(),
-            palette: Palette::default(),
-            sun: None,
-            fog: U4_28::ZERO,
         }
     }
 }

@@ -31,7 +31,7 @@ pub struct Palette {
     /// Exponent of the depth step of the table `fog`, 0 to 7.
     pub fog_shift: u32,
     /// Share of light left at a surface; 255 is all of it. The index is the number of steps of the ray: rays take many
-    /// steps in narrow places.
+    /// steps in narrow gaps.
     pub occlusion: [u8; 256],
 }
 
@@ -81,9 +81,9 @@ impl Palette {
         }
     }
 
-    /// Darkens narrow places: the share of light left is 255·h/(h + n), rounded down. For rays that march, h is 40 and n is the number of
-    /// steps. For rays by exits, which take far fewer steps, h is 6 and n the number of steps before the last one, which finds the hit:
-    /// a surface without a hole before it keeps its light.
+    /// Adds ambient occlusion, which darkens narrow gaps: the share of light left is 255·h/(h + n), rounded down. For rays that march, h is
+    /// 40 and n is the number of steps. For rays by exits, which take far fewer steps, h is 6 and n is the number of steps before the last
+    /// one: a surface that the first step reaches keeps all of its light.
     #[must_use]
     pub fn with_occlusion(self, field: &Field) -> Self {
         let (half, last) = if Exits::draws(field) { (6, 1) } else { (40, 0) };

@@ -27,11 +27,11 @@ pub struct Ray {
     pub direction: [i32; 3],
     /// Parameter T at the start of the ray, u14.10, rounded down: where it enters the bounding box, or at the near plane.
     pub start: u32,
-    /// Whether the ray does not meet the bounding box up to the far limit, or leads away from it: it misses, and its start has no meaning.
+    /// Whether the ray misses because it does not meet the bounding box before the far limit. Its start then has no meaning.
     pub is_over: bool,
     /// Change of T per distance: a lower bound of 1/|D|, u3.14.
     pub pace: u32,
-    /// How far up the ray leads ([`RayEnd::height`]).
+    /// Height of the direction ([`RayEnd::height`]).
     pub height: u8,
 }
 
@@ -42,7 +42,7 @@ pub struct RayResult {
     pub state: State,
     /// Parameter T of the last evaluated point; for a hit, of the point one step farther. u14.10.
     pub t: u32,
-    /// Evaluated points, at most 1023.
+    /// Number of evaluated points, at most 1023.
     pub steps: u32,
 }
 
@@ -59,7 +59,7 @@ impl Marching {
             direction,
             pace: match self.beside.bend {
                 0 => pace(direction),
-                // The place at which a ray enters the solid depends on its steps.
+                // In a bent union, the point where a ray enters the solid depends on the lengths of its steps.
                 _ => long_pace(direction),
             },
             height: beam.height(),
@@ -139,8 +139,8 @@ impl Marching {
         Some(self.spheres().from(number, self.point(ray, end.t)))
     }
 
-    /// Depth along the camera's forward axis n of a point at the parameter T, in field units times 2^e with the exponent e of this setup, 21
-    /// fraction bits.
+    /// Depth along the camera's forward axis n of a point at the parameter T, in field units times 2^e with the exponent e of this setup,
+    /// 21 fraction bits.
     pub fn depth_of(&self, t: u32) -> u64 {
         u64::from(t) << (21 - MARCH_FRACTION)
     }
@@ -154,9 +154,9 @@ fn pace(direction: [i32; 3]) -> u32 {
     PACES[(square >> 7) as usize & 127]
 }
 
-/// The same from all bits, without jumps from pixel to pixel, for the soft core.
+/// As [`pace`], from all bits of the direction, so that the pace does not jump between neighbouring pixels. Only the CPU draws such fields.
 fn long_pace(direction: [i32; 3]) -> u32 {
-    // With 34 fraction bits.
+    // The squares have 34 fraction bits.
     let squares = direction.map(|part| (u64::from(magnitude(part)) + 1).pow(2));
     let square: u64 = squares.iter().sum();
     ((1_u64 << 62) / square).isqrt() as u32

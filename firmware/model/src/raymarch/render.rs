@@ -25,7 +25,7 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Adds the counts of further rows.
+    /// Adds the counts of other rows or of another frame.
     pub const fn add(&mut self, other: &Self) {
         self.rays += other.rays;
         self.evaluations += other.evaluations;
@@ -87,7 +87,7 @@ pub fn render_rows(
     let setup = tracer.setup;
     let width = setup.width;
     let mut stats = FieldStats::default();
-    let mut look = |eye, x, y| {
+    let mut cast = |eye, x, y| {
         let end = tracer.trace(eye, x, y);
         stats.count(&end);
         show(x, y, &end);
@@ -96,7 +96,7 @@ pub fn render_rows(
     let pixels = core::iter::zip(colour.iter_mut(), depth.iter_mut());
     let places = (first..setup.height).flat_map(|y| (0..width).map(move |x| (x, y)));
     for ((x, y), (colour, depth)) in core::iter::zip(places, pixels) {
-        let (left, code) = look(0, x, y);
+        let (left, code) = cast(0, x, y);
         match setup.stereo {
             None => {
                 if code >= *depth {
@@ -104,7 +104,7 @@ pub fn render_rows(
                 }
             }
             Some(tint) => {
-                let (right, _) = look(1, x, y);
+                let (right, _) = cast(1, x, y);
                 (*colour, *depth) = (tint.compose(left[1], right[1]), code);
             }
         }

@@ -38,10 +38,10 @@ pub struct FieldSetup {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(
     clippy::large_enum_variant,
-    reason = "there is nowhere to box the constants"
+    reason = "without an allocator the constants cannot be boxed"
 )]
 pub enum Form {
-    /// Rays leave whole empty prisms.
+    /// Rays go by exits from whole empty prisms.
     Exits(Exits),
     /// Rays march by distances.
     Marching(Marching),

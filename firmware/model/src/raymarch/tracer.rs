@@ -4,7 +4,8 @@ use super::end::RayEnd;
 use super::exits::{Cones, Exits};
 use super::setup::{FieldSetup, Form};
 
-/// The constants of a frame, with the cones in which the eyes see its spheres. They are large, so the constants alone do not have them.
+/// The constants of a frame, with the cones in which the eyes see its spheres. The cones are not part of the constants, because they are
+/// large.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracer<'a> {
     /// The constants.
@@ -13,7 +14,7 @@ pub struct Tracer<'a> {
 }
 
 impl FieldSetup {
-    /// What finds the ends of the frame's rays.
+    /// Returns the tracer, which finds the ends of the frame's rays.
     pub fn tracer(&self) -> Tracer<'_> {
         let cones = self.exits().map(Exits::cones).unwrap_or_default();
         Tracer::new(self, cones)
@@ -21,7 +22,7 @@ impl FieldSetup {
 }
 
 impl<'a> Tracer<'a> {
-    /// The constants of a frame, with the cones of its spheres.
+    /// A tracer with the constants of a frame and the cones of its spheres.
     pub const fn new(setup: &'a FieldSetup, cones: [Cones; 2]) -> Self {
         Self { setup, cones }
     }

@@ -1,8 +1,8 @@
 //! The clipper: homogeneous Sutherland–Hodgman in integers, before the perspective division.
 //!
 //! It cuts triangles that cross the near plane or leave the guard band, or, as an option, all triangles that leave the view volume.
-//! The intersection of an edge with a plane is the exact point, rounded. It does not depend on the direction of the edge, so both
-//! triangles at an edge get the same vertex.
+//! The intersection of an edge with a plane is the exact point, rounded. It does not depend on the direction of the edge, so two
+//! triangles that share an edge get the same vertex.
 
 use glint_core::camera::Projection;
 use heapless::Vec;
@@ -16,11 +16,12 @@ use crate::triangle::volume::Volume;
 /// 9, but rounding may make a polygon concave.)
 pub const MAX_VERTICES: usize = 28;
 
-/// A vertex of a triangle that is clipped. The code for triangles without textures interpolates no coordinates.
-pub trait Cut: Copy {
-    /// Its place and light.
+/// A vertex that the clipper interpolates. It is a trait, so that the code for triangles without textures interpolates no texture
+/// coordinates.
+pub trait Cut: Copy + Default {
+    /// Its position and light.
     fn vertex(&self) -> &CameraVertex;
-    /// The vertex at `part`/`whole` of the way to another one; `vertex` is its place and light.
+    /// The vertex at `part`/`whole` of the way to `other`; `vertex` is the position and light of the result.
     fn towards(&self, other: &Self, vertex: CameraVertex, part: u64, whole: u64) -> Self;
 }
 
@@ -36,7 +37,7 @@ impl Cut for CameraVertex {
 /// A vertex of a triangle with a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TexturedVertex {
-    /// Its place and light.
+    /// Its position and light.
     pub vertex: CameraVertex,
     /// Coordinates s and t of the texture, s16.16.
     pub coordinates: [i32; 2],
@@ -59,17 +60,9 @@ impl Cut for TexturedVertex {
 }
 
 /// A triangle after clipping: a polygon.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Polygon<C = CameraVertex> {
     vertices: Vec<C, MAX_VERTICES>,
-}
-
-impl<C> Default for Polygon<C> {
-    fn default() -> Self {
-        Self {
-            vertices: Vec::new(),
-        }
-    }
 }
 
 impl<C: Cut> Polygon<C> {
@@ -143,7 +136,7 @@ impl Plane {
         }
     }
 
-    /// Writes the part of `polygon` inside the plane to `left`. Returns false, and writes nothing, if the whole polygon is inside.
+    /// Writes the part of `polygon` inside the plane to `left`. If the whole polygon is inside, writes nothing and returns false.
     fn cut<C: Cut>(self, frame: &MeshSetup, polygon: &Polygon<C>, left: &mut Polygon<C>) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
@@ -241,7 +234,8 @@ pub fn clip<C: Cut>(frame: &MeshSetup, triangle: [C; 3]) -> Polygon<C> {
     polygon
 }
 
-/// Clips an edge to the volume of the frame; `None` if nothing remains. Its new ends are the vertices that the triangles at the edge get.
+/// Clips an edge to the volume of the frame; `None` if nothing remains. The new ends equal the vertices of the clipped triangles that have
+/// this edge.
 pub fn clip_edge(
     frame: &MeshSetup,
     [mut a, mut b]: [CameraVertex; 2],

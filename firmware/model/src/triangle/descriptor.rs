@@ -21,8 +21,8 @@ pub use contents::Contents;
 /// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = constants::GROUP as i32;
 
-/// A triangle after its setup, or a piece of a line, packed into words of 32 bits: those of a flat triangle without a texture, the words of
-/// the texture, and the planes of light. Gateware reads those of its [`Layout`].
+/// A triangle after its setup, or a piece of a line, packed into 32-bit words: first the words of a flat triangle without a texture, then
+/// the texture, then the planes of light. A gateware reads only the parts in its [`Layout`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; WORDS],
@@ -30,13 +30,13 @@ pub struct Descriptor {
 
 /// Number of 32-bit words of a flat triangle without a texture.
 const FLAT_WORDS: usize = descriptor::BITS / 32;
-/// Number of 32-bit words of a texture, whole words of 16 bytes.
+/// Number of 32-bit words of a texture, rounded up to a multiple of 16 bytes.
 const TEXTURE_WORDS: usize = texture_planes::BITS.div_ceil(128) * 4;
-/// Number of 32-bit words of the planes of light, whole words of 16 bytes.
+/// Number of 32-bit words of the planes of light, rounded up to a multiple of 16 bytes.
 const LIGHT_WORDS: usize = planes::BITS.div_ceil(128) * 4;
 const WORDS: usize = FLAT_WORDS + TEXTURE_WORDS + LIGHT_WORDS;
 
-/// The optional parts of the descriptors that a gateware reads.
+/// The optional parts of a descriptor that a gateware reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// The texture.
@@ -71,7 +71,7 @@ impl Layout {
         FLAT_WORDS + texture + light
     }
 
-    /// The words of each part in a [`Descriptor`]; none of a part that gateware does not read.
+    /// The range of each part's words in a [`Descriptor`]; empty for a part that the gateware does not read.
     fn parts(self) -> [core::ops::Range<usize>; 3] {
         let texture = FLAT_WORDS..FLAT_WORDS + TEXTURE_WORDS;
         let light = texture.end..WORDS;
@@ -88,7 +88,7 @@ impl Layout {
     }
 }
 
-/// Start value and steps per pixel to the right and down: of the depth plane, and of the plane of one light channel.
+/// The fields of a plane: its start value, and its steps per pixel to the right and down.
 type PlaneFields = [Bits; 3];
 const DEPTH: PlaneFields = [
     descriptor::DEPTH_START,
@@ -109,7 +109,7 @@ const fn in_planes(field: Bits) -> Bits {
     field.from(32 * (FLAT_WORDS + TEXTURE_WORDS))
 }
 
-/// A field of the texture, which follows the descriptor.
+/// A field of the texture, which follows the words of a flat triangle.
 const fn in_texture(field: Bits) -> Bits {
     field.from(descriptor::BITS)
 }
@@ -130,7 +130,7 @@ impl Descriptor {
     /// Packs a triangle; `colour` is its colour under flat shading without a texture.
     pub fn new(setup: &Setup, colour: Rgb565, texture: Option<&OfTexture>) -> Self {
         let bounds = setup.bounds;
-        // The bounds are in the picture and so not negative: unsigned divisions suffice.
+        // The bounds are in the picture, so they are not negative and the divisions round down.
         let group_start = setup.start_column / GROUP;
         let back = setup.start_column - GROUP * group_start;
         let mut words = [0; WORDS];
@@ -207,7 +207,7 @@ impl Descriptor {
         Self { words }
     }
 
-    /// The words that gateware with this layout reads, lowest word first, in their parts.
+    /// The words that a gateware with this layout reads, by part, lowest word first.
     pub fn words(&self, layout: Layout) -> [&[u32]; 3] {
         layout
             .parts()
@@ -333,8 +333,8 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// Continues a set of descriptors and band lists in two regions of memory, of which `counts` descriptors and entries are already
-    /// written, for a picture of this width and gateware with this layout. A list holds up to 4 << `list_shift` entries.
+    /// Continues a set of descriptors and band lists in two regions of memory, for a picture of this width and a gateware with this layout.
+    /// `counts` has the numbers of descriptors and entries written so far. A list holds up to 4 << `list_shift` entries.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],
@@ -353,7 +353,7 @@ impl<'a> ListWriter<'a> {
         }
     }
 
-    /// Appends a triangle to the lists of all bands within its bounds; `colour` and `texture` as for [`Descriptor::new`].
+    /// Appends a triangle to the lists of all bands that its bounds touch; `colour` and `texture` as for [`Descriptor::new`].
     pub fn put(&mut self, setup: &Setup, colour: Rgb565, texture: Option<&OfTexture>) {
         // The bounds are in the picture and not empty.
         let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
@@ -378,7 +378,7 @@ impl<'a> ListWriter<'a> {
             return;
         };
         for part in descriptor.words(self.layout) {
-            // The parts are as long as the descriptor.
+            // All parts together are as long as the descriptor.
             let Some((first, rest)) = to.split_at_mut_checked(part.len()) else {
                 break;
             };

@@ -30,7 +30,7 @@ pub struct MeshSetup {
     /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37 fraction bits; each s44. In orthographic
     /// projection, −C·n is reduced by the depth whose code is 2^18.
     pub translation: [i64; 3],
-    /// The smallest coordinate Z in front of the near plane, 37 fraction bits: in perspective `near_plane`, in orthographic projection the
+    /// The smallest coordinate Z that is not clipped, 37 fraction bits: in perspective `near_plane`, in orthographic projection the
     /// depth of the code 2^18 − 4.
     pub near: i64,
     /// Distance of the near plane from the eye, 37 fraction bits.
@@ -49,7 +49,7 @@ pub struct MeshSetup {
 }
 
 impl MeshSetup {
-    /// Computes the constants for a camera whose eye is within 8 world units of the origin, one of the [`SIZES`], and a
+    /// Computes the constants for a camera whose eye is within 8 world units of the origin, a picture of one of the [`SIZES`], and a
     /// mesh with the given `radius` (14 fraction bits).
     ///
     /// # Errors
@@ -163,15 +163,6 @@ impl MeshSetup {
     pub fn with_clip(self, clip: Clip) -> Result<Self, RenderError> {
         let volume = self.volume_of(clip)?;
         Ok(Self { volume, ..self })
-    }
-
-    /// Replaces the clipping of triangles, as [`with_clip`](Self::with_clip) does.
-    ///
-    /// # Errors
-    /// As [`with_clip`](Self::with_clip).
-    pub(crate) fn set_clip(&mut self, clip: Clip) -> Result<(), RenderError> {
-        self.volume = self.volume_of(clip)?;
-        Ok(())
     }
 
     /// The volume for a kind of clipping, with the errors of [`with_clip`](Self::with_clip).

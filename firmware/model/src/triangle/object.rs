@@ -295,7 +295,7 @@ const fn halvings(x: u32) -> u32 {
     count
 }
 
-/// At least the magnitude, and at least [`MOST_ROUNDING`].
+/// An upper bound of the magnitude plus [`MOST_ROUNDING`].
 #[inline(always)]
 const fn rounded_room(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32 + 1 + MOST_ROUNDING
@@ -313,7 +313,7 @@ const fn excess(x: u32) -> u32 {
     halvings((x + MOST_ROUNDING) >> 24)
 }
 
-/// Half a unit of the result after six halvings.
+/// Largest number that is added for rounding: half a unit of the result after six halvings.
 const MOST_ROUNDING: u32 = 1 << 5;
 
 /// Divides by 2^`shift`, rounded to nearest.

@@ -14,7 +14,7 @@ use crate::triangle::shade::{Light, Lit, intensity, lit};
 use crate::triangle::textured::{OfTexture, axes, flat_light, weight};
 use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 
-/// Options of drawing a mesh.
+/// Options for drawing a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options<'a> {
     /// Whether back faces are culled.
@@ -33,7 +33,7 @@ pub struct Options<'a> {
     pub normals: Option<&'a Normals>,
     /// Whether the light is in world coordinates, and not in the coordinates of the mesh.
     pub lit_in_world: bool,
-    /// Whether triangles have their textures.
+    /// Whether the textures of the mesh are drawn.
     pub textures: bool,
 }
 
@@ -191,8 +191,8 @@ impl Placed {
     }
 }
 
-/// The texture with this number in the frame's table on a triangle that [`Placed::new`] accepts, from the coordinates s and t of its
-/// vertices.
+/// The texture on a triangle that [`Placed::new`] accepts, from the `number` of the texture in the frame's table and the coordinates s and
+/// t of the triangle's vertices.
 ///
 /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
 #[inline(never)]
@@ -377,7 +377,7 @@ fn fan_vertices(
     Some((order, vertices))
 }
 
-/// Clips a triangle and emits the remaining polygon as a fan of the results of `corner`.
+/// Clips a triangle, converts the vertices of the remaining polygon by `corner`, and emits the polygon as a fan.
 fn fan<C: Cut, R>(
     frame: &MeshSetup,
     vertices: [C; 3],

@@ -3,7 +3,7 @@
 
 use glint_core::colour::Rgb565;
 
-/// `INVERSE[i]` is 2^17/(1 + (i + 1/2)/1024) to nearest, u0.17.
+/// `INVERSE[i]` is 2^17/(1 + (i + 1/2)/1024), rounded to nearest, u0.17.
 pub const INVERSE: [u32; 1024] = inverses();
 
 const fn inverses() -> [u32; 1024] {

@@ -42,26 +42,21 @@ pub fn draw_groups(
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
 ) -> Coverage {
+    match (textured, &setup.light) {
+        (Some(textured), _) => grouped(setup, Textures::new(setup, textured), target, visit),
+        (None, Some(light)) => grouped(setup, Smooth::new(setup, light), target, visit),
+        (None, None) => grouped(setup, colour, target, visit),
+    }
+}
+
+fn grouped(
+    setup: &Setup,
+    brush: impl Brush,
+    target: &mut FrameBuffer,
+    visit: &mut dyn FnMut(i32, [i32; 2]),
+) -> Coverage {
     let row = setup.bounds.top;
-    if let Some(textured) = textured {
-        let brush = Textures::new(setup, textured);
-        return draw_with(setup, Grouped { brush, row, visit }, target);
-    }
-    match &setup.light {
-        None => draw_with(
-            setup,
-            Grouped {
-                brush: colour,
-                row,
-                visit,
-            },
-            target,
-        ),
-        Some(light) => {
-            let brush = Smooth::new(setup, light);
-            draw_with(setup, Grouped { brush, row, visit }, target)
-        }
-    }
+    draw_with(setup, Grouped { brush, row, visit }, target)
 }
 
 /// Draws a triangle with smooth shading. Not inlined, so that flat triangles do not load this code
@@ -167,7 +162,7 @@ impl Accumulation {
 /// Smooth shading: the colour comes from the planes of red, green and blue.
 struct Smooth {
     light: [Accumulation; 3],
-    /// The weight of all light; `None` if it is the depth of each pixel.
+    /// The common weight of the light; `None` if the depth of each pixel is its weight.
     weight: Option<u32>,
 }
 
@@ -196,7 +191,7 @@ impl Brush for Smooth {
     }
 }
 
-/// A texture: its colour is multiplied by the light of the triangle, or under smooth shading by that of each pixel.
+/// A texture: its colour is multiplied by the light of the triangle or, under smooth shading, by the light of each pixel.
 struct Textures<'a> {
     setup: &'a Setup,
     textured: &'a Textured<'a>,

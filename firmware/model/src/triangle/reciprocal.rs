@@ -2,7 +2,7 @@
 //!
 //! Both reciprocals use a table of 256 seeds and two Newton steps, in which each product fits a 25×18 multiplier.
 
-/// `SEED[i]` is 2^10/(1 + (i + 1/2)/256) to nearest, u0.10.
+/// `SEED[i]` is 2^10/(1 + (i + 1/2)/256), rounded to nearest, u0.10.
 pub const SEED: [u16; 256] = seeds();
 
 const fn seeds() -> [u16; 256] {

@@ -78,7 +78,7 @@ pub struct DrawnTriangle {
     pub clipped: bool,
 }
 
-/// Takes a triangle, its setup, and its texture if it has one.
+/// Receives a triangle, its setup, and its texture if it has one.
 pub type Emit<'b> = dyn FnMut(&DrawnTriangle, &Setup, Option<&Textured>) + 'b;
 
 /// Draws a mesh.
@@ -146,7 +146,7 @@ pub struct PreparedMesh<'a> {
     pub mesh: Mesh<'a>,
     /// The frame constants of the mesh.
     pub frame: MeshSetup,
-    /// Options of drawing the mesh. `clear` has no effect.
+    /// Options for drawing the mesh. `clear` has no effect.
     pub options: Options<'a>,
 }
 
@@ -213,7 +213,7 @@ pub fn set_up_parts<'a>(
     emit: &mut Emit,
 ) -> Result<Stats, RenderError> {
     let mut stats = Stats::default();
-    // Number of the first part with triangles to clip; count of such parts; number of the part whose vertices are in the scratch memory.
+    // Number of the first part with triangles to clip; number of the part whose vertices are in the scratch memory.
     let (mut first, mut projected) = (None, 0);
     let mut number = 0;
     while let Some(PreparedMesh {
@@ -275,7 +275,7 @@ pub fn set_up_parts<'a>(
 
 /// Runs the vertex stage for all vertices of a chunk.
 ///
-/// Not inlined, so that the loop over vertices has all registers.
+/// Not inlined, so that the loop over vertices can use all registers.
 #[inline(never)]
 pub fn project_chunk(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
     for (vertex, projected) in chunk.vertices().zip(&mut *scratch) {
@@ -304,7 +304,7 @@ fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
 pub(super) struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options<'a>,
-    /// The textures of the mesh, if it has some and they are drawn.
+    /// The textures of the mesh, if it has textures and they are drawn.
     textures: Option<MeshTextures<'a>>,
     emit: &'b mut Emit<'b>,
     stats: Stats,

@@ -300,14 +300,13 @@ impl Setup {
 
     /// Adds the light planes; `w` is the weight of the light at each vertex.
     fn with_light(self, triangle: &Oriented, lit: &[Lit; 3], w: [u32; 3]) -> Self {
-        let setup = self;
-        let start = setup.start();
+        let start = self.start();
         let [a, b, c] = [0, 1, 2].map(|i| lit[i].weighted(w[i]));
         let light = [0, 1, 2]
             .map(|channel| Plane::new(triangle, [a[channel], b[channel], c[channel]], start));
         Self {
             light: Some(light),
-            ..setup
+            ..self
         }
     }
 }

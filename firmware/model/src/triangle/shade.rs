@@ -49,7 +49,7 @@ impl Lit {
 }
 
 /// The light of a vertex, for front faces and for back faces.
-// Aligned to words, so that it is copied by words from any place on the stack.
+// Aligned to words, so that it is always copied by words.
 #[repr(align(4))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {

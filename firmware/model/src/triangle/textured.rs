@@ -18,11 +18,12 @@ const COORDINATE_BITS: u32 = 16;
 const SHARE_BITS: u32 = 17;
 /// Largest base-2 logarithm of the range of a coordinate on a triangle.
 const MAX_RANGE_LOG2: u32 = 15;
-/// A clamped coordinate on a triangle is relative to one of these, in periods of two repeats. From the last one on, all of it is beyond 1.
+/// The offsets to which a clamped coordinate on a triangle is relative, in periods of two repeats. With the last offset, the coordinate
+/// exceeds 1 everywhere on the triangle.
 const PERIODS: RangeInclusive<i64> = -8..=1;
 /// Fraction bits of a position in texels.
 const PLACE_BITS: u32 = 8;
-/// Bits of a weight of bilinear filtering.
+/// Number of bits of a weight in bilinear filtering.
 const WEIGHT_BITS: u32 = 4;
 
 /// A triangle with a texture.
@@ -32,7 +33,7 @@ pub struct Textured<'a> {
     pub texture: Texture<'a>,
     /// The planes of the coordinates s and t.
     pub axes: [Axis; 2],
-    /// Light of each channel under flat shading, u0.8 as a channel of [`lit`].
+    /// Light of each channel under flat shading, u0.8, as for [`lit`].
     pub light: [u8; 3],
     /// The weight of the coordinates in orthographic projection, in the format of the depth accumulator.
     pub weight: Option<u32>,
@@ -41,7 +42,7 @@ pub struct Textured<'a> {
 /// The texture of a triangle in a descriptor: a [`Textured`] with the number in the frame's table in place of the texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OfTexture {
-    /// The number, from 1.
+    /// Number of the texture in the frame's table, from 1.
     pub number: u8,
     /// The planes of the coordinates s and t.
     pub axes: [Axis; 2],
@@ -52,7 +53,7 @@ pub struct OfTexture {
 }
 
 impl OfTexture {
-    /// The same with the texture itself.
+    /// Replaces the number of the texture by the texture.
     pub fn with<'a>(&self, texture: Texture<'a>) -> Textured<'a> {
         Textured {
             texture,
@@ -71,7 +72,7 @@ pub struct MeshTextures<'a> {
 }
 
 impl<'a> MeshTextures<'a> {
-    /// The textures of a mesh; `None` if it has none, no coordinates, or if they are not drawn.
+    /// The textures of a mesh; `None` if the mesh has no textures or no texture coordinates, or if textures are not drawn.
     pub fn new(mesh: &Mesh<'a>, is_drawn: bool) -> Option<Self> {
         if !(TEXTURE.is_built && is_drawn && mesh.has_textures()) {
             return None;
@@ -83,8 +84,8 @@ impl<'a> MeshTextures<'a> {
         })
     }
 
-    /// The texture of a triangle, with the coordinates s and t of its vertices; `None` if it has none. `first` is the number in the mesh
-    /// of the first vertex of the triangle's chunk.
+    /// The texture of a triangle, with the coordinates s and t of its vertices; `None` for a triangle without a texture. `first` is the
+    /// number in the mesh of the first vertex of the triangle's chunk.
     pub fn of(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
         let number = usize::from(triangle.texture).checked_sub(1)?;
         let texture = self.mesh.textures().nth(number)?;
@@ -109,12 +110,12 @@ pub struct Axis {
     pub plane: Plane,
     /// Base-2 logarithm of the range of the coordinate, in repeats of the texture; 0 to 15.
     pub range_log2: u32,
-    /// A number of periods of two repeats, −8 to 1, which only clamping needs.
+    /// Offset of the coordinate in periods of two repeats, −8 to 1; only clamping uses it.
     pub periods: i32,
 }
 
 impl<'a> Textured<'a> {
-    /// Computes the planes of a triangle with perspective or, by `is_linear`, orthographic projection. `coordinates` are s and t of its
+    /// Computes the planes of a triangle in perspective or, if `is_linear`, in orthographic projection. `coordinates` are s and t of its
     /// vertices, s16.16, in the order of the vertices of `triangle`.
     ///
     /// Not inlined, so that triangles without textures do not load this code into the instruction cache.
@@ -135,7 +136,7 @@ impl<'a> Textured<'a> {
         }
     }
 
-    /// The same for a descriptor, with the number of the texture in the frame's table.
+    /// Replaces the texture by its number in the frame's table, for a descriptor.
     pub fn numbered(&self, number: u8) -> OfTexture {
         OfTexture {
             number,
@@ -158,7 +159,7 @@ impl<'a> Textured<'a> {
         let texel = sample(&self.texture, level, self.places_by(&inverse, values))?;
         let light = match light {
             None => self.light,
-            // To nearest; the accumulators of light have the weight of the coordinates.
+            // Rounded to nearest. Light and coordinates have the same weight.
             Some(light) => light.map(|value| ((inverse.share(value, 8 + 1) + 1) >> 1) as u8),
         };
         Some(lit(texel, light))
@@ -187,8 +188,8 @@ impl<'a> Textured<'a> {
         })
     }
 
-    /// The mip level of a pixel: the level whose texels are 0.75 to 1.5 pixels apart where they are farthest apart, of the two
-    /// coordinates and the two directions on the screen, within an eighth.
+    /// The mip level of a pixel: the level at which neighbouring pixels are 0.75 to 1.5 texels apart, within an eighth. The largest
+    /// distance counts, of both coordinates and both directions on the screen.
     pub fn level(&self, setup: &Setup, depth: u32, values: [u32; 2]) -> u32 {
         let last = self.texture.levels() - 1;
         if last == 0 {
@@ -204,17 +205,17 @@ impl<'a> Textured<'a> {
             let axis = &self.axes[i];
             let share = inverse.share(values[i], SHARE_BITS) as i64 & ((1 << SHARE_BITS) - 1);
             let change = |step: u32, depth_step: u32| {
-                // In units of 2^8 of the accumulators, rounded down, so that one product of a DSP block suffices.
+                // In units of 2^8 of the accumulators, rounded down, so that one DSP block computes each product.
                 let [step, depth_step] = [step, depth_step].map(|step| i64::from(step as i32 >> 8));
                 let change = (step << SHARE_BITS) - (share + 1) * depth_step;
-                // The bits of a magnitude; that of a negative number is one less.
+                // The magnitude, less 1 for a negative number.
                 (if change < 0 { !change } else { change }) as u64 >> CHANGE_CUT
             };
             let [across, down] = depth_steps;
             let most = change(axis.plane.step_x, across).max(change(axis.plane.step_y, down));
             let lead = most.max(1).ilog2();
             let unit = 8 + CHANGE_CUT - SHARE_BITS;
-            // The leading bit, counted in texels times the depth, and three bits below it.
+            // The position of the leading bit, for a change in texels times the depth, and the three bits below the leading bit.
             ((lead + unit + axis.range_log2 + sides[i]) << 3) + ((most << 3 >> lead) as u32 & 7)
         });
         level_of(most[0].max(most[1]), &inverse).min(last)
@@ -247,7 +248,7 @@ impl Axis {
         // Two repeats are a period of a mirrored texture.
         let periods = a.min(b).min(c) >> (COORDINATE_BITS + 1);
         let [a, b, c] = [a, b, c].map(|x| (x - (periods << (COORDINATE_BITS + 1))) as u64);
-        // A share is below 63/64, as light is at most, so that an accumulator just below 0 is known by its highest bits.
+        // A share is below 63/64, the limit of light, so the highest bits of an accumulator show whether it is just below 0.
         let limit = |range_log2: u32| 63 << (COORDINATE_BITS + range_log2 - 6);
         let most = a.max(b).max(c);
         let mut range_log2 = 0;
@@ -274,10 +275,10 @@ impl Axis {
     }
 }
 
-/// Bits that are cut from a change of [`Textured::level`], so that its leading bit is one of 30.
+/// Number of low bits that [`Textured::level`] cuts from a change, so that 30 bits remain.
 const CHANGE_CUT: u32 = 13;
 
-/// `INVERSES[i]` is 2^20/(1 + i/512) to nearest, u0.20, for i up to 512; the first one is so much less that an inverse is below 1.
+/// `INVERSES[i]` is 2^20/(1 + i/512) to nearest, u0.20, for i up to 512. The first entry is 3 less, so that every inverse is below 1.
 const INVERSES: [u32; 513] = {
     let mut table = [(1 << 20) - 3; 513];
     let mut i = 1;
@@ -293,9 +294,9 @@ const INVERSES: [u32; 513] = {
 struct Inverse {
     /// 1 divided by the depth's mantissa in [1, 2), u0.18.
     mantissa: u32,
-    /// Number of zeros above the depth's highest one, at most 11.
+    /// Number of leading zeros of the depth, at most 11.
     zeros: u32,
-    /// The three bits of the depth below its highest one.
+    /// The three bits of the depth below its leading 1.
     top: u32,
 }
 
@@ -319,10 +320,10 @@ impl Inverse {
 
     /// An accumulator divided by the depth, with `bits` fraction bits, rounded down.
     fn share(&self, value: u32, bits: u32) -> u64 {
-        // As for light, the highest six bits of an accumulator that is just below 0 are ones.
+        // As for light, the highest six bits of an accumulator that is just below 0 are ones; it counts as 0.
         let value = if value >> 26 == 0x3F { 0 } else { value >> 8 };
         let product = u64::from(value) * u64::from(self.mantissa);
-        // The product has 42 bits, and as a share 41 − zeros fraction bits.
+        // The product has 42 bits; 41 − `zeros` of them are fraction bits of the share.
         let fraction = 41 - self.zeros;
         if bits <= fraction {
             product >> (fraction - bits)
@@ -332,8 +333,8 @@ impl Inverse {
     }
 }
 
-/// The smallest level l with most/depth ≤ 1.5·2^l, of both numbers truncated to four bits; 0 for a negative one. `most` is the position of
-/// its leading bit and, as the lowest bits, the three bits below it.
+/// The smallest level l, at least 0, with change/depth ≤ 1.5·2^l, for both numbers truncated to their four leading bits. `most` is the
+/// change, coded as the position of its leading bit, and in the three lowest bits the bits below the leading bit.
 fn level_of(most: u32, inverse: &Inverse) -> u32 {
     let (lead, most, depth) = ((most >> 3) as i32, 8 + (most & 7), 8 + inverse.top);
     let depth_lead = 31 - inverse.zeros as i32;
@@ -347,8 +348,8 @@ fn level_of(most: u32, inverse: &Inverse) -> u32 {
     (lead - depth_lead + more).max(0) as u32
 }
 
-/// The colour of a texture at a position in texels of level 0 with 8 fraction bits: the integer part of each channel with its number of
-/// bits, and fraction bits up to 8; `None` where the texture is transparent.
+/// The colour of a texture at a position in texels of level 0 with 8 fraction bits; `None` where the texture is transparent. A channel has
+/// 8 bits: the 5 or 6 bits of RGB565, then fraction bits.
 pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]> {
     let (sides, level_sides) = (texture.size_log2(), texture.level_log2(level));
     let sampler = texture.sampler();
@@ -371,7 +372,7 @@ pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]
             let corner = places.map(|place| place - 128 + 8);
             let [x, y] = corner.map(|place| place >> PLACE_BITS);
             let weights = corner.map(|place| (place >> WEIGHT_BITS & 0xF) as u32);
-            // A transparent neighbour has no colour of its own.
+            // A transparent neighbour has the colour of the nearest texel.
             let texels = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]]
                 .map(|place| at(place).unwrap_or(nearest));
             Some(average(texels, weights))
@@ -380,7 +381,7 @@ pub fn sample(texture: &Texture, level: u32, places: [i64; 2]) -> Option<[u8; 3]
 }
 
 /// The average of four neighbours, given by their channels: (u, v), (u + 1, v), (u, v + 1), (u + 1, v + 1). `weights` are those of u + 1
-/// and v + 1, u0.4. The result has the integer part of each channel, and fraction bits up to 8.
+/// and v + 1, u0.4. A channel of the result has 8 bits, as in [`sample`].
 pub fn average(neighbours: [[u8; 3]; 4], weights: [u32; 2]) -> [u8; 3] {
     [0, 1, 2].map(|channel: usize| {
         let [a, b, c, d] = neighbours.map(|texel| u32::from(texel[channel]));
@@ -388,13 +389,13 @@ pub fn average(neighbours: [[u8; 3]; 4], weights: [u32; 2]) -> [u8; 3] {
         let [across, down] = weights;
         let sum = between(between(a, b, across), between(c, d, across), down);
         let bits = CHANNEL_BITS[channel];
-        // With 8 fraction bits, of which 8 − bits stay.
+        // The sum has 8 fraction bits, of which 8 − `bits` remain.
         ((sum + (1 << (bits - 1))) >> bits) as u8
     })
 }
 
-/// A colour of [`sample`] times the light of each channel, to nearest. The light is u0.8, at most 31/32 of 2^8 for red and blue and 63/64
-/// for green, as colours are; the product with this light is the colour itself.
+/// Multiplies a colour of [`sample`] by the light of each channel, rounded to nearest. The light is u0.8. The largest light is 31/32 for
+/// red and blue and 63/64 for green; it leaves the colour unchanged.
 pub fn lit(texel: [u8; 3], light: [u8; 3]) -> Rgb565 {
     let mut colour = 0;
     for (channel, bits) in CHANNEL_BITS.into_iter().enumerate() {

@@ -1,19 +1,19 @@
 //! Pictures from descriptors in memory, drawn band by band as the raster pass does, equal the pictures of the triangles and lines.
 
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::line::{Segment, band_bounds};
 use glint_model::triangle::descriptor::{Contents, Descriptor, Layout};
 use glint_model::triangle::raster::{draw, draw_groups};
-use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::textured::Textured;
-use glint_model::{FrameBuffer, MeshOptions, Projected, SIZES};
+use glint_model::{DrawnTriangle, Frame, FrameBuffer, MeshSubject, Projected, SIZES, Subject};
 use glint_vectors::segments;
 use glint_vectors::triangles::{random_triangle, set_up};
 use glint_vectors::{Camera, Model, Picture, Random};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
+
+use crate::mesh_of;
 
 /// Draws the contents of descriptors into all bands of a picture, and returns the numbers of covered and drawn pixels.
 fn in_bands(descriptors: &[Vec<u32>], size: Size, target: &mut FrameBuffer) -> [u32; 2] {
@@ -70,24 +70,18 @@ fn triangles_keep_their_pixels() {
 #[test]
 fn smooth_triangles_keep_their_pixels() {
     let size = Size::W320;
-    let bytes = Model::sphere(0.6, 8).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let options = MeshOptions {
+    let subject = Subject::Mesh(MeshSubject {
         shading: Shading::Smooth,
-        ..MeshOptions::default()
-    };
+        ..MeshSubject::new(mesh_of(&Model::sphere(0.6, 8)))
+    });
     let view = Camera::looking([0.0, -2.0, 0.3], [0.0; 3], 0.5, 0.1).rounded();
-    let frame = glint_model::Frame::new(
-        glint_model::Subject::Mesh(options.subject(mesh)),
-        view,
-        size,
-    );
+    let frame = Frame::new(subject, view, size);
     let constants = frame.constants().unwrap();
     let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
     let mut expected = Picture::blank(SIZES[0]);
     let mut found = expected.clone();
     let mut descriptors = vec![];
-    let mut put = |triangle: &glint_model::DrawnTriangle, setup: &_, _: Option<&Textured>| {
+    let mut put = |triangle: &DrawnTriangle, setup: &_, _: Option<&Textured>| {
         draw(setup, triangle.colour, &mut expected.target());
         let descriptor = Descriptor::new(setup, triangle.colour, None);
         descriptors.push(descriptor.words(Layout::SMOOTH).concat());
@@ -126,7 +120,6 @@ fn lines_keep_their_pixels() {
     }
 }
 
-/// The search for a triangle's pixels visits every row and group with a covered pixel.
 #[test]
 fn every_covered_group_is_visited() {
     let mut random = Random(11);
@@ -153,34 +146,25 @@ fn every_covered_group_is_visited() {
     assert!(most > 100, "{most}");
 }
 
-/// Damaged descriptors draw nothing outside of their band.
 #[test]
 fn random_descriptors_stay_in_their_band() {
     let mut random = Pcg64Mcg::new(9);
     let mut kinds = [0; 3];
     for number in 0..3000 {
         let mut words: [u32; 24] = random.random();
-        let groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..40));
+        let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..40));
         if number % 3 > 0 {
             // Columns in the picture, or the bit pattern that marks a piece.
-            let [left, start, right] = match number % 3 {
-                1 => {
-                    let mut groups = groups;
-                    groups.sort_unstable();
-                    groups
-                }
-                _ => [groups[0], 0xC0, groups[2]],
-            };
+            match number % 3 {
+                1 => groups.sort_unstable(),
+                _ => groups[1] = 0xC0,
+            }
+            let [left, start, right] = groups;
             let rows = words[10] & 0x00FF_FFFF;
             words[10] = rows | u32::from(left) << 24;
             words[11] = words[11] & 0xFFFF_0000 | u32::from(start) << 8 | u32::from(right);
         }
-        let band = Bounds {
-            left: 0,
-            right: 320,
-            top: 45,
-            bottom: 90,
-        };
+        let band = band_bounds(Size::W320, 1);
         let mut picture = Picture::blank(SIZES[0]);
         match Descriptor::from_words(words, Layout::WHOLE).contents(320) {
             Contents::Triangle(setup, colour, _) => {
@@ -196,7 +180,7 @@ fn random_descriptors_stay_in_their_band() {
             Contents::Stray => kinds[2] += 1,
         }
         let blank = Picture::blank(SIZES[0]);
-        let rows = 320 * 45..320 * 90;
+        let rows = 320 * band.top as usize..320 * band.bottom as usize;
         assert!(picture.depth[..rows.start] == blank.depth[..rows.start]);
         assert!(picture.depth[rows.end..] == blank.depth[rows.end..]);
     }

@@ -1,6 +1,6 @@
-//! Properties of rays by exits from the stiffest places in the stiffest directions.
+//! Properties of rays by exits with difficult origins and directions.
 //!
-//! Places are in units of 2^−12 field units, directions in units of 2^−24. Single rays, each with its outcome, are in
+//! Origins are in units of 2^−12 field units, directions in units of 2^−27. Single rays with their expected results are in
 //! tools/reference/stiff/rays.toml.
 
 use glint_core::camera::View;
@@ -24,7 +24,7 @@ fn end_of(exits: &Exits) -> End {
     exits.end(&exits.cones(), &exits.ray(0, 0, 0))
 }
 
-/// Random places and directions among the stiffest: on borders and beside them, with components of 0 and 1 ulp.
+/// A random difficult origin and direction: coordinates on borders and beside them, and components of 0 and 1 ulp.
 fn stiff(random: &mut Pcg64Mcg) -> ([i32; 3], [i32; 3]) {
     let place = [0; 3].map(|_| {
         let border = random.random_range(-60..60)
@@ -43,20 +43,10 @@ fn stiff(random: &mut Pcg64Mcg) -> ([i32; 3], [i32; 3]) {
 #[test]
 fn mirrored_rays_have_mirrored_ends() {
     let mut random = Pcg64Mcg::new(1);
-    let fields = [
-        "menger:1",
-        "menger:4",
-        "menger:6",
-        "box:1,0.5,0.25",
-        "cubes:2,0.25",
-        "cubes:2,0.5",
-        "boxes:2,0.25,1,0.5",
-        "boxes:2,1,1,0.25",
-        "lattice:1,0.25",
-        "planes:1",
-    ];
+    let fields = "menger:1 menger:4 menger:6 box:1,0.5,0.25 cubes:2,0.25 cubes:2,0.5 boxes:2,0.25,1,0.5 boxes:2,1,1,0.25 \
+                  lattice:1,0.25 planes:1";
     let mut steps = 0;
-    for field in fields {
+    for field in fields.split(' ') {
         for _ in 0..300 {
             let (eye, direction) = stiff(&mut random);
             let exits = frame(field, eye, direction);
@@ -65,7 +55,7 @@ fn mirrored_rays_have_mirrored_ends() {
             let axis = random.random_range(0..3);
             let (mut there, mut towards) = (eye, direction);
             (there[axis], towards[axis]) = (-eye[axis], !direction[axis]);
-            // The place in the cell about the origin is from −32 to 32 units, without the upper end.
+            // A position in the cell about the origin is in [−32, 32) field units, so −32 has no mirror image.
             if field.contains(',') && there.map(|x| x.abs() & 0x3FFFF).contains(&0x20000) {
                 continue;
             }
@@ -76,20 +66,17 @@ fn mirrored_rays_have_mirrored_ends() {
                 (end.t, end.steps),
                 "{field} {eye:?} {direction:?}"
             );
-            let face = |state| match state {
+            let expected = match end.state {
                 State::Hit(Surface::Face {
                     axis: hit,
                     positive,
-                }) => Some((hit, positive)),
-                _ => None,
+                }) => State::Hit(Surface::Face {
+                    axis: hit,
+                    positive: positive != (usize::from(hit) == axis),
+                }),
+                other => other,
             };
-            let expected = face(end.state)
-                .map(|(hit, positive)| (hit, positive != (usize::from(hit) == axis)));
-            assert_eq!(
-                face(mirrored.state),
-                expected,
-                "{field} {eye:?} {direction:?}"
-            );
+            assert_eq!(mirrored.state, expected, "{field} {eye:?} {direction:?}");
         }
     }
     assert!(steps <= 200, "{steps}");
@@ -110,7 +97,6 @@ fn an_octahedron_takes_one_evaluation() {
     assert!(hits > 200, "{hits}");
 }
 
-/// A ray through a pixel outside of a sphere's rectangle does not meet the sphere.
 #[test]
 fn rectangles_hold_all_pixels_that_see_a_sphere() {
     let mut random = Pcg64Mcg::new(2);
@@ -192,21 +178,14 @@ fn codes_of_intervals_increase_and_return() {
     assert_eq!(sponge.code(81), 0b1_11_00_00_00_00_00);
 }
 
-/// A frame's constants for the rays of an eye, after a way through the words of a register block, make the same rays.
+/// The constants of an eye make the same rays after conversion to the codes of the registers and back.
 #[test]
 fn a_start_in_codes_makes_the_same_rays() {
     let mut random = Pcg64Mcg::new(3);
+    let fields = "menger:4 menger:6 box:1,0.5,0.25 cubes:2,0.4 boxes:2,0.4,1,0.25 planes:1 lattice:1,0.3 octahedron:1";
+    let fields: Vec<&str> = fields.split(' ').collect();
     for round in 0..300 {
-        let field = [
-            "menger:4",
-            "menger:6",
-            "box:1,0.5,0.25",
-            "cubes:2,0.4",
-            "boxes:2,0.4,1,0.25",
-            "planes:1",
-            "lattice:1,0.3",
-            "octahedron:1",
-        ][round % 8];
+        let field = fields[round % fields.len()];
         let eye = [0; 3].map(|_| random.random_range(-4 * HALF..4 * HALF));
         let exits = frame(field, eye, [0; 3]);
         let solid = exits.solid.expect("a solid");

@@ -4,7 +4,6 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
 use glint_core::field::Field;
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_model::triangle::descriptor::{
@@ -13,8 +12,10 @@ use glint_model::triangle::descriptor::{
 use glint_model::{
     FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Projected, RenderError, Subject,
 };
-use glint_vectors::triangles::set_up;
-use glint_vectors::{Camera, Model, Picture, Random};
+use glint_vectors::triangles::{random_triangle, set_up};
+use glint_vectors::{Camera, Picture, Random};
+
+use crate::cube;
 
 fn view() -> View {
     Camera::looking([0.0, -3.0, 1.0], [0.0; 3], 0.5, 0.1).rounded()
@@ -34,9 +35,7 @@ fn drawn(frame: &Frame, constants: &FrameConstants) -> (Picture, FrameStats, u32
 
 #[test]
 fn a_frame_is_drawn_from_constants_that_served_another_one() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let mesh = MeshSubject::new(mesh);
+    let mesh = MeshSubject::new(cube());
     let field = FieldSubject {
         field: &Field::parse("box:0.25,2,0.25").unwrap(),
         appearance: &Appearance::default(),
@@ -67,29 +66,21 @@ fn a_frame_is_drawn_from_constants_that_served_another_one() {
 
 #[test]
 fn a_clear_colour_fills_the_pixels_without_a_triangle() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
     let clear = Rgb565(0x1234);
     let frame = Frame {
         clear,
-        ..Frame::new(Subject::mesh(mesh), view(), Size::W640)
+        ..Frame::new(Subject::mesh(cube()), view(), Size::W640)
     };
     let (picture, ..) = drawn(&frame, &frame.constants().unwrap());
-    let pixels = picture.colour.iter().zip(&picture.depth);
-    assert!(
-        pixels
-            .into_iter()
-            .all(|(&colour, &code)| (colour == clear.0) == (code == 0))
-    );
+    let mut pixels = picture.colour.iter().zip(&picture.depth);
+    assert!(pixels.all(|(&colour, &code)| (colour == clear.0) == (code == 0)));
 }
 
 #[test]
 fn a_frame_beyond_the_limits_has_no_constants() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
     let far = Camera::looking([0.0, -20.0, 1.0], [0.0; 3], 0.5, 0.1).rounded();
     let mut constants = FrameConstants::default();
-    let frame = Frame::new(Subject::mesh(mesh), view(), Size::W320);
+    let frame = Frame::new(Subject::mesh(cube()), view(), Size::W320);
     constants.update(&frame).unwrap();
     let error = constants.update(&Frame { view: far, ..frame });
     assert!(matches!(error, Err(RenderError::Eye(_))), "{error:?}");
@@ -121,7 +112,7 @@ fn lists_name_the_triangles_of_their_bands() {
                     layout,
                 );
                 while put.len() < end {
-                    let triangle = glint_vectors::triangles::random_triangle(&mut random);
+                    let triangle = random_triangle(&mut random);
                     let Some((_, setup)) = set_up(triangle, (size.width(), size.height())) else {
                         continue;
                     };
@@ -142,18 +133,11 @@ fn lists_name_the_triangles_of_their_bands() {
                 let length = lists[band as usize] as usize;
                 assert_eq!(lists[start..start + length], expected[..], "band {band}");
             }
-            assert!(
-                lists[bands as usize..LENGTHS]
-                    .iter()
-                    .all(|&length| length == 0)
-            );
+            let mut unused = lists[bands as usize..LENGTHS].iter();
+            assert!(unused.all(|&length| length == 0));
             for (setup, found) in put.iter().zip(descriptors.chunks(layout.words())) {
-                assert_eq!(
-                    Descriptor::new(setup, Rgb565::WHITE, None)
-                        .words(layout)
-                        .concat(),
-                    found
-                );
+                let expected = Descriptor::new(setup, Rgb565::WHITE, None);
+                assert_eq!(expected.words(layout).concat(), found);
             }
         }
     }
@@ -163,7 +147,7 @@ fn lists_name_the_triangles_of_their_bands() {
 fn lists_without_room_are_refused() {
     let mut random = Random(8);
     let setup = loop {
-        let triangle = glint_vectors::triangles::random_triangle(&mut random);
+        let triangle = random_triangle(&mut random);
         if let Some((_, setup)) = set_up(triangle, (320, 180)) {
             break setup;
         }

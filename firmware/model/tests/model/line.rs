@@ -83,14 +83,13 @@ fn bands_leave_a_line_as_it_is() {
         let mut parts: Vec<LinePixel> = (0..PICTURE.bottom)
             .step_by(rows as usize)
             .flat_map(|top| {
-                pixels(
-                    ends,
-                    Bounds {
-                        top,
-                        bottom: top + rows,
-                        ..PICTURE
-                    },
-                )
+                let bottom = top + rows;
+                let band = Bounds {
+                    top,
+                    bottom,
+                    ..PICTURE
+                };
+                pixels(ends, band)
             })
             .collect();
         let mut whole = pixels(ends, PICTURE);
@@ -101,7 +100,7 @@ fn bands_leave_a_line_as_it_is() {
     }
 }
 
-/// Outside of the format of positions there is no line.
+/// A segment with an end point outside of the format of positions has no line.
 #[test]
 fn positions_have_a_range() {
     let (low, high) = (-(1 << 19), (1 << 19) - 1);
@@ -126,22 +125,16 @@ fn lines_meet_depths() {
     ] {
         let mut picture = Picture::blank(SIZE);
         picture.depth.fill(stored);
-        assert_eq!(
-            draw(&ends, Rgb565::WHITE, depth, &mut picture.target()),
-            drawn
-        );
+        let found = draw(&ends, Rgb565::WHITE, depth, &mut picture.target());
+        assert_eq!(found, drawn);
         let expected = match depth {
             LineDepth::Over => (1 << 18) - 1,
             LineDepth::Tested { bias } => code + u32::from(bias),
         };
         let changed = picture.depth.iter().filter(|&&found| found != stored);
         assert!(changed.clone().all(|&found| found == expected));
-        let white = picture
-            .colour
-            .iter()
-            .filter(|&&colour| colour == 0xFFFF)
-            .count();
-        assert_eq!(white, drawn as usize);
+        let white = picture.colour.iter().filter(|&&colour| colour == 0xFFFF);
+        assert_eq!(white.count(), drawn as usize);
     }
 }
 
@@ -183,11 +176,8 @@ fn edges_with_bias_lie_in_front_of_their_face() {
             };
             let count = pixels(ends, PICTURE).len() as u32;
             hidden_without += count - shown(0, &mut picture.clone());
-            assert_eq!(
-                shown(bias, &mut picture.clone()),
-                count,
-                "{ends:?} of {corners:?}"
-            );
+            let with_bias = shown(bias, &mut picture.clone());
+            assert_eq!(with_bias, count, "{ends:?} of {corners:?}");
             drawn += count;
         }
     }

@@ -7,6 +7,8 @@ use glint_model::raymarch::{FieldOptions, render_field};
 use glint_model::{Options, Projected, RenderError, mesh_in_field, trace_frame};
 use glint_vectors::{Camera, Model, Picture, Random};
 
+use crate::{cube, mesh_of};
+
 const SIZE: (u32, u32) = (320, 180);
 
 /// Draws three pictures with the same constants: the mesh, the field, and the field over the mesh.
@@ -47,8 +49,7 @@ fn outside(random: &mut Random) -> View {
 /// Compares a cube as a mesh with a cube as a field, whose faces are in the same planes.
 #[test]
 fn faces_of_both_in_one_plane_have_the_same_depth() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = cube();
     for field in ["box:0.5,0.5,0.5", "cubes:11.3,0.5"] {
         let mut random = Random(1);
         let mut apart = vec![];
@@ -77,8 +78,7 @@ fn faces_of_both_in_one_plane_have_the_same_depth() {
 
 #[test]
 fn what_is_nearer_is_seen() {
-    let bytes = Model::sphere(1.2, 12).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = mesh_of(&Model::sphere(1.2, 12));
     // The corners of the cube (the field) extend beyond the sphere (the mesh), and the sphere extends beyond the cube's
     // faces.
     let mut random = Random(2);

@@ -17,10 +17,9 @@ use glint_model::{
 use glint_vectors::math::{dot, normalised, world};
 use glint_vectors::{Camera, Model, Picture, Random};
 
-use crate::{applied, error, number, object};
+use crate::{RADII, applied, cube, error, mesh_of, number, object};
 
-/// Radius of a mesh that fills a box of 1×1×1 world units, 14 fraction bits.
-const RADIUS: u32 = 14_190;
+const RADIUS: u32 = RADII[0];
 
 /// A random matrix: rotations, a scale of each axis within `scales` with either sign, and a translation within `reach` of the origin.
 fn random_matrix(random: &mut Random, scales: [f64; 2], same: bool, reach: f64) -> Matrix {
@@ -70,9 +69,8 @@ fn vertices_of_objects_against_f64() {
             let view = camera.rounded();
             let placement = Placement::new(matrix);
             let frame = MeshSetup::new(&view, width, height, 0).unwrap();
-            let Ok(setup) = placement.setup(&view, &frame, RADIUS) else {
-                panic!("{matrix:?}")
-            };
+            let setup = placement.setup(&view, &frame, RADIUS);
+            let setup = setup.unwrap_or_else(|error| panic!("{matrix:?}: {error}"));
             halved += u32::from(setup.near < frame.near);
             for _ in 0..8 {
                 let position = [0; 3].map(|_| random.integer(-8192, 8192) as i16);
@@ -148,15 +146,11 @@ fn light_on_objects_against_f64() {
             rows[p][r] * rows[q][s] - rows[p][s] * rows[q][r]
         };
         let sign = if matrix.mirrors() { -1.0 } else { 1.0 };
-        let turned = normalised([0, 1, 2].map(|i| {
-            sign * (0..3)
-                .map(|j| cofactor(i, j) * f64::from(normal[j]))
-                .sum::<f64>()
-        }));
+        let part = |i, j: usize| cofactor(i, j) * f64::from(normal[j]);
+        let turned = normalised([0, 1, 2].map(|i| sign * (0..3).map(|j| part(i, j)).sum::<f64>()));
         let exact = dot(turned, towards).max(0.0);
-        let turned = placement
-            .normals()
-            .map_or(normal, |normals| normals.apply(normal));
+        let normals = placement.normals();
+        let turned = normals.map_or(normal, |normals| normals.apply(normal));
         let found = intensity(turned, &setup.light, Facing::Front);
         let error = (f64::from(found) - 256.0 * exact).abs();
         worst[usize::from(same)] = worst[usize::from(same)].max(error);
@@ -175,18 +169,13 @@ fn of(objects: &[Object], view: View) -> Picture {
 #[test]
 fn an_object_with_the_identity_is_the_mesh() {
     let mut random = Random(32);
+    let far = U8_28::lit("1.5");
     for round in 0..24 {
-        let bytes = Model::random(&mut random, 20, 30_000).encoded();
         let subject = MeshSubject {
             shading: [Shading::Flat, Shading::Smooth][round % 2],
             winding: [Winding::Mesh, Winding::Screen][round / 2 % 2],
-            clip: match round / 4 % 2 {
-                0 => Clip::Guard,
-                _ => Clip::View {
-                    far: U8_28::lit("1.5"),
-                },
-            },
-            ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
+            clip: [Clip::Guard, Clip::View { far }][round / 4 % 2],
+            ..MeshSubject::new(mesh_of(&Model::random(&mut random, 20, 30_000)))
         };
         let view = Camera::inside(&mut random).rounded();
         let alone = Picture::of_frame(&Frame::new(Subject::Mesh(subject), view, Size::W320));
@@ -202,18 +191,14 @@ fn an_object_with_the_identity_is_the_mesh() {
 #[test]
 fn a_copy_with_turned_normals_gives_the_same_picture() {
     let mut random = Random(33);
+    let far = U8_28::lit("3");
     for round in 0..96 {
         let bytes = Model::random(&mut random, 20, 20_000).encoded();
         let subject = MeshSubject {
             shading: [Shading::Flat, Shading::Smooth][round % 2],
             winding: [Winding::Mesh, Winding::Screen][round / 2 % 2],
             cull: random.coin(),
-            clip: match round / 4 % 2 {
-                0 => Clip::Guard,
-                _ => Clip::View {
-                    far: U8_28::lit("3"),
-                },
-            },
+            clip: [Clip::Guard, Clip::View { far }][round / 4 % 2],
             ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
         };
         let lighting = match round / 8 % 3 {
@@ -256,24 +241,20 @@ fn a_copy_with_turned_normals_gives_the_same_picture() {
         });
         assert!(expected == found, "round {round}");
     }
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let mut memory = vec![0; bytes.len() - 1];
-    assert_eq!(mesh.copy_with_normals(&mut memory, &mut |x| x), None);
+    let mut memory = vec![0; cube().bytes().len() - 1];
+    assert_eq!(cube().copy_with_normals(&mut memory, &mut |x| x), None);
 }
 
 /// Two objects in one frame cover the same pixels as in separate frames; the nearer object hides the other, and at equal depths the later
 /// object wins.
 #[test]
 fn objects_share_one_depth() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
     let view = Camera::looking([0.0, -4.0, 0.5], [0.0; 3], 0.5, 0.1).rounded();
     let at = |x: f64, y: f64| Matrix::translation([x, y, 0.0].map(number)).unwrap();
     let [red, blue] = [0xF800, 0x001F].map(|colour| Some(Rgb565(colour)));
     let object = |matrix, colour| Object {
         colour,
-        ..object(mesh, matrix)
+        ..object(cube(), matrix)
     };
     let near = object(at(0.25, -0.5), red);
     let far = object(at(-0.25, 0.5), blue);
@@ -304,8 +285,7 @@ fn objects_share_one_depth() {
 /// A frame draws as many triangles as its objects in frames of their own, including clipped triangles.
 #[test]
 fn clipped_objects_are_drawn() {
-    let bytes = Model::sphere(0.5, 6).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = mesh_of(&Model::sphere(0.5, 6));
     let view = Camera::looking([0.0, -1.0, 0.0], [0.0; 3], 0.9, 0.1).rounded();
     let at = |x: f64, size: f64| {
         let place = Matrix::translation([x, 0.0, 0.0].map(number)).unwrap();
@@ -323,18 +303,13 @@ fn clipped_objects_are_drawn() {
         stats.clipped > 20 && picture.covered() == picture.depth.len(),
         "{stats:?}"
     );
-    let sum: u32 = objects
-        .iter()
-        .map(|object| of(&[*object], view).stats.drawn)
-        .sum();
-    assert_eq!(stats.drawn, sum);
+    let drawn = objects.map(|object| of(&[object], view).stats.drawn);
+    assert_eq!(stats.drawn, drawn.iter().sum::<u32>());
 }
 
 #[test]
 fn an_object_too_large_for_the_near_plane_is_refused() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let object = |size: f64| object(mesh, Matrix::scale([number(size); 3]).unwrap());
+    let object = |size: f64| object(cube(), Matrix::scale([number(size); 3]).unwrap());
     let view = |near| Camera::looking([0.0, -4.0, 0.5], [0.0; 3], 0.5, near).rounded();
     let refused = |size, near| {
         let objects = [object(size)];
@@ -352,8 +327,7 @@ fn an_object_too_large_for_the_near_plane_is_refused() {
 
 #[test]
 fn a_frame_has_at_most_16_objects() {
-    let bytes = Model::cube(8192).encoded();
-    let objects = [object(Mesh::new_checked(&bytes).unwrap(), Matrix::IDENTITY); 17];
+    let objects = [object(cube(), Matrix::IDENTITY); 17];
     let view = Camera::looking([0.0, -4.0, 0.5], [0.0; 3], 0.5, 0.1).rounded();
     let refused = |count| {
         let frame = Frame::new(Subject::Objects(&objects[..count]), view, Size::W320);

@@ -6,11 +6,10 @@ use glint_core::colour::Rgb565;
 use glint_core::field::Field;
 use glint_core::fixed::{Turns, U8_28};
 use glint_core::matrix::{Axis, Matrix};
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_model::triangle::raster::draw;
-use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::setup::Setup;
 use glint_model::triangle::shade::Lit;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{
@@ -18,13 +17,10 @@ use glint_model::{
     ScreenVertex, Subject,
 };
 use glint_vectors::math::{dot, world};
-use glint_vectors::triangles::{SIZE, random_triangle};
+use glint_vectors::triangles::{SIZE, random_triangle, set_up};
 use glint_vectors::{Camera, Model, Picture, Random};
 
-use crate::{applied, error, number, object};
-
-/// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
-const RADII: [u32; 2] = [14_190, 56_756];
+use crate::{RADII, applied, cube, error, number, object};
 
 /// A camera at (0, −`distance`, 0) that looks along y, with a picture `width` world units wide.
 fn along_y(distance: f64, width: f64) -> View {
@@ -138,11 +134,8 @@ fn steps_as_written() {
         let frame = MeshSetup::new(&view, width, height, RADII[1]).unwrap();
         let (f, ke) = (frame.scale_shift as i32, frame.depth.exponent);
         let vertex = transform(&frame, point);
-        let sum = |row: [i32; 3]| -> i128 {
-            (0..3)
-                .map(|k| i128::from(point[k]) * i128::from(row[k]))
-                .sum()
-        };
+        let product = |row: [i32; 3], k: usize| i128::from(point[k]) * i128::from(row[k]);
+        let sum = |row| (0..3).map(|k| product(row, k)).sum::<i128>();
         let [tx, ty, tz] = frame.translation.map(i128::from);
         let place = |x: i128, size: u32| {
             let normalised = nearest(x, f + 2).clamp(-1 << 24, (1 << 24) - 1);
@@ -190,12 +183,8 @@ fn nearer_vertices_have_larger_codes() {
         });
         let [p, q] = [a, b].map(|point| {
             let [.., z] = projected(&view, world(point), size);
-            (
-                project(&frame, &transform(&frame, point))
-                    .place()
-                    .map(|place| place.w),
-                code(&frame, z),
-            )
+            let place = project(&frame, &transform(&frame, point));
+            (place.place().map(|place| place.w), code(&frame, z))
         });
         let (Some(nearer), Some(farther)) = (p.0, q.0) else {
             continue;
@@ -217,8 +206,7 @@ fn nearer_vertices_have_larger_codes() {
 #[test]
 fn objects_against_f64() {
     let mut random = Random(53);
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = cube();
     let (mut worst, mut share, mut depth, mut count) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
     let mut halved = 0;
     for round in 0..20_000 {
@@ -238,14 +226,11 @@ fn objects_against_f64() {
         let object = object(mesh, matrix);
         let objects = [object];
         let picture = Size::of(size.0, size.1).unwrap();
-        let constants = Frame::new(Subject::Objects(&objects), view, picture)
-            .constants()
-            .unwrap();
+        let frame = Frame::new(Subject::Objects(&objects), view, picture);
+        let constants = frame.constants().unwrap();
         let camera = constants.mesh().unwrap();
-        let setup = object
-            .placement
-            .setup(&view, camera, mesh.radius())
-            .unwrap();
+        let setup = object.placement.setup(&view, camera, mesh.radius());
+        let setup = setup.unwrap();
         halved += u32::from(setup.near < camera.near);
         for _ in 0..8 {
             let position = [0; 3].map(|_| random.integer(-8192, 8192) as i16);
@@ -268,11 +253,11 @@ fn objects_against_f64() {
     assert!(count > 10_000 && halved > 100 && share <= 1.0 && depth <= 8.0);
 }
 
-/// A cube of side 1 covers the same square from every distance, and of two squares in line the nearer is visible.
+/// A cube of side 1 covers the same square from every distance, and of two cubes in line with the eye the nearer is visible.
 #[test]
 fn sizes_do_not_depend_on_the_distance() {
-    let cube = Model::cube(8192);
     for distance in [1.0, 2.0, 7.9] {
+        let cube = Model::cube(8192);
         let picture = Picture::of(&cube, &along_y(distance, 3.2), (320, 180), true);
         let seen = |x: usize, y: usize| picture.depth[y * 320 + x] != 0;
         for (i, covered) in picture.coverage().into_iter().enumerate() {
@@ -282,14 +267,12 @@ fn sizes_do_not_depend_on_the_distance() {
         }
         assert!(seen(110, 40) && seen(209, 139));
     }
-    let bytes = cube.encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let at = |y: f64, colour| Object {
-        colour: Some(Rgb565(colour)),
-        ..object(
-            mesh,
-            Matrix::translation([0.0, y, 0.0].map(number)).unwrap(),
-        )
+    let at = |y: f64, colour| {
+        let place = Matrix::translation([0.0, y, 0.0].map(number)).unwrap();
+        Object {
+            colour: Some(Rgb565(colour)),
+            ..object(cube(), place)
+        }
     };
     let shown = |objects: &[Object]| {
         let frame = Frame::new(Subject::Objects(objects), along_y(4.0, 3.2), Size::W320);
@@ -301,13 +284,10 @@ fn sizes_do_not_depend_on_the_distance() {
 
 #[test]
 fn refused_frames() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let field = Field::parse("menger:3").unwrap();
-    let appearance = Appearance::default();
+    let mesh = cube();
     let field = FieldSubject {
-        field: &field,
-        appearance: &appearance,
+        field: &Field::parse("menger:3").unwrap(),
+        appearance: &Appearance::default(),
         quality: Quality::default(),
     };
     let view = along_y(4.0, 3.2);
@@ -315,10 +295,8 @@ fn refused_frames() {
         Subject::Field(field),
         Subject::MeshInField(MeshSubject::new(mesh), field),
     ] {
-        let refused = Frame::new(subject, view, Size::W320)
-            .constants()
-            .map(|_| ());
-        assert_eq!(refused, Err(RenderError::Orthographic));
+        let refused = Frame::new(subject, view, Size::W320).constants().err();
+        assert_eq!(refused, Some(RenderError::Orthographic));
     }
     // The far plane must be beyond the near plane, not beyond the nearest depth of the mesh.
     let with_far = |far: f64| {
@@ -352,10 +330,7 @@ fn light_against_f64() {
             w: random.integer(4 * 64, ((1 << 18) - 4) * 64) as u32,
             ..vertex
         });
-        let Some(triangle) = Oriented::new(vertices) else {
-            continue;
-        };
-        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+        let Some((triangle, Setup { bounds, .. })) = set_up(vertices, SIZE) else {
             continue;
         };
         let mut light = [0; 3].map(|_| Lit::new(Rgb565(random.bits() as u16), [256; 3]));

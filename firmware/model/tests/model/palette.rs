@@ -41,7 +41,7 @@ fn fog_falls_off_as_e_to_its_depth() {
                     (f64::from(fog) - hidden).abs() < 0.51,
                     "{field} {density} {i}: {fog} {hidden}"
                 );
-                assert!(fog >= most, "it only grows");
+                assert!(fog >= most, "fog decreases with depth");
                 most = fog;
             }
             assert!(most == 255 || palette.fog_shift == 7, "{field} {density}");

@@ -7,12 +7,9 @@ use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_vectors::{Camera, Random, math::world};
 
-use crate::error;
+use crate::{RADII, error};
 
-/// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
-const RADII: [u32; 2] = [14_190, 56_756];
-
-/// The smallest and the largest half width of a camera.
+/// The smallest and the largest half width of a camera, in world units.
 const HALF_WIDTHS: [f64; 2] = [0.0087, 115.0];
 
 /// Largest errors of positions in 1/256 pixel, and a count of positions.
@@ -103,12 +100,9 @@ fn places_against_f64() {
                     (i64::from(x) + random.integer(-spread, spread)).clamp(-32768, 32767) as i16
                 });
                 if let Projected::Visible(place) = project(&frame, &transform(&frame, position)) {
-                    same.note(
-                        place,
-                        Camera::of(&view).project(world(position), width, height),
-                        size,
-                    );
-                    unrounded.note(place, camera.project(world(position), width, height), size);
+                    let exact = |camera: &Camera| camera.project(world(position), width, height);
+                    same.note(place, exact(&Camera::of(&view)), size);
+                    unrounded.note(place, exact(&camera), size);
                 }
             }
         }
@@ -247,13 +241,8 @@ fn extremes() {
                         let view = camera.rounded();
                         let frame = MeshSetup::new(&view, size.0, size.1, RADII[1]).unwrap();
                         assert!((10..=18).contains(&frame.scale_shift));
-                        assert!(
-                            frame
-                                .u
-                                .iter()
-                                .chain(&frame.v)
-                                .all(|row| row.abs() < 1 << 24)
-                        );
+                        let mut rows = frame.u.iter().chain(&frame.v);
+                        assert!(rows.all(|row| row.abs() < 1 << 24));
                         assert!(frame.translation.iter().all(|t| t.abs() < 1 << 42));
                         for position in corners {
                             let vertex = transform(&frame, position);
@@ -321,11 +310,9 @@ fn steps_as_written() {
             })
         });
         let [x, y, z] = rows.map(|row| {
-            let eye: i128 = (0..3)
-                .map(|k| i128::from(view.eye()[k].to_bits()) * row[k])
-                .sum();
-            let point: i128 = (0..3).map(|k| i128::from(point[k]) * row[k]).sum();
-            point + nearest(-eye, 18)
+            let product =
+                |vector: [i64; 3]| -> i128 { (0..3).map(|k| i128::from(vector[k]) * row[k]).sum() };
+            product(point.map(i64::from)) + nearest(-product(view.eye().map(|x| x.to_bits())), 18)
         });
         let vertex = transform(&frame, point);
         assert_eq!([x, y, z], [vertex.x, vertex.y, vertex.z].map(i128::from));

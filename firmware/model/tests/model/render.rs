@@ -7,6 +7,8 @@ use glint_model::triangle::setup::{Facing, Oriented};
 use glint_model::{FrameBuffer, MeshSetup, Options, Projected, RenderError, SIZES, render};
 use glint_vectors::{Camera, Model, Picture, Random, picture::CLEAR};
 
+use crate::mesh_of;
+
 const SIZE: (u32, u32) = SIZES[0];
 
 fn front() -> Camera {
@@ -41,18 +43,13 @@ fn a_sphere_is_a_disc_without_holes() {
             "{} of {disc}",
             picture.covered()
         );
-        assert!(
-            picture
-                .colour
-                .iter()
-                .zip(&picture.depth)
-                .all(|(&c, &d)| (d == 0) == (c == CLEAR))
-        );
+        let mut pixels = picture.colour.iter().zip(&picture.depth);
+        assert!(pixels.all(|(&c, &d)| (d == 0) == (c == CLEAR)));
     }
 }
 
 /// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws the sphere with
-/// reversed windings: culling now removes its near side, so its far side is visible.
+/// reversed winding: culling now removes its near side, so its far side is visible.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -70,30 +67,13 @@ fn culling_and_windings() {
     // The far side of a mesh turned inside out is drawn, and shading negates its normals.
     let inverted = Picture::of(&sphere.flipped(), &view, SIZE, true);
     assert_eq!(inverted.coverage(), culled.coverage());
-    assert!(
-        inverted
-            .depth
-            .iter()
-            .zip(&culled.depth)
-            .all(|(&far, &near)| near == 0 || far < near)
-    );
-    let far_sides: Vec<_> = both
-        .drawn
-        .iter()
-        .filter(|t| t.facing == Facing::Back)
-        .map(|t| (t.index, t.colour))
-        .collect();
-    assert_eq!(
-        far_sides,
-        inverted
-            .drawn
-            .iter()
-            .map(|t| (t.index, t.colour))
-            .collect::<Vec<_>>()
-    );
+    let mut depths = inverted.depth.iter().zip(&culled.depth);
+    assert!(depths.all(|(&far, &near)| near == 0 || far < near));
+    let far_sides = both.drawn.iter().filter(|t| t.facing == Facing::Back);
+    let far_sides = far_sides.map(|t| (t.index, t.colour));
+    assert!(far_sides.eq(inverted.drawn.iter().map(|t| (t.index, t.colour))));
 }
 
-/// At equal depths the later triangle wins.
 #[test]
 fn ties_go_to_the_later() {
     let triangle = [[0, -8000, -8000], [0, 8000, -8000], [0, 0, 8000]];
@@ -105,13 +85,8 @@ fn ties_go_to_the_later() {
         let last = picture.drawn.last().unwrap().colour.0;
         assert_eq!(picture.depth, once.depth);
         assert_eq!(picture.stats.pixels_drawn, (once.covered() * copies) as u64);
-        assert!(
-            picture
-                .colour
-                .iter()
-                .zip(&picture.depth)
-                .all(|(&c, &d)| c == if d == 0 { CLEAR } else { last })
-        );
+        let mut pixels = picture.colour.iter().zip(&picture.depth);
+        assert!(pixels.all(|(&c, &d)| c == if d == 0 { CLEAR } else { last }));
     }
 }
 
@@ -130,13 +105,9 @@ fn order() {
         assert_eq!(forwards.depth, backwards.depth);
         let regular = forwards.drawn.iter().take_while(|t| !t.clipped).count();
         let (regular, exceptions) = forwards.drawn.split_at(regular);
-        assert!(regular.windows(2).all(|pair| pair[0].index < pair[1].index));
-        assert!(
-            exceptions.iter().all(|t| t.clipped)
-                && exceptions
-                    .windows(2)
-                    .all(|pair| pair[0].index <= pair[1].index)
-        );
+        assert!(regular.is_sorted_by(|a, b| a.index < b.index));
+        assert!(exceptions.iter().all(|t| t.clipped));
+        assert!(exceptions.is_sorted_by_key(|t| t.index));
         parts += exceptions.len();
     }
     assert!(parts > 100, "{parts}");
@@ -152,31 +123,20 @@ fn chunks() {
     let triangles: Vec<[u32; 3]> = (0..22_000)
         .map(|_| [0; 3].map(|_| random.integer(0, 2999) as u32))
         .collect();
-    let apart: Vec<_> = triangles
-        .iter()
-        .map(|t| t.map(|i| positions[i as usize]))
-        .collect();
-    let [one, two] = [
-        Model {
-            positions,
-            triangles,
-        },
-        Model::soup(&apart),
-    ]
-    .map(|model| model.encoded());
-    assert_eq!(
-        [&one, &two].map(|bytes| Mesh::new_checked(bytes).unwrap().chunks().count()),
-        [1, 2]
-    );
+    let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
+    let apart = Model::soup(&triangles.iter().map(corners).collect::<Vec<_>>());
+    let shared = Model {
+        positions,
+        triangles,
+    };
+    let [one, two] = [shared, apart].map(|model| model.encoded());
+    let chunks = [&one, &two].map(|bytes| Mesh::new_checked(bytes).unwrap().chunks().count());
+    assert_eq!(chunks, [1, 2]);
     let view = Camera::looking([0.1, 0.1, 0.0], [0.0, 0.0, 0.1], 0.3, 0.02).rounded();
     let [one, two] = [one, two].map(|bytes| Picture::of_bytes(&bytes, &view, SIZE, true));
     assert!(one == two, "{:?} {:?}", one.stats, two.stats);
-    let clipped = |indices: std::ops::Range<u32>| {
-        one.drawn
-            .iter()
-            .any(|t| t.clipped && indices.contains(&t.index))
-    };
-    assert!(clipped(0..21_000) && clipped(21_900..22_000));
+    let mut clipped = one.drawn.iter().filter(|t| t.clipped).map(|t| t.index);
+    assert!(clipped.any(|index| index < 21_000) && clipped.any(|index| index >= 21_900));
 }
 
 /// Equal cameras and meshes give identical pictures, for any previous contents of the scratch memory and the target.
@@ -193,26 +153,17 @@ fn frames_do_not_depend_on_what_was_before() {
             clear: CLEAR,
             ..Options::default()
         };
-        let stats = render(
-            &mesh,
-            &camera.rounded(),
-            &mut used.target(),
-            &mut scratch,
-            &options,
-        )
-        .unwrap();
-        let fresh = Picture::of_bytes(&bytes, &camera.rounded(), SIZE, options.cull);
-        assert_eq!(
-            (&used.colour, &used.depth, stats),
-            (&fresh.colour, &fresh.depth, fresh.stats)
-        );
+        let view = camera.rounded();
+        let stats = render(&mesh, &view, &mut used.target(), &mut scratch, &options);
+        let fresh = Picture::of_bytes(&bytes, &view, SIZE, options.cull);
+        assert_eq!(stats, Ok(fresh.stats));
+        assert_eq!((&used.colour, &used.depth), (&fresh.colour, &fresh.depth));
     }
 }
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let bytes = Model::cube(8000).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = mesh_of(&Model::cube(8000));
     let view = front().rounded();
     let refuse = |(width, height): (u32, u32), colours: usize, depths: usize, room: usize| {
         let (mut colour, mut depth) = (vec![7; colours], vec![7; depths]);
@@ -235,52 +186,24 @@ fn what_does_not_fit_is_refused() {
     };
     let pixels = 320 * 180;
     assert_eq!(refuse(SIZE, pixels, pixels, 8), Ok(()));
-    for (size, colours, depths, room, text) in [
-        (
-            (320, 240),
-            76_800,
-            76_800,
-            8,
-            "picture size 320x240: expected 320x180, 640x360, 1280x720",
-        ),
-        (
-            (0, 0),
-            0,
-            0,
-            8,
-            "picture size 0x0: expected 320x180, 640x360, 1280x720",
-        ),
-        (
-            SIZE,
-            pixels - 1,
-            pixels,
-            8,
-            "colour buffer of 57599 pixels: expected 57600, the picture's width times its height",
-        ),
-        (
-            SIZE,
-            pixels,
-            pixels + 1,
-            8,
-            "depth buffer of 57601 pixels: expected 57600, the picture's width times its height",
-        ),
-        (
-            SIZE,
-            pixels,
-            pixels,
-            7,
-            "scratch for 7 vertices: expected at least 8, as the largest chunk has",
-        ),
-    ] {
-        assert_eq!(refuse(size, colours, depths, room), Err(text.to_owned()));
-    }
-    assert_eq!(
-        MeshSetup::new(&view, 1, 1, 0),
-        Err(RenderError::Size {
-            width: 1,
-            height: 1
-        })
-    );
+    let texts = [
+        "picture size 320x240: expected 320x180, 640x360, 1280x720",
+        "picture size 0x0: expected 320x180, 640x360, 1280x720",
+        "colour buffer of 57599 pixels: expected 57600, the picture's width times its height",
+        "depth buffer of 57601 pixels: expected 57600, the picture's width times its height",
+        "scratch for 7 vertices: expected at least 8, the number in the largest chunk",
+    ];
+    let refused = [
+        refuse((320, 240), 76_800, 76_800, 8),
+        refuse((0, 0), 0, 0, 8),
+        refuse(SIZE, pixels - 1, pixels, 8),
+        refuse(SIZE, pixels, pixels + 1, 8),
+        refuse(SIZE, pixels, pixels, 7),
+    ];
+    assert_eq!(refused, texts.map(|text| Err(text.to_owned())));
+    let (width, height) = (1, 1);
+    let refused = MeshSetup::new(&view, width, height, 0);
+    assert_eq!(refused, Err(RenderError::Size { width, height }));
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use glint_core::mesh::Mesh;
 use glint_core::shape::MAX_BYTES;
 use glint_core::wire::crc32;
-use glint_model::Projected;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};
 use glint_vectors::Picture;
 
@@ -35,14 +34,8 @@ fn the_stored_checksums_are_those_of_the_model() {
     let mut seen = Vec::new();
     for picture in TestPicture::ALL {
         let mut draw = |frame: &glint_model::Frame| {
-            let [width, height] = frame.size.pixels();
-            let mut target = Picture::blank((width, height));
-            let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-            let constants = frame.constants().unwrap();
-            frame
-                .draw(&constants, &mut target.target(), &mut scratch, &mut || {})
-                .unwrap();
-            let bytes = target.colour.iter().flat_map(|colour| colour.to_le_bytes());
+            let colours = Picture::of_frame(frame).colour;
+            let bytes = colours.iter().flat_map(|colour| colour.to_le_bytes());
             seen.push(crc32(&bytes.collect::<Vec<_>>()));
         };
         picture.describe(Some(mesh), &mut draw).unwrap();

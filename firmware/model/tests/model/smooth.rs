@@ -4,12 +4,13 @@ use glint_core::colour::Rgb565;
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::quotient::{INVERSE, colour};
 use glint_model::triangle::raster::draw;
-use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
+use glint_model::triangle::setup::{Facing, Setup};
 use glint_model::triangle::shade::{Light, Lit, intensity, lit};
-use glint_model::triangle::vertex::{CameraVertex, transform};
-use glint_model::{MeshSetup, SIZES};
-use glint_vectors::triangles::{SIZE, random_triangle};
-use glint_vectors::{Camera, Picture, Random};
+use glint_model::triangle::vertex::CameraVertex;
+use glint_vectors::triangles::{SIZE, random_triangle, set_up};
+use glint_vectors::{Picture, Random};
+
+use crate::{any_vector, random_frame, random_vertex};
 
 fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
@@ -29,10 +30,7 @@ fn equal_light_is_a_flat_colour() {
                 _ => random.integer(228 * 64, ((1 << 18) - 4) * 64) as u32,
             };
         }
-        let Some(triangle) = Oriented::new(vertices) else {
-            continue;
-        };
-        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+        let Some((triangle, Setup { bounds, .. })) = set_up(vertices, SIZE) else {
             continue;
         };
         let colour = any_colour(&mut random);
@@ -79,7 +77,7 @@ fn light_is_that_of_flat_shading() {
     let frame = random_frame(&mut random);
     let (mut front, mut back) = (0, 0);
     for _ in 0..10_000 {
-        let normal = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
+        let normal = any_vector(&mut random);
         let colour = any_colour(&mut random);
         let light = Light::new(colour, normal, &frame.n, |i| [i; 3]);
         for facing in [Facing::Front, Facing::Back] {
@@ -99,11 +97,6 @@ fn light_is_that_of_flat_shading() {
     assert!(front > 3000 && back > 3000, "{front}, {back}");
 }
 
-fn random_frame(random: &mut Random) -> MeshSetup {
-    let (width, height) = SIZES[random.integer(0, 2) as usize];
-    MeshSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
-}
-
 /// The light at a cut vertex is interpolated linearly between the ends of the edge, and rounded. Both triangles at the edge get the same
 /// light.
 #[test]
@@ -113,10 +106,10 @@ fn cut_edges_have_light_in_between() {
     for _ in 0..20_000 {
         let frame = random_frame(&mut random);
         let [a, b, c] = [0; 3].map(|_| {
-            let normal = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
+            let normal = any_vector(&mut random);
             CameraVertex {
                 light: Light::new(any_colour(&mut random), normal, &frame.n, |i| [i; 3]),
-                ..transform(&frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
+                ..random_vertex(&mut random, &frame)
             }
         });
         for end in clip(&frame, [a, b, b]).vertices() {

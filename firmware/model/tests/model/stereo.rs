@@ -3,7 +3,6 @@
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
 use glint_core::fixed::Q32_32;
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wireframe::{CUBE, Motion, Program};
@@ -11,6 +10,8 @@ use glint_model::triangle::vertex::{project, transform};
 use glint_model::{Frame, MeshSetup, Projected, RenderError, SIZES, Subject, WireframeSubject};
 use glint_vectors::math::{dot, world};
 use glint_vectors::{Camera, Model, Picture, Random};
+
+use crate::{RADII, any_vector, cube, mesh_of};
 
 fn stereo(half_separation: f64, zero_parallax: f64) -> Stereo {
     Stereo {
@@ -47,9 +48,9 @@ fn eyes_against_f64() {
             let camera = Camera::of(&view);
             let numbers = [stereo.half_separation, stereo.zero_parallax];
             let [separation, zero] = numbers.map(|x| x.to_num::<f64>());
-            let position = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
+            let position = any_vector(&mut random);
             for (eye, aside) in stereo.eyes(&view).iter().zip([-separation, separation]) {
-                let frame = MeshSetup::new(eye, size.0, size.1, 56_756).unwrap();
+                let frame = MeshSetup::new(eye, size.0, size.1, RADII[1]).unwrap();
                 let Projected::Visible(place) = project(&frame, &transform(&frame, position))
                 else {
                     continue;
@@ -84,11 +85,10 @@ fn composed(tint: Tint, left: u16, right: u16) -> u16 {
 /// except for the rounding of positions.
 #[test]
 fn eyes_see_shifted_pictures_of_one_eye() {
-    let bytes = Model::sphere(0.5, 12).encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mesh = mesh_of(&Model::sphere(0.5, 12));
     let (separation, columns) = (0.1, 16);
     let camera = Camera::looking([1.0, -2.0, 0.8], [0.0; 3], 0.5, 0.1);
-    // 16 of the 160 pixels of half a picture.
+    // A shift of 16 of the 160 pixels of half a picture.
     let zero = separation / (camera.half_width * f64::from(columns) / 160.0);
     let view = camera.rounded();
     let stereo = stereo(separation, zero);
@@ -102,10 +102,8 @@ fn eyes_see_shifted_pictures_of_one_eye() {
         for i in 0..3 {
             alone.eye[i] += side * separation * camera.u[i];
         }
-        let alone = Picture::of_frame(&Frame {
-            view: alone.rounded(),
-            ..eye
-        });
+        let view = alone.rounded();
+        let alone = Picture::of_frame(&Frame { view, ..eye });
         let seen = Picture::of_frame(&eye);
         let mut differ = 0;
         for (y, x) in (0..180).flat_map(|y| (columns..320 - columns).map(move |x| (y, x))) {
@@ -122,7 +120,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
         let expected = left.iter().zip(&right);
         let expected = expected.map(|(&left, &right)| composed(tint, left, right));
         let expected = words(&expected.collect::<Vec<_>>());
-        // Tests also pictures that end within a cache line.
+        // Also tests pictures that end within a cache line.
         for pixels in [left.len(), 2 * 11] {
             let mut both = words(&left[..pixels]);
             let eyes = glint_model::Eyes { tint, ..eyes };
@@ -132,7 +130,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
     }
 }
 
-/// Makes a picture from words of two pixels.
+/// Packs pixels into words of two pixels.
 fn words(pixels: &[u16]) -> Vec<u32> {
     let pairs = pixels.as_chunks().0.iter();
     pairs
@@ -143,13 +141,8 @@ fn words(pixels: &[u16]) -> Vec<u32> {
 /// Two eyes at one position give the picture of one eye, in grey.
 #[test]
 fn eyes_at_one_place() {
-    let bytes = Model::cube(8192).encoded();
     let view = Camera::looking([1.0, -2.0, 0.8], [0.0; 3], 0.5, 0.1).rounded();
-    let one = Frame::new(
-        Subject::mesh(Mesh::new_checked(&bytes).unwrap()),
-        view,
-        Size::W320,
-    );
+    let one = Frame::new(Subject::mesh(cube()), view, Size::W320);
     let two = Frame {
         stereo: Some(stereo(0.0, 0.1)),
         ..one
@@ -162,8 +155,7 @@ fn eyes_at_one_place() {
 
 #[test]
 fn refused_eyes() {
-    let bytes = Model::cube(8192).encoded();
-    let mesh = Subject::mesh(Mesh::new_checked(&bytes).unwrap());
+    let mesh = Subject::mesh(cube());
     let wireframe = Subject::Wireframe(WireframeSubject {
         program: Program::new_checked(CUBE.as_flattened()).unwrap(),
         pose: Motion::default().pose(),

@@ -5,14 +5,14 @@ use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
-use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::setup::Plane;
 use glint_model::triangle::textured::{Textured, flat_light, lit, sample};
 use glint_model::{Frame, MeshSubject, Subject};
 use glint_vectors::meshes::textured_square;
-use glint_vectors::triangles::{SIZE, random_triangle};
+use glint_vectors::triangles::{SIZE, random_triangle, set_up};
 use glint_vectors::{Camera, Picture, Random};
 
-/// The value of each texel is its place: the row in the high byte, the column in the low byte.
+/// A texture in which the value of each texel is its position: the row in the high byte, the column in the low byte.
 fn places(wrap: Wrap, filter: Filter) -> Source {
     Source {
         size_log2: [8, 8],
@@ -60,17 +60,14 @@ fn positions_and_levels_are_those_of_exact_perspective() {
             vertex.w =
                 random.integer(least * 64, (least * 64 * 8).min(((1 << 18) - 4) * 64)) as u32;
         }
-        let Some(triangle) = Oriented::new(vertices) else {
+        let Some((triangle, setup)) = set_up(vertices, SIZE) else {
             continue;
         };
-        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
-            continue;
-        };
+        let bounds = setup.bounds;
         let range = 1 << random.integer(8, 18);
         let place = random.integer(-(1 << 24), 1 << 24);
         let coordinates =
             [(); 3].map(|()| [(); 2].map(|()| (place + random.integer(0, range)) as i32));
-        let setup = Setup::new(&triangle, bounds);
         let textured = Textured::new(texture, &triangle, &setup, &coordinates, [0; 3], false);
         let corners = triangle.vertices.map(|v| [v.x, v.y].map(f64::from));
         let doubled = triangle.doubled_area as f64;
@@ -78,15 +75,10 @@ fn positions_and_levels_are_those_of_exact_perspective() {
         for _ in 0..20 {
             let column = random.integer(bounds.left.into(), i64::from(bounds.right) - 1) as i32;
             let row = random.integer(bounds.top.into(), i64::from(bounds.bottom) - 1) as i32;
-            let at = |plane: glint_model::triangle::setup::Plane| {
-                plane
-                    .start
-                    .wrapping_add(
-                        plane
-                            .step_x
-                            .wrapping_mul((column - setup.start_column) as u32),
-                    )
-                    .wrapping_add(plane.step_y.wrapping_mul((row - bounds.top) as u32))
+            let [right, down] = [column - setup.start_column, row - bounds.top].map(|x| x as u32);
+            let at = |plane: Plane| {
+                let in_row = plane.start.wrapping_add(plane.step_y.wrapping_mul(down));
+                in_row.wrapping_add(plane.step_x.wrapping_mul(right))
             };
             let point = [column, row].map(|x| f64::from(256 * x + 128));
             let opposite = |i: usize| {
@@ -100,7 +92,7 @@ fn positions_and_levels_are_those_of_exact_perspective() {
             let exact_depth = blend(shares, weights);
             let depth = at(setup.depth).wrapping_add(1 << 13);
             let found = textured.places(depth, textured.axes.map(|axis| at(axis.plane)));
-            // The share of each coordinate, and how fast it changes to the right and down.
+            // The largest change of a coordinate per pixel, and the steepest plane.
             let (mut most, mut steepest) = (0.0_f64, 0.0_f64);
             for axis in 0..2 {
                 let values =
@@ -123,19 +115,14 @@ fn positions_and_levels_are_those_of_exact_perspective() {
                 }
             }
             let level = textured.level(&setup, depth, textured.axes.map(|axis| at(axis.plane)));
-            // Steps of more codes do not fit an accumulator.
+            // Larger steps do not fit an accumulator.
             if steepest > f64::from(1 << 17) {
                 continue;
             }
             let apart = most / f64::from(1 << level);
-            assert!(
-                apart < 1.5 * 9.0 / 8.0 || level == 10,
-                "level {level}: {apart}"
-            );
-            assert!(
-                apart > 0.75 * 7.0 / 8.0 || level == 0,
-                "level {level}: {apart}"
-            );
+            let fits = apart < 1.5 * 9.0 / 8.0 || level == 10;
+            let is_finest = apart > 0.75 * 7.0 / 8.0 || level == 0;
+            assert!(fits && is_finest, "level {level}: {apart}");
             pixels += 1;
         }
     }
@@ -162,13 +149,11 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
     }
 }
 
-/// The texels of a floor that passes under the camera, clipped and not, are those that exact rays hit.
+/// A floor under the camera, with and without clipped triangles, shows the texels that exact rays hit.
 #[test]
 fn a_floor_has_the_texels_that_rays_hit() {
-    let bytes = textured_square(
-        &[encode(&places(Wrap::Repeat, Filter::Nearest)).unwrap()],
-        0.5,
-    );
+    let texture = encode(&places(Wrap::Repeat, Filter::Nearest));
+    let bytes = textured_square(&[texture.unwrap()], 0.5);
     let mesh = Mesh::new_checked(&bytes).unwrap();
     for (eye, shading) in [
         ([0.3, -0.4, 0.3], Shading::Flat),
@@ -193,7 +178,7 @@ fn a_floor_has_the_texels_that_rays_hit() {
             let found = [colour & 0xFF, colour >> 8].map(f64::from);
             for axis in 0..2 {
                 let exact = hit[axis] * 0.5 * 256.0;
-                // The distance from the texel, which is 1 wide.
+                // The distance from the found texel, which has width 1.
                 let off = (exact - found[axis]).rem_euclid(256.0);
                 let off = if off > 128.0 {
                     256.0 - off
@@ -212,7 +197,7 @@ fn a_floor_has_the_texels_that_rays_hit() {
     }
 }
 
-/// Transparent texels leave the background and its depth.
+/// Transparent texels do not change the colour and depth of the background.
 #[test]
 fn cut_out_texels_leave_colour_and_depth() {
     let chess = (0..64).map(|i| if (i + i / 8) % 2 == 0 { 0xF800 } else { 0x07E0 });
@@ -224,11 +209,8 @@ fn cut_out_texels_leave_colour_and_depth() {
     });
     let bytes = textured_square(&[texture.unwrap()], 0.25);
     let camera = Camera::looking([0.0, -0.01, 2.5], [0.0; 3], 0.7, 0.1);
-    let picture = Picture::of_frame(&frame(
-        Mesh::new_checked(&bytes).unwrap(),
-        &camera,
-        Shading::Flat,
-    ));
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let picture = Picture::of_frame(&frame(mesh, &camera, Shading::Flat));
     let mut counts = [0_u32; 2];
     for (&colour, &code) in picture.colour.iter().zip(&picture.depth) {
         match colour {
@@ -242,7 +224,7 @@ fn cut_out_texels_leave_colour_and_depth() {
     assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
 }
 
-/// Full light does not change a colour, and no light is black; bilinear filtering of equal texels gives their colour.
+/// Full light does not change a colour, and no light gives black; bilinear filtering of equal texels gives their colour.
 #[test]
 fn colours_at_the_limits_are_exact() {
     for colour in (0..=u16::MAX).map(Rgb565) {
@@ -279,7 +261,7 @@ fn colours_at_the_limits_are_exact() {
     }
 }
 
-/// Between the middles of two texels the colours change evenly, over a side as well.
+/// Between the centres of two texels the colour changes linearly, also across the sides of the texture.
 #[test]
 fn bilinear_colours_are_between_their_texels() {
     for wrap in Wrap::ALL {
@@ -289,11 +271,8 @@ fn bilinear_colours_are_between_their_texels() {
         for place in 0..16 {
             let at = 256 * 5 + 128 + 16 * place;
             let [_, _, blue] = sample(&texture, 0, [at, 128]).unwrap();
-            assert_eq!(
-                i64::from(blue),
-                (16 * 5 * 8 + 8 * place + 8) / 16,
-                "{wrap:?} {place}"
-            );
+            let expected = (16 * 5 * 8 + 8 * place + 8) / 16;
+            assert_eq!(i64::from(blue), expected, "{wrap:?} {place}");
         }
         let [_, _, left] = sample(&texture, 0, [0, 128]).unwrap();
         let expected = match wrap {
@@ -304,7 +283,7 @@ fn bilinear_colours_are_between_their_texels() {
     }
 }
 
-/// Any coordinates, accumulators and places give a colour without a panic, for textures of any size and kind.
+/// Any coordinates, accumulators and positions give a colour without a panic, for textures of any size and kind.
 #[test]
 fn anything_has_a_colour() {
     let mut random = Random(11);
@@ -324,10 +303,7 @@ fn anything_has_a_colour() {
         });
         let bytes = bytes.unwrap();
         let texture = Texture::new_checked(&bytes).unwrap();
-        let Some(triangle) = Oriented::new(random_triangle(&mut random)) else {
-            continue;
-        };
-        let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
+        let Some((triangle, setup)) = set_up(random_triangle(&mut random), SIZE) else {
             continue;
         };
         let coordinates = [(); 3].map(|()| {
@@ -337,16 +313,8 @@ fn anything_has_a_colour() {
                 _ => random.bits() as i32,
             })
         });
-        let setup = Setup::new(&triangle, bounds);
-        let is_linear = random.coin();
-        let textured = Textured::new(
-            texture,
-            &triangle,
-            &setup,
-            &coordinates,
-            [255; 3],
-            is_linear,
-        );
+        let (light, is_linear) = ([255; 3], random.coin());
+        let textured = Textured::new(texture, &triangle, &setup, &coordinates, light, is_linear);
         for _ in 0..20 {
             let (depth, values) = (any(&mut random), [(); 2].map(|()| any(&mut random)));
             let level = textured.level(&setup, depth, values);

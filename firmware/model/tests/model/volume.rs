@@ -1,16 +1,15 @@
 //! Clipping to the six planes of the view volume, compared with a clipper in f64.
 
-use glint_core::camera::{Projection, View};
+use glint_core::camera::Projection;
 use glint_core::fixed::U8_28;
-use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
 use glint_model::triangle::clip::{Plane, clip};
 use glint_model::triangle::vertex::{CameraVertex, snap, transform};
 use glint_model::triangle::volume::Volume;
-use glint_model::{Clip, MeshSetup, Options, Projected, SIZES, trace_frame};
+use glint_model::{Clip, Frame, MeshSetup, MeshSubject, SIZES, Subject};
 use glint_vectors::{Camera, Model, Picture, Random};
 
-/// Radius of a mesh that may have vertices at all positions of the mesh format, 14 fraction bits.
-const RADIUS: u32 = 56_756;
+use crate::{RADII, mesh_of, random_vertex};
 
 /// A vertex: pixels from the middle of the picture (in perspective at distance 1), and depth in world units.
 type Point = [f64; 3];
@@ -26,12 +25,8 @@ fn random_frame(random: &mut Random) -> MeshSetup {
     let projection = Projection::ALL[random.integer(0, 1) as usize];
     let view = Camera::inside(random).rounded().with_projection(projection);
     let far = view.near().to_num::<f64>() + random.logarithmic(0.05, 4.0);
-    let frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
+    let frame = MeshSetup::new(&view, width, height, RADII[1]).unwrap();
     frame.with_clip(view_of(far)).unwrap()
-}
-
-fn random_vertex(random: &mut Random, frame: &MeshSetup) -> CameraVertex {
-    transform(frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
 }
 
 fn point(frame: &MeshSetup, vertex: &CameraVertex) -> Point {
@@ -127,7 +122,8 @@ fn vertices_against_f64() {
     assert!(worst <= 1.0, "{worst}");
 }
 
-/// Two triangles at an edge keep the same part of the edge, with the same end vertices: no pixel on the edge is lost or drawn twice.
+/// Two triangles that share an edge keep the same part of the edge, with the same end vertices: no pixel on the edge is lost or drawn
+/// twice.
 ///
 /// The environment variable `GLINT_PAIRS` sets the number of pairs.
 #[test]
@@ -177,11 +173,10 @@ fn level_frame() -> MeshSetup {
         half_width: 0.9,
         near: 0.1,
     };
-    let frame = MeshSetup::new(&camera.rounded(), 320, 180, RADIUS).unwrap();
+    let frame = MeshSetup::new(&camera.rounded(), 320, 180, RADII[1]).unwrap();
     frame.with_clip(view_of(1.5)).unwrap()
 }
 
-/// A triangle wholly outside one plane leaves nothing, for each of the six planes.
 #[test]
 fn nothing_is_left_outside_a_plane() {
     let frame = level_frame();
@@ -205,29 +200,6 @@ fn nothing_is_left_outside_a_plane() {
     }
 }
 
-fn picture_of(model: &Model, view: &View, clip: Clip) -> Picture {
-    let bytes = model.encoded();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let mut picture = Picture::blank(SIZES[0]);
-    let mut scratch = vec![Projected::Behind; mesh.largest_chunk()];
-    let options = Options {
-        cull: false,
-        ..Options::default()
-    };
-    let frame = MeshSetup::new(view, picture.width, picture.height, mesh.radius()).unwrap();
-    let frame = frame.with_clip(clip).unwrap();
-    let stats = trace_frame(
-        &mesh,
-        frame,
-        &mut picture.target(),
-        &mut scratch,
-        &options,
-        |_| {},
-    );
-    picture.stats = stats.unwrap();
-    picture
-}
-
 /// Clipping to the six planes and to the guard band give the same picture, except for pixels at edges cut by the picture's sides.
 #[test]
 fn both_clips_draw_the_same_picture() {
@@ -235,9 +207,15 @@ fn both_clips_draw_the_same_picture() {
     let (mut differing, mut pixels, mut clipped) = (0, 0, 0);
     for _ in 0..40 {
         let view = Camera::inside(&mut random).rounded();
-        let model = Model::random(&mut random, 20, 32768);
-        let guard = Picture::of(&model, &view, SIZES[0], false);
-        let volume = picture_of(&model, &view, view_of(100.0));
+        let mesh = mesh_of(&Model::random(&mut random, 20, 32768));
+        let [guard, volume] = [Clip::Guard, view_of(100.0)].map(|clip| {
+            let subject = Subject::Mesh(MeshSubject {
+                cull: false,
+                clip,
+                ..MeshSubject::new(mesh)
+            });
+            Picture::of_frame(&Frame::new(subject, view, Size::W320))
+        });
         differing += (0..guard.depth.len())
             .filter(|&i| (guard.depth[i] == 0) != (volume.depth[i] == 0))
             .count();

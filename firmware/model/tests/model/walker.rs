@@ -2,7 +2,7 @@
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::raster::{Coverage, draw};
-use glint_model::triangle::setup::{Oriented, Setup};
+use glint_model::triangle::setup::Oriented;
 use glint_model::triangle::vertex::GUARD;
 use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
@@ -15,10 +15,7 @@ fn alone(vertices: [ScreenVertex; 3], size: (u32, u32)) -> (Vec<bool>, Coverage)
         .map(|(_, setup)| draw(&setup, Rgb565::WHITE, &mut picture.target()))
         .unwrap_or_default();
     let covered = picture.coverage();
-    assert_eq!(
-        covered.iter().filter(|&&c| c).count(),
-        coverage.covered as usize
-    );
+    assert_eq!(picture.covered(), coverage.covered as usize);
     assert_eq!(coverage.drawn, coverage.covered);
     (covered, coverage)
 }
@@ -82,19 +79,15 @@ fn both_accumulators_walk_alike() {
             continue;
         };
         let [mut a, mut b] = [0; 2].map(|_| Picture::blank(SIZE));
-        let wide = Setup {
-            narrow: false,
-            ..narrow
-        };
-        assert_eq!(
-            draw(&narrow, Rgb565::WHITE, &mut a.target()),
-            draw(&wide, Rgb565::WHITE, &mut b.target())
-        );
+        let mut wide = narrow;
+        wide.narrow = false;
+        let drawn = draw(&narrow, Rgb565::WHITE, &mut a.target());
+        assert_eq!(drawn, draw(&wide, Rgb565::WHITE, &mut b.target()));
         assert_eq!(a, b);
     }
 }
 
-/// The number of tested pixels exceeds that of covered pixels by at most a multiple of the triangle's extents, not of its bounding box's
+/// The number of tested pixels exceeds the number of covered pixels by at most a multiple of the triangle's width and height, not of its
 /// area.
 #[test]
 fn the_walker_does_not_look_through_the_box() {
@@ -129,14 +122,9 @@ fn top_left_torture_on_the_half_pixel_grid() {
                     continue;
                 };
                 let (covered, _) = alone(triangle, SIZE);
-                for y in 4..9 {
-                    for x in 4..9 {
-                        assert_eq!(
-                            covered[y * 320 + x],
-                            directly(&oriented, x as i64, y as i64),
-                            "{triangle:?}"
-                        );
-                    }
+                for (x, y) in (4..9).flat_map(|y| (4..9).map(move |x| (x, y))) {
+                    let expected = directly(&oriented, x as i64, y as i64);
+                    assert_eq!(covered[y * 320 + x], expected, "{triangle:?}");
                 }
                 // A triangle with two vertices exchanged, or with another first vertex, covers the same pixels.
                 assert_eq!(covered, alone([b, a, c].map(at), SIZE).0);

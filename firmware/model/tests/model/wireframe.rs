@@ -27,12 +27,10 @@ fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
     let [width, height] = size.pixels();
     let mut picture = Picture::blank((width, height));
     let mut calls = 0;
-    let stats = frame.draw(
-        &frame.constants().unwrap(),
-        &mut picture.target(),
-        &mut [],
-        &mut || calls += 1,
-    );
+    let constants = frame.constants().unwrap();
+    let stats = frame.draw(&constants, &mut picture.target(), &mut [], &mut || {
+        calls += 1;
+    });
     let FrameStats {
         mesh: None,
         field: None,
@@ -62,19 +60,9 @@ fn pixels(picture: &Picture, width: usize) -> Vec<[usize; 2]> {
 fn a_horizontal_and_a_vertical_segment() {
     let (picture, stats) = draw("segment -1 0.5 2 1 0.5 2\n", Size::W640, &[]);
     // The segment is on the border between rows 99 and 100; the diamond-exit rule selects the upper row.
-    assert!(
-        pixels(&picture, 640)
-            .into_iter()
-            .eq((160..480).map(|x| [x, 99]))
-    );
-    assert_eq!(
-        stats,
-        WireframeStats {
-            segments: 1,
-            lines: 1,
-            pixels: 320
-        }
-    );
+    let row: Vec<_> = (160..480).map(|x| [x, 99]).collect();
+    assert_eq!(pixels(&picture, 640), row);
+    assert_eq!((stats.segments, stats.lines, stats.pixels), (1, 1, 320));
     let (picture, _) = draw("segment 0.25 -1.125 2 0.25 1.125 2\n", Size::W640, &[]);
     assert_eq!(pixels(&picture, 640).len(), 360);
 }
@@ -98,15 +86,7 @@ fn keys_move_the_picture() {
 
 #[test]
 fn the_order_of_segments_does_not_matter() {
-    let (one, _) = draw(
-        "segment -1 0.3 0 1 -0.7 1\nsegment 0 1 0 0.5 -1 2\n",
-        Size::W1280,
-        &[],
-    );
-    let (other, _) = draw(
-        "segment 0 1 0 0.5 -1 2\nsegment -1 0.3 0 1 -0.7 1\n",
-        Size::W1280,
-        &[],
-    );
+    let [a, b] = ["segment -1 0.3 0 1 -0.7 1\n", "segment 0 1 0 0.5 -1 2\n"];
+    let [one, other] = [[a, b], [b, a]].map(|both| draw(&both.concat(), Size::W1280, &[]).0);
     assert!(one.colour == other.colour && one.depth == other.depth);
 }

@@ -99,8 +99,19 @@ impl Board for Endless {
     }
 }
 
-/// Runs a command on a board whose output does not end.
-type Conversation = Box<dyn FnMut(&mut Console<'_, Endless>) -> Result<(), ConsoleError>>;
+/// Conversations that must end although the output of the board does not.
+fn conversations<B: Board>() -> [fn(&mut Console<'_, B>) -> Result<(), ConsoleError>; 4] {
+    [
+        |console| console.greet().map(drop),
+        |console| console.synchronise(),
+        |console| console.command("info").map(drop),
+        |console| console.reply("info").map(drop),
+    ]
+}
+
+fn is_endless(error: &ConsoleError, maximum: usize) -> bool {
+    matches!(error, ConsoleError::Endless { limit, .. } if *limit == maximum)
+}
 
 #[test]
 fn a_board_that_never_stops_is_given_up() {
@@ -109,45 +120,28 @@ fn a_board_that_never_stops_is_given_up() {
         (b"a line without an end ", MAX_LINE),
     ] {
         let mut board = Endless { text, sent: 0 };
-        let mut conversations: [Conversation; 4] = [
-            Box::new(|console| console.greet().map(drop)),
-            Box::new(|console| console.synchronise()),
-            Box::new(|console| console.command("info").map(drop)),
-            Box::new(|console| console.reply("info").map(drop)),
-        ];
-        for converse in &mut conversations {
+        for converse in conversations() {
             board.sent = 0;
             let error = converse(&mut Console::new(&mut board)).unwrap_err();
-            assert!(
-                matches!(error, ConsoleError::Endless { limit: found, .. } if found == limit),
-                "{error}"
-            );
+            assert!(is_endless(&error, limit), "{error}");
             assert!(error.to_string().len() < 500);
             assert!(board.sent < limit + 1000);
         }
     }
 }
 
-/// Each error may be the reply to a line of an earlier program, but such errors do not continue forever.
+/// An error may be the reply to a line of an earlier program, but a board that only sends errors
+/// must not block the host.
 #[test]
-fn a_board_that_never_stops_refusing_is_given_up() {
+fn synchronising_with_a_board_that_always_refuses_ends() {
     let text = b"error: expected a command\r\n";
     let mut board = Endless { text, sent: 0 };
     let error = Console::new(&mut board).synchronise().unwrap_err();
-    assert!(
-        matches!(
-            error,
-            ConsoleError::Endless {
-                limit: MAX_REPLY,
-                ..
-            }
-        ),
-        "{error}"
-    );
+    assert!(is_endless(&error, MAX_REPLY), "{error}");
     assert!(board.sent < MAX_REPLY + 1000);
 }
 
-/// A board that sends a text without end, one byte in each second.
+/// A board that repeats a text without end, one byte per second.
 struct Dripping {
     text: std::iter::Cycle<std::slice::Iter<'static, u8>>,
     now_ms: u64,
@@ -171,18 +165,11 @@ impl Board for Dripping {
     }
 }
 
-/// Neither a byte nor a line extends the wait without end.
+/// Received bytes and lines do not extend the wait without limit.
 #[test]
-fn a_board_that_drips_is_given_up() {
+fn slow_endless_output_times_out() {
     for text in [&b"drip "[..], b"drip\r\n", b"error: drip\r\n"] {
-        type Conversation = fn(&mut Console<'_, Dripping>) -> Result<(), ConsoleError>;
-        let conversations: [Conversation; 4] = [
-            |console| console.greet().map(drop),
-            |console| console.synchronise(),
-            |console| console.command("info").map(drop),
-            |console| console.reply("info").map(drop),
-        ];
-        for (number, converse) in conversations.into_iter().enumerate() {
+        for (number, converse) in conversations().into_iter().enumerate() {
             let mut board = Dripping {
                 text: text.iter().cycle(),
                 now_ms: 0,
@@ -197,7 +184,7 @@ fn a_board_that_drips_is_given_up() {
     }
 }
 
-/// A board that echoes a command, and sends the reply after a time.
+/// A board that echoes a command at once, and sends the reply after a delay.
 struct Slow {
     output: Vec<u8>,
     reply: Option<(u64, &'static [u8])>,
@@ -228,9 +215,9 @@ impl Board for Slow {
     }
 }
 
-/// A turn of 3600 frames takes a minute, at 60 frames a second.
+/// An orbit of 3600 frames takes a minute at 60 frames per second.
 #[test]
-fn commands_that_draw_several_frames_have_their_time() {
+fn commands_that_draw_several_frames_have_longer_time_outs() {
     let reply = |command: &str, ms: u64| {
         let mut board = Slow {
             output: Vec::new(),

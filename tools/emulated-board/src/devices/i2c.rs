@@ -22,7 +22,7 @@ const FILTER: u64 = 7;
 const POLL_CYCLES: u64 = 16;
 /// Maximum number of cycles that a device may hold SCL low.
 const STRETCH: u64 = 1 << 21;
-/// Index of the acknowledge's clock in a byte.
+/// Index of the clock of the acknowledge bit in a byte.
 const LAST_CLOCK: u32 = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -82,10 +82,6 @@ impl Device for Inputs {
         self.update();
     }
 
-    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
-        u64::MAX
-    }
-
     fn interrupt(&self) -> bool {
         self.events.interrupt()
     }
@@ -111,14 +107,6 @@ impl Device for Outputs {
             self.levels = value as u16;
         }
     }
-
-    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
-        u64::MAX
-    }
-
-    fn interrupt(&self) -> bool {
-        false
-    }
 }
 
 /// Two displays of four digits. A reset does not change the displayed segments.
@@ -140,13 +128,5 @@ impl Device for Digits {
             litex_pac::digits::offset::RIGHT => right.copy_from_slice(&value.to_le_bytes()),
             _ => {}
         }
-    }
-
-    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
-        u64::MAX
-    }
-
-    fn interrupt(&self) -> bool {
-        false
     }
 }

@@ -56,14 +56,6 @@ impl Device for Controller {
             _ => {}
         }
     }
-
-    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
-        u64::MAX
-    }
-
-    fn interrupt(&self) -> bool {
-        false
-    }
 }
 
 /// Identity of the emulated gateware.
@@ -84,12 +76,4 @@ impl Device for Identity {
     }
 
     fn write(&mut self, _offset: u32, _value: u32, _now: u64, _ram: &mut MainMemory) {}
-
-    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
-        u64::MAX
-    }
-
-    fn interrupt(&self) -> bool {
-        false
-    }
 }

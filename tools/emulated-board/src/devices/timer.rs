@@ -12,7 +12,7 @@ pub struct Timer {
     load: u32,
     reload: u32,
     enabled: bool,
-    /// The cycle of the last register change, and the count at that cycle, if the timer is enabled.
+    /// For an enabled timer: the cycle of the last register change, and the count in that cycle.
     start: (u64, u32),
     value: u32,
     uptime: u64,

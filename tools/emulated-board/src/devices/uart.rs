@@ -76,7 +76,7 @@ impl Device for Uart {
             offset::EV_PENDING => {
                 self.events.clear(value);
                 if EvPending::from_bits(value).rx() {
-                    // A write that clears the event removes the byte in `rxtx`.
+                    // Clearing the event removes the byte in `rxtx` from the queue.
                     self.received.pop_front();
                     self.events.set_level(RX, !self.received.is_empty());
                 }
@@ -84,10 +84,6 @@ impl Device for Uart {
             offset::EV_ENABLE => self.events.enable(value & (TX | RX)),
             _ => {}
         }
-    }
-
-    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
-        u64::MAX
     }
 
     fn interrupt(&self) -> bool {

@@ -21,7 +21,8 @@ impl<const N: usize> Pass<N> {
         if done >= whole {
             return self.growth;
         }
-        // An increment has 32 bits, and a pass takes less than 2^32 cycles.
+        // The product does not overflow: an increment has 32 bits, and a pass takes less than 2^32
+        // cycles.
         self.growth
             .map(|growth| (u64::from(growth) * done / whole) as u32)
     }

@@ -21,7 +21,8 @@ use cones::ConeWords;
 use setup::{Tables, field_setup, palette};
 use spheres::Spheres;
 
-/// Number of evaluations of the field per clock cycle; marching rays have one.
+/// Number of field evaluations per clock cycle for rays by exits; marching rays do one evaluation
+/// per cycle.
 const LANES: u64 = 2;
 
 /// Number of counters.
@@ -75,7 +76,8 @@ impl Raymarcher {
         self.control.enable() && self.error() == Error::None
     }
 
-    /// Draws the field into a picture that already contains its triangles, starting at the cycle `now`.
+    /// Draws the field into a picture that already contains the triangles of the frame, starting at
+    /// the cycle `now`.
     pub(crate) fn draw(&mut self, size: Size, target: &mut FrameBuffer, now: u64) -> Field {
         let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
         let solid = Solid::from_bits(self.parameters.word(offset::SOLID));

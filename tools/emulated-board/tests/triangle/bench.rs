@@ -1,7 +1,7 @@
-//! A triangle engine with main memory, operated as the firmware does.
+//! A triangle engine with main memory, which the bench operates like the firmware.
 
 use emulated_board::{Device, MainMemory, TriangleEngine};
-use glint_core::camera::Projection;
+use glint_core::camera::{Projection, View};
 use glint_core::colour::Shading;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
@@ -31,7 +31,7 @@ const HEADER: u32 = 32;
 /// A colour that is neither a drawn colour nor the background.
 pub const UNTOUCHED: u16 = 0x7777;
 
-/// Best shading of the engine.
+/// Layout of the engine's descriptors.
 pub const LAYOUT: Layout = Layout::WHOLE;
 
 /// Size of a descriptor in bytes.
@@ -103,7 +103,8 @@ impl Bench {
         self.finish(kind)
     }
 
-    /// Runs until all passes have ended, when an event must be pending. Returns the error of the last pass of this kind.
+    /// Runs until all passes have ended; an event must then be pending. Returns the error of the
+    /// last pass of this kind.
     pub fn finish(&mut self, kind: Kind) -> Error {
         while self.status().geometry_busy() || self.status().raster_busy() {
             assert!(!self.engine.interrupt());
@@ -319,11 +320,13 @@ pub fn geometry_flags(frame: &MeshSetup, options: &Options) -> Geometry {
         .with_orthographic(frame.projection == Projection::Orthographic)
 }
 
-/// A mesh alone.
-pub fn alone<'a>(mesh: &'a [u8], frame: MeshSetup, cull: bool) -> PreparedMesh<'a> {
+/// Prepares a mesh for a frame of this mesh only.
+pub fn alone<'a>(mesh: &'a [u8], view: &View, size: Size, cull: bool) -> PreparedMesh<'a> {
+    let mesh = Mesh::new_checked(mesh).expect("a mesh");
+    let [width, height] = size.pixels();
     PreparedMesh {
-        mesh: Mesh::new_checked(mesh).expect("a mesh"),
-        frame,
+        mesh,
+        frame: MeshSetup::new(view, width, height, mesh.radius()).expect("a frame"),
         options: Options {
             cull,
             clear: glint_vectors::picture::CLEAR,

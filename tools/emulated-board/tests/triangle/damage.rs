@@ -1,9 +1,10 @@
-//! Tests refused requests and damaged memory: the errors equal the gateware's, and nothing panics.
+//! Tests of refused requests and damaged memory: the errors must equal the gateware's, and nothing
+//! may panic.
 
 use emulated_board::Device;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_model::MeshSetup;
+use glint_model::triangle::PreparedMesh;
 use glint_vectors::Model;
 use glint_vectors::scenes::inside;
 use litex_pac::memories::MAIN_RAM;
@@ -20,15 +21,14 @@ fn sphere() -> Vec<u8> {
     Model::sphere(0.5, 10).encoded()
 }
 
-fn setup(mesh: &[u8]) -> MeshSetup {
-    let radius = Mesh::new_checked(mesh).unwrap().radius();
-    MeshSetup::new(&inside(), 320, 180, radius).unwrap()
+fn part(mesh: &[u8]) -> PreparedMesh<'_> {
+    alone(mesh, &inside(), Size::W320, false)
 }
 
 /// A bench with a prepared geometry pass, and the start flags.
 fn prepared(mesh: &[u8]) -> (Bench, Geometry) {
     let mut bench = Bench::new();
-    let flags = bench.prepare(&alone(mesh, setup(mesh), false));
+    let flags = bench.prepare(&part(mesh));
     (bench, flags)
 }
 
@@ -59,7 +59,7 @@ fn a_geometry_pass_with_a_wrong_region_is_refused() {
         (offset::LIST_SHIFT, 31),
         (offset::EXCEPTIONS, end),
     ] {
-        bench.prepare(&alone(&mesh, setup(&mesh), false));
+        bench.prepare(&part(&mesh));
         bench.set(register, value);
         let error = bench.pass(Kind::Geometry, flags.bits());
         assert_eq!(error, Error::Address, "{register:#x} {value:#x}");
@@ -148,7 +148,7 @@ fn bad_meshes_and_full_lists_are_reported() {
         ("cut short", 36, triangles, length - 16),
         ("nothing", 36, triangles, 32),
     ] {
-        bench.prepare(&alone(&mesh, setup(&mesh), false));
+        bench.prepare(&part(&mesh));
         bench.ram.set_word(MESH + place, value).unwrap();
         bench.set_mesh(bytes);
         assert_eq!(
@@ -162,19 +162,20 @@ fn bad_meshes_and_full_lists_are_reported() {
         (offset::EXCEPTION_LIMIT, 3),
         (offset::LIST_SHIFT, 0),
     ] {
-        bench.prepare(&alone(&mesh, setup(&mesh), false));
+        bench.prepare(&part(&mesh));
         bench.set(register, value);
         let error = bench.pass(Kind::Geometry, flags.bits());
         assert_eq!(error, Error::Full, "{register:#x}");
         let counts = [offset::DESCRIPTOR_COUNT, offset::EXCEPTION_COUNT].map(|at| bench.read(at));
         assert!(register != offset::DESCRIPTOR_LIMIT || counts[0] == 10);
         assert!(register != offset::EXCEPTION_LIMIT || counts[1] == 3);
-        bench.prepare(&alone(&mesh, setup(&mesh), false));
+        bench.prepare(&part(&mesh));
         assert_eq!(bench.pass(Kind::Geometry, flags.bits()), Error::None);
     }
 }
 
-/// Frames from random descriptors and lists end, report an error if one is invalid, and write only to their own memory.
+/// Draws frames from random descriptors and lists. Each frame must end, report an error if a
+/// descriptor or a list is invalid, and write only its own memory.
 #[test]
 fn frames_end_with_random_memory() {
     let mut bench = Bench::new();
@@ -225,7 +226,7 @@ fn frames_end_with_random_memory() {
     }
 }
 
-/// Random parameters and memory.
+/// Runs passes with random parameters and memory, which must not panic.
 #[test]
 fn random_parameters_do_no_harm() {
     let mut random = Pcg64Mcg::new(77);

@@ -4,7 +4,6 @@ use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::triangle::vertex_cache;
 use glint_model::triangle::{PreparedMesh, draw_parts};
@@ -20,7 +19,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::bench::{Bench, Kind, UNTOUCHED, alone};
 
-/// Replaces the models that `glint` generates.
+/// Returns a simple mesh in place of a model that `glint` generates.
 fn shape(name: &str) -> Vec<u8> {
     let model = match name {
         "sponge:1" => Model::cube(8192),
@@ -45,7 +44,7 @@ fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
     picture
 }
 
-/// Draws parts by the engine and by the model, and compares the pictures and counts.
+/// Draws parts with the engine and with the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, name: &str, size: Size, parts: &[PreparedMesh]) -> Stats {
     let expected = by_model(size, parts);
     let counters = [
@@ -81,14 +80,12 @@ fn scenes_of_all_sizes() {
     let mut bench = Bench::new();
     let (mut pixels, mut clipped) = (0, 0);
     for size in Size::ALL {
-        let [width, height] = size.pixels();
         for (name, mesh, view, cull) in scenes(shape) {
             for projection in Projection::ALL {
                 let view = view.with_projection(projection);
-                let radius = Mesh::new_checked(&mesh).unwrap().radius();
-                let frame = MeshSetup::new(&view, width, height, radius).unwrap();
                 let name = format!("{name}, {size}, {projection}");
-                let stats = check(&mut bench, &name, size, &[alone(&mesh, frame, cull)]);
+                let part = alone(&mesh, &view, size, cull);
+                let stats = check(&mut bench, &name, size, &[part]);
                 pixels += stats.pixels_covered;
                 clipped += stats.clipped;
             }
@@ -98,24 +95,21 @@ fn scenes_of_all_sizes() {
     assert!(pixels > 1_000_000 && clipped > 100);
 }
 
-/// Flat and smooth frames alternate, also in changing light; a smooth pass takes longer.
+/// Alternates flat and smooth frames, also in changing light. A smooth pass takes longer.
 #[test]
 fn frames_with_smooth_shading() {
     let mut random = Pcg64Mcg::new(22);
     let mut bench = Bench::new();
     let (mut pixels, mut clipped, mut cycles) = (0, 0, [0; 2]);
     for size in [Size::W320, Size::W640] {
-        let [width, height] = size.pixels();
         for (name, mesh, view, cull) in scenes(shape) {
-            let radius = Mesh::new_checked(&mesh).unwrap().radius();
-            let frame = MeshSetup::new(&view, width, height, radius).unwrap();
             let mut light = some_light(&mut random, &view);
             if !cull {
                 // The engine stores the light of one side only.
                 light.ambient = [0; 3];
             }
             for (kind, shading) in [Shading::Flat, Shading::Smooth].into_iter().enumerate() {
-                let mut part = alone(&mesh, frame, cull);
+                let mut part = alone(&mesh, &view, size, cull);
                 part.options.shading = shading;
                 part.options.light = random.random::<bool>().then_some(&light);
                 if let Some(light) = part.options.light {
@@ -135,7 +129,8 @@ fn frames_with_smooth_shading() {
     assert!(cycles[1] > cycles[0]);
 }
 
-/// Without smooth shading in the engine its flag has no effect, and a descriptor is half as long.
+/// In an engine without smooth shading, the flag `smooth` has no effect, and a descriptor is half
+/// as long.
 #[test]
 fn an_engine_without_smooth_shading() {
     let mut bench = Bench::new();
@@ -144,9 +139,7 @@ fn an_engine_without_smooth_shading() {
     bench.engine.set_shading(Shading::Flat);
     assert!(!caps(&mut bench).gouraud());
     let mesh = shape("icosphere:4");
-    let radius = Mesh::new_checked(&mesh).unwrap().radius();
-    let frame = MeshSetup::new(&ahead(1.0, 0.1), 320, 180, radius).unwrap();
-    let flat = alone(&mesh, frame, true);
+    let flat = alone(&mesh, &ahead(1.0, 0.1), Size::W320, true);
     let mut smooth = flat;
     smooth.options.shading = Shading::Smooth;
     bench.draw(Size::W320, false, &[smooth]);
@@ -154,7 +147,7 @@ fn an_engine_without_smooth_shading() {
     bench.compare("flat", Size::W320, false, &expected);
 }
 
-/// Objects that are rotated, scaled, mirrored, recoloured or lit.
+/// Draws objects that are rotated, scaled, mirrored, recoloured or lit.
 #[test]
 fn frames_of_several_objects() {
     let mut random = Pcg64Mcg::new(21);
@@ -178,13 +171,13 @@ fn frames_of_several_objects() {
         let parts: Vec<PreparedMesh> = meshes
             .iter()
             .map(|mesh| {
-                let radius = Mesh::new_checked(mesh).unwrap().radius();
                 let placement = some_place(&mut random);
-                let mut frame = placement.setup(&view, &camera, radius).unwrap();
+                let mut part = alone(mesh, &view, size, random.random());
+                let radius = part.mesh.radius();
+                part.frame = placement.setup(&view, &camera, radius).unwrap();
                 if let Some(light) = &light {
-                    frame.light = light.row;
+                    part.frame.light = light.row;
                 }
-                let mut part = alone(mesh, frame, random.random());
                 part.options.colour = random.random::<bool>().then(|| Rgb565(random.random()));
                 part.options.light = light.as_ref();
                 part
@@ -220,7 +213,8 @@ fn some_light(random: &mut Pcg64Mcg, view: &View) -> MeshLight {
     }
 }
 
-/// After a frame, the frame buffer contains the frame, and only words that can differ have been written.
+/// After each frame, the frame buffer must contain the frame, although the engine writes only words
+/// that can differ.
 #[test]
 fn nothing_new_is_not_written() {
     let mut bench = Bench::new();
@@ -240,7 +234,6 @@ fn nothing_new_is_not_written() {
         meshes::mesh(&corners.map(|corners| (corners, 0xf800)), 100)
     };
     let size = Size::W1280;
-    let [width, height] = size.pixels();
     for (name, mesh, slot, words) in [
         ("fresh", &nothing, false, 115_200..=115_200),
         ("nothing again", &nothing, false, 0..=0),
@@ -251,9 +244,7 @@ fn nothing_new_is_not_written() {
         ("nothing left", &nothing, false, 1600..=1932),
         ("and nothing new", &nothing, false, 0..=0),
     ] {
-        let radius = Mesh::new_checked(mesh).unwrap().radius();
-        let frame = MeshSetup::new(&ahead(1.0, 0.1), width, height, radius).unwrap();
-        let part = alone(mesh, frame, false);
+        let part = alone(mesh, &ahead(1.0, 0.1), size, false);
         let flags = bench.prepare(&part);
         assert_eq!(bench.pass(Kind::Geometry, flags.bits()), Error::None);
         let flags = bench.prepare_raster(size, slot, &[]).with_depth(false);
@@ -271,9 +262,7 @@ fn nothing_new_is_not_written() {
 fn a_frame_is_whole_after_a_cancelled_one() {
     let mut bench = Bench::new();
     let mesh = shape("icosphere:4");
-    let radius = Mesh::new_checked(&mesh).unwrap().radius();
-    let frame = MeshSetup::new(&ahead(1.0, 0.1), 320, 180, radius).unwrap();
-    let part = alone(&mesh, frame, true);
+    let part = alone(&mesh, &ahead(1.0, 0.1), Size::W320, true);
     let expected = by_model(Size::W320, &[part]);
     let untouched = UNTOUCHED.to_le_bytes().repeat(320 * 180);
     for is_cancelled in [true, false] {
@@ -296,15 +285,13 @@ fn a_frame_is_whole_after_a_cancelled_one() {
     }
 }
 
-/// A pass takes about as many cycles as the gateware's for icosphere:6 (docs/report/triangle.md), which is similar to this sphere.
-/// Counters grow meanwhile.
+/// A pass takes about as many cycles as a pass of the gateware for icosphere:6
+/// (docs/report/triangle.md), a similar sphere. Counters increase during the pass.
 #[test]
 fn passes_take_about_the_time_of_the_gateware() {
     let mut bench = Bench::new();
     let mesh = Model::sphere(0.5, 14).encoded();
-    let radius = Mesh::new_checked(&mesh).unwrap().radius();
-    let frame = MeshSetup::new(&ahead(0.4781, 0.5), 320, 180, radius).unwrap();
-    let part = alone(&mesh, frame, true);
+    let part = alone(&mesh, &ahead(0.4781, 0.5), Size::W320, true);
     bench.draw(Size::W320, false, &[part]);
     let flags = bench.prepare(&part);
     bench.set(offset::GEOMETRY, flags.bits());

@@ -1,8 +1,6 @@
 //! Tests frames of lines, alone and after triangles.
 
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_model::MeshSetup;
 use glint_model::line::Segment;
 use glint_model::triangle::raster::draw;
 use glint_vectors::meshes::ahead;
@@ -75,15 +73,13 @@ fn lines_are_the_models() {
     }
 }
 
-/// Triangles in the first set, lines in the second set, as for the edges of a mesh.
+/// Draws triangles from the first set and lines from the second set, as for the edges of a mesh.
 #[test]
 fn lines_are_drawn_over_triangles() {
     let size = Size::W640;
     let mut bench = Bench::new();
     let mesh = Model::sphere(0.5, 12).encoded();
-    let radius = Mesh::new_checked(&mesh).unwrap().radius();
-    let frame = MeshSetup::new(&ahead(1.0, 0.1), 640, 360, radius).unwrap();
-    let part = alone(&mesh, frame, true);
+    let part = alone(&mesh, &ahead(1.0, 0.1), Size::W640, true);
     let mut expected = Picture::blank((640, 360));
     let mut scratch = vec![glint_model::Projected::Behind; 4096];
     glint_model::triangle::set_up_parts(

@@ -11,7 +11,7 @@ pub enum OpenError {
     /// An error of the emulated board.
     #[error(transparent)]
     Emulated(#[from] emulated_board::Error),
-    /// The serial port cannot be opened.
+    /// The name is not that of a simulated board, and a serial port of this name cannot be opened.
     #[error(
         "{port}: expected `emulated`, `virtual` or a serial port, found: {source}; this host has {ports}"
     )]
@@ -34,7 +34,7 @@ pub enum OpenError {
     /// The serial ports of this host cannot be listed.
     #[error("the serial ports cannot be listed: {0}")]
     Ports(serialport::Error),
-    /// No serial port has the USB bridge of a board, or more than one has.
+    /// `serial` was requested, but no serial port, or more than one, has the USB bridge of a board.
     #[error(
         "serial: expected one port with the USB bridge of a board, found {found}; --board PORT selects one"
     )]

@@ -11,7 +11,8 @@ pub enum BoardName {
     Emulated,
     /// `virtual`: the verilated SoC, simulated in this process.
     Virtual,
-    /// Any other name: a serial port, such as `/dev/ttyUSB1`, or `serial` for the port that is probably connected to a board.
+    /// Any other name: a serial port such as `/dev/ttyUSB1`, or `serial` for the port that is
+    /// probably connected to a board.
     Serial(String),
 }
 
@@ -44,17 +45,18 @@ impl fmt::Display for BoardName {
     }
 }
 
-/// Backend of a command, as named on the command line: the bit-exact model in this process, or a board.
+/// What executes a command, as named on the command line: the bit-exact model in this process, or a
+/// board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelOrBoard {
     /// `model`: the bit-exact model.
     Model,
-    /// Any name but `model`: the name of a board.
+    /// Any other name: the name of a board.
     Board(BoardName),
 }
 
 impl ModelOrBoard {
-    /// Whether the backend is a board that is simulated in this process.
+    /// Whether this is a board that is simulated in this process.
     pub const fn is_simulated(&self) -> bool {
         matches!(self, Self::Board(name) if name.is_simulated())
     }

@@ -3,17 +3,18 @@
 use super::error::OpenError;
 use serialport::{SerialPortType, available_ports};
 
-/// USB vendor FTDI, the maker of the USB bridges of both supported boards.
+/// USB vendor number of FTDI, which makes the USB bridges of both supported boards.
 const FTDI: u16 = 0x0403;
-/// FT2232H, the bridge of the Urbana: its interface 0 is JTAG, and interface 1 the serial line.
+/// USB product number of the FT2232H, the bridge of the Urbana. Its interface 0 is JTAG, its
+/// interface 1 the serial line.
 const FT2232H: u16 = 0x6010;
-/// FT231X, the bridge of the ULX3S.
+/// USB product number of the FT231X, the bridge of the ULX3S.
 const FT231X: u16 = 0x6015;
 
 /// A serial port.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Port {
-    /// Name of the port for opening it, such as `/dev/ttyUSB1`.
+    /// Name with which programs open the port, such as `/dev/ttyUSB1`.
     pub name: String,
     /// Maker and product of the port's USB device, or the kind of port.
     pub device: String,
@@ -124,7 +125,7 @@ mod tests {
             summary(&urbana),
             "/dev/ttyS0, /dev/ttyUSB0, /dev/ttyUSB1 (likely a board)"
         );
-        // Two boards, and no board.
+        // With two boards or no board, no port is chosen.
         assert_eq!(chosen(&[line, other]), None);
         assert_eq!(chosen(&[plain, jtag]), None);
         assert_eq!(summary(&[]), "no serial port");

@@ -1,4 +1,4 @@
-//! Routes for data to and from a board.
+//! Routes of data to and from a board.
 
 use super::name::BoardName;
 

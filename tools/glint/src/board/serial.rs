@@ -9,12 +9,12 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Name for the port that is probably connected to a board.
+/// Name on the command line for the port that is probably connected to a board.
 const GUESS: &str = "serial";
-/// Shortest time-out of a read from the port; it keeps a loop of reads from using a whole CPU core.
+/// Minimum time-out of a read from the port, so that a loop of reads does not use a whole CPU core.
 const SHORTEST: Duration = Duration::from_millis(1);
 
-/// Time after which a write fails if the port accepts no byte: as long as the slowest reply.
+/// Time after which a write fails if the port accepts no byte. It equals the time-out of a reply.
 const MAX_BLOCKED: Duration = Duration::from_millis(PATIENCE_MS);
 
 /// A board on a serial port with 8 data bits, no parity, 1 stop bit and no flow control.
@@ -27,8 +27,8 @@ impl SerialBoard {
     /// Opens a port; `serial` selects the port that is probably connected to a board.
     ///
     /// # Errors
-    /// [`OpenError::Open`] for a port that does not exist, [`OpenError::Busy`] for one in use, [`OpenError::Guess`] if no port
-    /// can be guessed.
+    /// [`OpenError::Open`] for a port that does not exist, [`OpenError::Busy`] for a port in use,
+    /// [`OpenError::Guess`] if no port or several ports could be connected to a board.
     pub fn open(name: &str, baud: u32) -> Result<Self, OpenError> {
         if name == GUESS {
             return Self::open(&ports::guess()?, baud);
@@ -69,7 +69,8 @@ impl Board for SerialBoard {
                     bytes = &bytes[written..];
                     last = Instant::now();
                 }
-                // The port's buffer is full. The buffer empties at the speed of the line, so the loop writes again.
+                // The port's buffer is full. It empties at the speed of the line, so the loop
+                // writes again.
                 Ok(_) => {}
                 Err(error) if is_transient(&error) => {}
                 Err(error) => return Err(error.into()),

@@ -9,7 +9,8 @@ use std::env;
 use std::path::Path;
 use virtual_board::{Start, VirtualBoard};
 
-/// A simulated board with a serial line and direct access to its memory; by default the verilated one.
+/// A simulated board with a serial line and direct access to its memory, by default the virtual
+/// board.
 pub type SimulatedBoard<S = VirtualBoard> = glint_board_api::SimulatedBoard<S>;
 
 /// Builds a virtual board that starts with `firmware` in its memory, without the BIOS.
@@ -56,7 +57,7 @@ pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
 /// on a serial port.
 ///
 /// # Errors
-/// Those of the function that builds the board.
+/// As for the function that builds the board.
 pub fn simulated(name: &BoardName, firmware: Option<&[u8]>) -> Result<Option<AnyBoard>, OpenError> {
     Ok(Some(match (name, firmware) {
         (BoardName::Emulated, Some(firmware)) => emulated(firmware)?.into(),
@@ -79,7 +80,7 @@ pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, OpenError> {
     }
 }
 
-/// Maximum size of a firmware file in bytes; no main memory is larger.
+/// Maximum size of a firmware file in bytes. No supported board has a larger main memory.
 const MAX_FIRMWARE: u64 = 1 << 30;
 
 fn read(path: &Path) -> Result<Vec<u8>, OpenError> {

@@ -36,12 +36,12 @@ const PROMPTS: [&[u8]; 2] = [PROMPT.as_bytes(), BIOS_PROMPT];
 /// at once; Ctrl-] ends it and the board.
 #[derive(Args)]
 pub struct BoardArguments {
-    /// Create this symbolic link to the port, and remove it at the end; a link to another pseudo-terminal, as an earlier board leaves
-    /// it, is replaced.
+    /// Create this symbolic link to the port, and remove it at the end. An existing link to a
+    /// pseudo-terminal, which a killed board leaves behind, is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File that receives the port's path or the page's address as soon as the board is ready, removed at the end; an earlier file
-    /// is removed at the start.
+    /// Write the port's path or the page's address to this file when the board is ready, and remove
+    /// the file at the end. An existing file is removed at the start.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, like a board without a program in its flash memory.
@@ -94,7 +94,7 @@ impl BoardArguments {
                 Box::new(LiveSimulation::new(board, period, SystemClock::start()))
             }
         };
-        // Until here a signal ends the program.
+        // Before this line a signal ends the program at once.
         let stop = Arc::new(AtomicBool::new(false));
         let ended = Arc::clone(&stop);
         ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed))?;
@@ -112,7 +112,7 @@ impl BoardArguments {
         self.bios || self.flash.is_some()
     }
 
-    /// The simulated board, at its start.
+    /// Builds the simulated board in its state at power-up.
     fn simulated(&self) -> anyhow::Result<AnyBoard> {
         if !self.has_bios() {
             return self.line.start(&self.board);
@@ -129,7 +129,8 @@ impl BoardArguments {
 
     fn stay(&self) -> anyhow::Result<()> {
         let ready = self.ready()?;
-        // Until here a signal ends the program, also while it waits for a pipe.
+        // Before this line a signal ends the program at once, also while the program waits for a
+        // pipe.
         let board = self.simulated()?;
         let (report, events) = channel();
         let end = report.clone();
@@ -152,7 +153,8 @@ impl BoardArguments {
                 is_ended,
             );
         }
-        // Only a start with the BIOS shows a spinner, because firmware need not print the prompt that ends the spinner.
+        // A prompt ends the spinner, and a firmware need not print one, so only a start with the
+        // BIOS has a spinner.
         let mut starting = self.has_bios().then(|| spinner("the board starts"));
         while let Event::Started = events.recv()? {
             starting = None;
@@ -170,10 +172,11 @@ enum Event {
     End,
 }
 
-/// Reports the first prompt in the bytes from a board.
+/// Returns a callback that reports the first prompt in the output of a board.
 fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8], &[u8]) + Send {
     let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);
-    // The end of the output, in which a prompt may have begun, and the sender of the event until it has sent the event.
+    // The end of the output, which may be the start of a prompt, and the sender, which is taken
+    // when the event is sent.
     let (mut heard, mut report) = (Vec::new(), Some(report));
     move |_, said| {
         if said.is_empty() || report.is_none() {
@@ -195,7 +198,7 @@ fn first_prompt(report: Sender<Event>) -> impl FnMut(&[u8], &[u8]) + Send {
 struct Ready(Output);
 
 impl Ready {
-    /// Removes an earlier file.
+    /// Removes an existing file, and checks that the file can be written.
     fn open(path: &Path) -> anyhow::Result<Self> {
         if path.is_file() {
             std::fs::remove_file(path).with_context(|| path.display().to_string())?;

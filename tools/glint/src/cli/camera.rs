@@ -1,4 +1,5 @@
-//! The camera options of the command line: those of the console's table, and those that only the host has.
+//! The camera options of the command line: options of the console's table, and options that only
+//! the host has.
 
 use super::common::{bad_value, named};
 use super::messages::note;
@@ -16,13 +17,14 @@ use glint_model::{MAX_EYE, RenderError};
 use glint_scene_file::{SceneFile, upright};
 use std::path::{Path, PathBuf};
 
-/// The camera without a subject and without options.
+/// Default camera, if neither the subject nor an option determines it.
 const DEFAULT: &str = "4,30,60";
 
-/// Options of the camera beside those of the console's table.
+/// Camera options that are not in the console's table.
 #[derive(Args)]
 pub struct CameraArguments {
-    /// A camera at the point E that looks along +y, turned right by YAW, down by PITCH, and about its direction by ROLL, in degrees.
+    /// A camera at the point E. It looks along +y, turned to the right by YAW, down by PITCH, and
+    /// about its direction of view by ROLL, in degrees.
     #[arg(
         long,
         value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
@@ -39,7 +41,7 @@ pub struct CameraArguments {
     up: Option<Axis>,
 }
 
-/// The frame for which a camera is computed. The frame has the camera of its scene, or no camera yet.
+/// A frame for which a camera is computed. The frame of a scene already has the scene's camera.
 #[derive(Clone, Copy)]
 pub struct CameraSubject<'a> {
     pub frame: &'a Frame<'a>,
@@ -91,15 +93,15 @@ impl CameraArguments {
         Ok(view)
     }
 
-    /// The sphere to show, if no camera is given.
+    /// The sphere that the camera must show, if no option gives a camera.
     fn framing(&self, options: &OptionArguments, shown: &CameraSubject) -> Option<BoundingSphere> {
         let is_free = shown.scene.is_none() && !self.is_given(options);
         shown.frame.subject.sphere().filter(|_| is_free)
     }
 
-    /// The cameras of a full turn in the given number of steps, starting with the camera of [`view`](Self::view). A camera that
-    /// shows the whole model, also of a scene, goes around the model about the up axis; any other camera goes around the origin
-    /// about z.
+    /// The cameras of a full turn in `steps` steps, starting with the camera of
+    /// [`view`](Self::view). An automatic camera, which shows the whole model, turns around the
+    /// model about the up axis; any other camera turns around the origin about z.
     pub fn turn(
         &self,
         options: &OptionArguments,
@@ -155,17 +157,17 @@ fn framed(
     options.camera(view.map_err(|error| no_camera(name, &error))?)
 }
 
-/// The error for meshes that no camera shows completely.
+/// The error for meshes that no camera can show completely.
 fn no_camera(name: &str, error: &FramingError) -> InputError {
     bad_value(name, "a camera", error.to_string())
 }
 
-/// The angles of a full turn in the given number of steps, starting with 0.
+/// The angles of a full turn in `steps` steps, starting with 0.
 fn angles(steps: u16) -> impl Iterator<Item = Turns> {
     (0..steps).map(move |step| Turns(((u64::from(step) << 32) / u64::from(steps)) as u32))
 }
 
-/// The cameras of a full turn about the z axis in the given number of steps, starting with `first`.
+/// The cameras of a full turn about the z axis in `steps` steps, starting with `first`.
 pub fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
     let turned = |angle| Ok(view::turned(first, angle).map_err(|error| error.in_file("camera"))?);
     angles(steps).map(turned).collect()

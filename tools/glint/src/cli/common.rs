@@ -29,7 +29,7 @@ pub struct SizeArguments {
 }
 
 impl SizeArguments {
-    /// The changes of a scene that the options make.
+    /// The options as changes of a scene.
     pub fn changes(&self) -> anyhow::Result<Changes> {
         Ok(Changes {
             quality: self.quality,
@@ -38,7 +38,7 @@ impl SizeArguments {
         })
     }
 
-    /// Quality and size of a picture without a scene.
+    /// Quality and size of a picture that does not come from a scene.
     pub fn of_subject(&self) -> anyhow::Result<(Quality, Size)> {
         let size = self.changes()?.size;
         let preset = self.quality.map(Quality::size);
@@ -49,7 +49,7 @@ impl SizeArguments {
     }
 }
 
-/// Pictures that are drawn larger than they are written.
+/// Supersampling: pictures that are drawn larger than they are written.
 #[derive(clap::Args)]
 pub struct SamplingArguments {
     /// Draw the picture with 2 or 4 times the width and height, and average 2×2 or 4×4 pixels for each output pixel; the larger
@@ -59,7 +59,8 @@ pub struct SamplingArguments {
 }
 
 impl SamplingArguments {
-    /// The size to draw for a picture of this size, and the number of drawn pixels per output pixel in each direction.
+    /// Returns the size to draw for a picture of the size `size`, and the number of drawn pixels
+    /// per output pixel in each direction.
     pub fn of(&self, size: Size, board: &ModelOrBoard) -> Result<(Size, usize), InputError> {
         let Some(text) = &self.supersample else {
             return Ok((size, 1));
@@ -176,7 +177,7 @@ impl LineArguments {
         Ok(board)
     }
 
-    /// Opens the board `name` as [`board`](Self::board) does, and keeps the board's type.
+    /// Opens the board `name` like [`board`](Self::board), but returns the board's type too.
     pub fn open_any(&self, name: &BoardName) -> anyhow::Result<Opened> {
         self.check(name)?;
         if let BoardName::Serial(port) = name {
@@ -209,7 +210,8 @@ pub struct TransferArguments {
 }
 
 impl TransferArguments {
-    /// Rejects board options if the backend is the model on the host; `backend` is the value of `--backend`.
+    /// Rejects board options if the model draws on this host; `backend` is the value of
+    /// `--backend`.
     pub fn check(&self, board: &ModelOrBoard, backend: Option<Backend>) -> Result<(), InputError> {
         let given = [
             ("--backend", backend.is_some()),
@@ -269,7 +271,8 @@ pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// Returns the error for an option or an argument whose value is not the `expected` one.
+/// Returns the error for an option or an argument; `expected` describes the allowed values, and
+/// `found` is the value.
 pub fn bad_value(name: &str, expected: &str, found: impl Into<String>) -> InputError {
     FormatError::whole(expected, found).in_file(name.escape_debug().to_string())
 }

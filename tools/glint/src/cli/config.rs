@@ -1,4 +1,4 @@
-//! Defaults of the board options: from the environment, otherwise from the configuration file.
+//! Defaults of the board options, from the environment or the configuration file.
 
 use anyhow::Context;
 use glint::board::BoardName;
@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 
 /// Maximum size of a configuration file in bytes.
 const MAX_BYTES: u64 = 64 << 10;
-/// Baud rate if no option, variable or configuration entry sets it.
+/// Default baud rate, in bits per second.
 const BAUD: u32 = 115_200;
 
-/// Baud rates of serial adapters. A rate of 0 would hang up the line.
+/// Allowed baud rates, in bits per second. A rate of 0 would hang up the line.
 const BAUDS: RangeInclusive<u32> = 50..=12_000_000;
 
 /// The configuration file, `glint/config.toml` in the user's configuration folder.
@@ -47,7 +47,8 @@ impl BoardChoice {
     }
 }
 
-/// The board from the option, the environment or the configuration file, in this order; the emulated board if none names a board.
+/// The board from the option, the environment or the configuration file, in this order; by default
+/// the emulated board.
 ///
 /// # Errors
 /// The configuration file is damaged.
@@ -65,7 +66,8 @@ pub fn board(option: Option<&BoardName>) -> anyhow::Result<BoardName> {
     })
 }
 
-/// The baud rate from the option, the environment or the configuration file, in this order; 115,200 if none sets it.
+/// The baud rate from the option, the environment or the configuration file, in this order; by
+/// default 115,200.
 ///
 /// # Errors
 /// The value is not a baud rate, or the configuration file is damaged.
@@ -119,7 +121,8 @@ fn read() -> anyhow::Result<Config> {
     }
 }
 
-/// The text of a configuration file. Reading a pipe or a device could block, or never end.
+/// The text of a configuration file. Only regular files are read, because reading a pipe or a
+/// device could block or never end.
 fn contents(path: &Path) -> io::Result<String> {
     if !path.metadata()?.is_file() {
         return Err(io::Error::other(

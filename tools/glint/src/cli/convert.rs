@@ -33,13 +33,14 @@ pub struct ModelArguments {
     json: bool,
 }
 
-/// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to multiples of 2^-14, and order its
-/// triangles for the engine.
+/// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round its
+/// coordinates to multiples of 2^-14, and order its triangles for the engine's vertex cache.
 ///
-/// Reads OBJ (with vertex colours, and colours and textures from the material file in the same folder), STL and PLY, ASCII or
-/// binary, glTF (with the textures of base colours, without skins), and GLM, the format that boards load. OBJ, STL and PLY are
-/// written with scaled, unrounded coordinates and without textures. Textures are PNG or JPEG files in the folder of the mesh or
-/// within it, or data of a glTF.
+/// Reads OBJ (with vertex colours, and colours and textures from the material file in the same
+/// folder), STL and PLY, ASCII or binary, glTF (with base colour textures, without skins), and GLM,
+/// the format that boards load. OBJ, STL and PLY are written with scaled, unrounded coordinates and
+/// without textures. Textures are PNG or JPEG files in the folder of the mesh or its subfolders, or
+/// data within a glTF.
 #[derive(Args)]
 pub struct ConvertArguments {
     /// Mesh file to read; `-` is standard input, whose format is detected from its contents.
@@ -49,14 +50,14 @@ pub struct ConvertArguments {
     /// Format of the output [default: from the extension of its name].
     #[arg(long, value_enum)]
     to: Option<To>,
-    /// Keep the coordinates; those outside [-2, 2) are an error.
+    /// Keep the coordinates; coordinates outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
     /// Keep the order of the triangles, instead of an order in which the engine fetches fewer vertices (.glm only).
     #[arg(long)]
     keep_order: bool,
-    /// Flip faces until neighbouring faces agree and closed parts face outwards. A note names the parts where this is not
-    /// possible.
+    /// Reverse faces so that neighbouring faces have consistent winding and closed parts face
+    /// outwards. A note reports parts where this is not possible.
     #[arg(long)]
     fix_winding: bool,
     #[command(flatten)]
@@ -137,7 +138,7 @@ impl ConvertArguments {
     }
 }
 
-/// The report of a conversion to OBJ, STL or PLY.
+/// Report of a conversion to OBJ, STL or PLY.
 #[derive(Serialize)]
 struct Copied {
     points: usize,
@@ -249,11 +250,11 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         "written    {vertices} vertices, {triangles} triangles, {chunks} chunk{plural}, {bytes} bytes"
     ))?;
     say(format_args!(
-        "dropped    {degenerate} triangles without an area at 2^-14"
+        "dropped    {degenerate} triangles of area 0 after rounding to 2^-14"
     ))?;
     let a_vertex = |fetches: u32| f64::from(fetches) / f64::from(*vertices);
     say(format_args!(
-        "fetches    {:.2} a vertex by the engine, {:.2} in the order of the file",
+        "fetches    {:.2} per vertex by the engine, {:.2} in the order of the file",
         a_vertex(*fetches),
         a_vertex(*fetches_before)
     ))?;

@@ -37,8 +37,9 @@ use std::time::Instant;
 /// Demonstrate the whole system: boot the virtual board, load its firmware, upload models, render, capture the monitor.
 #[derive(Args)]
 pub struct DemoArguments {
-    /// Mesh files or generators [default: icosphere:6, gear, teapot]. The first model goes over the serial line of a board that
-    /// boots through its BIOS; the other models go directly into the memory of a second board.
+    /// Mesh files or generators [default: icosphere:6, gear, teapot]. The first model is uploaded
+    /// over the serial line of a board that boots through its BIOS; the other models are written
+    /// directly to the memory of a second board.
     models: Vec<String>,
     /// Output folder.
     #[arg(long, default_value = "out")]
@@ -46,7 +47,7 @@ pub struct DemoArguments {
     /// Firmware image [default: the output of `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
-    /// Number of frames of the animation in which the camera goes around a model.
+    /// Number of frames of the animation in which the camera turns around a model.
     #[arg(long, default_value_t = 24)]
     orbit: u16,
     /// Number of frames of the stereo animation of a Menger sponge.
@@ -73,7 +74,7 @@ const BOOT_MS: u64 = 10_000;
 /// A model with its name on the command line.
 type Named<'n> = (&'n str, Model);
 
-/// A row of the table that the demo prints: the results of a model.
+/// The results of a model: a row of the table that the demo prints.
 struct Row {
     number: u32,
     picture: PathBuf,
@@ -135,9 +136,10 @@ impl DemoArguments {
         Ok(row)
     }
 
-    /// Runs the second board, which starts with the firmware in its memory. It shows `models`, uploaded through its memory, then
-    /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge, and shows the built-in
-    /// scenes. The thread of the first board shows the progress.
+    /// Runs the second board, which starts with the firmware in its memory. It shows `models`,
+    /// which are uploaded through its memory, animates an orbit around the last model (around
+    /// `first` without `models`) and a flight to the sponge, and shows the built-in scenes. The
+    /// thread of the first board shows the progress.
     fn second_board(
         &self,
         first: &Named,
@@ -236,7 +238,7 @@ impl DemoArguments {
         for number in 0..self.sponge {
             let part = f64::from(number) / f64::from(self.sponge.max(2) - 1);
             let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
-            // The camera's distance, azimuth and polar angle in this frame.
+            // The camera's distance in world units, and azimuth and polar angle in degrees.
             let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
             let view = view::spherical(&place.join(","))?.with_lens_of(&lens);
             let frame = Frame {
@@ -286,14 +288,14 @@ fn cycles_of_gateware(stats: &Stats) -> anyhow::Result<u64> {
     Ok(stats.cycles.unwrap_or_default())
 }
 
-/// Rejects a folder that contains pictures, unless they may be replaced.
+/// Rejects a folder that already contains pictures, unless they may be replaced.
 fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let files = folder.read_dir();
     let files = files.with_context(|| format!("{}: cannot be read", folder.display()))?;
     for file in files {
         let path = file?.path();
         if path.extension().is_some_and(|extension| extension == "png") {
-            // The error message states how to proceed.
+            // The error message of `Output` states how to replace files.
             Output::open(&path, PICTURE, [""; 0])?;
         }
     }
@@ -348,7 +350,8 @@ fn line(path: &Path, what: &str, size: Size, cycles: u64, clock: u32) -> String 
     )
 }
 
-/// Azimuth of the camera for the picture of model `number`. Each model is seen from a different side.
+/// Azimuth of the camera for the picture of model `number`, so that each model is seen from a
+/// different side.
 fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }
@@ -359,7 +362,8 @@ const SCENES: [&str; 3] = ["objects", "simplegpu", "wireframe"];
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// Half width of the image plane at distance 1. With this value most models nearly fill the height of the picture.
+/// Half of the picture's width at distance 1, in world units. With this value most models nearly
+/// fill the height of the picture.
 const HALF_WIDTH: U8_28 = U8_28::lit("0.6");
 
 /// The demo's camera at `azimuth`.

@@ -12,7 +12,7 @@ use glint_core::light::Material;
 use glint_core::picture::Backend;
 use glint_scene::Scene;
 
-/// A distance field, and the options of a scene.
+/// The options for a distance field and for the appearance of a scene.
 #[derive(Args)]
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help(), conflicts_with = "scene", help_heading = heading::SUBJECT)]
@@ -27,12 +27,12 @@ impl FieldArguments {
         self.field.as_deref()
     }
 
-    /// The file of the list of spheres, if `--field` names a file.
+    /// The file with the list of spheres, if `--field` names one.
     pub fn file(&self) -> Option<&str> {
         self.name().and_then(field::file)
     }
 
-    /// The initial scene with these options and this size.
+    /// The default scene with these options and this size.
     pub fn scene(&self, size: &SizeArguments) -> anyhow::Result<Scene> {
         let parse = |text| {
             let text = field::with_files(text)?;

@@ -27,8 +27,9 @@ use virtual_board::virtual_flash::MAX_BYTES;
 
 /// Load a program onto a board through its BIOS, and start it; with --spi, write an image to the board's SPI flash.
 ///
-/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in smaller pieces. With --spi, openFPGALoader writes the parts
-/// of the image over the Urbana's USB port: an image without a bitstream keeps the bitstream in the flash.
+/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in smaller pieces. With --spi,
+/// openFPGALoader writes the parts of the image over the Urbana's USB port. An image without a
+/// bitstream does not change the bitstream in the flash.
 #[derive(Args)]
 pub struct FlashArguments {
     /// Program to load: a flat binary, or `-` for standard input; with --spi, an image made by `glint image make`.
@@ -45,8 +46,8 @@ pub struct FlashArguments {
     /// error.
     #[arg(long)]
     no_output: bool,
-    /// Time-out of the wait for the BIOS's request, in seconds of the board's time. The BIOS sends the request after a reset, or
-    /// after the command `reboot`, which the host sends.
+    /// Longest wait for the BIOS's request, in seconds of the board's time. The BIOS sends the
+    /// request after a reset and after the command `reboot`, which the host sends.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
     #[command(flatten)]
@@ -56,7 +57,7 @@ pub struct FlashArguments {
     json: bool,
 }
 
-/// Upload a model to a board under a name, keep the models on the board, and show it.
+/// Upload a model to a board under a name and show it; other models stay on the board.
 #[derive(Args)]
 pub struct UploadArguments {
     /// Mesh file, or name of a generator.
@@ -67,13 +68,13 @@ pub struct UploadArguments {
     name: Option<String>,
     #[command(flatten)]
     board: BoardChoice,
-    /// Keep the model's coordinates; those outside [-2, 2) are an error.
+    /// Keep the model's coordinates; coordinates outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
     #[command(flatten)]
     textures: MeshTextureArguments,
-    /// Keep camera, objects and all other settings of the scene. By default the model is shown whole on the default scene, with
-    /// the up axis of its format.
+    /// Keep camera, objects and all other settings of the scene. By default the default scene shows
+    /// the whole model, with the axis up that is usual in its format.
     #[arg(long)]
     keep_scene: bool,
     #[command(flatten)]
@@ -158,10 +159,12 @@ impl FlashArguments {
     }
 }
 
-/// Name of the board in openFPGALoader that has the Urbana's FPGA and USB bridge; openFPGALoader has no entry for the Urbana.
+/// openFPGALoader's name of a board with the same FPGA and USB bridge as the Urbana, for which
+/// openFPGALoader has no entry.
 const LOADER_BOARD: &str = "arty_s7_50";
 
-/// Checks an image, and writes it to the SPI flash from its first present part on.
+/// Checks an image, and writes it to the SPI flash, starting with the first part that the image
+/// contains.
 fn write_flash(path: &Path) -> anyhow::Result<()> {
     let bytes = read_up_to(path, MAX_BYTES)?;
     let image = image::check(&bytes).map_err(|error| error.in_path(path))?;

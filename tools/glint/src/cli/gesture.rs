@@ -13,7 +13,8 @@ use glint::gesture::{self, SensorFault};
 use std::path::PathBuf;
 use virtual_board::virtual_image_sensor::{ImageSensor, Images, Source};
 
-/// Size of the frames of the synthetic hand: the frame size after the set-up of the sensor.
+/// Size of the synthetic hand's frames in pixels: the frame size for which the firmware sets up the
+/// sensor.
 const SIZE: [usize; 2] = [320, 240];
 
 /// Show the mask of the hand in front of the image sensor.
@@ -35,7 +36,8 @@ impl GestureCommand {
 struct SensorArguments {
     #[command(flatten)]
     board: BoardChoice,
-    /// Pictures of the virtual image sensor: a folder of PNG files of 320x240, shown in turn [default: a synthetic moving hand].
+    /// Pictures that the virtual image sensor shows in turn: a folder of PNG files of 320x240
+    /// pixels [default: a synthetic moving hand].
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
     /// Fault of the virtual image sensor to simulate.
@@ -86,7 +88,8 @@ impl SensorArguments {
     }
 }
 
-/// Set up the image sensor, and write the mask of the hand's colour in its next frame as a picture.
+/// Set up the image sensor, and write a picture that marks the pixels of its next frame that have
+/// the hand's colour.
 #[derive(Args)]
 pub struct MaskArguments {
     #[command(flatten)]

@@ -4,9 +4,9 @@
 pub const SUBJECT: &str = "Subject";
 /// The camera and its lens.
 pub const CAMERA: &str = "Camera";
-/// How the subject looks.
+/// The appearance of the subject.
 pub const APPEARANCE: &str = "Appearance";
 /// Pictures and their files.
 pub const PICTURE: &str = "Picture";
-/// What draws the picture.
+/// The renderer of the picture.
 pub const RENDERER: &str = "Renderer";

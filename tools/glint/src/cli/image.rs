@@ -19,7 +19,7 @@ pub enum ImageCommand {
     Check(CheckArguments),
 }
 
-/// Make an image of a firmware, scenes with their meshes, and optionally a bitstream.
+/// Make an image from a firmware, scenes with their meshes, and optionally a bitstream.
 #[derive(Args)]
 pub struct MakeArguments {
     /// Firmware, a flat binary that runs at the start of main memory: `cargo xtask firmware` makes it.
@@ -141,7 +141,7 @@ fn parts<'a>(image: &Image<'a>) -> Vec<Part<'a>> {
         .map(|bytes| part("bitstream", "-", 0, bytes));
     let firmware = part("firmware", "-", FIRMWARE, image.firmware);
     let items = image.contents.items().map(|item| {
-        // The image has been checked, so its parts are within its bytes.
+        // The image has been checked, so each part lies within it.
         let bytes = item.checked().unwrap_or_default();
         part(item.kind.name(), item.name, CONTENTS + item.offset(), bytes)
     });

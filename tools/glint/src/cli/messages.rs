@@ -11,7 +11,7 @@ static STDOUT_IS_OUTPUT: AtomicBool = AtomicBool::new(false);
 
 /// Reserves standard output for an output file: from now on `say` prints to standard error. Returns false if standard output has
 /// already been reserved.
-pub fn give_up_stdout() -> bool {
+pub fn reserve_stdout() -> bool {
     !STDOUT_IS_OUTPUT.swap(true, Ordering::Relaxed)
 }
 
@@ -43,7 +43,7 @@ pub enum Loudness {
 
 static LOUDNESS: AtomicU8 = AtomicU8::new(Loudness::Usual as u8);
 
-/// Sets the amount of output besides a command's result.
+/// Sets the amount of output in addition to a command's result.
 pub fn set_loudness(loudness: Loudness) {
     LOUDNESS.store(loudness as u8, Ordering::Relaxed);
 }

@@ -61,7 +61,7 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
     };
     let argument = Arg::new(row.key()).long(option.name).help(option.help);
     let argument = argument.help_heading(heading);
-    // With a scene only its camera can be replaced.
+    // Only the camera of a scene can be replaced, so options of the subject conflict with a scene.
     let argument = match is_of_subject {
         true => argument.conflicts_with("scene"),
         false => argument,
@@ -85,7 +85,7 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
                 .allow_hyphen_values(true)
         }
     };
-    // The option applies only to meshes without a field.
+    // Such an option applies only to meshes without a field.
     let argument = match is_of_subject && with.contains(&"model") && !with.contains(&"field") {
         true => argument.requires("model"),
         false => argument,
@@ -134,7 +134,8 @@ impl Given {
         bad_value(&name, self.option.expected, found)
     }
 
-    /// The console lines that set the values. On the command line, commas separate the numbers of a camera.
+    /// The console lines that set the values. The numbers of a camera are separated by commas on
+    /// the command line, and by spaces on the console.
     fn lines(&self) -> impl Iterator<Item = String> {
         self.values.iter().map(|value| match self.row.forms.order {
             Order::Camera => format!("{} {}", self.row.command, value.replace(',', " ")),
@@ -171,7 +172,8 @@ impl Given {
         Ok(())
     }
 
-    /// Checks that the option applies with a field, or without one, and that it does not have too many values.
+    /// Checks that the option applies to the subject, which has a field if `has_field` is set, and
+    /// that it does not have too many values.
     fn check(&self, has_field: bool) -> Result<(), InputError> {
         let Self {
             row,
@@ -204,7 +206,7 @@ impl OptionArguments {
         self.get(name).is_some()
     }
 
-    /// Sets the given options in `scene`, except those of camera and lens.
+    /// Sets the given options in `scene`, except options of camera and lens.
     ///
     /// # Errors
     /// A value is invalid, or the option requires a field.

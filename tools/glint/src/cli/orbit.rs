@@ -20,15 +20,18 @@ use serde::Serialize;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::PathBuf;
 
-/// Render an animation in which the camera goes once around a model, a distance field, a model in a field, or a scene.
+/// Render an animation in which the camera turns once around a model, a distance field, a model in
+/// a field, or a scene.
 ///
-/// A camera that shows the whole model goes around the model about the up axis. With a camera option, in a field, and in a scene
-/// that has a camera, it goes around the origin about the z axis, starting with the camera of `glint render`.
+/// By default the camera shows the whole model, and turns around it about the up axis. With a
+/// camera option, in a field, and in a scene that states a camera, the camera turns around the
+/// origin about the z axis. The first camera is that of `glint render`.
 #[derive(Args)]
 pub struct OrbitArguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// Animation to write: an animated PNG, or a GIF, which has 256 colours per frame. `-` is standard output, for a PNG.
+    /// Animation to write: an animated PNG, or a GIF with 256 colours per frame. `-` writes a PNG
+    /// to standard output.
     #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif", help_heading = heading::PICTURE)]
     out: PathBuf,
     /// Number of frames.

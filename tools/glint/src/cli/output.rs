@@ -1,8 +1,8 @@
-//! Output files. Each is checked before the work begins, and written completely or not at all. A file that is not empty is
-//! replaced only with `--force`. `-` is standard output.
+//! Output files. Each file is checked before the work begins, and is written completely or not at
+//! all. A file that is not empty is replaced only with `--force`. The name `-` is standard output.
 
 use super::common::bad_value;
-use super::messages::give_up_stdout;
+use super::messages::reserve_stdout;
 use anyhow::Context;
 use rustix::termios::isatty;
 use serde::Serialize;
@@ -23,7 +23,7 @@ pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
 pub const STATISTICS: &[&str] = &["json"];
 /// Extensions of a mesh file.
 pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];
-/// Extensions of a texture file, or of a picture of a texture.
+/// Extensions of a texture file and of a picture of a texture.
 pub const TEXTURE: &[&str] = &["glt", "png"];
 /// Extensions of a program file of the wireframe simulator.
 pub const PROGRAM: &[&str] = &["wft", "wfb"];
@@ -46,16 +46,18 @@ pub fn set_replace(replace: bool) {
 /// An output file that has been checked.
 pub struct Output {
     path: PathBuf,
-    /// The open device or pipe, such as /dev/null, which is written directly; `None` for a file, which is replaced.
+    /// The open device or pipe, such as /dev/null, which is written directly; `None` for a regular
+    /// file, which is replaced.
     device: Option<File>,
 }
 
 impl Output {
-    /// Checks that the file at `path` can be written; opens a device or a pipe. `inputs` are the files that the command reads.
+    /// Checks that the file at `path` can be written, and opens it if it is a device or a pipe.
+    /// `inputs` are the files that the command reads.
     ///
     /// # Errors
-    /// The extension is not one of `extensions`, the file is one of `inputs`, it is not empty and may not be replaced, or it
-    /// cannot be written.
+    /// The extension is not one of `extensions`, or the file is one of `inputs`, is not empty and
+    /// may not be replaced, or cannot be written.
     pub fn open<P: AsRef<Path>>(
         path: &Path,
         extensions: &[&str],
@@ -96,7 +98,8 @@ impl Output {
             return Err(bad_value(&path.display().to_string(), expected, found).into());
         }
         if device.is_none() {
-            // Creating an unnamed file shows that the folder is writable; the file vanishes when it is closed.
+            // Creating an unnamed file shows that the folder is writable. The system deletes the
+            // file when it is closed.
             tempfile::tempfile_in(folder(&target(path))).with_context(|| unwritable(path))?;
         }
         Ok(Self {
@@ -112,7 +115,7 @@ impl Output {
             let expected = "standard output that is a file or a pipe";
             return Err(bad_value(STDOUT, expected, "a terminal").into());
         }
-        if !give_up_stdout() {
+        if !reserve_stdout() {
             return Err(bad_value(STDOUT, "one output to standard output", "two").into());
         }
         let copy = stdout.as_fd().try_clone_to_owned();
@@ -138,8 +141,9 @@ impl Output {
         }
     }
 
-    /// Creates an unnamed file for contents that take a long time to produce; [`write`](Self::write) copies them at the end. It
-    /// vanishes when it is closed, or when the program is killed.
+    /// Creates an unnamed temporary file for contents that take a long time to produce;
+    /// [`write`](Self::write) copies them at the end. The system deletes the file when it is
+    /// closed, also if the program is killed.
     ///
     /// # Errors
     /// The file cannot be created.
@@ -173,7 +177,7 @@ impl Output {
     /// Writes a value as JSON, indented.
     ///
     /// # Errors
-    /// Those of [`write`](Self::write).
+    /// As for [`write`](Self::write).
     pub fn write_json(self, value: &impl Serialize) -> anyhow::Result<()> {
         let json = serde_json::to_string_pretty(value)?;
         self.write(|out| writeln!(out, "{json}"))
@@ -203,7 +207,7 @@ fn check_extension(path: &Path, extensions: &[&str]) -> anyhow::Result<()> {
     Err(bad_value(&path.display().to_string(), &expected, found).into())
 }
 
-/// The file that is replaced: a symbolic link stays, and its target is replaced.
+/// The file to replace: for a symbolic link its target, so that the link stays.
 fn target(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }

@@ -11,13 +11,13 @@ use std::time::{Duration, Instant};
 
 /// Interval of progress lines without a terminal.
 const PERIOD: Duration = Duration::from_secs(10);
-/// Frames a second of the monitor, in board time.
+/// Frame rate of the monitor in frames per second of the board's time.
 const MONITOR_HZ: f64 = 60.0;
 
 /// The cycle counter of the simulated board in this process, if any.
 static SIMULATION: Mutex<Option<Meter>> = Mutex::new(None);
 
-/// Adds the cycles of a simulated board to the progress of all later steps.
+/// Adds the cycle count of a simulated board to the progress of all later steps.
 pub fn show_simulation(meter: Meter) {
     if let Ok(mut simulation) = SIMULATION.lock() {
         *simulation = Some(meter);
@@ -27,14 +27,15 @@ pub fn show_simulation(meter: Meter) {
 /// Unit of a step's progress.
 #[derive(Clone, Copy)]
 enum Unit {
-    /// None: the length of the step is unknown.
+    /// No unit: the length of the step is unknown.
     None,
     Bytes,
     /// Items, with their name in the plural.
     Items(&'static str),
 }
 
-/// A step of a command that may take a long time. Dropping a step removes its progress from the terminal.
+/// A step of a command, which may take a long time. Dropping a step removes its progress from the
+/// terminal.
 pub struct Step {
     bar: ProgressBar,
     /// Dropping the sender ends the thread that prints lines.
@@ -168,8 +169,8 @@ fn every(
     sender
 }
 
-/// Appends the progress, the rate and the remaining time of a step to `line`. Returns false for a step of a counted length that
-/// has no length yet, because it has not begun.
+/// Appends the progress, the rate and the remaining time of a step to `line`. Returns false if the
+/// step counts items or bytes but has no length yet, because it has not begun.
 fn line_of(line: &mut String, unit: Unit, done: u64, all: Option<u64>, elapsed: Duration) -> bool {
     let seconds = elapsed.as_secs_f64();
     let rate = done as f64 / seconds;

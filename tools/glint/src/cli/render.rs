@@ -23,9 +23,9 @@ use std::path::PathBuf;
 pub struct RenderArguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// An additional model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S`
-    /// or `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour
-    /// RRGGBB`.
+    /// An additional model and its position in the world; repeatable. `MODEL` is followed by
+    /// operations, which are applied in the order given: `scale S` or `scale X,Y,Z`, `rotate AXIS
+    /// DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
     #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"], help_heading = heading::SUBJECT)]
     object: Vec<String>,
     #[command(flatten, next_help_heading = heading::RENDERER)]
@@ -35,14 +35,14 @@ pub struct RenderArguments {
     out: PathBuf,
     #[command(flatten, next_help_heading = heading::PICTURE)]
     sampling: SamplingArguments,
-    /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 for each pixel, +inf for a
-    /// pixel without a surface.
+    /// Write the distances along the camera's forward axis n in world units: one little-endian f32
+    /// for each pixel, +inf for a pixel without a surface.
     #[arg(long, value_name = "DEPTH.f32", conflicts_with = "supersample", help_heading = heading::PICTURE)]
     depth: Option<PathBuf>,
     /// Write clock cycles, the clock frequency in Hz, and counts of triangles, pixels and rays as JSON.
     #[arg(long, value_name = "STATS.json", help_heading = heading::PICTURE)]
     stats: Option<PathBuf>,
-    /// Keep the model's coordinates; those outside [-2, 2) are an error.
+    /// Keep the model's coordinates; coordinates outside [-2, 2) are an error.
     #[arg(long, requires = "model", help_heading = heading::SUBJECT)]
     keep_scale: bool,
     /// Source of a board's picture: its memory, or the monitor of the emulated or the virtual board.

@@ -130,7 +130,7 @@ impl ListArguments {
 /// Reads a scene by its name or path, and prints its notes.
 ///
 /// # Errors
-/// As [`glint_scene_file::read`].
+/// As for [`glint_scene_file::read`].
 pub fn read(name: &str) -> Result<SceneFile, SceneError> {
     let scene = glint_scene_file::read(name)?;
     for text in scene.notes() {

@@ -39,8 +39,8 @@ pub struct SubjectArguments {
 }
 
 impl SubjectArguments {
-    /// Calls `draw` with the frame. `others` are objects beside the model; `instead` names the options that can replace the model,
-    /// for an error message.
+    /// Calls `draw` with the frame. `others` are objects in addition to the model; `instead` names
+    /// the options that can replace the model, for an error message.
     ///
     /// # Errors
     /// There is nothing to draw, a file cannot be read, or an option does not apply.
@@ -139,12 +139,13 @@ impl SubjectArguments {
         self.camera.view(&self.field.options, shown)
     }
 
-    /// The cameras of a full turn in this number of steps, starting with that of [`view`](Self::view).
+    /// The cameras of a full turn in `steps` steps, starting with the camera of
+    /// [`view`](Self::view).
     pub fn turn(&self, shown: &CameraSubject, steps: u16) -> anyhow::Result<Vec<View>> {
         self.camera.turn(&self.field.options, shown, steps)
     }
 
-    /// The files that the command reads, and possibly names of generators.
+    /// The files that the command reads. The list may contain names of generators.
     pub fn inputs(&self, scene: Option<&SceneFile>) -> Vec<PathBuf> {
         let names = [
             self.model.as_deref(),

@@ -19,11 +19,11 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 /// Code of the key Ctrl-], which ends the session.
 const EXIT: u8 = 0x1d;
 /// Time-out of a read from the board, in milliseconds of the board's time.
-const LOOK_MS: u64 = 10;
+const POLL_MS: u64 = 10;
 /// Longest time for reading the output that the board sent before the session, in milliseconds of the board's time.
 const EARLIER_MS: u64 = 500;
 
-/// Open a board's console, or send commands to it.
+/// Open a board's console, or send commands to the board.
 ///
 /// On a terminal, Ctrl-] ends the session, and Ctrl-C ends the command that runs on the board. Commands come from --send, from
 /// --file, or line by line from standard input if it is not a terminal; the first command that fails ends the program. With
@@ -88,7 +88,7 @@ impl ConsoleArguments {
         if self.until.is_some() {
             heard.is_printed = true;
             while !heard.is_over()? {
-                heard.read(&mut Vec::new(), LOOK_MS)?;
+                heard.read(&mut Vec::new(), POLL_MS)?;
             }
         }
         Ok(())
@@ -107,7 +107,8 @@ impl ConsoleArguments {
         }
     }
 
-    /// Sends the commands of a script up to the first failing command, and collects or prints the replies.
+    /// Sends the commands of a script up to the first command that fails, and collects or prints
+    /// the replies.
     fn execute(
         &self,
         script: impl Iterator<Item = io::Result<String>>,
@@ -149,18 +150,18 @@ fn commands(mut script: impl BufRead) -> impl Iterator<Item = io::Result<String>
     })
 }
 
-/// A board whose output is logged, and searched for a text.
+/// A board whose output is written to a log and searched for a text.
 struct Heard<'b> {
     board: &'b mut dyn Board,
     log: Option<File>,
     /// The text that ends the session.
     until: Option<String>,
-    /// The last bytes of the output, which may be the start of the text.
+    /// The last bytes of the output, which may be the beginning of the text.
     last: Vec<u8>,
     is_found: bool,
     /// Whether the output is also printed on standard output.
     is_printed: bool,
-    /// The board's time at which the wait for the text fails.
+    /// End of the wait for the text, in milliseconds of the board's time.
     end_ms: Option<u64>,
 }
 
@@ -188,7 +189,7 @@ impl Heard<'_> {
         }
         if self.is_printed {
             let mut output = std::io::stdout();
-            // A terminal would act on control characters.
+            // A terminal would execute control characters.
             match isatty(&output) {
                 true => output.write_all(console::plain(bytes).as_bytes())?,
                 false => output.write_all(bytes)?,
@@ -226,7 +227,8 @@ impl Board for Heard<'_> {
     }
 }
 
-/// The terminal in raw mode, so that keys reach the board unchanged; restores the old mode when dropped.
+/// The terminal in raw mode, in which keys reach the board unchanged. Dropping the value restores
+/// the previous mode.
 struct RawTerminal(Option<Termios>);
 
 impl RawTerminal {
@@ -287,7 +289,7 @@ fn print_earlier(board: &mut Heard) -> anyhow::Result<()> {
     let mut earlier = Vec::new();
     while board.now_ms() < end_ms {
         let before = earlier.len();
-        board.read(&mut earlier, LOOK_MS)?;
+        board.read(&mut earlier, POLL_MS)?;
         if earlier.len() == before {
             break;
         }
@@ -310,10 +312,10 @@ fn interact(board: &mut Heard, mut is_ended: impl FnMut() -> bool) -> anyhow::Re
     let mut console = Console::new(board);
     console.end_boot()?;
     console.reset_transfer()?;
-    // Makes the board print its prompt.
+    // An empty line makes the board print its prompt.
     board.write(b"\r")?;
     while !is_ended() {
-        board.read(&mut received, LOOK_MS)?;
+        board.read(&mut received, POLL_MS)?;
         output.write_all(&received)?;
         output.flush()?;
         received.clear();

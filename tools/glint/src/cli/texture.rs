@@ -15,18 +15,19 @@ use glint_texture::picture::Picture;
 use glint_texture::sheet::sheet;
 use std::path::{Path, PathBuf};
 
-/// The texels of textures.
+/// Options for the texels of textures.
 #[derive(Args)]
 pub struct TexelArguments {
-    /// Texels: indices of a palette of 16 or 256 colours, or `none` for colours in RGB565 [default: none; a texture in a board's
-    /// memory layout keeps its own].
+    /// Representation of texels: indices of a palette of 16 or 256 colours, or `none` for colours
+    /// in RGB565 [default: none; a texture in a board's memory layout keeps its representation].
     #[arg(long, value_name = "16|256|none", value_parser = named(Format::ALL, palette_name))]
     palette: Option<Format>,
-    /// Largest side of a texture. The sides become the nearest powers of two up to this number [default: 1024].
+    /// Largest side of a texture in texels. The sides become the nearest powers of two up to this
+    /// number [default: 1024].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIDE)..=i64::from(MAX_SIDE)))]
     texture_size: Option<u32>,
-    /// Colour between texels: that of the nearest one, or the average of four by their distances [default: as the file states;
-    /// without a statement, bilinear].
+    /// Filter: the colour of the nearest texel, or bilinear interpolation of four texels [default:
+    /// from the file, otherwise bilinear].
     #[arg(long, value_name = "nearest|bilinear", value_parser = named(Filter::ALL, filter_name))]
     filter: Option<Filter>,
 }
@@ -42,7 +43,8 @@ impl TexelArguments {
         }
     }
 
-    /// Checks that no option is given where `instead` leaves no mesh with textures to convert.
+    /// Checks that no option is given. `expected` names what the options require, and `instead`
+    /// what was given in its place.
     ///
     /// # Errors
     /// An option is given.
@@ -62,7 +64,7 @@ impl TexelArguments {
 /// The textures of a mesh that a command reads.
 #[derive(Args)]
 pub struct MeshTextureArguments {
-    /// Leave textures out: faces have the colours of their materials.
+    /// Leave textures out: faces keep the colours of their materials.
     #[arg(long, conflicts_with_all = ["palette", "texture_size", "filter"])]
     no_textures: bool,
     #[command(flatten)]
@@ -89,7 +91,7 @@ pub fn print_textures(textures: &[TextureReport]) -> anyhow::Result<()> {
     })
 }
 
-/// The word of `--palette` for a representation of texels.
+/// The value of `--palette` for a representation of texels.
 fn palette_name(format: Format) -> &'static str {
     match format {
         Format::Rgb565 => "none",
@@ -98,13 +100,15 @@ fn palette_name(format: Format) -> &'static str {
     }
 }
 
-/// Convert a picture to a texture: powers of two as sides, mip levels averaged in linear light, texels in RGB565 or of a palette.
+/// Convert a picture to a texture: sides that are powers of two, mip levels averaged in linear
+/// light, and texels in RGB565 or from a palette.
 ///
-/// Reads PNG and JPEG files, and textures in a board's memory layout. As .png it writes what a board shows: the mip levels side by
-/// side. The error that the report states is the difference to the picture after resizing, in steps of 1/255.
+/// Reads PNG and JPEG files, and textures in a board's memory layout. A .png output shows the mip
+/// levels side by side in the colours that a board shows. The error in the report is the difference
+/// from the resized picture, in steps of 1/255.
 #[derive(Args)]
 pub struct TextureArguments {
-    /// PNG, JPEG or .glt file to read; `-` is standard input. The contents decide the format.
+    /// PNG, JPEG or .glt file to read; `-` is standard input. The content determines the format.
     input: PathBuf,
     /// Output file; the extension selects the format: .glt or .png. `-` is standard output, in the format of --to.
     out: PathBuf,
@@ -113,11 +117,12 @@ pub struct TextureArguments {
     to: Option<To>,
     #[command(flatten)]
     texels: TexelArguments,
-    /// Texels beyond the sides: the texture again, again and reversed, or the texels at the sides. A second word, after a comma, is
-    /// for the upper and lower sides [default: repeat; a .glt file keeps its own].
+    /// Wrap mode, for texture coordinates beyond the sides: repeat the texture, mirror it, or clamp
+    /// to its edge texels. A second mode, after a comma, applies to the vertical direction
+    /// [default: repeat; a .glt file keeps its modes].
     #[arg(long, value_name = "repeat|mirror|clamp", num_args = 1, value_delimiter = ',', value_parser = named(Wrap::ALL, wrap_name))]
     wrap: Vec<Wrap>,
-    /// Opacity below which texels are transparent, 0 to 1; 0: none are.
+    /// Opacity, 0 to 1, below which texels are transparent. With 0 no texel is transparent.
     #[arg(long, value_name = "0..1", default_value_t = 0.5)]
     cutoff: f32,
     /// Print the report as JSON.
@@ -142,7 +147,7 @@ impl TextureArguments {
         }
         if self.wrap.len() > 2 {
             let found = self.wrap.len().to_string();
-            return Err(bad_value("--wrap", "one or two words", found).into());
+            return Err(bad_value("--wrap", "one or two modes", found).into());
         }
         let (out, to) = match self.to {
             Some(To::Glt) => (Output::open(&self.out, &["glt"], [&self.input])?, To::Glt),

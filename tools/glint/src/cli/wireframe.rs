@@ -49,8 +49,9 @@ pub struct ConvertArguments {
 
 /// Make a program that draws each edge of a model once.
 ///
-/// The model's z axis points up in the picture, its y axis away from the viewer. With the default eye, view plane and window, a
-/// model of the default size is completely visible in every rotation about its centre.
+/// In the picture, the model's z axis points up, and its y axis away from the viewer. With the
+/// default eye, view plane and window, a model of the default size is completely visible in every
+/// rotation about its centre.
 #[derive(Args)]
 pub struct MakeArguments {
     /// A mesh file or a generator's name.
@@ -110,8 +111,8 @@ pub struct RenderArguments {
     /// rotate by 1.79 degrees; at the start and after `pan`, they pan by 0.0625. The zoom keys move by 0.125 along z.
     #[arg(long, value_name = "KEY,KEY,...")]
     press: Option<String>,
-    /// Arithmetic of the motion: `drift-free`, or `accumulated` as in the original design, which rounds the end points after each
-    /// step.
+    /// Arithmetic of the motion: `drift-free`, or `accumulated`, which rounds the end points after
+    /// each step, as in the original design.
     #[arg(long, value_parser = named(MotionForm::ALL, MotionForm::name), default_value = "drift-free")]
     motion: MotionForm,
     #[command(flatten)]
@@ -135,7 +136,7 @@ impl WireframeCommand {
     }
 }
 
-/// A checked program, in the form that the command prints.
+/// Summary of a checked program, in the form that the command prints.
 #[derive(Serialize)]
 struct Summary {
     eye: [f64; 3],
@@ -223,7 +224,7 @@ impl MakeArguments {
         }
         say(format_args!("written    {segments} segments"))?;
         say(format_args!(
-            "dropped    {dropped} edges without a length at 2^-11"
+            "dropped    {dropped} edges of length 0 after rounding to 2^-11"
         ))
     }
 
@@ -296,7 +297,7 @@ impl RenderArguments {
         print_stats(&stats)?;
         if refused > 0 {
             say(format_args!(
-                "note       {refused} steps would have left the range, and were left out"
+                "note       {refused} steps were skipped, because coordinates would have left their range"
             ))?;
         }
         Ok(())

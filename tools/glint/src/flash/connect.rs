@@ -1,6 +1,7 @@
-//! Brings a board to its serial boot, from each state in which an earlier program may have left it.
+//! Brings a board to its serial boot from any state in which an earlier program may have left the
+//! board.
 //!
-//! | state | what ends it |
+//! | state | input that ends it |
 //! |---|---|
 //! | the BIOS waits for frames of a boot whose host has ended | the frame [`END_BOOT`] |
 //! | the firmware is in a transfer | the frame [`wire::reset`] |
@@ -18,18 +19,20 @@ pub const REQUEST: &[u8] = b"sL5DdSMmkekro\n";
 /// Answer to [`REQUEST`] that starts the transfer.
 pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
 
-/// Time in milliseconds without a request after which the host resets the board; it doubles each time, because a board that is
-/// starting must not be reset again and again.
+/// Time in milliseconds without a request after which the host resets the board. It doubles after
+/// each reset, so that a starting board is not reset again and again.
 const FIRST_WAIT_MS: u64 = 2000;
-/// Silence in milliseconds after a request that shows that the BIOS waits for the answer. The BIOS waits for 250 ms.
+/// Silence in milliseconds after a request which shows that the BIOS still waits for the answer.
+/// The BIOS waits for 250 ms.
 const WAITING_MS: u64 = 20;
-/// Number of the last bytes from the board that are kept for the error message.
+/// Number of bytes of the board's last output that are kept for the error message.
 const KEPT: usize = 1024;
 /// Number of characters that the error message quotes.
 const QUOTED: usize = 100;
 
-/// Waits for the BIOS's request, answers it, and checks that the BIOS receives frames. A request may have waited in a buffer for
-/// so long that the BIOS no longer expects an answer.
+/// Waits for the BIOS's request, answers it, and checks that the BIOS receives frames. The check is
+/// necessary because a request may have been in a buffer for so long that the BIOS no longer
+/// expects an answer.
 ///
 /// # Errors
 /// The BIOS does not receive frames within `wait_ms` of the board's time.
@@ -77,7 +80,7 @@ fn is_request_open(board: &mut dyn Board, heard: &mut Vec<u8>) -> Result<bool, B
     Ok(is_open)
 }
 
-/// Ends the boot or the transfer in which the board waits, and resets the board.
+/// Ends an unfinished boot or transfer, and resets the board.
 fn end_state(board: &mut dyn Board) -> Result<(), BoardError> {
     let mut frame = [0; MAX_FRAME];
     let length = wire::reset(&mut frame);

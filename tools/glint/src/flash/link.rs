@@ -10,20 +10,22 @@ const MAX_DATA: usize = 96;
 const MIN_DATA: usize = 12;
 /// Maximum number of frames in a batch: more than a serial adapter and its buffers hold at 1 Mbit/s.
 const MAX_BATCH: usize = 64;
-/// Mean time in milliseconds from a frame to its answer; below it, longer batches save no time.
+/// Mean time in milliseconds from a frame to its answer below which longer batches save no time.
 const PROMPT_MS: u64 = 2;
 /// Silence in milliseconds after which the BIOS expects a new frame: more than its time-out of 250 ms.
 const QUIET_MS: u64 = 300;
-/// Time in milliseconds after which the host stops waiting for a quiet line: only a running program sends for so long.
+/// Time in milliseconds after which the host stops waiting for a quiet line. Only a running program
+/// sends for longer.
 const LOUD_MS: u64 = 5_000;
 /// Time-out of an answer in milliseconds: covers the transmission of a frame on a slow line and the delay of a serial adapter.
 const ANSWER_MS: u64 = 500;
-/// Maximum number of bytes in the BIOS's answer to one frame: `C` for a wrong checksum and, after the time-out of a surplus byte,
-/// `E`, each of them twice if the line repeats bytes. Longer output is output of the program.
+/// Maximum number of bytes in the BIOS's answer to one frame: `C` for a wrong checksum and, after
+/// the time-out of a surplus byte, `E`, both twice if the line repeats bytes. Longer output comes
+/// from the program.
 const MAX_ANSWER: usize = 4;
 /// Answers of the BIOS to a frame: success, wrong checksum, unknown command, time-out.
 const ANSWERS: &[u8] = b"KCUE";
-/// Number of empty frames without any answer after which the BIOS counts as not receiving frames.
+/// Number of unanswered empty frames after which the BIOS is considered not to receive frames.
 const PROBES: u32 = 3;
 /// Number of failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
@@ -69,7 +71,7 @@ pub enum FlashError {
         /// Length of the wait in milliseconds of board time.
         waited_ms: u64,
     },
-    /// The program has ended in the BIOS.
+    /// The program has ended, and the BIOS runs again.
     #[error(
         "the program was loaded and started, and the board is in its BIOS again: expected a program for this board"
     )]
@@ -153,9 +155,10 @@ impl<'b> Link<'b> {
             .collect()
     }
 
-    /// Whether the BIOS receives frames: sends a frame without data until an answer to it, or other text, arrives.
+    /// Whether the BIOS receives frames. Repeats a frame without data until an answer to it or
+    /// other text arrives.
     pub fn is_open(&mut self) -> Result<bool, BoardError> {
-        // Loads no bytes, so its address has no effect.
+        // The frame loads no bytes, so its address has no effect.
         let frame = frame(LOAD, &[0; 4]);
         for _ in 0..PROBES {
             self.board.write(&frame)?;

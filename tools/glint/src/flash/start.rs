@@ -11,10 +11,12 @@ const QUIET_MS: u64 = 1000;
 /// Number of bytes of output after which a program counts as started.
 const ENOUGH: usize = 64 << 10;
 
-/// Waits until a program that has been started prints text. `said` is its output so far, with that of the BIOS.
+/// Waits until a started program prints text. `said` is the output of the BIOS and the program so
+/// far.
 ///
 /// # Errors
-/// The program prints nothing within `wait_ms` of the board's time, or ends in the BIOS.
+/// The program prints nothing within `wait_ms` milliseconds of the board's time, or returns to the
+/// BIOS.
 pub fn await_text(board: &mut dyn Board, said: &[u8], wait_ms: u64) -> Result<(), FlashError> {
     let mut said = said.to_vec();
     let start = board.now_ms();

@@ -54,7 +54,7 @@ fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
     texts.iter().map(|text| text.as_bytes().to_vec()).collect()
 }
 
-/// Small models: generated models, and a model with a concave coloured polygon.
+/// Small models: generated models, and a model with a concave polygon that has a colour.
 fn models() -> Vec<Polygons> {
     let mut models: Vec<Polygons> = ["cube", "icosphere:1", "icosphere:2", "sponge:0"]
         .iter()
@@ -100,7 +100,7 @@ fn gltfs() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// The glTF with a texture on its first mesh.
+/// The example glTF, with a texture on its first mesh.
 fn textured() -> String {
     let texture = "\"alphaMode\": \"MASK\", \"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0, \"texCoord\": 0, \
                    \"extensions\": {\"KHR_texture_transform\": {\"offset\": [0.5, 0], \"rotation\": 1, \"scale\": [2, 1]}}}, ";
@@ -116,7 +116,7 @@ fn textured() -> String {
         .replacen("}]\n}", coordinates, 1)
 }
 
-/// The mesh of the glTF with a texture.
+/// The mesh of the glTF of [`textured`] in a board's memory layout.
 fn textured_mesh() -> Option<Vec<u8>> {
     let polygons = gltf::parse(textured().as_bytes(), &mut |_| Some(example::small_png()));
     let converted = convert::convert(&polygons.ok()?, Options::default());

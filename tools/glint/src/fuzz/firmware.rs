@@ -7,10 +7,10 @@ use glint_core::console::PROMPT;
 use glint_core::wire::crc32;
 use std::sync::LazyLock;
 
-/// Silence in ms of the board's time after which the board has processed an input.
+/// Silence after which the board has processed an input, in ms of the board's time.
 const SILENCE_MS: u64 = 20;
-/// Time in ms of the board's time after which the target stops waiting for silence, because a command of the input prints
-/// endlessly.
+/// Time after which the target stops waiting for silence, in ms of the board's time. A command of
+/// the input may print endlessly.
 const LIMIT_MS: u64 = 300;
 
 /// Lengths in bytes of the meshes whose uploads are seeds.
@@ -19,7 +19,8 @@ const LENGTHS: [usize; 2] = [16, 1500];
 static FIRMWARE: LazyLock<Vec<u8>> =
     LazyLock::new(|| built_firmware(None).expect("`cargo xtask firmware` has built the firmware"));
 
-/// The bytes that the host sends in whole uploads. The data are not a mesh, so the firmware refuses them after the transfer.
+/// The bytes that the host sends in complete uploads. The data are not a mesh, so the firmware
+/// refuses them after the transfer.
 pub fn seeds() -> Vec<Vec<u8>> {
     let uploads = LENGTHS.map(|length| {
         let data = upload_data(length);
@@ -30,8 +31,8 @@ pub fn seeds() -> Vec<Vec<u8>> {
     uploads.into()
 }
 
-/// Sends the input to a board that has just started. The firmware must not halt, and must answer a later command. Returns whether
-/// it has executed a command of the input.
+/// Sends the input to a board that has just started. The firmware must not halt, and must answer a
+/// later command. Returns whether the firmware has executed a command of the input.
 pub fn run(input: &[u8]) -> bool {
     let mut board = start();
     let mut said = Vec::new();

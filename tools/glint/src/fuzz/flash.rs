@@ -8,7 +8,8 @@ use glint_core::picture::Backend;
 use glint_core::wire::crc32;
 use glint_scene::{AnyBoard, Scene, lines};
 
-/// Parses a firmware with its header, and contents with all items. Returns whether the contents are valid.
+/// Parses the input as a firmware with its header, and as the contents of an image with all items.
+/// Returns whether the contents are valid.
 pub fn run(input: &[u8]) -> bool {
     if let Ok(firmware) = flash::firmware(input) {
         assert!(firmware.len() < input.len());
@@ -34,7 +35,7 @@ pub fn run(input: &[u8]) -> bool {
     }
 }
 
-/// Applies the lines of a scene like a board.
+/// Executes the lines of a scene like a board.
 fn run_scene(text: &str) {
     let Ok(mut scene) = Scene::new(Backend::Gateware) else {
         return;
@@ -53,7 +54,8 @@ fn run_scene(text: &str) {
     assert!(Block::of_bits(scene.blocks()).count() > 0);
 }
 
-/// Plays the scenes of a list like a board; the bytes of the text determine moves and holds.
+/// Plays the scenes of a list like a board; the bytes of the text determine when a scene is skipped
+/// or held.
 fn run_list(text: &str) {
     let count = text.lines().count();
     let mut demo = Demo::default();

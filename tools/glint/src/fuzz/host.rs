@@ -22,7 +22,7 @@ const ADDRESS: u32 = 0x4000_0000;
 /// Length of the program of a serial boot, in bytes.
 const PROGRAM: usize = 200;
 
-/// Separator of the parts of a stream: the next part is sent after a command or a silence.
+/// Separator of the parts of a stream. The board sends the next part after a command or a silence.
 const WAIT: &[u8] = b"\x1e\n";
 
 /// A board that sends the bytes of a stream, regardless of the received bytes.
@@ -62,7 +62,8 @@ impl Board for Stream<'_> {
             bytes.append(&mut self.echo);
         } else if self.rest.is_empty() {
             self.rest = self.later.pop().unwrap_or_default();
-            // A wait for a silent board takes at least 1 s, so that a few reads exceed every time-out.
+            // A wait for a silent board counts as at least 1 s, so that a few reads exceed every
+            // time-out.
             self.now_ms += wait_ms.max(1000);
         } else {
             let (piece, rest) = self.rest.split_at(self.piece.min(self.rest.len()));
@@ -108,8 +109,8 @@ pub fn run(input: &[u8]) -> bool {
     outcome.is_ok()
 }
 
-/// Runs the protocol number `kind`. Its results and callbacks contain at most the bytes that the board has sent or that were
-/// requested.
+/// Runs the protocol number `kind`. Checks that its results and callbacks contain no more bytes
+/// than the board has sent or the host has requested.
 fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn std::error::Error>> {
     let quiet = &mut |_, _| {};
     if kind == 0 {
@@ -147,7 +148,7 @@ fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn s
         }
         4 => {
             sensor::wait(console)?;
-            // A board may send times in any order; the replay of a log judges them.
+            // The board may send times in any order, because only the replay of a log checks them.
             sensor::stream(console, 3, &mut |_| {})?;
         }
         5 => {
@@ -196,7 +197,7 @@ fn log() -> Result<replay::Prepared, replay::Error> {
 /// The board's output in a complete run of each protocol.
 pub fn seeds() -> Vec<Vec<u8>> {
     let seed = |kind: u8, parts: &[&[u8]]| {
-        // Single bytes per read ensure that a reply does not arrive before its command has been sent.
+        // One byte per read ensures that a reply does not arrive before its command is sent.
         [&[kind, 1, 0], parts.concat().as_slice()].concat()
     };
     let [_, acknowledged] = exchange(&upload_data(LENGTH), SESSION);
@@ -249,7 +250,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
 mod tests {
     /// Every seed runs its protocol without an error; otherwise mutations of it would test only the first check.
     #[test]
-    fn every_conversation_comes_to_its_end() {
+    fn every_seed_completes_its_protocol() {
         for (number, seed) in super::seeds().iter().enumerate() {
             assert!(super::run(seed), "seed {number}: {}", seed.escape_ascii());
         }

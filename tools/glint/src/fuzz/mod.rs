@@ -1,6 +1,7 @@
 //! Fuzzing without compiler instrumentation: generated seeds, a small mutator, numbered inputs.
 //!
-//! The seed and the number of an input determine its bytes in any thread, so runs can be split and findings repeated.
+//! The bytes of an input depend only on its seed and its number, so runs can be divided among
+//! threads, and findings can be repeated.
 
 mod corpus;
 mod firmware;
@@ -39,7 +40,8 @@ impl Inputs {
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         let mut input = mutate(&self.corpus, &self.words, &mut random);
-        // Without a correct checksum nearly every mutation is rejected, so half of the inputs get one.
+        // Nearly every mutation is rejected because of its checksum, so the checksums of half of
+        // the inputs are corrected.
         if random.below(2) == 0 {
             self.target.repair(&mut input);
         }
@@ -47,7 +49,8 @@ impl Inputs {
         input
     }
 
-    /// Runs the target on the input with a number, and returns whether it has accepted the input. The caller catches panics.
+    /// Runs the target on the input `number`, and returns whether the target has accepted the
+    /// input. The caller catches panics.
     pub fn run(&self, number: u64) -> bool {
         self.target.run(&self.input(number))
     }

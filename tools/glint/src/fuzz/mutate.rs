@@ -38,7 +38,7 @@ const WORDS: &str = "0 1 -1 2 255 256 65535 65536 2147483647 2147483648 42949672
                      1e300 -1e-320 1e30 0.5";
 const BYTES: [u8; 10] = [0, 1, 0x0a, 0x0d, 0x1b, 0x20, 0x7f, 0x80, 0xfe, 0xff];
 
-/// Returns a random seed of the corpus with one to eight mutations.
+/// Returns a random element of the corpus with one to eight mutations.
 pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8> {
     let numbers: Vec<&str> = WORDS.split(' ').collect();
     let mut input = random.pick(corpus).cloned().unwrap_or_default();

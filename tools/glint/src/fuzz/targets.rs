@@ -23,7 +23,7 @@ use glint_texture::example;
 use glint_texture::picture::Picture;
 use glint_texture::sheet::sheet;
 
-/// A parser of external bytes.
+/// A fuzz target: a parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// The sender and the receiver of an upload.
@@ -95,7 +95,7 @@ impl Target {
         match self {
             Self::Upload | Self::Host => transfer::repair(input),
             Self::Stl => {
-                // Sets the number of triangles to match the file's length.
+                // The number of triangles must match the file's length.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
                 if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
                     field.copy_from_slice(&count.to_le_bytes());
@@ -112,7 +112,7 @@ impl Target {
                 mesh::set_checksum(input);
             }
             Self::Replay => {
-                // Sets the number of samples to match the log's length.
+                // The number of samples must match the log's length.
                 let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&(samples as u32).to_le_bytes());
@@ -120,7 +120,7 @@ impl Target {
                 input.truncate(image::HEADER_BYTES + image::RECORD_BYTES * samples);
             }
             Self::WireframeWords => {
-                // Cuts the input at a word, and replaces its last word by the end of a program.
+                // A program consists of whole words, and its last word is the end of the program.
                 input.truncate(input.len() / WORD_BYTES * WORD_BYTES);
                 if let Some(last) = input.last_chunk_mut() {
                     *last = Instruction::End.encode();
@@ -168,7 +168,8 @@ impl Target {
     }
 }
 
-/// An additional file that an OBJ or glTF file names: a picture by its extension, or the file itself.
+/// A file that an OBJ or glTF file names: a picture if its extension is that of a picture,
+/// otherwise the input.
 fn beside(name: &str, input: &[u8]) -> Vec<u8> {
     if name.ends_with(".png") {
         example::small_png()
@@ -198,10 +199,8 @@ fn run_texture(input: &[u8]) -> bool {
     match converted {
         Ok((bytes, report)) => {
             let texture = Texture::new_checked(&bytes);
-            assert!(
-                texture.is_ok_and(|texture| !sheet(&texture).texels.is_empty()),
-                "a conversion gives a valid texture"
-            );
+            let is_valid = texture.is_ok_and(|texture| !sheet(&texture).texels.is_empty());
+            assert!(is_valid, "a conversion gives a valid texture");
             assert!(report.error_rms <= report.error_max && report.error_max <= 255.0);
             true
         }
@@ -227,22 +226,18 @@ fn run_conversion(polygons: &Polygons) -> bool {
     let _ = convert::convert(polygons, keep_scale);
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
-            assert!(
-                report.error_max_lsb <= 0.87,
-                "the rounding is to nearest: {}",
-                report.error_max_lsb
-            );
-            assert!(
-                glm::check_file(&mesh).is_ok(),
-                "a conversion gives a valid mesh"
-            );
+            let error = report.error_max_lsb;
+            assert!(error <= 0.87, "the rounding is to nearest: {error}");
+            let is_valid = glm::check_file(&mesh).is_ok();
+            assert!(is_valid, "a conversion gives a valid mesh");
             true
         }
         Err(_) => false,
     }
 }
 
-/// Replays a parsed log with every option enabled: by its time stamps, and with two fixed sample periods.
+/// Replays a parsed log with every option enabled: with its time stamps, and with two fixed sample
+/// periods.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
@@ -254,10 +249,8 @@ fn run_replay(entries: &[log::Entry]) {
         };
         let replay = |options| replay::on_model(replay::prepare(entries, options)?);
         let replayed = replay(&options);
-        assert!(
-            replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len()),
-            "without a calibration every log is replayed"
-        );
+        let is_whole = replayed.is_ok_and(|replayed| replayed.attitudes.len() == entries.len());
+        assert!(is_whole, "without a calibration every log is replayed");
         // A calibration fails for a log that is not at rest, so the result may be an error.
         let _ = replay(&replay::Options {
             still: Some(u64::MAX),
@@ -281,10 +274,8 @@ fn run_scene(input: &[u8]) -> bool {
         Err(error) => {
             let error = error.to_string();
             let mut lines = error.lines();
-            assert!(
-                lines.all(|line| line.starts_with("scene.toml: ")),
-                "{error}"
-            );
+            let is_located = lines.all(|line| line.starts_with("scene.toml: "));
+            assert!(is_located, "{error}");
             false
         }
     }
@@ -297,10 +288,8 @@ fn run_image(input: &[u8]) -> bool {
         Ok(counts) => {
             let mut records = image[image::HEADER_BYTES..].as_chunks().0.iter();
             assert!(counts.steps < records.len() as u64);
-            assert!(
-                records.all(|record| image::attitude(image::from_bytes(record)).is_some()),
-                "every attitude has length 1"
-            );
+            let is_unit = |record| image::attitude(image::from_bytes(record)).is_some();
+            assert!(records.all(is_unit), "every attitude has length 1");
             true
         }
         Err(error) => {
@@ -325,22 +314,15 @@ fn run_program(form: Form, input: &[u8]) -> bool {
     for (number, key) in Key::ALL.into_iter().cycle().take(20).enumerate() {
         motion.apply(key.step(number % 3 > 0));
     }
-    let lines: String = program
-        .instructions()
-        .map(|line| format!("{line}\n"))
-        .collect();
+    let lines = wireframe::text(&program);
     assert!(assemble(&lines).is_ok(), "the text form is valid too");
-    let (pose, projection) = (
-        motion.pose(),
-        Projection::new(program.viewing(), Size::W1280),
-    );
+    let pose = motion.pose();
+    let projection = Projection::new(program.viewing(), Size::W1280);
     for segment in program.segments() {
         if let Some(line) = projection.line(pose.segment(segment)) {
-            let ends = line.as_flattened();
-            assert!(
-                ends.iter().all(|x| x.abs() <= GUARD),
-                "a line is within the guard band"
-            );
+            let mut ends = line.as_flattened().iter();
+            let is_within = ends.all(|x| x.abs() <= GUARD);
+            assert!(is_within, "a line is within the guard band");
         }
     }
     true
@@ -370,16 +352,15 @@ fn run_console(input: &[u8]) -> bool {
                 Ok(_) => accepted = true,
                 Err(error) => {
                     let _ = write!(text, "{error}");
-                    assert!(
-                        !text.contains(['\r', '\n']),
-                        "an error is one line: {text:?}"
-                    );
+                    let is_line = !text.contains(['\r', '\n']);
+                    assert!(is_line, "an error is one line: {text:?}");
                 }
             }
             text.clear();
         }
+        let is_short = echo.len() < 4096 && echo.is_ascii();
         assert!(
-            echo.len() < 4096 && echo.is_ascii(),
+            is_short,
             "a byte echoes less than a screen of ASCII: {echo:?}"
         );
         echo.clear();

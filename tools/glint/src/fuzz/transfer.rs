@@ -10,8 +10,8 @@ pub fn upload_data(length: usize) -> Vec<u8> {
     (0..length).map(|i| (i * 7 / 3) as u8).collect()
 }
 
-/// Feeds the input in pieces to the sender or the receiver of a transfer, while time passes. The first three bytes select the
-/// side, the time between two pieces, and the length of a piece.
+/// Passes the input in pieces to the sender or the receiver of a transfer. The first three bytes
+/// select the side, the time between two pieces, and the length of a piece.
 pub fn run(input: &[u8]) -> bool {
     let &[side, pace, piece, ref stream @ ..] = input else {
         return false;

@@ -23,11 +23,11 @@ const TIME: &str = "t_us";
 const TEMPERATURE: &str = "temp";
 const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
 /// Maximum number of columns in a header; real logs have fewer.
-const MOST_COLUMNS: usize = 64;
+const MAX_COLUMNS: usize = 64;
 
 /// The columns of a file.
 struct Header {
-    /// Index in the file of each of [`COLUMNS`].
+    /// For each of [`COLUMNS`], its index among the columns of the file.
     places: [Option<usize>; COLUMNS.len()],
     /// Number of columns in the file.
     count: usize,
@@ -92,8 +92,8 @@ impl Header {
         let mut count = 0;
         let mut ignored = Vec::new();
         for cell in cells(line) {
-            if count == MOST_COLUMNS {
-                let expected = format!("at most {MOST_COLUMNS} columns");
+            if count == MAX_COLUMNS {
+                let expected = format!("at most {MAX_COLUMNS} columns");
                 return Err(FormatError::new(line.place(), expected, "more"));
             }
             match COLUMNS.iter().position(|name| name.as_bytes() == cell) {
@@ -121,7 +121,7 @@ impl Header {
     }
 
     fn entry(&self, line: Line<'_>) -> Result<Entry, FormatError> {
-        let mut row = [&[][..]; MOST_COLUMNS];
+        let mut row = [&[][..]; MAX_COLUMNS];
         let mut found = 0;
         for cell in cells(line) {
             if let Some(place) = row.get_mut(found) {
@@ -190,29 +190,16 @@ mod tests {
     #[test]
     fn errors_name_their_place() {
         let header = "t_us,ax,ay,az,gx,gy,gz\n";
-        for (text, message) in [
-            (
-                "",
-                "expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file",
-            ),
-            (
-                "\n \n",
-                "expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file",
-            ),
-            (header, "expected at least one sample, found none"),
-            (
-                "t_us,ax,ay,az,gx,gy\n",
-                "line 1: expected a column gz, found 't_us,ax,ay,az,gx,gy'",
-            ),
-            (
-                "t_us,ax,ay,az,gx,gy,gz,ax\n",
-                "line 1: expected one column ax, found two",
-            ),
-            (
-                "1,2,3,4,5,6,7\n",
-                "line 1: expected a column t_us, found '1,2,3,4,5,6,7'",
-            ),
-        ] {
+        let cases = "
+            → expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file
+            ; ; → expected a header t_us,ax,ay,az,gx,gy,gz, found an empty file
+            t_us,ax,ay,az,gx,gy,gz; → expected at least one sample, found none
+            t_us,ax,ay,az,gx,gy; → line 1: expected a column gz, found 't_us,ax,ay,az,gx,gy'
+            t_us,ax,ay,az,gx,gy,gz,ax; → line 1: expected one column ax, found two
+            1,2,3,4,5,6,7; → line 1: expected a column t_us, found '1,2,3,4,5,6,7'
+        ";
+        for case in cases.lines().filter_map(|case| case.split_once('→')) {
+            let (text, message) = (case.0.trim().replace(';', "\n"), case.1.trim());
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);
         }
         let rows = "

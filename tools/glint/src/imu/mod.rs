@@ -1,4 +1,5 @@
-//! Gyroscope and accelerometer: access to a board's sensor, logs, and the attitudes of logs.
+//! Gyroscope and accelerometer: access to a board's sensor, logs, and the computation of attitudes
+//! from logs.
 
 pub mod log;
 pub mod replay;

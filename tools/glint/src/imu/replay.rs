@@ -28,7 +28,8 @@ pub struct Options {
     pub follow_bias: bool,
 }
 
-/// A log whose samples get time stamps without long steps; a board's log contains their low words.
+/// A log with corrected time stamps, which have no long steps. A log in a board's format contains
+/// their low words.
 struct Stamps<'a> {
     entries: &'a [Entry],
     /// Time stamp of each sample in µs.
@@ -36,8 +37,9 @@ struct Stamps<'a> {
 }
 
 impl<'a> Stamps<'a> {
-    /// Takes the samples of a log, whose times are multiples of `period` µs or those of the [`timeline`]. A step longer than
-    /// `LONGEST_STEP`, over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
+    /// Corrects the time stamps of a log: they become multiples of `period` µs, or come from the
+    /// [`timeline`]. The firmware does not integrate over a step longer than `LONGEST_STEP`, so
+    /// such a step is shortened to `LONGEST_STEP` + 1 µs.
     fn new(entries: &'a [Entry], period: Option<u32>) -> Self {
         let stamps = match period {
             Some(period) => (0..entries.len() as u64)
@@ -122,8 +124,8 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let bias = calibration.map_or([0; 3], |report| report.bias);
     let setup =
         Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
-    // A count of samples above the 32-bit range is clamped to it. Every board rejects the log as too long, and the model because
-    // the count does not match the number of bytes.
+    // The count saturates at 32 bits. Such a log is rejected anyway: by boards because of its
+    // length, and by the model because the count does not match the number of bytes.
     let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
     let mut image = setup.header(count).to_vec();
     stamps
@@ -151,8 +153,8 @@ pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     })
 }
 
-/// Replays a log on a board. Calls `progress` with the stage, the amount that is done, and the total amount: bytes of a transfer,
-/// samples of the replay.
+/// Replays a log on a board. Calls `progress` with the stage, the completed amount and the total
+/// amount, in bytes of a transfer or samples of the replay.
 ///
 /// # Errors
 /// The firmware rejects the log, or a transfer fails.
@@ -224,7 +226,8 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
         .collect()
 }
 
-/// Calibrates with the samples of the first `still` µs of a log. Samples beyond the maximum number for a calibration are ignored.
+/// Calibrates with the samples of the first `still` µs of a log, at most the maximum number for a
+/// calibration.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
     let at_start = |sample: &Sample| sample.t_us < still;
     let count = stamps.samples().take_while(at_start).count();
@@ -284,14 +287,23 @@ mod tests {
         on_model(prepare(entries, options)?)
     }
 
+    /// Numbers of integrated, stale and gap samples.
+    fn counts(replayed: &Replayed) -> [u64; 3] {
+        [
+            replayed.counts.steps,
+            replayed.counts.stale,
+            replayed.counts.gaps,
+        ]
+    }
+
     fn yaw(attitude: Quaternion) -> f64 {
         attitude.angles().yaw.to_signed_degrees().to_num()
     }
 
     #[test]
     fn stamps_of_any_size() {
-        // The sensor turns at 100 °/s. The stamps, in µs, have a step across 2^32, a step back in time and a gap of an hour. Only
-        // the three steps of 10 ms turn the attitude, by 1° each.
+        // The sensor turns at 100 °/s. The time stamps, in µs, have a step across 2^32, a step back
+        // and a gap of an hour. Only the three steps of 10 ms turn the attitude, each by 1°.
         let log = entries(&[
             u64::from(u32::MAX) - 5_000,
             u64::from(u32::MAX) + 5_000,
@@ -305,48 +317,39 @@ mod tests {
         for (yaw, expected) in yaws.iter().zip([0.0, 1.0, 1.0, 2.0, 2.0, 3.0]) {
             assert!((yaw - expected).abs() < 1e-6, "{yaws:?}");
         }
-        let counts = replayed.counts;
-        assert_eq!((counts.steps, counts.stale, counts.gaps), (3, 1, 1));
+        assert_eq!(counts(&replayed), [3, 1, 1]);
     }
 
-    /// The 32-bit clock wraps after three samples: all steps count.
+    /// The 32-bit clock wraps after three samples, and all steps are integrated.
     #[test]
     fn a_clock_of_32_bits_wraps() {
         let end = 1_u64 << 32;
         let stamps = [end - 3000, end - 2000, end - 1000, 0, 1000, 2000, 3000];
         let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
         assert!((yaw(replayed.attitudes[6]) - 0.6).abs() < 1e-6);
-        let counts = replayed.counts;
-        assert_eq!((counts.steps, counts.stale, counts.gaps), (6, 0, 0));
+        assert_eq!(counts(&replayed), [6, 0, 0]);
     }
 
-    /// One wrong time stamp, in a log of a thousand or during its calibration, costs no other sample.
+    /// One wrong time stamp, or two successive ones, in a log of a thousand samples affect only their
+    /// own samples.
     #[test]
-    fn one_wrong_stamp_is_one_sample() {
-        for wrong in [0, 7, 50_000_000_000, u64::MAX] {
+    fn wrong_stamps_affect_only_their_samples() {
+        let cases = [
+            &[0][..],
+            &[7],
+            &[50_000_000_000],
+            &[u64::MAX],
+            &[90_000_000, 95_000_000],
+            &[95_000_000, 90_000_000],
+            &[90_000_000, 90_001_000],
+        ];
+        for wrong in cases {
             let mut stamps: Vec<u64> = (0..1000).map(|i| 9_000_000 + i * 1000).collect();
-            stamps[500] = wrong;
+            stamps[500..][..wrong.len()].copy_from_slice(wrong);
             let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
             assert!((yaw(replayed.attitudes[999]) - 99.9).abs() < 1e-3);
-            let counts = replayed.counts;
-            assert_eq!((counts.steps, counts.stale, counts.gaps), (998, 1, 0));
-        }
-    }
-
-    /// Two wrong time stamps in a row cost two samples.
-    #[test]
-    fn two_wrong_stamps_are_two_samples() {
-        for wrong in [
-            [90_000_000, 95_000_000],
-            [95_000_000, 90_000_000],
-            [90_000_000, 90_001_000],
-        ] {
-            let mut stamps: Vec<u64> = (0..1000).map(|i| 9_000_000 + i * 1000).collect();
-            stamps[500..502].copy_from_slice(&wrong);
-            let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
-            assert!((yaw(replayed.attitudes[999]) - 99.9).abs() < 1e-3);
-            let counts = replayed.counts;
-            assert_eq!((counts.steps, counts.stale, counts.gaps), (997, 2, 0));
+            let stale = wrong.len() as u64;
+            assert_eq!(counts(&replayed), [999 - stale, stale, 0]);
         }
     }
 
@@ -356,8 +359,7 @@ mod tests {
         let stamps: Vec<u64> = (0..500).chain(0..500).map(|i| i * 1000).collect();
         let replayed = replay(&entries(&stamps), &OPTIONS).unwrap();
         assert!((yaw(replayed.attitudes[999]) - 99.8).abs() < 1e-3);
-        let counts = replayed.counts;
-        assert_eq!((counts.steps, counts.stale, counts.gaps), (998, 0, 1));
+        assert_eq!(counts(&replayed), [998, 0, 1]);
     }
 
     #[test]

@@ -6,8 +6,8 @@ use crate::board::Board;
 use crate::console::{self, Console, ConsoleError};
 use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State, Wires};
 
-/// Time-out of the first sample after the board's start, in ms of the board's time: covers detection, reset and set-up of the
-/// sensor.
+/// Time-out of the first sample after the board's start, in ms of the board's time. It covers
+/// detection, reset and set-up of the sensor.
 const START_MS: u64 = 1_000;
 /// Header of the output of `imu stream`, and of a log.
 pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
@@ -52,8 +52,8 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
     }
 }
 
-/// Streams `samples` samples from the board to `on_sample`. The time of a sample is in µs of the board's time since the first
-/// sample, and 0 for an earlier time.
+/// Streams `samples` samples from the board to `on_sample`. The time of a sample is in µs of the
+/// board's time since the first sample. A time stamp before the first sample counts as 0.
 ///
 /// # Errors
 /// The sensor or the board fails.
@@ -97,7 +97,7 @@ fn sample(line: &str) -> Option<(u64, [i16; 3], [i16; 3])> {
     Some((stamp.parse().ok()?, [ax, ay, az], [gx, gy, gz]))
 }
 
-/// Result of a calibration. Each array contains the values about x, y and z.
+/// Result of a calibration. Each array contains the values about the axes x, y and z.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Calibrated {
     /// Number of averaged samples.
@@ -154,8 +154,9 @@ impl std::str::FromStr for Triple {
     }
 }
 
-/// Returns a virtual sensor for a simulated board. Without a log the sensor is at rest, with typical errors. With a log it
-/// outputs the counts of the log, which starts with the board; after the end of the log it repeats the last sample.
+/// Returns a virtual sensor for a simulated board. Without a log the sensor is at rest, with
+/// typical errors. With a log, which starts together with the board, the sensor outputs the counts
+/// of the log, and repeats the last sample after its end.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {

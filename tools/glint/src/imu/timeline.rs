@@ -1,9 +1,10 @@
-//! The times of a log's samples, from time stamps that may wrap, restart, or be wrong for single samples.
+//! Computes the times of a log's samples from time stamps that may wrap or restart, or may be wrong
+//! in single samples.
 
 use super::log::Entry;
 use glint_core::orientation::LONGEST_STEP;
 
-/// Number of samples after a doubtful one that decide about its time stamp.
+/// Number of following samples that decide whether a doubtful time stamp is wrong.
 const NEXT: usize = 3;
 
 /// Whether a sample at the time `t_us` can be integrated from a sample at the time `last`, both in µs.
@@ -11,13 +12,14 @@ fn follows(t_us: u64, last: u64) -> bool {
     t_us > last && t_us - last <= u64::from(LONGEST_STEP)
 }
 
-/// Returns the time of each sample in µs since the first one. Times never decrease:
+/// Returns the time of each sample in µs since the first sample. Times never decrease:
 ///
 /// - A time stamp that wraps at 2^32 µs continues.
-/// - A time stamp that does not follow the previous one, while one of the next three does, is wrong. The sample gets the time of the
-///   previous one, as does a sample that is not later than the previous one.
-/// - After a restart of the clock, which is a step back from which the next three samples continue, the time goes on after a gap that
-///   is slightly longer than [`LONGEST_STEP`].
+/// - A time stamp is wrong if it does not follow the previous time stamp, but one of the next three
+///   does. Such a sample, and a sample that is not later than the previous sample, gets the time of
+///   the previous sample.
+/// - A step back in time from which the next three samples continue is a restart of the clock. The
+///   time continues after a gap that is slightly longer than [`LONGEST_STEP`].
 #[must_use]
 pub fn times(entries: &[Entry]) -> Vec<u64> {
     let stamps = unwrapped(entries);

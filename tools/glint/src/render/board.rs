@@ -67,7 +67,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { progress, ..self }
     }
 
-    /// Sets the backend as [`with_backend`](Self::with_backend).
+    /// Sets the backend of all following frames, like [`with_backend`](Self::with_backend).
     pub fn set_backend(&mut self, backend: impl Into<Option<Backend>>) {
         self.backend = backend.into();
     }
@@ -141,7 +141,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         let mut lines = vec!["scene default".to_owned()];
-        // The frame has the camera that shows all meshes, and the start of an animation.
+        // The frame already has the camera that shows all meshes, and shows the start of an
+        // animation.
         let is_left_out = |line: &String| {
             ["fit ", "animate "]
                 .iter()
@@ -152,7 +153,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         let field = frame.subject.field_part();
         lines.extend(field.map(|field| format!("quality {}", field.quality)));
         lines.push(size_command(frame.size));
-        // A program has its own eye, and a firmware for it no command of a camera.
+        // A wireframe program contains its eye, and a firmware for wireframes has no camera
+        // commands.
         if !matches!(frame.subject, Subject::Wireframe(_)) {
             lines.push(view_command(&frame.view));
         }
@@ -209,7 +211,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(transfer::upload(console, mesh, name, session, progress)?)
     }
 
-    /// Writes data of an upload to the board's memory, if that is the route. Returns the number of the upload.
+    /// Writes the data of an upload to the board's memory, if the route is the memory. Returns the
+    /// number of the upload.
     fn stage(&mut self, data: &[u8]) -> Result<u8, Error> {
         if self.route == Route::Memory {
             transfer::stage(&mut self.console, data)?;
@@ -230,7 +233,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Downloads the colours of the last frame as an image without depths.
     ///
     /// # Errors
-    /// Those of [`colour`](Self::colour).
+    /// As for [`colour`](Self::colour).
     pub fn image(&mut self, size: Size) -> Result<Image, Error> {
         Ok(Image {
             colour: self.colour(size)?,
@@ -248,7 +251,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(pixels.map(|pixel| u16::from_le_bytes(*pixel)).collect())
     }
 
-    /// Downloads a part of the frame: from the address that `info` prints for `key`, or by a command.
+    /// Downloads a part of the frame: through the memory from the address that `info` prints for
+    /// `key`, or over the line by `command`.
     fn download(&mut self, key: &str, command: &str, length: usize) -> Result<Vec<u8>, Error> {
         let (console, progress) = (&mut self.console, &mut *self.progress);
         Ok(match self.route {
@@ -266,7 +270,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(stats_of(&lines)?)
     }
 
-    /// Sends commands that change the scene, draws one frame, which has this size, and downloads parts of it.
+    /// Sends commands that change the scene, draws one frame of the size `size`, and downloads the
+    /// requested parts of it.
     ///
     /// # Errors
     /// The firmware refuses a command or does not answer, or a download fails.

@@ -14,7 +14,8 @@ pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
 }
 
-/// The console command that sets a camera. Its decimals are exact, so the board reads identical fixed-point numbers.
+/// The console command that sets a camera. Its decimal numbers are exact, so the board reads
+/// identical fixed-point numbers.
 pub fn view_command(view: &View) -> String {
     format!("view {view}")
 }
@@ -103,7 +104,7 @@ fn appearance(frame: &Frame) -> Appearance {
     };
     if frame.lighting != MeshLighting::CAMERA {
         appearance.ambient = Some(frame.lighting.ambient);
-        // The list has space for one light.
+        // The list is empty, so it has space for the light.
         let _ = appearance.lights.push(frame.lighting.light);
     }
     appearance

@@ -1,4 +1,4 @@
-//! Frames by the bit-exact model, in this process and without a board.
+//! Draws frames with the bit-exact model, in this process and without a board.
 
 use super::rendered::{Error, Rendered};
 use crate::picture::Image;
@@ -118,8 +118,9 @@ mod tests {
         );
     }
 
-    /// On a sphere, no face hides an edge of a front face: all pixels of these edges are drawn, and no pixels of edges between
-    /// back faces, except at the silhouette. At vertices, other faces hide up to 4 of 1,352 pixels.
+    /// On a sphere, no face hides an edge of a front face. So all pixels of these edges are drawn,
+    /// except up to 4 of 1,352 pixels that other faces hide at vertices. No pixels of edges between
+    /// back faces are drawn, except at the silhouette.
     #[test]
     fn faces_hide_the_edges_behind_them_alone() {
         let model = generate::named("icosphere:6").unwrap();
@@ -178,8 +179,8 @@ mod tests {
         assert_eq!(refused, Err(RenderError::Edges { triangles: 80 }));
     }
 
-    /// The depths of a frame of edges are the depths of faces or of edges before them; with hidden edges, all colours are black
-    /// or white.
+    /// Each depth of a frame of edges is the depth of a face, or of an edge in front of it; with
+    /// hidden edges, all colours are black or white.
     #[test]
     fn edges_lie_over_the_faces() {
         let model = generate::named("sponge:1").unwrap();

@@ -5,7 +5,7 @@ use super::{Frame, Stats, Subject};
 use glint_core::picture::Size;
 use glint_model::{MeshSubject, Object, RenderError};
 
-/// The warnings about a frame with these statistics, each with a remedy.
+/// Returns the warnings about a frame with these statistics. Each warning names a remedy.
 ///
 /// # Errors
 /// The frame cannot be drawn.
@@ -52,8 +52,8 @@ pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError>
     Ok(remarks)
 }
 
-/// Whether at least half of the pixels with a surface would show a back face, which is culled. False for a subject with a field,
-/// edges or a wireframe.
+/// Whether culled back faces would cover at least half of the pixels with a surface. False for a
+/// subject with a field, edges or a wireframe.
 fn shows_backs(frame: &Frame) -> Result<bool, RenderError> {
     fn uncull<'a>(subject: &MeshSubject<'a>) -> MeshSubject<'a> {
         MeshSubject {

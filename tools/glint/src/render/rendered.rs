@@ -18,7 +18,7 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Statistics alone.
+    /// Only the statistics.
     pub const NONE: Self = Self::new(false, false);
     /// The colours.
     pub const COLOUR: Self = Self::new(true, false);

@@ -17,7 +17,7 @@ pub struct Stats {
     /// Counts of the field; `None` for a frame without a field.
     #[serde(flatten)]
     pub rays: Option<RayCounts>,
-    /// Counts of the wireframe; `None` for a frame without one.
+    /// Counts of the wireframe; `None` for a frame without a wireframe.
     #[serde(flatten)]
     pub wireframe: Option<WireframeCounts>,
     /// Counts of the edges of a mesh; `None` for a frame without edges.
@@ -38,7 +38,8 @@ pub struct Stats {
 pub struct TriangleCounts {
     /// Number of triangles in the mesh.
     pub triangles_in: u32,
-    /// Number of triangles that were culled before the walker, which tests the pixels of triangles.
+    /// Number of triangles that were culled before they reached the walker, which tests the pixels
+    /// of triangles.
     pub triangles_culled: u32,
     /// Number of triangles that went through the clipper.
     pub triangles_clipped: u32,
@@ -48,7 +49,8 @@ pub struct TriangleCounts {
     /// `cycles_walking`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels_tested: Option<u64>,
-    /// Pixels covered by triangles and by lines of edges; a pixel counts once for each of them.
+    /// Pixels covered by triangles and by lines of edges. A pixel counts once for each triangle and
+    /// line.
     pub pixels_covered: u64,
     /// Pixels written; `None` for a mesh in a field, where the gateware counts the pixels of the mesh and of the field together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -70,12 +72,13 @@ pub struct RayCounts {
     pub undecided: u32,
 }
 
-/// Counts of a wireframe's picture.
+/// Counts of a frame with a wireframe.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireframeCounts {
     /// Number of segments of the program.
     pub segments: u32,
-    /// Number of segments that are partly behind the view plane and within the guard band.
+    /// Number of segments that are drawn as lines because a part of them is behind the view plane
+    /// and within the guard band.
     pub lines: u32,
     /// Pixels written; a pixel on several lines counts once for each line.
     pub line_pixels: u64,
@@ -86,7 +89,7 @@ pub struct WireframeCounts {
 pub struct EdgeCounts {
     /// Edges of the mesh.
     pub edges_in: u32,
-    /// Edges that are partly in the view volume, which are drawn as lines.
+    /// Edges that are drawn as lines because they are at least partly in the view volume.
     pub edges_drawn: u32,
 }
 

@@ -11,9 +11,10 @@ use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, WebSocket};
 
 /// Longest wait for a message from the page before the messages to the page are sent.
-const LOOK: Duration = Duration::from_millis(4);
+const POLL: Duration = Duration::from_millis(4);
 
-/// Time limits of a page's silence. A browser answers a ping without the page's script.
+/// Time limits for the silence of a page. A browser answers a ping even if the page's script is
+/// busy.
 #[derive(Clone, Copy)]
 pub struct Patience {
     /// Silence after which the server sends a ping.
@@ -35,8 +36,8 @@ pub fn serve(
     channels: &Channels,
     patience: Patience,
 ) -> tungstenite::Result<()> {
-    stream.set_read_timeout(Some(LOOK))?;
-    stream.set_write_timeout(Some(LOOK))?;
+    stream.set_read_timeout(Some(POLL))?;
+    stream.set_write_timeout(Some(POLL))?;
     let config = WebSocketConfig::default()
         .max_message_size(Some(MAX_MESSAGE))
         .max_frame_size(Some(MAX_MESSAGE));
@@ -71,7 +72,7 @@ fn exchange(
             is_done(socket.write(Message::Ping(Bytes::new())))?;
             is_asked = true;
         }
-        // While a picture is being sent, a newer picture replaces the waiting one.
+        // While a picture is being sent, a newer picture replaces the picture in the queue.
         if is_sent {
             let Some(messages) = channels.hub.take(viewer.id()) else {
                 return Ok(Some("the page has fallen behind"));

@@ -19,11 +19,12 @@ use tungstenite::http::{HeaderMap, HeaderValue, Response, StatusCode, header};
 const MAX_HEAD: usize = 8 << 10;
 /// Time-out of receiving a request's head.
 const HEAD_TIME: Duration = Duration::from_secs(5);
-/// Time-out of the rest of a rejected request.
+/// Time-out of reading the rest of a rejected request.
 const REST_TIME: Duration = Duration::from_secs(1);
-/// Maximum number of open connections whose request has been accepted, and of those without an accepted request.
+/// Maximum number of open connections with an accepted request, and of open connections without
+/// one.
 const MAX_CONNECTIONS: usize = 4 * MAX_VIEWERS;
-/// The page's file that exchanges its messages with this program over a WebSocket.
+/// The file of the page that exchanges messages with this program over a WebSocket.
 const LINK: File = File {
     name: "link.js",
     media: SCRIPT,
@@ -33,8 +34,9 @@ const LINK: File = File {
 /// Media type of error replies.
 const TEXT: &str = "text/plain";
 
-/// Header fields of all files: no other page may frame this page, and the address with the token is not sent to other sites. The
-/// page itself declares that it loads nothing from other sites.
+/// Header fields of all files. They forbid other pages to embed this page in a frame, and browsers
+/// to send the address with the token to other sites. The page itself declares that it loads
+/// nothing from other sites.
 const HEADER: [(&str, &str); 5] = [
     ("content-security-policy", "frame-ancestors 'none'"),
     ("referrer-policy", "no-referrer"),
@@ -53,8 +55,8 @@ struct Shared {
     strangers: Mutex<Strangers>,
 }
 
-/// Connections whose request has not been accepted. Above the limit a new one closes the oldest one, so that connections without
-/// the token do not keep pages out.
+/// Connections without an accepted request. Above the limit a new connection closes the oldest
+/// connection, so that connections without the token cannot block pages.
 #[derive(Default)]
 struct Strangers {
     /// Number of the next connection.
@@ -68,7 +70,7 @@ impl Strangers {
         if self.open.len() >= MAX_CONNECTIONS
             && let Some((_, oldest)) = self.open.pop_front()
         {
-            // The peer may have closed it already.
+            // The peer may already have closed the connection.
             let _ = oldest.shutdown(Shutdown::Both);
         }
         let number = self.next;
@@ -138,7 +140,7 @@ impl Server {
         });
         let listener = self.listener;
         let served = Arc::clone(&shared);
-        // The thread waits in `accept`, and ends with the program.
+        // The thread waits in `accept` and is not joined: it ends with the program.
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 accept(stream, &served);
@@ -310,7 +312,8 @@ fn is_host(host: &str, address: SocketAddr) -> bool {
     port == Some(address.port()) && (name == "localhost" || is_number)
 }
 
-/// Compares in constant time: the time does not depend on the position of the first difference.
+/// Compares in constant time, so that the duration does not reveal the position of the first
+/// difference.
 fn is_token(found: &str, token: &str) -> bool {
     let differences = found
         .bytes()
@@ -335,7 +338,7 @@ fn write_file(
     }
     write_response(&mut *stream, &response)?;
     stream.write_all(content.as_bytes())?;
-    // Reads the rest of the request, so that the system does not drop the reply.
+    // The rest of the request is read, because the system could otherwise discard the reply.
     stream.shutdown(Shutdown::Write)?;
     let end = Instant::now() + REST_TIME;
     let mut rest = [0; 4096];

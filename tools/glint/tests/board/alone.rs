@@ -1,20 +1,22 @@
 //! Tests of a board without a host: the demo, buttons, switches, LEDs and digits.
 
+use crate::common::assert_has;
 use glint::board::{EmulatedBoard, built_firmware};
 use glint::board::{Simulation, Uart};
 use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 
-/// Maximum number of cycles of a command.
+/// Time-out of a command in clock cycles.
 pub const LIMIT: u64 = 60_000_000;
 
 /// Number of cycles per millisecond.
 pub const MS: u64 = 81_250;
-/// Time after which digits and LEDs show a new state; they change every half second.
+/// Time in cycles after which digits and LEDs show a new state, because they change every half
+/// second.
 pub const PANEL: u64 = 600 * MS;
 
-/// The built-in list.
+/// The scenes of the built-in list, in order.
 const SCENES: [&str; 5] = [
     "holoforge",
     "wireframe",
@@ -44,7 +46,7 @@ pub fn press(board: &mut EmulatedBoard, button: u8) {
     board.run(40 * MS);
 }
 
-/// The number of the demo's current scene, from 1, and the whole reply to `demo`.
+/// The number of the demo's current scene, counted from 1, and the whole reply to `demo`.
 pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     let answer = command(board, "demo");
     let line = answer.lines().find_map(|line| line.strip_prefix("scene "));
@@ -52,7 +54,7 @@ pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     (number.unwrap_or_else(|| panic!("{answer}")), answer)
 }
 
-/// Content of the four digits on the right.
+/// Segments of the four digits on the right.
 pub fn right(board: &EmulatedBoard) -> [u8; 4] {
     *board.digits().last_chunk().expect("eight digits")
 }
@@ -72,15 +74,11 @@ fn scenes_take_turns() {
         let (found, answer) = turn(&mut board);
         let name = SCENES[number - 1];
         assert_eq!(found, number);
-        assert!(
-            answer.contains(&format!("scene {number} of 5 {name}\r\n")),
-            "{answer}"
-        );
-        assert!(answer.contains("demo on\r\n"), "{answer}");
+        assert_has(&answer, &format!("scene {number} of 5 {name}\r\n"));
+        assert_has(&answer, "demo on\r\n");
         board.run(TURN_MS * MS);
     }
-    let answer = command(&mut board, "info scene");
-    assert!(answer.contains("scene wireframe"), "{answer}");
+    assert_has(&command(&mut board, "info scene"), "scene wireframe");
 }
 
 #[test]
@@ -98,10 +96,7 @@ fn commands_that_set_the_picture_stop_the_demo() {
     ] {
         let answer = command(&mut board, line);
         assert!(answer.contains(line), "{answer}");
-        assert!(
-            command(&mut board, "demo").contains("demo on\r\n"),
-            "after {line}"
-        );
+        assert_has(&command(&mut board, "demo"), "demo on\r\n");
     }
     for line in [
         "scene menger",
@@ -109,15 +104,11 @@ fn commands_that_set_the_picture_stop_the_demo() {
         "size 320 180",
         "light 1,2,3",
     ] {
-        assert!(
-            command(&mut board, line).ends_with("ok\r\nglint> "),
-            "{line}"
-        );
-        let answer = command(&mut board, "demo");
-        assert!(answer.contains("demo off\r\nok"), "{answer} after {line}");
-        assert!(
-            command(&mut board, "demo next").contains("error: demo: off, expected `demo on` first")
-        );
+        let answer = command(&mut board, line);
+        assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
+        assert_has(&command(&mut board, "demo"), "demo off\r\nok");
+        let refused = "error: demo: off, expected `demo on` first";
+        assert_has(&command(&mut board, "demo next"), refused);
         command(&mut board, "demo on");
     }
     command(&mut board, "demo off");
@@ -180,11 +171,8 @@ fn switches_turn_the_overlay_on_and_give_the_buttons_to_the_scene() {
 fn leds_and_digits_show_the_state() {
     let mut board = started();
     board.run(PANEL);
-    assert_eq!(
-        board.leds() & !1,
-        0,
-        "without the demo only the first LED blinks"
-    );
+    // Without the demo only the first LED blinks.
+    assert_eq!(board.leds() & !1, 0);
     assert_eq!(right(&board), [0; 4]);
     command(&mut board, "demo on");
     board.run(100 * MS);

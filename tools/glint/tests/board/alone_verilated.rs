@@ -1,5 +1,5 @@
-//! Power-up of the verilated board from its SPI flash. The test takes minutes on one core: its file name makes it start first, in
-//! parallel with the other tests.
+//! Power-up of the verilated board from its SPI flash. The test takes minutes on one core. Its file
+//! name makes it one of the first tests to start, so that other tests run in parallel.
 
 use crate::power_up::read_until;
 use glint::board::Uart;
@@ -8,10 +8,10 @@ use glint::console::Console;
 use glint::image;
 use virtual_board::virtual_flash::Flash;
 
-/// Number of cycles of a byte on a serial line at 115,200 baud; on the virtual board a byte takes one cycle.
+/// Number of cycles of a byte at 115,200 baud. On the virtual board a byte takes only one cycle.
 const BYTE: u64 = 7053;
 
-/// Returns the next picture of 640×360 pixels on the monitor that is not black.
+/// Returns the next picture on the monitor that is not black, of 640×360 pixels.
 fn picture(board: &mut SimulatedBoard) -> Vec<u16> {
     loop {
         let picture = board.inner().monitor_frame(2).unwrap();

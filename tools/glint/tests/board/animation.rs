@@ -1,4 +1,5 @@
-//! Animations: a board moves the picture by its time, and draws what the model draws of the scene at that state.
+//! Animations: a board moves the scene by its own time, and its picture equals the model's picture
+//! of the scene in the same state.
 
 use crate::common::{emulator, info, renderer};
 use glint::render::{self, Parts, Rendered};
@@ -6,14 +7,17 @@ use glint::scene::{self, Changes};
 use glint_scene_file::SceneFile;
 use virtual_board::Uart;
 
-/// Keys of all scenes.
+/// Keys that all scenes contain.
 const START: &str = "title = \"a\"\nsize = \"320 180\"\n";
 
-/// Time of a motion, in seconds, and its rates in degrees a second.
+/// Duration of a motion in seconds.
 const TIME: f64 = 0.5;
+/// Rate of a motion in degrees per second.
 const RATE: f64 = 40.0;
-/// Largest accepted time of the commands before and after, in seconds, and of a frame: a picture shows the state at its beginning.
+/// Tolerance of the duration in seconds. It covers the commands before and after the motion, and a
+/// frame, because a picture shows the state at the start of its drawing.
 const LATE: f64 = 0.2;
+/// Duration of a frame in seconds.
 const FRAME: f64 = 1.0 / 60.0;
 
 /// The picture of a scene file on the model.
@@ -25,7 +29,8 @@ fn on_model(text: &str) -> Vec<u16> {
 
 #[test]
 fn the_board_draws_the_state_at_its_time() {
-    // The key that the motion changes, the option that shows its state, and the keys that do not change.
+    // The kind of motion, the key that the motion changes with its value, the console command that
+    // prints the new state, and the other keys of the scene.
     let cases = [
         (
             "azimuth",
@@ -60,7 +65,7 @@ fn the_board_draws_the_state_at_its_time() {
         renderer.render_after(&lines, size, Parts::COLOUR).unwrap();
         let hertz = f64::from(renderer.board().inner().clock_hz());
         renderer.board().inner().run((TIME * hertz) as u64);
-        // The console answers, and a picture arrives, while the scene moves.
+        // While the scene moves, the console answers and a picture can be downloaded.
         let console = renderer.console();
         assert_eq!(info::<u32>(console, "size"), 320);
         console.command("render").unwrap();
@@ -80,7 +85,7 @@ fn the_board_draws_the_state_at_its_time() {
         assert!(image.colour == moved, "{part} at {shown}");
         assert!(image.colour != on_model(&start), "{part} moves");
         assert_eq!(stats.backend.as_deref(), Some("gateware"), "{part}");
-        // The picture stays.
+        // The picture does not change any more.
         renderer.board().inner().run(hertz as u64 / 10);
         assert!(
             renderer.colour(size).unwrap() == moved,
@@ -89,7 +94,7 @@ fn the_board_draws_the_state_at_its_time() {
     }
 }
 
-/// A host draws a scene file at the start of its motion.
+/// A host draws a scene in the state at the start of its motion.
 #[test]
 fn a_host_draws_the_start() {
     let file = format!(

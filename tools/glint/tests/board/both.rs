@@ -1,5 +1,5 @@
-//! Compares frames of the gateware on the virtual board with frames of the emulated board's engines: pictures, depths, the
-//! position of a hand and the exact counts are equal.
+//! Compares the gateware on the virtual board with the engines of the emulated board: pictures,
+//! depths, the position of a hand and the exact counts are equal.
 
 use crate::common::{
     console, emulator, emulator_with, mesh, plain, renderer, running_board, two_objects,
@@ -59,7 +59,7 @@ fn both_boards_draw_the_same() {
         (name, frame)
     });
     let by_gateware = drawn(running_board(), &frames);
-    // The words of a descriptor depend on the shading of the gateware.
+    // The number of words of a descriptor depends on the shading of the gateware.
     let by_emulation = drawn(emulator_with(Shading::Flat), &frames);
     for ((name, frame), (expected, found)) in
         frames.iter().zip(by_gateware.iter().zip(&by_emulation))

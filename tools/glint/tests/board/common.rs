@@ -31,7 +31,8 @@ pub fn emulator() -> SimulatedBoard<EmulatedBoard> {
     board::emulated(&built_firmware(None).unwrap()).unwrap()
 }
 
-/// An emulated board as [`emulator`] makes it, whose gateware has this best shading and no textures.
+/// Like [`emulator`], with the best shading of the gateware set to `capability`, and without
+/// textures.
 pub fn emulator_with(capability: Shading) -> SimulatedBoard<EmulatedBoard> {
     let mut board = emulator();
     board.inner().state_shading(capability);
@@ -80,7 +81,7 @@ pub fn counts(stats: &Stats) -> impl PartialEq + std::fmt::Debug {
     (mesh, stats.rays.clone(), others)
 }
 
-/// A mesh without options.
+/// The subject that shows a mesh with default options.
 pub fn plain(mesh: &[u8]) -> MeshSubject<'_> {
     MeshSubject::new(Mesh::new_checked(mesh).unwrap())
 }
@@ -132,7 +133,7 @@ pub fn mesh_frame<'m>(mesh: &'m [u8], camera: &str, size: Size) -> Frame<'m> {
     Frame::new(Subject::mesh(mesh), view::spherical(camera).unwrap(), size)
 }
 
-/// Begins an upload, and stops in the middle of a frame, like a killed program.
+/// Begins an upload, and stops in the middle of a frame of the transfer, like a killed program.
 pub fn begin_upload<B: Board>(console: &mut Console<B>, mesh: &[u8]) {
     let Manifest { length, crc32 } = Manifest::of(mesh);
     let command = format!("load {length} {crc32:08x}");
@@ -166,7 +167,8 @@ pub fn mesh(name: &str) -> Vec<u8> {
         .0
 }
 
-/// The statistics without cycles, clock, backend and engine counters, which the model does not provide.
+/// Removes cycles, clock, backend and engine counters from statistics, because the model does not
+/// provide them.
 pub fn timeless(stats: Stats) -> Stats {
     Stats {
         cycles: None,
@@ -175,6 +177,12 @@ pub fn timeless(stats: Stats) -> Stats {
         engine: Counters::default(),
         ..stats
     }
+}
+
+/// Checks that a text contains another text.
+#[track_caller]
+pub fn assert_has(text: &str, part: &str) {
+    assert!(text.contains(part), "expected {part}, found {text}");
 }
 
 /// The first word of the value that `info` prints for `key`.

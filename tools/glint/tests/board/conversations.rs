@@ -37,10 +37,10 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     transfer::upload(&mut console, &large, None, 2, quiet).unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 320);
 
-    // A second upload of the data: the board already has them, and skips the transfer.
+    // In a second upload of the same data, the board already has the data, and skips the transfer.
     transfer::upload(&mut console, &large, None, 3, quiet).unwrap();
 
-    // Transfers that a user began on the console: a key cancels them, and so does a program.
+    // A key or a program cancels a transfer that a user has started on the console.
     for command in ["load 100 0", "frame"] {
         board.write(format!("{command}\r").as_bytes()).unwrap();
         let mut said = Vec::new();
@@ -59,7 +59,7 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
         assert_eq!(triangles, 320);
     }
 
-    // Noise of an earlier program: a hundred lines that the board refuses.
+    // Noise from an earlier program: a hundred lines that the board refuses.
     board.write(&b"\xff?x\r".repeat(100)).unwrap();
     let triangles = info::<u32>(&mut again(&mut board), "triangles");
     assert_eq!(triangles, 320);

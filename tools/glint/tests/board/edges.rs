@@ -1,5 +1,5 @@
-//! The edges of meshes on the emulated board: the soft core makes segments, the line engine draws lines, and the results equal
-//! the model's.
+//! The edges of meshes on the emulated board: the soft core computes segments, the line engine
+//! draws lines, and the results equal the model's.
 
 use crate::common::{console, counts, drawn_alike, emulator, mesh, plain, renderer};
 use glint::render::{Frame, MeshSubject, Subject};

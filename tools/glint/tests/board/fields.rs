@@ -1,6 +1,8 @@
 //! Pictures of distance fields, alone and with a mesh, by the raymarcher and by the soft core.
 
-use crate::common::{address, drawn_alike, emulator, mesh, plain, read, renderer, timeless};
+use crate::common::{
+    address, assert_has, drawn_alike, emulator, mesh, plain, read, renderer, timeless,
+};
 use glint::board::Board;
 use glint::picture::Image;
 use glint::render::{self, FieldSubject, Frame, Rendered, Subject};
@@ -21,7 +23,8 @@ fn a_field_by_the_cpu_is_the_models() {
     a_field_by(Backend::Cpu, "cpu");
 }
 
-/// Compares the first two lines of a frame, a cube that a box intersects, with the model's while the soft core draws the rest.
+/// Compares the first two lines of a frame with the model's while the soft core draws the rest. The
+/// frame shows a cube that intersects a box.
 #[test]
 fn the_cpu_draws_a_mesh_in_a_field() {
     const PIXELS: usize = 2 * 320;
@@ -47,10 +50,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     let mut seen = colour[..PIXELS].to_vec();
     seen.sort_unstable();
     seen.dedup();
-    assert!(
-        seen.len() > 2,
-        "expected colours of mesh, field and background"
-    );
+    // The lines show mesh, field and background.
+    assert!(seen.len() > 2, "{seen:?}");
     let colours: Vec<u8> = colour.iter().flat_map(|c| c.to_le_bytes()).collect();
     let depths: Vec<u8> = depth.iter().flat_map(|d| d.to_le_bytes()).collect();
 
@@ -119,10 +120,7 @@ fn a_field_by(backend: Backend, name: &str) {
     // Without the field, the board draws the mesh again, and the eye is too far from the origin for a mesh.
     renderer.console().command("field off").unwrap();
     let error = renderer.redraw().unwrap_err().to_string();
-    assert!(
-        error.contains("expected within 8 of the origin for a mesh"),
-        "{error}"
-    );
+    assert_has(&error, "expected within 8 of the origin for a mesh");
     renderer.console().command("camera 2 30 60").unwrap();
     assert_eq!(renderer.redraw().unwrap().triangles().triangles_in, 12);
 }

@@ -1,5 +1,6 @@
-//! A hand in front of the virtual image sensor steers the camera of the scene; covers the whole path from the pins of the
-//! sensor's port through the gesture engine, the firmware and the triangle engine to the monitor.
+//! A hand in front of the virtual image sensor steers the camera of the scene. The tests cover the
+//! whole path from the pins of the sensor's port through the gesture engine, the firmware and the
+//! triangle engine to the monitor.
 
 use crate::common::{console, emulator, mesh};
 use glint::board::Uart;
@@ -16,16 +17,17 @@ use glint_core::picture::Size;
 use std::sync::{Arc, Mutex};
 use virtual_board::virtual_image_sensor::{Hand, ImageSensor, Model, Scene, Timing};
 
-/// Number of clock cycles per millisecond.
+/// Number of clock cycles in a millisecond.
 const MS: u64 = 81_250;
-/// Size of the sensor's frames.
+/// Size of the sensor's frames in pixels.
 const SIZE: [usize; 2] = [320, 240];
 const COMMAND: &str = "gesture";
 
 /// The hand's position in each camera frame.
 type Path = Arc<Mutex<Vec<Hand>>>;
 
-/// The scene in front of an image sensor, set by a test: hands and the brightness of the light.
+/// The scene in front of an image sensor, which a test sets: hands, and the brightness of the
+/// light.
 #[derive(Clone)]
 struct View(Arc<Mutex<(Vec<Hand>, f64)>>);
 
@@ -49,7 +51,8 @@ impl View {
     }
 }
 
-/// A scene with a hand at a position that depends on the time in s, and sensor noise; the path records the hand of each frame.
+/// A scene with sensor noise and a hand whose position depends on the time in s. The path records
+/// the hand of each frame.
 fn sensor_with(hand: impl Fn(f64) -> Hand + Send + 'static) -> (Scene, Path) {
     let path = Path::default();
     let seen = path.clone();
@@ -62,8 +65,8 @@ fn sensor_with(hand: impl Fn(f64) -> Hand + Send + 'static) -> (Scene, Path) {
     (scene, path)
 }
 
-/// A hand in the middle of the frame, which corresponds to the initial camera. From `begin` on the hand moves along a figure
-/// eight, one round in 0.3 s, and becomes larger and smaller.
+/// A hand in the middle of the frame, which corresponds to the initial camera. From the time
+/// `begin` on the hand moves along a figure eight with a period of 0.3 s, and its size changes.
 fn figure_eight(time: f64, begin: f64) -> Hand {
     let turns = std::f64::consts::TAU * (time - begin).max(0.0) / 0.3;
     let width = 0.25 + 0.05 * turns.sin();
@@ -104,13 +107,14 @@ fn run(console: &mut Console<SimulatedBoard<EmulatedBoard>>, milliseconds: u64) 
     console.board().inner().run(milliseconds * MS);
 }
 
-/// Maximum error of the hand's centre in pixels, of the camera's angles in degrees, and of its distance, while the hand moves the
-/// camera at up to four turns per second: the lag of the filters after one camera frame.
-const MOST: [f64; 3] = [0.3, 8.0, 0.2];
-/// Maximum error of the hand's centre in the first 16 ms, in which the hand starts at full speed: the region of a hand at rest
-/// clips the hand in one frame.
+/// Maximum errors of the hand's centre in pixels, of the camera's angles in degrees, and of its
+/// distance, while the hand moves the camera at up to four turns per second. They result from the
+/// lag of the filters after one camera frame.
+const MAX_ERRORS: [f64; 3] = [0.3, 8.0, 0.2];
+/// Maximum error of the hand's centre in pixels in the first 16 ms. The hand starts at full speed,
+/// so in one frame the region of interest, which fits a hand at rest, cuts off a part of the hand.
 const START: f64 = 3.0;
-/// Maximum mean number of cycles of the soft core for a camera frame.
+/// Maximum of the soft core's mean number of cycles for a camera frame.
 const CYCLES: u32 = 4_000;
 
 /// The animation of the frames on the monitor.
@@ -136,7 +140,7 @@ fn the_camera_follows_the_hand() {
         .inner()
         .plug_image_sensor(image_sensor(scene));
     console.command("scene holoforge").unwrap();
-    // Replaces the scene's mesh by the uploaded mesh.
+    // The uploaded mesh replaces the mesh of the scene.
     console.command("scene model").unwrap();
     run(&mut console, 30);
     let now = console.board().inner().cycles();
@@ -144,7 +148,7 @@ fn the_camera_follows_the_hand() {
     let mut worst = [0.0_f64; 3];
     let films = std::env::var_os("GLINT_UPDATE").is_some();
     let mut film = Vec::new();
-    // Half of the path; the whole path for the animation.
+    // The hand moves along half of the path, and for the animation along the whole path.
     for step in 0..if films { 19 } else { 10 } {
         if films {
             film.push(Image {
@@ -187,7 +191,7 @@ fn the_camera_follows_the_hand() {
     let lines = status(&mut console);
     println!("{lines:#?}");
     println!("worst errors: {worst:.3?}");
-    for (worst, most) in worst.into_iter().zip(MOST) {
+    for (worst, most) in worst.into_iter().zip(MAX_ERRORS) {
         assert!(worst < most, "{worst} of at most {most}");
     }
     assert!(entry::<u32>(&lines, "cycles_frame") <= CYCLES);
@@ -232,8 +236,8 @@ const MIDDLE: Hand = Hand {
 /// set-up, and three frames.
 const RETURN: u64 = 125;
 
-/// The camera does not move during any fault; afterwards the hand is tracked again. Then the cases of the table "the image sensor sees"
-/// have their outcomes.
+/// The camera does not move during a fault, and the hand is tracked again after it. Then each case
+/// of the table "the image sensor sees" has the outcome of the table.
 #[test]
 fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let mut board = emulator();
@@ -307,7 +311,7 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     sights_have_their_outcomes(&mut console, &view);
 }
 
-/// Checks that the camera does not move, apart from the filter's response to the previous frames.
+/// Checks that the camera does not move, except for the filter's response to the previous frames.
 fn stays(before: &[String], after: &[String], case: &str) {
     for (was, is) in core::iter::zip(numbers(before, "camera"), numbers(after, "camera")) {
         assert!((was - is).abs() < 0.2, "{case}: {was}, {is}");

@@ -12,14 +12,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use virtual_board::pty::Pty;
 
-/// Number of received bytes at which a transfer counts as half done: more than all commands together, less than the mesh.
+/// Number of received bytes after which a transfer is interrupted: more than all commands together,
+/// fewer than the mesh.
 const PART: usize = 4_000;
 /// The mesh of a killed upload: about 100,000 bytes.
 const LARGE: &str = "icosphere:16";
 /// Seconds without progress after which a test fails.
 const PATIENCE: u32 = 120;
 
-/// A board on a serial port that shows a mesh of 20 triangles.
+/// A board on a serial port. It shows a mesh of 20 triangles.
 struct Port {
     pty: Pty<SimulatedBoard<EmulatedBoard>>,
     /// Number of bytes that the board has received.
@@ -66,7 +67,7 @@ impl Port {
         info["triangles"].as_str().unwrap().to_owned()
     }
 
-    /// Kills an upload with SIGKILL when the board has received part of the mesh.
+    /// Kills an upload with SIGKILL when the board has received a part of the mesh.
     fn kill_an_upload(&self) {
         let received = || self.received.load(Ordering::Relaxed);
         let part = received() + PART;
@@ -91,8 +92,8 @@ fn a_killed_upload_leaves_the_old_model_and_the_next_upload_works() {
     assert_eq!(port.triangles(), "320");
 }
 
-/// The key cancels a transfer that another program has left in the middle of a frame; the bytes are sent as litex_term sends
-/// them.
+/// The key Ctrl-C cancels a transfer that another program has left in the middle of a frame. The
+/// bytes are sent in the way of litex_term.
 #[test]
 fn ctrl_c_cancels_a_half_done_upload() {
     let mut board = emulator();
@@ -119,7 +120,8 @@ fn ctrl_c_cancels_a_half_done_upload() {
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
 }
 
-/// In a session of `glint console`, the key cancels a transfer that was started on the console.
+/// In a session of `glint console`, the key Ctrl-C cancels a transfer that was started on the
+/// console.
 #[test]
 fn ctrl_c_in_a_session_cancels_a_transfer() {
     let port = Port::start();
@@ -138,7 +140,7 @@ fn ctrl_c_in_a_session_cancels_a_transfer() {
     assert!(terminal.child.wait().unwrap().success());
 }
 
-/// A board whose host is stopped for eight seconds after a number of writes, as by the suspension of a laptop.
+/// A board whose host stops for eight seconds after a number of writes, like a suspended laptop.
 struct Stopped {
     board: SimulatedBoard<EmulatedBoard>,
     writes: u32,
@@ -170,7 +172,7 @@ fn transfers_go_on_after_the_host_was_stopped() {
     console(&mut board);
     let mut stopped = Stopped { board, writes: 0 };
     let quiet: &mut transfer::Progress = &mut |_, _| {};
-    // The command, and some frames of the transfer.
+    // The host stops after the command and some frames of the transfer.
     stopped.writes = 10;
     let mut host = Console::new(&mut stopped);
     transfer::upload(&mut host, &mesh("icosphere:4"), None, 1, quiet).unwrap();

@@ -1,6 +1,7 @@
 //! Tests of the complete system: the virtual or the emulated board, its firmware, and the host's side of the serial line.
 //!
-//! Require the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
+//! The tests require the builds of `cargo xtask gateware` and `cargo xtask firmware`, which `cargo
+//! xtask test` makes.
 
 mod alone;
 mod alone_verilated;

@@ -1,8 +1,8 @@
 //! Pictures and depths of meshes are bit-identical to the model's: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
-    drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer, running_board,
-    timeless,
+    assert_has, drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer,
+    running_board, timeless,
 };
 use glint::board::{Board, SimulatedBoard, Simulation};
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject};
@@ -18,7 +18,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The reason why the soft core draws smooth shading.
-const NO_SMOOTH: &str = "triangle engine: this gateware has no smooth shading, expected that of `cargo xtask gateware --smooth`";
+const NO_SMOOTH: &str = "triangle engine: this gateware has no smooth shading, expected a build by `cargo xtask gateware --smooth`";
 
 /// The triangle engine draws smooth shading if the gateware supports it, otherwise the CPU draws it, with a note in `stats`.
 #[test]
@@ -39,27 +39,21 @@ fn smooth_shading_is_the_models_on_every_backend() {
         renderer.set_backend(backend);
         let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "smooth");
         let notes = renderer.console().command("stats").unwrap();
-        let fell_back = notes
-            .iter()
-            .any(|line| line == &format!("fallback {NO_SMOOTH}"));
+        let fell_back = notes.contains(&format!("fallback {NO_SMOOTH}"));
         assert_eq!(fell_back, capability == Shading::Flat, "{notes:#?}");
         let json = renderer.console().command("stats json").unwrap().concat();
-        assert_eq!(
-            json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#)),
-            fell_back
-        );
+        let in_json = json.contains(&format!(r#","fallback":"{NO_SMOOTH}"}}"#));
+        assert_eq!(in_json, fell_back);
         let by_cpu = fell_back || backend.is_some();
         let by = if by_cpu { "cpu" } else { "gateware" };
         assert_eq!(stats.backend.as_deref(), Some(by));
         let info = renderer.console().command("info").unwrap();
-        assert!(
-            info.iter().any(|line| line == "shading smooth"),
-            "{info:#?}"
-        );
+        assert!(info.contains(&"shading smooth".into()), "{info:#?}");
     }
 }
 
-/// The triangle engine draws textures under flat light, if the gateware supports them; otherwise the soft core does, with a note.
+/// The triangle engine draws textures with flat shading if the gateware supports textures.
+/// Otherwise the soft core draws them, and `stats` has a note.
 #[test]
 fn textures_are_the_models_on_every_backend() {
     let texture = texture::encode(&Source {
@@ -73,7 +67,7 @@ fn textures_are_the_models_on_every_backend() {
         ..Source::default()
     });
     let mesh = textured_square(&[texture.unwrap()], 0.5);
-    const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected that of `cargo xtask gateware --texture`";
+    const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected a build by `cargo xtask gateware --texture`";
     const SMOOTH: &str = "fallback triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`";
     for (has_textures, shading, textures, by, fallback) in [
         (true, Shading::Flat, true, "gateware", None),
@@ -120,16 +114,14 @@ fn the_console_notes_a_fallback_once() {
         ("shading smooth", true),
     ] {
         let text = said(command);
-        assert_eq!(
-            text.matches(&note).count(),
-            usize::from(is_noted),
-            "{text:?}"
-        );
+        let notes = text.matches(&note).count();
+        assert_eq!(notes, usize::from(is_noted), "{text:?}");
         assert!(text.ends_with("glint> "), "{text:?}");
     }
 }
 
-/// A patch that is seen from behind has a hint, on the console and in the statistics; with `cull off` or from the front it has none.
+/// For a patch that is seen from behind, the console and the statistics have a hint. With `cull
+/// off`, or from the front, there is no hint.
 #[test]
 fn a_mesh_seen_from_behind_has_a_hint() {
     const SIDE: usize = 40;
@@ -171,10 +163,7 @@ fn a_mesh_seen_from_behind_has_a_hint() {
         board.read(&mut bytes, 50).unwrap();
     }
     let text = String::from_utf8(bytes).unwrap();
-    assert!(
-        text.contains("note: 0 of 3200 triangles are drawn"),
-        "{text:?}"
-    );
+    assert_has(&text, "note: 0 of 3200 triangles are drawn");
 }
 
 /// After a change of the camera, drawing a mesh takes few cycles of the soft core in addition to the engine's passes.
@@ -193,8 +182,9 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     }
 }
 
-/// A coloured directional light, a light at the camera, ambient light and a background, with each backend. The default is tested
-/// last: its commands remove light and background. The board draws each frame into both frame buffers.
+/// A coloured directional light, a light at the camera, ambient light and a background, with each
+/// backend. The default is tested last, because its commands must remove light and background. The
+/// board draws each frame into both frame buffers.
 #[test]
 fn light_and_background_of_meshes_are_the_models_on_every_backend() {
     let mut board = emulator();
@@ -266,7 +256,8 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
     let inside: View = view::parse(inside.as_bytes()).unwrap();
-    // The flag of each camera turns back-face culling on. A camera inside a mesh sees mostly back faces, so its flag is off.
+    // A flag with each camera turns back-face culling on. A camera inside a mesh sees mostly back
+    // faces, so its flag is off.
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut renderer = renderer(board).with_backend(Backend::Cpu);
@@ -279,11 +270,8 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
         let frame = Frame::new(subject, view, size);
         let [found, expected] = drawn_alike(&mut renderer, &frame, &format!("camera {number}"));
         assert_eq!(timeless(found.stats), expected.stats, "camera {number}");
-        let triangles = expected.stats.triangles();
-        assert!(
-            number < 2 || triangles.triangles_clipped > 0,
-            "nothing was clipped"
-        );
+        let clipped = expected.stats.triangles().triangles_clipped;
+        assert!(number < 2 || clipped > 0, "nothing was clipped");
         let shown = renderer.board().inner().monitor_frame(4).unwrap();
         assert!(
             shown == expected.image.colour,
@@ -318,10 +306,8 @@ fn the_monitor_shows_the_larger_sizes() {
         let frame = mesh_frame(&mesh, "2,30,60", size);
         renderer.show(&frame).unwrap();
         let expected = render::on_model(&frame).unwrap().image;
-        assert!(
-            renderer.board().inner().monitor_frame(scale).unwrap() == expected.colour,
-            "{size:?}"
-        );
+        let shown = renderer.board().inner().monitor_frame(scale).unwrap();
+        assert!(shown == expected.colour, "{size:?}");
     }
 }
 

@@ -7,7 +7,7 @@ use glint::render::{Frame, Subject};
 use glint::{transfer, view};
 use glint_core::picture::Size;
 
-/// Objects of three meshes, one of which occurs twice, from a camera that sees them overlap.
+/// Four objects with three meshes, which overlap as seen by the camera.
 #[test]
 fn objects_are_the_models() {
     let meshes = ["cube", "icosphere:1", "sponge:1"].map(mesh);

@@ -6,7 +6,7 @@ use glint::flash;
 use glint_core::flash::{FIRMWARE, encode};
 use virtual_board::virtual_flash::Flash;
 
-/// The BIOS's prompt, without its colours.
+/// The BIOS's prompt without colours.
 const BIOS_PROMPT: &str = "litex";
 
 /// Address of main memory, where the program begins.
@@ -27,7 +27,7 @@ fn board(image: Vec<u8>) -> SimulatedBoard<EmulatedBoard> {
     board
 }
 
-/// Runs the board until it has sent `expected`; returns its output.
+/// Runs the board until it has sent `expected`, and returns its output.
 pub fn read_until<S: Simulation>(board: &mut SimulatedBoard<S>, expected: &str) -> String {
     let mut output = Vec::new();
     while !String::from_utf8_lossy(&output).contains(expected) {

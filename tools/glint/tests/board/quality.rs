@@ -1,4 +1,4 @@
-//! Qualities: each sets its size and its precision, on the model and on a board.
+//! Each quality sets a size and a precision, on the model and on a board.
 
 use crate::common::{console, drawn_alike, emulator, info, renderer};
 use glint::render::{self, FieldSubject, Frame, Subject};
@@ -10,14 +10,15 @@ use glint_core::quality::Quality;
 use glint_model::FrameBuffer;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Tuning, render_field};
 
-/// Size, and threshold and footprint of marching rays.
+/// The size of each quality, and the threshold and the footprint of its marching rays.
 const STATED: [(Quality, Size, [u32; 2]); 3] = [
     (Quality::Fast, Size::W320, [28, 14]),
     (Quality::Balanced, Size::W640, [4, 15]),
     (Quality::Exact, Size::W1280, [2, 15]),
 ];
 
-/// A field whose rays go by exits, without a threshold, and one whose rays march.
+/// A field whose rays step from cell exit to cell exit and have no threshold, and a field whose
+/// rays march.
 const FIELDS: [&str; 2] = ["menger:3", "smooth:0.3,box:1,1,0.2+sphere:0.7"];
 
 fn frame<'a>(field: &'a Field, appearance: &'a Appearance, quality: Quality) -> Frame<'a> {
@@ -74,7 +75,7 @@ fn a_board_has_the_qualities_of_the_model() {
     for quality in Quality::ALL {
         for text in FIELDS {
             let field = Field::parse(text).unwrap();
-            // The quality with its own size, and with another size.
+            // Each quality with its own size, and with another size.
             let own = frame(&field, &appearance, quality);
             let small = Frame {
                 size: Size::W320,
@@ -90,7 +91,7 @@ fn a_board_has_the_qualities_of_the_model() {
             }
         }
     }
-    // Small pictures take more evaluations with each higher quality, if rays march.
+    // If rays march, a higher quality takes more evaluations for a picture of the same size.
     let [fast, balanced, exact] = [1, 4, 7].map(|place| evaluations[place]);
     assert!(fast == balanced && balanced == exact, "{evaluations:?}");
     let [fast, balanced, exact] = [2, 5, 8].map(|place| evaluations[place]);

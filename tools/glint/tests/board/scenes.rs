@@ -6,7 +6,8 @@ use glint::scene::{self, Changes};
 use glint_core::picture::Size;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 
-/// Every scene in the firmware equals the host's scene, drawn by the gateware, without the commands that move its camera.
+/// The gateware's picture of every scene in the firmware equals the model's picture of the host's
+/// scene. The commands that move the camera are left out.
 #[test]
 fn scenes_are_the_models() {
     let mut board = emulator();
@@ -15,7 +16,7 @@ fn scenes_are_the_models() {
         size: Some(Size::W320),
         ..Changes::default()
     };
-    // The list `demo` has the lines of `holoforge`.
+    // The list `demo` starts with the scene `holoforge`, which is drawn anyway.
     for name in NAMES.into_iter().filter(|name| *name != "demo") {
         let scene = built_in(name).unwrap();
         let (view, expected) = scene::draw(&scene, &changes, |frame| {
@@ -36,7 +37,7 @@ fn scenes_are_the_models() {
         assert_eq!(stats.backend.as_deref(), Some("gateware"), "{name}");
         assert!(image.colour == expected.image.colour, "{name}");
     }
-    // The scene at start contains no settings of the other scenes.
+    // The default scene contains no settings of the other scenes.
     let console = renderer.console();
     console.command("scene default").unwrap();
     assert_eq!(info::<String>(console, "scene"), "cube");

@@ -9,7 +9,8 @@ fn console(arguments: &[&str], input: &str) -> Output {
     piped(glint.args(["console", "emulated"]).args(arguments), input)
 }
 
-/// The replies to the commands before the failing command are printed, as lines and as JSON, and no later command is sent.
+/// The replies to the commands before a failing command are printed, as lines and as JSON. No later
+/// command is sent.
 #[test]
 fn replies_before_a_failed_command_are_kept() {
     let send = ["--send", "info triangles", "--send", "infor", "--send"];

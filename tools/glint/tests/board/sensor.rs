@@ -24,7 +24,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
     assert_eq!(entries.len(), 10);
     assert_eq!(entries[0].t_us, 0);
     for pair in entries.windows(2) {
-        // The board prints no sample twice, and skips the samples that it measures while it prints a sample.
+        // The board prints no sample twice, and skips samples that arrive while it prints a sample.
         let step = pair[1].t_us - pair[0].t_us;
         let samples = (step + 500) / 1_000;
         assert!(

@@ -1,5 +1,5 @@
-//! Serial boot through the BIOS, by LiteX's own terminal and by `glint flash`. The firmware's transfer to the verilated board
-//! would take minutes.
+//! Serial boot through the BIOS, by LiteX's own terminal and by `glint flash`. Most tests load a
+//! small program, because a transfer of the firmware to the verilated board would take minutes.
 
 use crate::common::{begin_upload, mesh};
 use crate::power_up::read_until;
@@ -138,7 +138,7 @@ fn accept(board: &mut SimulatedBoard<EmulatedBoard>) {
     board.write(flash::ACCEPT).unwrap();
 }
 
-/// Nothing has read the output of this board, so its requests for a serial boot are old.
+/// No program has read the output of this board, so its requests for a serial boot have expired.
 #[test]
 fn a_board_that_has_waited_is_flashed_at_once() {
     let mut board = board::emulated_bios().unwrap();
@@ -153,7 +153,7 @@ fn a_board_that_has_waited_is_flashed_at_once() {
 
 #[test]
 fn a_boot_that_was_interrupted_does_not_keep_the_next_out() {
-    // The start of a frame that loads data, of which nothing, a part, or all arrives.
+    // The start of a frame that loads data. None, a part or all of these bytes arrive.
     let start = [100, 0x12, 0x34, 1, 0x40, 0, 0, 0];
     for length in [0, 1, start.len()] {
         let mut board = board::emulated_bios().unwrap();

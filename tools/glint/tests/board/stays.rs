@@ -1,6 +1,6 @@
-//! A board that keeps running, and the programs that use it in turn.
+//! A board that keeps running, and programs that use it one after another.
 
-use crate::common::{begin_upload, mesh, piped};
+use crate::common::{assert_has, begin_upload, mesh, piped};
 use crate::serial_boot::{MUTE, printer};
 use crate::terminal::{Terminal, patience};
 use glint::board::Uart;
@@ -39,10 +39,8 @@ impl Stay {
             .unwrap();
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         let port = lines.next().unwrap().unwrap();
-        assert_eq!(
-            std::fs::read_link(folder.join("port")).unwrap(),
-            Path::new(&port)
-        );
+        let target = std::fs::read_link(folder.join("port"));
+        assert_eq!(target.unwrap(), Path::new(&port));
         Self { child, folder }
     }
 
@@ -68,13 +66,14 @@ impl Stay {
 
 impl Drop for Stay {
     fn drop(&mut self) {
-        // The program has already ended, unless the test failed.
+        // An error means that the program has already ended, as it does unless the test failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Begins an upload, and closes the port in the middle of the upload. Until then, no other program can use the port.
+/// Begins an upload, and closes the port in the middle of it. Before that, checks that no other
+/// program can use the port.
 fn upload_a_part(stay: &Stay, port: &Path, mesh: &[u8]) {
     let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
     let mut console = Console::new(&mut board);
@@ -99,10 +98,8 @@ fn programs_use_one_board_in_turn() {
     upload_a_part(&stay, &port, &mesh("icosphere:4"));
     let script = "# the model\n\ninfo triangles\n";
     std::fs::write(stay.folder.join("script"), script).unwrap();
-    assert_eq!(
-        stay.succeed("console port --file script", ""),
-        "triangles 20\n"
-    );
+    let reply = stay.succeed("console port --file script", "");
+    assert_eq!(reply, "triangles 20\n");
     upload_a_part(&stay, &port, &mesh("icosphere:4"));
     stay.succeed("upload icosphere:4 --board port", "");
     let pipe = stay.succeed("console port", "info triangles\n");
@@ -111,7 +108,8 @@ fn programs_use_one_board_in_turn() {
     let info: serde_json::Value = serde_json::from_str(&info).unwrap();
     assert_eq!(info["triangles"], "320");
 
-    // The log contains all output of the board, and the session ends after a text or a time-out.
+    // The log contains all output of the board. The session ends with the text of `--until` or
+    // after the time-out.
     let log = stay.folder.join("log");
     if log.exists() {
         std::fs::remove_file(&log).unwrap();
@@ -119,18 +117,13 @@ fn programs_use_one_board_in_turn() {
     let until = "console port --send 'leds 5' --until 'glint> ' --log log";
     let said = stay.succeed(until, "");
     let log = std::fs::read_to_string(&log).unwrap();
-    assert!(
-        log.contains("leds 5\r\n") && log.ends_with(&said),
-        "{log:?}"
-    );
-    assert!(log.contains("glint> "), "{log:?}");
+    assert!(log.ends_with(&said), "{log:?}");
+    assert_has(&log, "leds 5\r\n");
+    assert_has(&log, "glint> ");
     let output = stay.glint("console port --send info --until never --timeout 1", "");
     assert_eq!(output.status.code(), Some(1));
     let error = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        error.starts_with("error: --until: expected 'never' in time, found '"),
-        "{error}"
-    );
+    assert_has(&error, "error: --until: expected 'never' in time, found '");
 
     let litex_term = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/litex_term");
     let mut terminal = Terminal::start(&litex_term, &[port.to_str().unwrap()]);
@@ -150,7 +143,7 @@ fn programs_use_one_board_in_turn() {
     assert!(!port.is_symlink() && !stay.folder.join("ready").exists());
 }
 
-/// `--pty` replaces only links to pseudo-terminals, and at the end removes only its own link.
+/// `--pty` replaces only links to pseudo-terminals. At the end it removes only its own link.
 #[test]
 fn only_links_to_pseudo_terminals_are_replaced() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-links");
@@ -183,11 +176,9 @@ fn only_links_to_pseudo_terminals_are_replaced() {
         assert_eq!(String::from_utf8(output.stderr).unwrap(), expected);
         assert!(folder.join(name).symlink_metadata().is_ok() && !folder.join("ready").exists());
     }
-    assert_eq!(
-        std::fs::read_to_string(folder.join("to-file")).unwrap(),
-        "mine\n"
-    );
-    // The link of a killed board.
+    let file = std::fs::read_to_string(folder.join("to-file"));
+    assert_eq!(file.unwrap(), "mine\n");
+    // A killed board leaves its link behind.
     let folder = folder.join("folder");
     std::os::unix::fs::symlink("/dev/pts/999999", folder.join("port")).unwrap();
     let mut stay = Stay::start_with("board-links/folder", &[]);
@@ -198,7 +189,8 @@ fn only_links_to_pseudo_terminals_are_replaced() {
     assert_eq!(std::fs::read_link(folder.join("port")).unwrap(), other);
 }
 
-/// A firmware file without an end is rejected within bounded memory, and a signal ends the wait for a pipe.
+/// An endless firmware file is rejected within bounded memory, and a signal ends the wait for a
+/// pipe.
 #[test]
 fn firmware_of_devices_and_pipes() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-pipes");
@@ -209,30 +201,18 @@ fn firmware_of_devices_and_pipes() {
         ["flash", "--board=emulated"],
         ["board", "--flash"],
     ] {
+        let limited = "ulimit -v 800000; exec \"$0\" \"$@\"";
         let output = Command::new("sh")
-            .args([
-                "-c",
-                "ulimit -v 800000; exec \"$0\" \"$@\"",
-                env!("CARGO_BIN_EXE_glint"),
-            ])
+            .args(["-c", limited, env!("CARGO_BIN_EXE_glint")])
             .args([command, option, "/dev/zero"])
             .output()
             .unwrap();
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(
-            error.starts_with("error: /dev/zero: expected at most "),
-            "{error}"
-        );
+        assert_has(&error, "error: /dev/zero: expected at most ");
     }
-    let pipe = folder.join("pipe");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .unwrap()
-            .success()
-    );
+    let made = Command::new("mkfifo").arg(folder.join("pipe")).status();
+    assert!(made.unwrap().success());
     for option in ["--firmware", "--flash"] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(["board", "--pty", "port", option, "pipe"])
@@ -262,9 +242,10 @@ fn a_board_starts_from_an_image() {
     let image = image.to_str().unwrap();
     make_image(&["--scene", "demo"], image);
     let stay = Stay::start_with("board-of-an-image", &["--flash", image]);
-    // A command that is sent before the firmware runs is lost, and repeated. The demo may already show any of its scenes.
+    // A command that is sent before the firmware runs is lost, and repeated. The demo may already
+    // show another of its scenes.
     let scenes = stay.succeed("console port --send scene", "");
-    assert!(scenes.contains("scene start flash\n"), "{scenes}");
+    assert_has(&scenes, "scene start flash\n");
 }
 
 /// The step `the board starts` ends at the prompt of the BIOS, or of the firmware from the flash, and shows the board's cycles.
@@ -308,7 +289,7 @@ fn end_by(signal: &str, child: &mut Child) {
 fn a_board_that_waits_for_a_program_can_always_be_flashed() {
     let stay = Stay::start_with("board-waits", &["--bios"]);
     let mut large = printer("Large program runs\n");
-    // Loading takes longer than this test runs.
+    // Loading this program takes longer than this test runs.
     large.resize(64 << 20, 0);
     std::fs::write(stay.folder.join("large.bin"), large).unwrap();
     let mut small = printer("Program runs\n");
@@ -320,7 +301,8 @@ fn a_board_that_waits_for_a_program_can_always_be_flashed() {
         .current_dir(&stay.folder)
         .spawn()
         .unwrap();
-    // The request comes after two seconds.
+    // The BIOS sends its request after two seconds, so the request has been waiting for three
+    // seconds.
     std::thread::sleep(Duration::from_secs(5));
     assert!(killed.try_wait().unwrap().is_none());
     end_by("TERM", &mut killed);

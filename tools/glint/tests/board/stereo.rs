@@ -1,7 +1,9 @@
-//! Two eyes: pictures of meshes, edges, objects, and meshes in fields on the emulated board equal the model's, which are composed
-//! of two pictures for one eye.
+//! Stereo pictures of meshes, edges, objects, and meshes in fields on the emulated board equal the
+//! combination of the model's two pictures for one eye.
 
-use crate::common::{console, counts, drawn_alike, emulator, mesh, plain, renderer, two_objects};
+use crate::common::{
+    assert_has, console, counts, drawn_alike, emulator, mesh, plain, renderer, two_objects,
+};
 use glint::board::Board;
 use glint::board::Uart;
 use glint::render::{self, FieldSubject, Frame, MeshSubject, Subject};
@@ -13,7 +15,7 @@ use glint_core::picture::{Backend, Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 
-/// The stereo picture composed of the pictures of both eyes.
+/// Combines the pictures of both eyes to a stereo picture.
 fn composed(eyes: &[Frame; 2], tint: Tint) -> Vec<u16> {
     let [left, right] = eyes.map(|frame| render::on_model(&frame).unwrap().image.colour);
     let grey = |pixel| u16::from(luminance(Rgb565(pixel).to_rgb888()));
@@ -70,7 +72,7 @@ fn two_eyes_are_the_models() {
         (Subject::Objects(&objects), outside, "0.1,2", gateware),
         (in_field, outside, "0.1,2,red-cyan", gateware),
         (in_field, outside, "0.3,1", cpu),
-        // Returns to one eye, and to a field without a mesh.
+        // The last cases return to one eye, and to a field without a mesh.
         (mesh(&sphere), outside, "", gateware),
         (Subject::Field(field), outside, "0.1,2", gateware),
     ];
@@ -89,18 +91,10 @@ fn two_eyes_are_the_models() {
             let left = render::on_model(&eyes.left).unwrap().image;
             assert!(expected.depth == left.depth, "case {number}");
         }
-        assert_eq!(
-            counts(&found.stats),
-            counts(&expected.stats),
-            "case {number}"
-        );
-        let by = found.stats.backend.as_deref();
-        let by_cpu = backend == cpu;
-        assert_eq!(
-            by,
-            Some(if by_cpu { "cpu" } else { "gateware" }),
-            "case {number}"
-        );
+        let [found, expected] = [found.stats, expected.stats];
+        assert_eq!(counts(&found), counts(&expected), "case {number}");
+        let by = found.backend.as_deref();
+        assert_eq!(by, Some(backend.name()), "case {number}");
     }
 }
 
@@ -139,7 +133,7 @@ fn no_picture_is_half_composed() {
     assert!(seen.iter().all(|&count| count > 60));
 }
 
-/// Subjects that cannot be drawn for two eyes, and the console's reply.
+/// Subjects that cannot be drawn for two eyes are refused by the console.
 #[test]
 fn a_wireframe_has_one_eye() {
     let mut board = emulator();
@@ -149,19 +143,13 @@ fn a_wireframe_has_one_eye() {
     }
     assert_eq!(console.command("stereo").unwrap(), ["stereo off"]);
     let refused = console.command("stereo 0.1,2").unwrap_err().to_string();
-    assert!(
-        refused.contains("expected `scene NAME` or `field FIELD` first"),
-        "{refused}"
-    );
+    assert_has(&refused, "expected `scene NAME` or `field FIELD` first");
     console.command("stereo off").unwrap();
     for command in ["scene cube", "stereo 0.1,2", "orthographic 2"] {
         console.command(command).unwrap();
     }
     let refused = console.command("render").unwrap_err().to_string();
-    assert!(
-        refused.contains("expected perspective with a field or two eyes"),
-        "{refused}"
-    );
+    assert_has(&refused, "expected perspective with a field or two eyes");
     console.command("fov 60").unwrap();
     console.command("render").unwrap();
 }

@@ -1,4 +1,4 @@
-//! A program that requires a terminal, such as litex_term.
+//! Runs a program that requires a terminal, such as litex_term.
 
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use std::fs::{File, OpenOptions};
@@ -11,7 +11,7 @@ use std::time::Duration;
 /// Number of bytes of output kept for an error message.
 const KEPT: usize = 1000;
 
-/// A program with a terminal as its input, as litex_term requires.
+/// A program whose input is a terminal.
 pub struct Terminal {
     pub child: Child,
     keys: File,
@@ -85,7 +85,7 @@ impl Terminal {
                 self.seen.drain(..at + text.len());
                 return text;
             }
-            // Only the last part of the output is kept, because the progress bar prints megabytes.
+            // Only the last part of the output is kept, because progress bars print megabytes.
             let keep = self
                 .seen
                 .floor_char_boundary(self.seen.len().saturating_sub(KEPT));
@@ -107,7 +107,8 @@ impl Terminal {
     }
 }
 
-/// Returns a function that returns true after a number of calls; a wait for a terminal calls it after each second without output.
+/// Returns a function that returns true after `seconds` calls. A wait for a terminal calls it after
+/// each second without output.
 pub fn patience(seconds: u32) -> impl FnMut() -> bool {
     let mut left = seconds;
     move || {

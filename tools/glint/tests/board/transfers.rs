@@ -1,4 +1,5 @@
-//! Transfers that run concurrently with the other tasks: at the speed of a serial line, with the motion sensor at 1 kHz.
+//! Transfers at the speed of a serial line that run concurrently with other tasks, such as reading
+//! the motion sensor at 1 kHz.
 
 use glint::board::{Simulation, Uart};
 use std::collections::{HashSet, VecDeque};
@@ -12,10 +13,10 @@ use glint::transfer;
 use glint_core::console::PROMPT;
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
-/// Number of cycles of a byte on a line of 1 Mbaud, 8N1.
+/// Number of clock cycles of a byte on a line with 1 Mbaud, 8N1.
 const BYTE: u64 = 10 * MS / 1_000;
-/// Interval of the samples of picture and LEDs in cycles: six blankings.
-const LOOK: u64 = 100 * MS;
+/// Interval in cycles at which picture and LEDs are sampled: six vertical blankings.
+const SAMPLE_PERIOD: u64 = 100 * MS;
 /// Number of cycles without an answer after which the board counts as failed.
 const PATIENCE: u64 = 60_000 * MS;
 /// A mesh of 1 MB.
@@ -26,7 +27,7 @@ struct Line {
     board: EmulatedBoard,
     to_board: VecDeque<u8>,
     from_board: VecDeque<u8>,
-    /// Bytes from the board that have passed the line.
+    /// Bytes from the board that have arrived at the host.
     arrived: Vec<u8>,
     /// Cycle of the last byte to the board.
     last_byte: u64,
@@ -34,7 +35,7 @@ struct Line {
     pictures: Vec<u64>,
     /// Sampled states of the LEDs.
     leds: HashSet<u16>,
-    next_look: u64,
+    next_sample: u64,
 }
 
 impl Line {
@@ -57,11 +58,11 @@ impl Line {
             last_byte: 0,
             pictures: Vec::new(),
             leds: HashSet::new(),
-            next_look: 0,
+            next_sample: 0,
         }
     }
 
-    /// Returns the reply to a command; the line's delay is not simulated.
+    /// Returns the reply to a command, without the delay of the line.
     fn say(&mut self, line: &str) -> String {
         self.board.run(10 * MS);
         self.board.uart_read(&mut self.arrived);
@@ -73,8 +74,8 @@ impl Line {
         answer
     }
 
-    /// Number of samples that the sensor has measured and the firmware has not processed, counted while the sensor is stalled.
-    /// Ends the steering by the sensor.
+    /// Ends the steering by the sensor, and returns the number of samples that the sensor has
+    /// measured but the firmware has not processed. The sensor is stalled while they are counted.
     fn lost(&mut self) -> u64 {
         self.say("imu off");
         self.board.run(500 * MS);
@@ -105,8 +106,8 @@ impl Line {
         self.board.uart_read(&mut sent);
         self.from_board.extend(sent);
         self.arrived.extend(self.from_board.pop_front());
-        if self.board.cycles() >= self.next_look {
-            self.next_look = self.board.cycles() + LOOK;
+        if self.board.cycles() >= self.next_sample {
+            self.next_sample = self.board.cycles() + SAMPLE_PERIOD;
             let mut hasher = DefaultHasher::new();
             self.board.shown().pixels.hash(&mut hasher);
             self.pictures.push(hasher.finish());
@@ -114,12 +115,12 @@ impl Line {
         }
     }
 
-    /// Calls `transfer`. Returns the number of sampled pictures that differ from the previous one, and the number of pictures.
-    /// Checks that the first LED has blinked.
+    /// Calls `transfer`, and checks that the first LED has blinked. Returns the number of sampled
+    /// pictures that differ from the previous picture, and the number of sampled pictures.
     fn watch(&mut self, transfer: impl FnOnce(&mut Console<Self>)) -> (usize, usize) {
         self.pictures.clear();
         self.leds.clear();
-        self.next_look = self.board.cycles();
+        self.next_sample = self.board.cycles();
         transfer(&mut Console::new(self));
         let blinks: HashSet<u16> = self.leds.iter().map(|leds| leds & 1).collect();
         assert_eq!(blinks.len(), 2, "the first LED blinks");
@@ -173,8 +174,8 @@ fn the_sensor_steers_the_picture_during_transfers() {
     });
     assert_eq!(changes, all, "the picture follows");
     assert_eq!(line.lost(), lost, "samples were lost");
-    // The download is a single picture, although others were drawn: a picture of the cube has up to three faces and the
-    // background.
+    // The downloaded picture is a single picture, although the board drew others: a picture of the
+    // cube has at most the colours of three faces and the background.
     let colours: HashSet<_> = frame.chunks(2).collect();
     assert!((2..=4).contains(&colours.len()), "{colours:?}");
 }
@@ -207,7 +208,8 @@ fn an_upload_goes_on_while_the_cpu_draws() {
     }
     let start = line.board.cycles();
     line.watch(|console| upload(console, &mesh));
-    // The acknowledgements came in time, so the transfer did not wait for the end of a frame. The reply has.
+    // The acknowledgements arrived in time, so the transfer did not wait for the end of a frame,
+    // but the reply did.
     let (sent, all) = (line.last_byte - start, line.board.cycles() - start);
     assert!(sent < 2 * BYTE * mesh.len() as u64, "{sent} cycles");
     assert!(

@@ -79,10 +79,10 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     assert!(read(&mut console, staging, mesh.len()) == mesh);
 }
 
-/// Points along a side of the mesh of [`many`].
+/// Number of points along a side of the mesh of [`many`].
 const SIDE: u32 = 256;
 
-/// A square with `count` triangles of some pixels each, half of which face away.
+/// A square with `count` triangles of some pixels each. Half of the triangles face away.
 fn many(count: u32) -> Vec<u8> {
     let places = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| [x, y]));
     let vertices: Vec<_> = places
@@ -112,8 +112,9 @@ fn many(count: u32) -> Vec<u8> {
     encode(&vertices, &triangles).unwrap()
 }
 
-/// A board accepts a mesh if a frame has room for the half of its triangles; the host refuses a larger one before it sends a byte.
-/// Descriptors for smooth shading are twice as long.
+/// A board accepts a mesh if the memory of a frame has space for half of its triangles, whose
+/// descriptors are twice as long for smooth shading. The host refuses a larger mesh before it sends
+/// a byte.
 #[test]
 fn a_mesh_has_at_most_the_triangles_that_the_board_can_draw() {
     most_triangles(Shading::Flat, 131_072);
@@ -134,7 +135,7 @@ fn most_triangles(capability: Shading, most: u32) {
     let expected =
         format!("mesh of {found} triangles: expected at most {most}, which this board can draw");
     assert_eq!(refused.to_string(), expected);
-    // Another host does not ask before.
+    // A host that does not check the limit is refused by the board.
     let console = renderer.console();
     transfer::stage(console, &large).unwrap();
     let Manifest { length, crc32 } = Manifest::of(&large);
@@ -183,8 +184,8 @@ fn a_bad_upload_leaves_the_old_model() {
         Err(ConsoleError::Refused { .. })
     ));
 
-    // Bytes that arrive undamaged but are not a mesh: a reserved byte of a chunk's header is not 0, or an index exceeds the
-    // number of vertices.
+    // These bytes arrive undamaged, but are not a valid mesh: a reserved byte of a chunk's header
+    // is not 0, or an index exceeds the number of vertices.
     let last_triangle = other.len() - 16;
     for (number, at) in [(3, 40), (4, last_triangle + 1)] {
         let mut damaged = other.clone();

@@ -1,4 +1,5 @@
-//! The wireframe simulator on the emulated board: bouncing buttons, switches, commands and uploads, with a check of every frame.
+//! The wireframe simulator on the emulated board, with bouncing buttons, switches, commands and
+//! uploads. Every frame is checked.
 
 use crate::common::{address, console, emulator, info, renderer};
 use glint::board::{EmulatedBoard, SimulatedBoard};
@@ -10,7 +11,7 @@ use glint::{generate, view, wireframe};
 use glint_core::picture::Size;
 use glint_core::wireframe::{Key, Motion, Program, Requests, Viewing};
 
-/// Clock cycles of a millisecond.
+/// Number of clock cycles in a millisecond.
 const MS: u64 = 81_250;
 /// Addresses of the two frame buffers.
 const BUFFERS: [u32; 2] = [0x4100_0000, 0x4120_0000];
@@ -55,7 +56,8 @@ fn count(stats: &[String], name: &str) -> u64 {
     found.unwrap().trim().parse().unwrap()
 }
 
-/// Sets the buttons to each value for a number of milliseconds, then waits until the frames are drawn.
+/// Sets the buttons to each value for its number of milliseconds, then waits until the frames are
+/// drawn.
 fn buttons(console: &mut Console<SimulatedBoard<EmulatedBoard>>, script: &[(u8, u64)]) {
     let board = console.board().inner();
     for &(pressed, ms) in script {

@@ -1,6 +1,6 @@
 //! `glint imu replay` with the model.
 
-use crate::common::{all_refused, folder, refused, report, said, succeed};
+use crate::common::{all_refused, assert_has, folder, refused, report, said, succeed};
 
 #[test]
 fn logs_of_a_gyroscope() {
@@ -11,13 +11,8 @@ fn logs_of_a_gyroscope() {
     for i in (0..=1090).chain([1100]) {
         let noise = i * 7 % 5 - 2;
         let turning = if i > 100 { 1476 } else { 0 };
-        log += &format!(
-            "{},{},{},{},-500,0,0,4096\n",
-            20 + noise,
-            -10 - noise,
-            5 + turning,
-            3_000_000 + i * 1000
-        );
+        let [x, y, z] = [20 + noise, -10 - noise, 5 + turning];
+        log += &format!("{x},{y},{z},{},-500,0,0,4096\n", 3_000_000 + i * 1000);
     }
     std::fs::write(folder.join("turn.csv"), &log).unwrap();
     let replay = |log: &str, more: &str| -> Vec<String> {
@@ -40,28 +35,21 @@ fn logs_of_a_gyroscope() {
     assert_eq!(last[0], 4_100_000.0);
     // The angle is less than 90°: half a step is lost between the last sample at rest and the first sample in motion, and the
     // jump of the rate adds the error of the cubic interpolation.
-    assert!(
-        (last[5] - 89.96).abs() < 0.02 && last[6].abs() < 0.1 && last[7].abs() < 0.1,
-        "{last:?}"
-    );
+    assert!((last[5] - 89.96).abs() < 0.02, "{last:?}");
+    assert!(last[6].abs() < 0.1 && last[7].abs() < 0.1, "{last:?}");
     let summary: serde_json::Value = serde_json::from_str(&said[0]).unwrap();
     assert_eq!(summary["steps"], 1091);
     assert_eq!(summary["calibration"]["samples"], 100);
-    assert_eq!(
-        summary["calibration"]["bias"],
-        serde_json::json!([20.0, -10.0, 5.0])
-    );
+    let bias = serde_json::json!([20.0, -10.0, 5.0]);
+    assert_eq!(summary["calibration"]["bias"], bias);
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
 
-    // Twice the sample period and half the rate per count give an equal attitude. The gap of 10 ms becomes an ordinary step,
-    // because the period is fixed.
+    // Twice the sample period and half the rate per count give the same attitude. The gap of 10 ms
+    // becomes an ordinary step, because the period is fixed.
     let said = replay("turn.csv", "--dt-us 2000 --gyro-lsb 32.8 --no-tilt");
-    assert!(
-        said[0].starts_with("samples     1092 in 2.182 s: 1091 steps, 0 stale, "),
-        "{}",
-        said[0]
-    );
+    let start = "samples     1092 in 2.182 s: 1091 steps, 0 stale, ";
+    assert!(said[0].starts_with(start), "{}", said[0]);
     let turned = numbers(said.last().unwrap())[5];
     // Without calibration, the rate includes the bias of 5 LSB.
     let expected = (991.0 * 1481.0 + 100.5 * 5.0) * 0.002 / 32.8;
@@ -74,11 +62,8 @@ fn logs_of_a_gyroscope() {
     assert_eq!(angles(""), [0.0, 0.0, 90.0]);
     assert_eq!(angles("--no-tilt"), [0.0, 0.0, 0.0]);
 
-    std::fs::write(
-        folder.join("bad.csv"),
-        side.replace("1000,0,4096", "1000,0,4096.5"),
-    )
-    .unwrap();
+    let bad = side.replace("1000,0,4096", "1000,0,4096.5");
+    std::fs::write(folder.join("bad.csv"), bad).unwrap();
     all_refused(
         &folder,
         "
@@ -124,7 +109,7 @@ fn a_rest_of_zero_seconds_is_none() {
     assert!(error.contains("keep it still"), "{error}");
 }
 
-/// A clock of 32 bits that wraps loses nothing; a wrong time stamp and a gap are stated as warnings.
+/// No sample is lost when a 32-bit clock wraps. Warnings report a wrong time stamp and a gap.
 #[test]
 fn time_stamps_of_real_clocks() {
     let folder = folder("clocks");
@@ -135,7 +120,7 @@ fn time_stamps_of_real_clocks() {
         }
         std::fs::write(folder.join(name), log).unwrap();
     };
-    // Twelve samples at 90 °/s, whose microseconds wrap after the third.
+    // Twelve samples at 90 °/s. The time stamps wrap after the third sample.
     let wrapped: Vec<u64> = (0..12)
         .map(|i| (4_294_964_296 + 1000 * i) % (1 << 32))
         .collect();
@@ -143,10 +128,7 @@ fn time_stamps_of_real_clocks() {
     let [summary, messages] = said(&folder, "imu replay wrap.csv --out wrapped.csv --json");
     assert_eq!(messages, "");
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
-    assert_eq!(
-        (&summary["steps"], &summary["stale"]),
-        (&11.into(), &0.into())
-    );
+    assert_eq!([&summary["steps"], &summary["stale"]], [11, 0]);
     assert_eq!(summary["seconds"], 0.011);
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - 0.99).abs() < 0.001, "{yaw}");
@@ -160,9 +142,6 @@ fn time_stamps_of_real_clocks() {
     assert_eq!(summary["seconds"], 5.001);
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - 90.0).abs() < 0.001, "{yaw}");
-    assert!(
-        messages.contains("wild.csv: ignored samples: 1, "),
-        "{messages}"
-    );
-    assert!(messages.contains("wild.csv: gaps: 1, "), "{messages}");
+    assert_has(&messages, "wild.csv: ignored samples: 1, ");
+    assert_has(&messages, "wild.csv: gaps: 1, ");
 }

@@ -1,6 +1,6 @@
 //! The camera that shows the whole model, and the lens options.
 
-use crate::common::{drawn, folder, glint, picture, refused, said};
+use crate::common::{assert_has, drawn, failed, folder, picture, refused, said};
 
 /// The first and the last drawn row and column of a picture with a black background.
 fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
@@ -16,7 +16,8 @@ fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
 #[test]
 fn the_whole_model_fills_four_fifths_of_the_height() {
     let folder = folder("framing");
-    // A sphere fills its bounding sphere; at another position and size the picture is identical.
+    // The camera fits a sphere exactly, so the picture does not depend on the sphere's position and
+    // size.
     for model in [
         "icosphere:20",
         "--object 'icosphere:20 scale 0.3 move 1,-1,0.5'",
@@ -26,49 +27,33 @@ fn the_whole_model_fills_four_fifths_of_the_height() {
     ] {
         let [[top, bottom], [left, right]] = extent(&drawn(&folder, &format!("render {model}")));
         for (low, high, all) in [(top, bottom, 180), (left, right, 320)] {
-            assert!(
-                (high + 1 - low).abs_diff(144) <= 2,
-                "{model:?} {low} {high}"
-            );
-            assert!(
-                (low + high + 1).abs_diff(all) <= 2,
-                "{model:?} {low} {high}"
-            );
+            let is_fitted = (high + 1 - low).abs_diff(144) <= 2;
+            let is_centred = (low + high + 1).abs_diff(all) <= 2;
+            assert!(is_fitted && is_centred, "{model:?} {low} {high}");
         }
     }
-    // Every model is completely in the picture.
+    // The picture shows every model completely.
     for model in ["cube", "gear", "teapot", "torus-knot", "sponge:2"] {
         let [[top, bottom], [left, right]] = extent(&drawn(&folder, &format!("render {model}")));
-        assert!(
-            top > 10 && bottom < 169 && left > 10 && right < 309,
-            "{model}"
-        );
-        assert!(bottom - top > 60, "{model}");
+        let is_inside = top > 10 && bottom < 169 && left > 10 && right < 309;
+        assert!(is_inside && bottom - top > 60, "{model}");
     }
     let [[top, bottom], _] = extent(&drawn(&folder, "render icosphere:20 --zoom 0.5"));
     assert!((bottom + 1 - top).abs_diff(72) <= 2);
     let error = refused(&folder, "render icosphere:20 --out b.png --zoom 0");
-    assert!(
-        error.starts_with("error: --zoom: expected a factor"),
-        "{error}"
-    );
+    assert_has(&error, "error: --zoom: expected a factor");
 }
 
 #[test]
 fn the_axis_that_is_up() {
     let folder = folder("up");
-    // A column along y, and a column along z.
+    // One column along y, and one along z.
     let column = |to: [usize; 3]| {
         let line = |[x, y, z]: [f64; 3]| {
             let v = [x, y, z];
             format!("v {} {} {}\n", v[to[0]], v[to[1]], v[to[2]])
         };
-        let points = [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.0, 0.0, 4.0],
-        ];
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 4.0]];
         let faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
         points.map(line).concat() + faces
     };
@@ -86,10 +71,8 @@ fn the_axis_that_is_up() {
     assert!(drawn("y.obj --up z").0 != upright);
     let orthographic = "--field box:1,1,1 --orthographic 2 --out b.png";
     for command in ["render", "orbit"] {
-        let output = glint(&folder, &format!("{command} {orthographic}"));
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains("cannot be used with"), "{error}");
+        let error = failed(&folder, &format!("{command} {orthographic}"), 2);
+        assert_has(&error, "cannot be used with");
     }
     assert!(!folder.join("b.png").exists());
 }

@@ -35,7 +35,7 @@ pub fn glint_in(folder: &Path, command: &str, variables: &[(&str, &str)]) -> Out
     glint_within(256, folder, command, variables)
 }
 
-/// Runs a command with this many MiB of address space.
+/// Runs a command with `mebibytes` MiB of address space.
 pub fn glint_within(
     mebibytes: u32,
     folder: &Path,
@@ -55,7 +55,7 @@ pub fn glint_within(
         .unwrap()
 }
 
-/// Runs a command with exactly these arguments, and returns its standard output and standard error.
+/// Runs a command without additional arguments, and returns its standard output and standard error.
 pub fn said(folder: &Path, command: &str) -> [String; 2] {
     let output = glint(folder, command);
     let [out, error] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
@@ -63,7 +63,7 @@ pub fn said(folder: &Path, command: &str) -> [String; 2] {
     [out, error]
 }
 
-/// Runs a command that replaces its earlier output files, and returns its standard output.
+/// Runs a command with `--force`, which must succeed, and returns its standard output.
 pub fn succeed(folder: &Path, command: &str) -> String {
     let [out, _] = said(folder, &format!("{command} --force"));
     out
@@ -80,18 +80,37 @@ pub fn drawn(folder: &Path, command: &str) -> Vec<u8> {
     picture(&folder.join("a.png"))
 }
 
-/// Runs a command on input that it must reject; returns its error, which has one line.
-pub fn refused(folder: &Path, command: &str) -> String {
+/// Checks that a text contains another text.
+#[track_caller]
+pub fn assert_has(text: &str, part: &str) {
+    assert!(text.contains(part), "{text}");
+}
+
+/// Runs a command that must fail with this exit code; returns its standard error.
+pub fn failed(folder: &Path, command: &str, code: i32) -> String {
     let output = glint(folder, command);
     let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{command}: {error}");
-    assert_eq!(error.lines().count(), 1, "{command}: {error}");
+    assert_eq!(output.status.code(), Some(code), "{command}: {error}");
     assert!(output.stdout.is_empty(), "{command}");
-    assert!(
-        error.contains("expected ") && error.contains("found "),
-        "{command}: {error}"
-    );
+    error
+}
+
+/// Runs a command on input that it must reject; returns its error, which has one line.
+pub fn refused(folder: &Path, command: &str) -> String {
+    let error = failed(folder, command, 2);
+    assert_eq!(error.lines().count(), 1, "{command}: {error}");
+    assert_has(&error, "expected ");
+    assert_has(&error, "found ");
     error.trim_end().to_owned()
+}
+
+/// The rows of a table; `→` separates the `N` cells of a row.
+pub fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    let rows = table.lines().filter(|row| !row.trim().is_empty());
+    rows.map(|row| {
+        let cells: Vec<_> = row.split('→').map(str::trim).collect();
+        cells.try_into().unwrap_or_else(|_| panic!("{row}"))
+    })
 }
 
 /// Runs commands that must be rejected. Each command is a line, and its error is the next line; `…` stands for any text at the
@@ -109,8 +128,8 @@ pub fn all_refused(folder: &Path, cases: &str) {
     }
 }
 
-/// Writes files that each command, in which `FILE` stands for the name, must reject; `errors` has a line for each file as in
-/// [`all_refused`].
+/// Writes files that each command must reject. `FILE` in a command stands for the name of the file;
+/// `errors` has a line for each file, as in [`all_refused`].
 pub fn files_refused<const N: usize>(
     folder: &Path,
     commands: [&str; N],
@@ -134,7 +153,7 @@ pub fn files_refused<const N: usize>(
 pub const VIEW: &str =
     r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
 
-/// Reads the RGB pixels of a picture, whose sides must be 16:9.
+/// Reads the RGB pixels of a picture, whose aspect ratio must be 16:9.
 pub fn picture(path: &Path) -> Vec<u8> {
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();

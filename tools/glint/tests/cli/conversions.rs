@@ -1,6 +1,8 @@
 //! `glint model` and `glint convert`.
 
-use crate::common::{SQUARE, all_refused, drawn, folder, glint_within, refused, report, succeed};
+use crate::common::{
+    SQUARE, all_refused, assert_has, drawn, folder, glint_within, refused, report, succeed,
+};
 use glint::formats::gltf::example::{TWO_MESHES, as_binary};
 
 #[test]
@@ -18,10 +20,7 @@ fn conversions_by_every_way_agree() {
     // STL has neither shared points nor point colours: each face has its own colour, and therefore its own vertices.
     succeed(&folder, "convert straight.glm between.stl --keep-scale");
     let report = report(&folder, "convert between.stl back.glm --keep-scale");
-    assert_eq!(
-        (&report["vertices"], &report["triangles"]),
-        (&960.into(), &320.into())
-    );
+    assert_eq!([&report["vertices"], &report["triangles"]], [960, 320]);
     assert_eq!(report["error_max"], 0.0);
 }
 
@@ -37,10 +36,7 @@ fn gltf_in_both_forms() {
     std::fs::write(folder.join("with space.bin"), buffer).unwrap();
     for name in ["binary.glb", "text.gltf"] {
         let report = report(&folder, &format!("convert {name} out.glm"));
-        assert_eq!(
-            (&report["points"], &report["triangles"]),
-            (&8.into(), &4.into())
-        );
+        assert_eq!([&report["points"], &report["triangles"]], [8, 4]);
         assert_eq!(report["remarks"][0], "points and lines are ignored");
         drawn(&folder, &format!("render {name}"));
     }
@@ -92,11 +88,8 @@ fn wrong_winding_is_repaired_in_every_format() {
                 let out = format!("out.{extension}");
                 let command = format!("convert {input}.obj {out} --keep-scale {more}");
                 let text = succeed(&folder, &command);
-                assert_eq!(
-                    text.contains("winding: 107 of 320 faces"),
-                    !more.is_empty(),
-                    "{text}"
-                );
+                let is_repaired = text.contains("winding: 107 of 320 faces");
+                assert_eq!(is_repaired, !more.is_empty(), "{text}");
                 std::fs::read(folder.join(out)).unwrap()
             });
         assert!(whole == repaired, "{extension}");
@@ -106,22 +99,20 @@ fn wrong_winding_is_repaired_in_every_format() {
 #[test]
 fn a_material_file_beside_the_mesh() {
     let folder = folder("materials");
-    std::fs::write(
-        folder.join("a.obj"),
-        format!("mtllib sub/a.mtl\nusemtl red\n{SQUARE}"),
-    )
-    .unwrap();
+    let obj = format!("mtllib sub/a.mtl\nusemtl red\n{SQUARE}");
+    std::fs::write(folder.join("a.obj"), obj).unwrap();
     let text = succeed(&folder, "convert a.obj a.glm");
-    assert!(
-        text.contains("note       no material file 'sub/a.mtl' beside the mesh"),
-        "{text}"
+    assert_has(
+        &text,
+        "note       no material file 'sub/a.mtl' beside the mesh",
     );
     std::fs::write(folder.join("a.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
     let text = succeed(&folder, "convert a.obj a.glm");
     assert!(!text.contains("note"), "{text}");
     std::fs::write(folder.join("a.mtl"), "newmtl red\nKd 1 x 0\n").unwrap();
+    let error = refused(&folder, "convert a.obj b.glm");
     assert_eq!(
-        refused(&folder, "convert a.obj b.glm"),
+        error,
         "error: sub/a.mtl: line 2: expected a number, found 'x'"
     );
 }
@@ -148,13 +139,8 @@ fn concave_polygons_of_8000_corners_load_in_bounded_memory() {
     assert!(output.status.success(), "{error}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let number = |key: &str| report[key].as_i64().unwrap();
-    assert_eq!(
-        [number("points"), number("faces")],
-        [corners, polygons].map(i64::from)
-    );
-    let triangles = polygons * (corners - 2);
-    assert_eq!(
-        number("triangles") + number("degenerate"),
-        i64::from(triangles)
-    );
+    let expected = [corners, polygons].map(i64::from);
+    assert_eq!([number("points"), number("faces")], expected);
+    let triangles = number("triangles") + number("degenerate");
+    assert_eq!(triangles, i64::from(polygons * (corners - 2)));
 }

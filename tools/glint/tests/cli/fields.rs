@@ -1,6 +1,8 @@
 //! `glint render` of distance fields, alone and with a mesh, with the model.
 
-use crate::common::{SQUARE, VIEW, depths, drawn, folder, json, picture, refused, said, succeed};
+use crate::common::{
+    SQUARE, VIEW, assert_has, depths, drawn, folder, json, picture, refused, said, succeed,
+};
 
 #[test]
 fn fields_and_their_files() {
@@ -10,10 +12,8 @@ fn fields_and_their_files() {
     let view = view.replace("0.9", "0.05").replace("0.1}", "0.5}");
     std::fs::write(folder.join("far.json"), view).unwrap();
     let render = |field: &str, more: &str| {
-        let said = succeed(
-            &folder,
-            &format!("render --field {field} --out a.png {more}"),
-        );
+        let command = format!("render --field {field} --out a.png {more}");
+        let said = succeed(&folder, &command);
         (picture(&folder.join("a.png")), said)
     };
     let seen = "--view far.json --depth a.f32 --stats a.json";
@@ -22,44 +22,38 @@ fn fields_and_their_files() {
     let stats = json(&folder.join("a.json"));
     let number = |key: &str| stats[key].as_u64().unwrap();
     assert_eq!(number("rays"), 320 * 180);
-    assert_eq!(
-        number("rays"),
-        number("hits") + number("misses") + number("undecided")
-    );
+    let outcomes = number("hits") + number("misses") + number("undecided");
+    assert_eq!(number("rays"), outcomes);
     let mean = number("evaluations") as f64 / number("rays") as f64;
     assert_eq!(stats["evaluations_per_ray"], mean);
     assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
 
-    // The picture shows the box's front face in the colour of its normal, on a white background.
+    // The picture shows the box's front face, in the colour of the face's normal, on a white
+    // background.
     let depth = depths(&folder.join("a.f32"));
     for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
-        assert!(
-            *z == f32::INFINITY && pixel == [0xff; 3] || (z - 19.5).abs() < 0.05,
-            "{z} {pixel:?}"
-        );
+        let is_background = *z == f32::INFINITY && pixel == [0xff; 3];
+        assert!(is_background || (z - 19.5).abs() < 0.05, "{z} {pixel:?}");
     }
     assert!(number("hits") > 0);
-    assert_eq!(
-        depth.iter().filter(|z| z.is_finite()).count() as u64,
-        number("hits")
-    );
+    let hits = depth.iter().filter(|z| z.is_finite()).count();
+    assert_eq!(hits as u64, number("hits"));
 
     let eyes = "--view far.json --stereo 0.05,18 --json";
     let (two, said) = render("box:0.5,0.5,0.25", eyes);
     assert_ne!(one, two);
     assert!(
-        said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
+        said.starts_with("{\"field\":\"box:0.5,0.5,0.25\","),
         "{said}"
     );
+    assert_has(&said, "\"rays\":115200,");
     // More than four lights are an error.
     let lights = " --light 0,0,1".repeat(5);
-    assert_eq!(
-        refused(
-            &folder,
-            &format!("render --field menger:1 --out b.png{lights}")
-        ),
-        "error: --light: expected at most 4 lights, found 5"
+    let error = refused(
+        &folder,
+        &format!("render --field menger:1 --out b.png{lights}"),
     );
+    assert_eq!(error, "error: --light: expected at most 4 lights, found 5");
     // One blue light from above and no ambient light: the box's top is blue, its other sides are black, and the background is
     // white.
     let blue = "--material ivory --light 0,0,1,0000ff --ambient 000000";
@@ -68,14 +62,10 @@ fn fields_and_their_files() {
     colours.sort_unstable();
     colours.dedup();
     assert_eq!(colours, [&[0, 0, 0], &[0, 0, 231], &[255; 3]]);
-    for more in [
-        "--material clay",
-        "--background sky",
-        "--fog 0.2",
-        "--occlusion",
-    ] {
-        let with = render("menger:2", more).0;
-        assert_ne!(with, render("menger:2", "").0, "{more}");
+    let (plain, _) = render("menger:2", "");
+    for more in "material clay,background sky,fog 0.2,occlusion".split(',') {
+        let (with, _) = render("menger:2", &format!("--{more}"));
+        assert_ne!(with, plain, "{more}");
     }
     // The default camera shows the whole sponge: the first pixel of the picture is background. A camera at distance 3 gives a
     // different picture.
@@ -84,8 +74,8 @@ fn fields_and_their_files() {
     assert_ne!(sponge, render("menger:3", "--camera 3,30,60").0);
 }
 
-/// Draws a sphere of radius 1 as a mesh in a box as a field: the sphere protrudes from the box's faces, and the box's corners
-/// protrude from the sphere.
+/// Draws a mesh, a sphere of radius 1, in a field, a box: the sphere protrudes from the box's
+/// faces, and the box's corners protrude from the sphere.
 #[test]
 fn a_mesh_in_a_field() {
     let folder = folder("mesh-in-field");
@@ -110,19 +100,12 @@ fn a_mesh_in_a_field() {
         }
         let nearer = if a < b { &mesh } else { &field };
         assert_eq!(pixel, &nearer[3 * i..3 * i + 3], "pixel {i}");
-        assert!(
-            (depth[i] - a.min(b)).abs() < 1e-3 || depth[i] == a.min(b),
-            "pixel {i}"
-        );
+        let is_near = (depth[i] - a.min(b)).abs() < 1e-3;
+        assert!(is_near || depth[i] == a.min(b), "pixel {i}");
         seen[usize::from(b < a)] += 1;
     }
     assert!(seen.iter().all(|&pixels| pixels > 1000), "{seen:?}");
-    for key in [
-        "triangles_in",
-        "triangles_drawn",
-        "pixels_tested",
-        "pixels_covered",
-    ] {
+    for key in "triangles_in triangles_drawn pixels_tested pixels_covered".split(' ') {
         assert_eq!(stats[key], mesh_stats[key], "{key}");
     }
     for key in ["rays", "hits", "evaluations", "evaluations_per_ray"] {
@@ -130,12 +113,8 @@ fn a_mesh_in_a_field() {
     }
     assert!(stats.get("pixels_drawn").is_none());
     let starts = ["triangles  ", "pixels     ", "rays       ", "field      "];
-    assert!(
-        said.lines()
-            .zip(starts)
-            .all(|(line, start)| line.starts_with(start)),
-        "{said}"
-    );
+    let mut lines = said.lines().zip(starts);
+    assert!(lines.all(|(line, start)| line.starts_with(start)), "{said}");
 }
 
 #[test]
@@ -156,7 +135,7 @@ fn warnings_of_pictures_that_show_nothing() {
         None => format!("{line}\n"),
     });
     std::fs::write(folder.join("room.obj"), inside_out.collect::<String>()).unwrap();
-    // A square, and a small triangle above it whose back is in view from above.
+    // A square, and a small triangle above it, whose back is visible from above.
     let two = format!("{SQUARE}v 0 0 .1\nv .2 0 .1\nv .2 .2 .1\nf 7 6 5\n");
     std::fs::write(folder.join("two.obj"), two).unwrap();
     for (arguments, expected) in [
@@ -181,8 +160,8 @@ fn warnings_of_pictures_that_show_nothing() {
     }
 }
 
-/// Rays that reach the step limit have the colour of the horizon, like sky and fog in the distance. They are counted; an option
-/// draws them in magenta.
+/// Rays that reach the step limit have the colour of the horizon, like sky and fog in the distance.
+/// The statistics count these rays, and an option draws them in magenta.
 #[test]
 fn undecided_rays_have_the_colour_of_the_horizon() {
     let folder = folder("undecided");

@@ -1,6 +1,6 @@
 //! Makes, lists, checks and writes images for SPI flash.
 
-use crate::common::{folder, glint, refused, report, succeed};
+use crate::common::{assert_has, folder, glint, refused, report, succeed};
 use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind, Piece, encode};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -20,10 +20,8 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     let gears = "title = \"A gear\"\nmodel = \"gear\"\ncamera = \"2.5 40 65\"\n";
     fs::write(folder.join("gears.toml"), gears).unwrap();
     assert!(make(&folder, "menger,gears.toml,demo").starts_with("board.bin: "));
-    assert_eq!(
-        succeed(&folder, "image check board.bin"),
-        "board.bin: valid\n"
-    );
+    let valid = succeed(&folder, "image check board.bin");
+    assert_eq!(valid, "board.bin: valid\n");
     let bytes = fs::read(folder.join("board.bin")).unwrap();
     let image = Image::new_checked(&bytes).unwrap();
     assert_eq!((image.bitstream, image.firmware), (None, &[0x13; 400][..]));
@@ -39,11 +37,8 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     let kinds: Vec<Kind> = image.contents.items().map(|item| item.kind).collect();
     assert_eq!(kinds.iter().filter(|kind| **kind == Kind::Mesh).count(), 1);
     let list = succeed(&folder, "image list board.bin");
-    assert!(
-        list.lines().next().unwrap().starts_with("firmware "),
-        "{list}"
-    );
-    assert!(list.contains("mesh      gear  "), "{list}");
+    assert!(list.starts_with("firmware "), "{list}");
+    assert_has(&list, "mesh      gear  ");
     let checked = report(&folder, "image check board.bin");
     assert_eq!(checked, serde_json::json!(["board.bin"]));
     let parts = report(&folder, "image list board.bin");
@@ -58,12 +53,7 @@ fn the_header_of_a_bit_file_is_left_out() {
     let mut file = vec![
         0, 9, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0, 0, 1,
     ];
-    for (key, text) in [
-        (b'a', "glint"),
-        (b'b', "7s50"),
-        (b'c', "date"),
-        (b'd', "time"),
-    ] {
+    for (key, text) in (b'a'..).zip(["glint", "7s50", "date", "time"]) {
         file.extend([key, 0, text.len() as u8]);
         file.extend(text.as_bytes());
     }
@@ -81,22 +71,17 @@ fn the_header_of_a_bit_file_is_left_out() {
         succeed(&folder, &make(bitstream));
         let bytes = fs::read(folder.join("board.bin")).unwrap();
         assert!(bytes.starts_with(&data), "{bitstream}");
-        assert_eq!(
-            Image::new_checked(&bytes).unwrap().bitstream,
-            Some(&data[..])
-        );
+        let found = Image::new_checked(&bytes).unwrap().bitstream;
+        assert_eq!(found, Some(&data[..]));
     }
     let error = refused(&folder, &(make("cut.bit") + " --force"));
-    assert!(
-        error.contains("cut.bit: byte 42: expected the field e with all bytes"),
-        "{error}"
+    assert_has(
+        &error,
+        "cut.bit: byte 42: expected the field e with all bytes",
     );
     fs::write(folder.join("text.bin"), "no bitstream").unwrap();
     let error = refused(&folder, &(make("text.bin") + " --force"));
-    assert!(
-        error.contains("expected an erased slot, or a bitstream"),
-        "{error}"
-    );
+    assert_has(&error, "expected an erased slot, or a bitstream");
 }
 
 #[test]
@@ -104,35 +89,24 @@ fn damaged_images_are_refused_with_the_place() {
     let folder = folder("image-damaged");
     make(&folder, "cubes");
     let good = fs::read(folder.join("board.bin")).unwrap();
-    let check = |bytes: &[u8]| {
+    let check = |bytes: &[u8], expected: &str| {
         fs::write(folder.join("bad.bin"), bytes).unwrap();
-        refused(&folder, "image check bad.bin")
+        assert_has(&refused(&folder, "image check bad.bin"), expected);
     };
-    let cut = check(&good[..CONTENTS + 100]);
-    assert!(
-        cut.contains(
-            "bad.bin: byte 4194308: expected at most 100 bytes of contents, as there are, found"
-        ),
-        "{cut}"
-    );
+    let short = "bad.bin: byte 4194308: expected at most 100 bytes of contents (to the end of the image), found";
+    check(&good[..CONTENTS + 100], short);
     let mut damaged = good.clone();
     damaged[FIRMWARE + 20] ^= 1;
-    let error = check(&damaged);
-    assert!(
-        error.contains("byte 3145732: expected the CRC-32 0x"),
-        "{error}"
-    );
+    check(&damaged, "byte 3145732: expected the CRC-32 0x");
     let mut damaged = good;
-    let last = damaged.len() - 1;
-    damaged[last] ^= 1;
-    let error = check(&damaged);
-    assert!(error.contains("expected the CRC-32 0x"), "{error}");
+    *damaged.last_mut().unwrap() ^= 1;
+    check(&damaged, "expected the CRC-32 0x");
     assert!(refused(&folder, "image list bad.bin").contains("expected the CRC-32"));
     // A damaged image is not written, with or without openFPGALoader.
     assert!(refused(&folder, "flash --spi bad.bin").contains("expected the CRC-32"));
 }
 
-/// Images with correct checksums whose scenes no board shows.
+/// Images with correct checksums are refused if no board can show their scenes.
 #[test]
 fn what_boards_cannot_show_is_refused() {
     let folder = folder("image-scenes");
@@ -156,43 +130,50 @@ fn what_boards_cannot_show_is_refused() {
     let checked = check(&fine);
     let said = String::from_utf8(checked.stderr).unwrap();
     assert!(checked.status.success(), "{said}");
-    let cases: [(Vec<Piece>, &str); 6] = [
+    let moved = "object add cube move 20,0,0\nobject move 1 20,0,0\n".to_owned();
+    let edges = "field menger:4\nedges over\n".to_owned();
+    let executed = "a command that boards execute";
+    let cases = [
         (
-            vec![scene("many", objects(40))],
-            "expected scene many: line 17: a command that boards execute (object: expected at most 16 objects",
+            "many",
+            objects(40),
+            format!("line 17: {executed} (object: expected at most 16 objects"),
         ),
         (
-            vec![scene("long", "fov 60\n".repeat(50_000))],
-            "expected scene long: at most 1000 commands, found 50000",
+            "long",
+            "fov 60\n".repeat(50_000),
+            "at most 1000 commands, found 50000".into(),
         ),
         (
-            vec![scene("same", "fov 60\n".into()); 63],
-            "expected scene same: names that differ, found two items of this kind and name",
+            "none",
+            "object show\n".into(),
+            format!("line 1: {executed} (object: no objects"),
         ),
         (
-            vec![scene("none", "object show\n".into())],
-            "expected scene none: line 1: a command that boards execute (object: no objects",
+            "far",
+            moved,
+            format!("line 2: {executed} (object 1: matrix row 1: translation 40"),
         ),
         (
-            vec![scene(
-                "far",
-                "object add cube move 20,0,0\nobject move 1 20,0,0\n".into(),
-            )],
-            "expected scene far: line 2: a command that boards execute (object 1: matrix row 1: translation 40",
-        ),
-        (
-            vec![scene("edges", "field menger:4\nedges over\n".into())],
-            "expected scene edges: line 2: a command that boards execute (edges: not available",
+            "edges",
+            edges,
+            format!("line 2: {executed} (edges: not available"),
         ),
     ];
-    for (pieces, expected) in cases {
-        let checked = check(&pieces);
-        let said = String::from_utf8(checked.stderr).unwrap();
-        assert!(
-            !checked.status.success() && said.contains(expected),
-            "{said}"
+    let is_refused = |pieces: &[Piece], expected: &str| {
+        let checked = check(pieces);
+        assert!(!checked.status.success());
+        assert_has(&String::from_utf8(checked.stderr).unwrap(), expected);
+    };
+    for (name, text, expected) in cases {
+        is_refused(
+            &[scene(name, text)],
+            &format!("expected scene {name}: {expected}"),
         );
     }
+    let same = vec![scene("same", "fov 60\n".into()); 63];
+    let expected = "expected scene same: names that differ, found two items of this kind and name";
+    is_refused(&same, expected);
 }
 
 /// Runs `glint flash --spi board.bin` with `folder` as the program search path.
@@ -207,8 +188,8 @@ fn flash(folder: &Path) -> (bool, String) {
     (output.status.success(), String::from_utf8(text).unwrap())
 }
 
-/// Without openFPGALoader, the error states how to install it. A substitute program records its arguments, because openFPGALoader
-/// itself requires a board.
+/// Without openFPGALoader, the error states how to install it. The test replaces openFPGALoader,
+/// which requires a board, by a script that records its arguments.
 #[test]
 fn an_image_without_a_bitstream_is_written_behind_its_slot() {
     let folder = folder("image-flash");

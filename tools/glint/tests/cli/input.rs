@@ -1,6 +1,8 @@
 //! Bad input gives one line of error, exit code 2, and no output file.
 
-use crate::common::{SQUARE, VIEW, all_refused, files_refused, folder, glint, refused, succeed};
+use crate::common::{
+    SQUARE, VIEW, all_refused, assert_has, failed, files_refused, folder, refused, rows, succeed,
+};
 
 #[test]
 fn bad_meshes() {
@@ -174,27 +176,15 @@ fn bad_names_and_numbers() {
 #[test]
 fn failures_other_than_bad_input() {
     let folder = folder("failures");
-    for (arguments, message) in [
-        (
-            "upload cube --board /dev/no-such-port",
-            "error: /dev/no-such-port: expected `emulated`, `virtual` or a serial port, found: ",
-        ),
-        (
-            "model cube no-such-folder/cube.glm",
-            "error: no-such-folder/cube.glm: cannot be written: ",
-        ),
-        (
-            "render cube --out a.png --capture monitor",
-            "error: --capture monitor: expected the emulated or the virtual board, found --board model",
-        ),
-    ] {
-        let output = glint(&folder, arguments);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(1), "{error}");
-        assert!(
-            error.starts_with(message) && error.lines().count() == 1,
-            "{error}"
-        );
+    let table = "
+        upload cube --board /dev/no-such-port → /dev/no-such-port: expected `emulated`, `virtual` or a serial port, found:
+        model cube no-such-folder/cube.glm → no-such-folder/cube.glm: cannot be written:
+        render cube --out a.png --capture monitor → --capture monitor: expected the emulated or the virtual board, found --board model
+    ";
+    for [command, message] in rows(table) {
+        let error = failed(&folder, command, 1);
+        assert_eq!(error.lines().count(), 1, "{error}");
+        assert!(error.starts_with(&format!("error: {message}")), "{error}");
     }
 }
 
@@ -210,7 +200,7 @@ fn a_damaged_glm_is_refused() {
         bytes[at] ^= bit;
         bytes
     };
-    // Damages the colour of the first vertex, the checksum, and the format.
+    // Files with a damaged colour of the first vertex, a damaged checksum, and a damaged format.
     let files = [
         ("colour.glm", damaged(60, 4)),
         ("checksum.glm", damaged(25, 1)),
@@ -233,12 +223,11 @@ fn a_mistyped_generator_is_named() {
     let folder = folder("generators");
     for command in ["render teapto --out a.png", "convert teapto a.glm"] {
         let error = refused(&folder, command);
-        let expected = "teapto: expected a mesh file or a generator (cube, icosphere:N";
-        assert!(error.contains(expected), "{error}");
+        assert_has(
+            &error,
+            "teapto: expected a mesh file or a generator (cube, icosphere:N",
+        );
     }
     let error = refused(&folder, "convert teapot a.glm");
-    assert!(
-        error.contains("`glint model teapot` makes this model"),
-        "{error}"
-    );
+    assert_has(&error, "`glint model teapot` makes this model");
 }

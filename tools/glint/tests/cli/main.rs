@@ -1,4 +1,4 @@
-//! The program as seen from outside: exit codes, messages, files.
+//! Tests of the program `glint`: exit codes, messages, files.
 
 mod attitudes;
 mod cameras;

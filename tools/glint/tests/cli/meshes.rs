@@ -1,6 +1,6 @@
 //! `glint render` of meshes with the model.
 
-use crate::common::{VIEW, all_refused, depths, drawn, folder, glint, json, refused};
+use crate::common::{VIEW, all_refused, depths, drawn, failed, folder, json, refused};
 
 #[test]
 fn renders_and_their_files() {
@@ -32,10 +32,8 @@ fn renders_and_their_files() {
 
     let stats = json(&folder.join("a.json"));
     let number = |key: &str| stats[key].as_u64().unwrap();
-    assert_eq!(
-        number("triangles_in"),
-        number("triangles_culled") + number("triangles_drawn")
-    );
+    let counted = number("triangles_culled") + number("triangles_drawn");
+    assert_eq!(number("triangles_in"), counted);
     assert!(number("pixels_tested") >= number("pixels_covered"));
     assert!(stats["cycles"].is_null() && stats["clock"].is_null());
 
@@ -46,11 +44,8 @@ fn renders_and_their_files() {
     let depth = depths(&folder.join("a.f32"));
     assert_eq!(depth.len(), 320 * 180);
     for (z, pixel) in depth.iter().zip(picture.chunks_exact(3)) {
-        // The teapot's distance from the eye along n is between 1.5 and 2.5.
-        assert!(
-            *z == f32::INFINITY && pixel == [0; 3] || (1.4..2.6).contains(z),
-            "{z} {pixel:?}"
-        );
+        let is_background = *z == f32::INFINITY && pixel == [0; 3];
+        assert!(is_background || (1.4..2.6).contains(z), "{z} {pixel:?}");
     }
     assert!(depth.iter().any(|z| z.is_finite()));
 }
@@ -73,17 +68,11 @@ fn light_on_a_mesh() {
     assert_eq!([lit(&above, 1), lit(&above, 2)], [0; 2]);
     // The default ambient light is grey.
     let grey = render("--light 0,0,1,ff0000");
-    assert!(
-        [0, 1, 2]
-            .iter()
-            .all(|&channel| lit(&grey, channel) >= bright)
-    );
+    assert!((0..3).all(|channel| lit(&grey, channel) >= bright));
     assert_ne!(render("--ambient 0000ff"), default);
     let two = "render cube --out b.png --light 1,0,0 --light 0,1,0";
-    assert_eq!(
-        refused(&folder, two),
-        "error: --light: expected one light on meshes, found 2"
-    );
+    let expected = "error: --light: expected one light on meshes, found 2";
+    assert_eq!(refused(&folder, two), expected);
 }
 
 /// The background of a mesh, and the material that replaces its colours.
@@ -105,14 +94,12 @@ fn background_and_material_of_a_mesh() {
             assert_eq!(after, expected, "{text}");
         }
     }
-    // Each triangle is grey without the option, and has the material's ratio of red, green and blue with it.
+    // Without the option each triangle is grey. With the option it has the material's ratio of red,
+    // green and blue.
     let gold = render("--material gold");
-    let lit = gold.chunks_exact(3).filter(|pixel| pixel[0] > 100);
+    let mut lit = gold.chunks_exact(3).filter(|pixel| pixel[0] > 100);
     assert!(lit.clone().count() > 5_000);
-    assert!(
-        lit.clone()
-            .all(|pixel| pixel[0] > pixel[1] && pixel[1] > pixel[2])
-    );
+    assert!(lit.all(|pixel| pixel[0] > pixel[1] && pixel[1] > pixel[2]));
     assert!(drawn(&folder, "render --object icosphere:4 --material gold") == gold);
     // An object's own colour does not change.
     let blue = "render --object 'icosphere:4 colour 0000ff' --material gold";
@@ -146,7 +133,7 @@ fn supersampled_pictures() {
         let sum = of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1);
         assert_eq!(u32::from(found), (sum + 2) / 4);
     }
-    // A scene with a factor of four.
+    // A scene is supersampled by a factor of four.
     let scene = "render --scene cubes --size 320x180 --supersample 4";
     assert_eq!(drawn(&folder, scene).len(), 3 * 320 * 180);
     all_refused(
@@ -187,22 +174,17 @@ fn frames_beyond_the_limits() {
         "render --scene a.toml --out x.png",
         "image make --scene a.toml --firmware a --out x.bin",
     ] {
-        let output = glint(&folder, command);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{command}: {error}");
+        let error = failed(&folder, command, 2);
         if !command.starts_with("image") {
             let first =
                 "error: a.toml: line 2: object = `cube`: object: expected at most 16 objects";
             assert!(error.starts_with(first), "{error}");
-            assert!(
-                error.ends_with("error: a.toml: 964 further errors\n"),
-                "{error}"
-            );
+            let last = "error: a.toml: 964 further errors\n";
+            assert!(error.ends_with(last), "{error}");
         }
     }
     for options in ["--far 0.05", "--field box:1,1,1 --camera 2,0,60 --far 0.01"] {
-        let output = glint(&folder, &format!("render cube {options} --out x.png"));
-        assert_eq!(output.status.code(), Some(2), "{options}");
+        failed(&folder, &format!("render cube {options} --out x.png"), 2);
     }
 }
 

@@ -1,6 +1,6 @@
-//! Animations of a camera that goes around a model.
+//! Animations in which the camera turns around a model.
 
-use crate::common::{SQUARE, all_refused, drawn, folder, glint, refused, said, succeed};
+use crate::common::{SQUARE, all_refused, drawn, failed, folder, refused, said, succeed};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
@@ -48,7 +48,7 @@ fn both_forms_show_one_turn() {
     }
     // With at most 256 colours per frame, the GIF is exact.
     assert!(frames_of_gif(&folder.join("orbit.gif")) == (frames.clone(), 10));
-    // The turn begins with the camera of `glint render`.
+    // The animation begins with the camera of `glint render`.
     assert!(drawn(&folder, "render icosphere:2") == frames[0]);
     // Another axis, and another field of view.
     let quarters = "orbit cube --frames 4 --out a.png --up y --fov 30";
@@ -56,7 +56,7 @@ fn both_forms_show_one_turn() {
     assert_eq!(frames_of_png(&folder.join("a.png")).len(), 4);
 }
 
-/// The frames of a supersampled animation are supersampled pictures, of its size.
+/// The frames of a supersampled animation equal supersampled pictures of the same size.
 #[test]
 fn supersampled_animations() {
     let folder = folder("orbit-supersampled");
@@ -95,7 +95,7 @@ fn fields_and_scenes() {
         succeed(&folder, &format!("orbit --frames 4 --out a.png {subject}"));
         let frames = frames_of_png(&folder.join("a.png"));
         assert_eq!(frames.len(), 4);
-        // Some subjects have an identical picture after a quarter or half turn.
+        // Some subjects look the same after a quarter or half turn, so only one frame must differ.
         assert!(frames.iter().any(|frame| *frame != frames[0]), "{subject}");
         let first = drawn(&folder, &format!("render {subject}"));
         assert!(first == frames[0], "{subject}");
@@ -105,14 +105,9 @@ fn fields_and_scenes() {
             assert!(second == frames[1], "{subject}");
         }
     }
-    let said = succeed(
-        &folder,
-        "orbit --scene lamp.toml --frames 2 --out a.gif --json",
-    );
-    assert_eq!(
-        said,
-        "{\"scene\":\"lamp.toml\",\"board\":\"model\",\"size\":[640,360],\"frames\":2}\n"
-    );
+    let orbit = "orbit --scene lamp.toml --frames 2 --out a.gif --json";
+    let expected = r#"{"scene":"lamp.toml","board":"model","size":[640,360],"frames":2}"#;
+    assert_eq!(succeed(&folder, orbit).trim_end(), expected);
     all_refused(
         &folder,
         "
@@ -133,16 +128,12 @@ fn notes_warnings_and_errors() {
     std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
     let [_, note] = said(&folder, "orbit square.obj --frames 8 --out a.gif");
     assert_eq!(note, "note: y is up, as usual in .obj; --up z changes it\n");
-    assert_eq!(
-        refused(&folder, "orbit cube --out a.jpg"),
-        "error: a.jpg: expected a name that ends in .png, .gif, found '.jpg'"
-    );
+    let error = refused(&folder, "orbit cube --out a.jpg");
+    let expected = "error: a.jpg: expected a name that ends in .png, .gif, found '.jpg'";
+    assert_eq!(error, expected);
     for frames in ["0", "361"] {
-        let output = glint(
-            &folder,
-            &format!("orbit cube --out b.gif --frames {frames}"),
-        );
-        assert_eq!(output.status.code(), Some(2));
+        let orbit = format!("orbit cube --out b.gif --frames {frames}");
+        failed(&folder, &orbit, 2);
     }
     assert!(!folder.join("b.gif").exists());
 }

@@ -1,6 +1,9 @@
-//! Output files are written completely or not at all, never over an input, and are checked before the work begins.
+//! Output files are written completely or not at all, never replace an input, and are checked
+//! before the work begins.
 
-use crate::common::{SQUARE, VIEW, all_refused, folder, glint, refused, succeed, words};
+use crate::common::{
+    SQUARE, VIEW, all_refused, assert_has, failed, folder, glint, refused, rows, succeed, words,
+};
 use glint_texture::example::small_png;
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -61,7 +64,7 @@ fn a_full_file_system_leaves_no_part_of_a_file() {
     assert_eq!(fs::read(folder.join("old.png")).unwrap(), b"before");
 }
 
-/// An error names its cause once, also of a reader that ends early.
+/// An error states its cause only once, also if the reader of a pipe ends early.
 #[test]
 fn a_closed_pipe_is_stated_once() {
     let folder = folder("closed-pipe");
@@ -80,10 +83,8 @@ fn a_closed_pipe_is_stated_once() {
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
         let error = String::from_utf8(output.stderr).unwrap();
-        assert!(
-            error.matches("roken pipe").count() <= 1,
-            "{command}: {error}"
-        );
+        let causes = error.matches("roken pipe").count();
+        assert!(causes <= 1, "{command}: {error}");
     }
 }
 
@@ -100,32 +101,21 @@ fn an_input_is_never_an_output() {
     fs::hard_link(folder.join("log.csv"), folder.join("hard.csv")).unwrap();
     symlink("a.wft", folder.join("a.png")).unwrap();
     let before = names(&folder);
-    for (command, output, input) in [
-        ("imu replay log.csv --out log.csv", "log.csv", "log.csv"),
-        ("imu replay log.csv --out hard.csv", "hard.csv", "log.csv"),
-        (
-            "imu record log.csv --sensor hard.csv --board virtual",
-            "log.csv",
-            "hard.csv",
-        ),
-        ("convert m.obj m.obj", "m.obj", "m.obj"),
-        ("texture t.png t.png", "t.png", "t.png"),
-        ("convert m.obj ./m.obj", "./m.obj", "m.obj"),
-        ("render m.obj --up z --out m.png", "m.png", "m.obj"),
-        ("render --object m.obj --out m.png", "m.png", "m.obj"),
-        (
-            "render cube --view view.json --out a --stats view.json",
-            "view.json",
-            "view.json",
-        ),
-        (
-            "render --field spheres:spheres.json --out a --stats spheres.json",
-            "spheres.json",
-            "spheres.json",
-        ),
-        ("wireframe convert a.wft a.wft", "a.wft", "a.wft"),
-        ("wireframe render a.wft --out a.png", "a.png", "a.wft"),
-    ] {
+    let table = "
+        imu replay log.csv --out log.csv → log.csv → log.csv
+        imu replay log.csv --out hard.csv → hard.csv → log.csv
+        imu record log.csv --sensor hard.csv --board virtual → log.csv → hard.csv
+        convert m.obj m.obj → m.obj → m.obj
+        texture t.png t.png → t.png → t.png
+        convert m.obj ./m.obj → ./m.obj → m.obj
+        render m.obj --up z --out m.png → m.png → m.obj
+        render --object m.obj --out m.png → m.png → m.obj
+        render cube --view view.json --out a --stats view.json → view.json → view.json
+        render --field spheres:spheres.json --out a --stats spheres.json → spheres.json → spheres.json
+        wireframe convert a.wft a.wft → a.wft → a.wft
+        wireframe render a.wft --out a.png → a.png → a.wft
+    ";
+    for [command, output, input] in rows(table) {
         let error = format!("{output}: expected another file to write, found the input {input}");
         all_refused(&folder, &format!("{command}\n{error}"));
     }
@@ -159,20 +149,16 @@ fn an_extension_says_what_is_written() {
 #[test]
 fn an_output_is_checked_before_the_work() {
     let folder = folder("checked");
-    // The port does not exist: opening it would be a later error.
+    // The port does not exist, but this error would come later.
     for command in [
         "render cube --out gone/a.png",
         "render cube --out /dev/null --stats gone/a.json",
         "imu record gone/log.csv",
         "gesture mask --out gone/a.png",
     ] {
-        let output = glint(&folder, &format!("{command} --board /dev/no-such-port"));
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(1), "{error}");
-        assert!(
-            error.starts_with("error: gone/") && error.contains(": cannot be written: "),
-            "{error}"
-        );
+        let error = failed(&folder, &format!("{command} --board /dev/no-such-port"), 1);
+        assert!(error.starts_with("error: gone/"), "{error}");
+        assert_has(&error, ": cannot be written: ");
     }
     assert!(names(&folder).is_empty());
 }
@@ -250,10 +236,8 @@ fn standard_input_and_output() {
         fs::write(folder.join("mesh"), &piped.stdout).unwrap();
         let file = format!("file.{format}");
         succeed(&folder, &format!("model icosphere:2 {file}"));
-        assert!(
-            fs::read(folder.join(&file)).unwrap() == piped.stdout,
-            "{format}"
-        );
+        let named = fs::read(folder.join(&file)).unwrap();
+        assert!(named == piped.stdout, "{format}");
         let run = |command: String| {
             let output = Command::new(env!("CARGO_BIN_EXE_glint"))
                 .args(words(&command))
@@ -276,10 +260,7 @@ fn standard_input_and_output() {
     }
     let error = refused(&folder, "model cube -");
     assert_eq!(error, "error: -: expected --to with a format, found none");
-    let two = "render cube --out - --stats -";
-    let error = refused(&folder, two);
-    assert_eq!(
-        error,
-        "error: -: expected one output to standard output, found two"
-    );
+    let error = refused(&folder, "render cube --out - --stats -");
+    let expected = "error: -: expected one output to standard output, found two";
+    assert_eq!(error, expected);
 }

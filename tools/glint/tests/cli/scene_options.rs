@@ -1,7 +1,8 @@
 //! Scenes with options, and scenes that cannot be drawn.
 
 use crate::common::{
-    drawn, files_refused, folder, glint, glint_within, picture, refused, said, succeed,
+    assert_has, drawn, failed, files_refused, folder, glint_within, picture, refused, rows, said,
+    succeed,
 };
 
 const LAMP: &str =
@@ -26,17 +27,15 @@ fn scenes_that_cannot_be_shown() {
     );
     std::fs::write(folder.join("near.toml"), near).unwrap();
     for command in commands {
-        let output = glint(&folder, &command.replace("FILE", "near.toml"));
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{command}: {error}");
+        let error = failed(&folder, &command.replace("FILE", "near.toml"), 2);
         let expected = "error: near.toml: line 3: camera = `1 30 70`: radius 1: expected 2 to 5\n";
         assert_eq!(error, expected, "{command}");
     }
     assert!(!folder.join("a.png").exists());
 }
 
-/// A scene file without a camera has the picture of `glint render`: of the mesh in the folder of the scene file, with its axis up,
-/// the lens, and the material.
+/// The picture of a scene file without a camera equals the picture of `glint render` with the same
+/// options: the mesh comes from the folder of the scene file, and up axis, lens and material apply.
 #[test]
 fn scenes_of_meshes_are_those_of_render() {
     let folder = folder("scene-of-meshes");
@@ -44,47 +43,23 @@ fn scenes_of_meshes_are_those_of_render() {
     std::fs::create_dir(&inner).unwrap();
     succeed(&folder, "model gear inner/a.obj");
     succeed(&folder, "model gear inner/a.stl");
-    for (number, (keys, options)) in [
-        ("model = \"a.obj\"", "inner/a.obj"),
-        (
-            "model = \"a.stl\"\nup = \"x\"\nshading = \"smooth\"",
-            "inner/a.stl --up x --shading smooth",
-        ),
-        (
-            "model = \"a.obj\"\nfov = 40\nzoom = 1.5",
-            "inner/a.obj --fov 40 --zoom 1.5",
-        ),
-        (
-            "model = \"a.stl\"\northographic = 2",
-            "inner/a.stl --orthographic 2",
-        ),
-        (
-            "model = \"a.stl\"\nmaterial = \"gold\"",
-            "inner/a.stl --material gold",
-        ),
-        (
-            "model = \"teapot\"\nmaterial = \"jade\"\ncamera = \"3 20 60\"",
-            "teapot --material jade --camera 3,20,60",
-        ),
-        (
-            "object = [\"a.obj move 1,0,0\", \"cube colour ff0000\"]\nmaterial = \"sky\"",
-            "--object 'inner/a.obj move 1,0,0' --object 'cube colour ff0000' --material sky",
-        ),
-        (
-            "model = \"a.obj\"\nfield = \"box:0.2,2,0.2\"",
-            "inner/a.obj --field box:0.2,2,0.2",
-        ),
-    ]
-    .into_iter()
-    .enumerate()
-    {
+    let table = r#"
+        model = "a.obj" → inner/a.obj
+        model = "a.stl"; up = "x"; shading = "smooth" → inner/a.stl --up x --shading smooth
+        model = "a.obj"; fov = 40; zoom = 1.5 → inner/a.obj --fov 40 --zoom 1.5
+        model = "a.stl"; orthographic = 2 → inner/a.stl --orthographic 2
+        model = "a.stl"; material = "gold" → inner/a.stl --material gold
+        model = "teapot"; material = "jade"; camera = "3 20 60" → teapot --material jade --camera 3,20,60
+        object = ["a.obj move 1,0,0", "cube colour ff0000"]; material = "sky" → --object 'inner/a.obj move 1,0,0' --object 'cube colour ff0000' --material sky
+        model = "a.obj"; field = "box:0.2,2,0.2" → inner/a.obj --field box:0.2,2,0.2
+    "#;
+    for (number, [keys, options]) in rows(table).enumerate() {
+        let keys = keys.replace("; ", "\n");
         let name = format!("inner/{number}.toml");
         let text = format!("title = \"A\"\nquality = \"fast\"\n{keys}\n");
         std::fs::write(folder.join(&name), text).unwrap();
-        assert_eq!(
-            succeed(&folder, &format!("scene check {name}")),
-            format!("{name}: valid\n")
-        );
+        let valid = succeed(&folder, &format!("scene check {name}"));
+        assert_eq!(valid, format!("{name}: valid\n"));
         for board in ["model", "emulated"] {
             let render = |what: &str| {
                 let options = format!("--board {board} --quality fast --force --out a.png");
@@ -93,51 +68,45 @@ fn scenes_of_meshes_are_those_of_render() {
                 assert!(output.status.success(), "{keys}: {error}");
                 picture(&folder.join("a.png"))
             };
-            assert!(
-                render(&format!("--scene {name}")) == render(options),
-                "{board}: {keys}"
-            );
+            let scene = render(&format!("--scene {name}"));
+            assert!(scene == render(options), "{board}: {keys}");
         }
     }
     // The animation turns about the axis of the model.
     let orbit = |what: &str| {
-        succeed(
-            &folder,
-            &format!("orbit {what} --quality fast --frames 3 --out a.png"),
-        );
+        let orbit = format!("orbit {what} --quality fast --frames 3 --out a.png");
+        succeed(&folder, &orbit);
         std::fs::read(folder.join("a.png")).unwrap()
     };
     assert!(orbit("--scene inner/2.toml") == orbit("inner/a.obj --fov 40 --zoom 1.5"));
-    // A generator has its name in any folder, unless the folder has such a file.
+    // The name of a generator is valid in any folder, unless the folder has a file with this name.
     let missing = "title = \"A\"\nmodel = \"b.obj\"\n";
     std::fs::write(inner.join("missing.toml"), missing).unwrap();
     assert_eq!(
         refused(&folder, "scene check inner/missing.toml"),
         "error: inner/b.obj: expected a file to read, found No such file or directory (os error 2)"
     );
-    let output = glint(&folder, "render --scene inner/1.toml --out inner/a.stl");
-    assert_eq!(output.status.code(), Some(2), "the output is an input");
+    // The output is an input.
+    failed(&folder, "render --scene inner/1.toml --out inner/a.stl", 2);
 }
 
-/// All errors of a scene file have a line.
+/// Each error of a scene file is reported on its own line.
 #[test]
 fn all_errors_of_a_scene_file() {
     let folder = folder("scene-errors");
     let text = "title = \"A\"\nfeild = \"menger:3\"\ncamera = [4, 30, 70]\nsize = \"640 480\"\n";
     std::fs::write(folder.join("a.toml"), text).unwrap();
     for command in ["scene check a.toml", "render --scene a.toml --out a.png"] {
-        let output = glint(&folder, command);
-        assert_eq!(output.status.code(), Some(2));
         assert_eq!(
-            String::from_utf8(output.stderr).unwrap(),
+            failed(&folder, command, 2),
             "error: a.toml: line 2: `feild`: expected a key, did you mean `field`?\n\
              error: a.toml: line 3: camera: `[4, 30, 70]`: expected a text, a number, true or false, such as camera = \"4 30 70\"\n\
              error: a.toml: line 4: size = `640 480`: size: 640 x 480: expected 320 180, 640 360 or 1280 720, such as size = \"640 360\"\n"
         );
     }
     assert_eq!(
-        glint(&folder, "render --scene mengr --out a.png").stderr,
-        b"error: mengr: expected a scene file FILE.toml or a built-in scene, did you mean `menger`?\n"
+        failed(&folder, "render --scene mengr --out a.png", 2),
+        "error: mengr: expected a scene file FILE.toml or a built-in scene, did you mean `menger`?\n"
     );
 }
 
@@ -155,7 +124,7 @@ fn the_lens_of_a_scene() {
     assert!(narrow == render("narrow.toml --camera 4,30,70 --fov 30"));
 }
 
-/// An option that a scene also sets is rejected, not ignored.
+/// An option that sets a property of the scene is rejected, not ignored.
 #[test]
 fn options_that_a_scene_states() {
     let folder = folder("scene-options");
@@ -174,10 +143,7 @@ fn options_that_a_scene_states() {
     ] {
         for command in ["render", "orbit"] {
             let scene = format!("{command} --scene menger --out a.png {option}");
-            let output = glint(&folder, &scene);
-            let error = String::from_utf8(output.stderr).unwrap();
-            assert_eq!(output.status.code(), Some(2), "{option:?}: {error}");
-            assert!(error.contains("cannot be used with"), "{error}");
+            assert_has(&failed(&folder, &scene, 2), "cannot be used with");
         }
     }
     assert_eq!(
@@ -187,23 +153,19 @@ fn options_that_a_scene_states() {
     assert!(!folder.join("a.png").exists());
 }
 
-/// The key `stereo` of a scene has the effect of the option, for meshes, objects, and a mesh in a field; the depths are those of
-/// the left eye.
+/// The key `stereo` of a scene has the effect of the option for meshes, objects, and a mesh in a
+/// field. The depths are those of the left eye.
 #[test]
 fn two_eyes() {
     let folder = folder("scene-two-eyes");
     let camera = "title = \"Two\"\ncamera = \"3 30 60\"\n";
-    for (number, (keys, options)) in [
-        ("model = \"cube\"\n", "cube"),
-        (
-            "model = \"cube\"\nfield = \"box:0.2,1,0.2\"\n",
-            "cube --field box:0.2,1,0.2",
-        ),
-        ("object = \"cube scale 0.5\"\n", "--object 'cube scale 0.5'"),
-    ]
-    .into_iter()
-    .enumerate()
-    {
+    let table = r#"
+        model = "cube" → cube
+        model = "cube"; field = "box:0.2,1,0.2" → cube --field box:0.2,1,0.2
+        object = "cube scale 0.5" → --object 'cube scale 0.5'
+    "#;
+    for (number, [keys, options]) in rows(table).enumerate() {
+        let keys = keys.replace("; ", "\n") + "\n";
         let name = format!("{number}.toml");
         let of_one = format!("{camera}{keys}");
         let text = format!("{of_one}stereo = \"0.2,2.5,red-cyan\"\n");
@@ -227,7 +189,8 @@ fn two_eyes() {
 #[test]
 fn quality_of_a_scene() {
     let folder = folder("scene-quality");
-    // Its rays march: a quality sets a threshold too, and the pictures of two qualities differ at one size.
+    // The rays of this field march, so a quality also sets a threshold, and pictures of the same
+    // size differ between two qualities.
     const FIELD: &str =
         "title = \"A\"\nfield = \"smooth:0.3,box:1,1,0.2+sphere:0.7\"\ncamera = \"3 25 70\"\n";
     for (name, keys) in [
@@ -257,13 +220,10 @@ fn quality_of_a_scene() {
     assert!(large == of_scene("balanced.toml --quality fast --size 640x360"));
     assert!(large == of_field("--size 640x360 --quality fast"));
     let best = "render --field menger:3 --quality best --out b.png";
-    let output = glint(&folder, best);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("fast, balanced, exact"), "{error}");
+    assert_has(&failed(&folder, best, 2), "fast, balanced, exact");
 }
 
-/// The key and the option `prepass` are accepted without effect, and a note says so.
+/// The key and the option `prepass` are accepted, but have no effect, as a note says.
 #[test]
 fn a_prepass_has_no_effect() {
     const NOTE: &str =
@@ -276,18 +236,11 @@ fn a_prepass_has_no_effect() {
     ] {
         std::fs::write(folder.join(name), scene).unwrap();
     }
-    for (without, with, note) in [
-        (
-            "--scene without.toml",
-            "--scene with.toml",
-            format!("note: with.toml: {NOTE}"),
-        ),
-        (
-            "--field box:1,1,1",
-            "--field box:1,1,1 --prepass",
-            format!("note: {NOTE}"),
-        ),
+    for (without, with, file) in [
+        ("--scene without.toml", "--scene with.toml", "with.toml: "),
+        ("--field box:1,1,1", "--field box:1,1,1 --prepass", ""),
     ] {
+        let note = format!("note: {file}{NOTE}");
         let render = |options: &str| {
             let [_, notes] = said(&folder, &format!("render --force --out a.png {options}"));
             (picture(&folder.join("a.png")), notes)

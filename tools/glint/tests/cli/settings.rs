@@ -1,10 +1,13 @@
 //! Defaults from the environment and from the configuration file, ports, and the amount of output.
 
-use crate::common::{all_refused, folder, glint, glint_in, report, said, succeed, words};
+use crate::common::{
+    all_refused, assert_has, failed, files_refused, folder, glint, glint_in, report, said, succeed,
+    words,
+};
 use std::path::Path;
 use std::process::Command;
 
-/// The error of a command that must fail; the error has one line.
+/// Runs a command that must fail, and returns its error, which has one line.
 fn error(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> String {
     let output = glint_in(folder, arguments, variables);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -20,15 +23,11 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     let file = folder.join("glint/config.toml");
     std::fs::write(&file, "board = \"/dev/of-the-file\"\nbaud = 9600\n").unwrap();
     let variable = [("GLINT_BOARD", "/dev/of-the-environment")];
-    let upload = "upload cube";
+    let [upload, option] = ["upload cube", "upload cube --board /dev/of-the-option"];
     for (command, variables, expected) in [
         (upload, &[][..], "file"),
         (upload, &variable, "environment"),
-        (
-            "upload cube --board /dev/of-the-option",
-            &variable,
-            "option",
-        ),
+        (option, &variable, "option"),
         ("console --send info", &[], "file"),
         ("info", &variable, "environment"),
         ("imu calibrate", &[], "file"),
@@ -41,7 +40,7 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
         let start =
             format!("error: {expected}: expected `emulated`, `virtual` or a serial port, found: ");
         assert!(error.starts_with(&start), "{error}");
-        // The ports of this host, if any.
+        // The error lists the ports of this host, if any.
         assert!(error.contains("; this host has "), "{error}");
     }
     let slow = error(&folder, upload, &[("GLINT_BAUD", "slow")]);
@@ -67,8 +66,8 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     succeed(&folder, "model cube cube.obj");
 }
 
-/// Labels of errors and warnings have the colours of clap's labels on a terminal only. A standard error that accepts no output
-/// does not change the exit code.
+/// Only on a terminal do the labels of errors and warnings have the colours of clap's labels. A
+/// standard error that accepts no output does not change the exit code.
 #[test]
 fn colours() {
     let folder = folder("colours");
@@ -117,7 +116,7 @@ fn options_of_another_board() {
         .into_iter()
         .flat_map(|command| of_a_board.clone().map(move |option| (command, option)))
         .chain(of_the_line.map(|option| (replay, option)));
-    let port = "a serial port";
+    let [port, simulated] = ["a serial port", "the emulated or the virtual board"];
     let by_a_board = [
         ("console emulated --send info", "--baud 9600", port),
         ("info", "--baud 9600", port),
@@ -126,7 +125,7 @@ fn options_of_another_board() {
         (
             "upload cube --board /dev/x",
             "--firmware log.csv",
-            "the emulated or the virtual board",
+            simulated,
         ),
     ];
     let by_the_model = by_the_model.map(|(command, option)| (command, option, "a board"));
@@ -143,11 +142,9 @@ fn ports_are_listed() {
     let folder = folder("ports");
     let ports = report(&folder, "ports");
     let lines = succeed(&folder, "ports");
-    // Without a port the command also prints one line.
-    assert_eq!(
-        lines.lines().count(),
-        ports.as_array().unwrap().len().max(1)
-    );
+    // Without any port the command prints one line, too.
+    let expected = ports.as_array().unwrap().len().max(1);
+    assert_eq!(lines.lines().count(), expected);
 }
 
 /// Warnings are printed by default, `--quiet` omits them, and `--verbose` adds the steps with their times.
@@ -159,10 +156,8 @@ fn quiet_and_verbose() {
         said(&folder, &format!("{render} {more}"))[1].clone()
     };
     let usual = said("a.png");
-    assert!(
-        usual.starts_with("warning: no triangle is drawn: "),
-        "{usual}"
-    );
+    let start = "warning: no triangle is drawn: ";
+    assert!(usual.starts_with(start), "{usual}");
     assert_eq!(usual.lines().count(), 1);
     assert_eq!(said("b.png --quiet"), "");
     assert_eq!(said("c.png -q"), "");
@@ -190,16 +185,14 @@ fn manual_pages() {
     // Manual pages follow the rules for output files.
     let again = glint(&folder, "man pages/man1");
     let error = String::from_utf8(again.stderr).unwrap();
-    assert!(error.contains("or --force to replace it"), "{error}");
+    assert_has(&error, "or --force to replace it");
 }
 
 #[test]
 fn a_cause_is_printed_once() {
     let folder = folder("settings-cause");
     for command in ["info --board /dev/ttyUSB9", "console ./none --send info"] {
-        let output = glint(&folder, command);
-        assert_eq!(output.status.code(), Some(1), "{command}");
-        let error = String::from_utf8(output.stderr).unwrap();
+        let error = failed(&folder, command, 1);
         assert_eq!(error.matches("No such file").count(), 1, "{error}");
     }
 }
@@ -227,34 +220,27 @@ fn a_baud_rate_is_one_of_a_serial_line() {
     );
 }
 
-/// A script from a device without an end is rejected within bounded memory; a pipe is read as its lines arrive.
+/// A script from an endless device is rejected within bounded memory. The lines of a pipe are
+/// executed as they arrive.
 #[test]
 fn scripts_of_devices_and_pipes() {
     let folder = folder("settings-scripts");
-    let output = glint(&folder, "console emulated --file /dev/zero");
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert!(!output.status.success());
-    assert!(
-        error.contains("expected lines of at most 65536 bytes, found a longer one"),
-        "{error}"
+    let error = failed(&folder, "console emulated --file /dev/zero", 1);
+    assert_has(
+        &error,
+        "expected lines of at most 65536 bytes, found a longer one",
     );
     let pipe = folder.join("pipe");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .unwrap()
-            .success()
-    );
+    let made = Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
     let writer = std::thread::spawn(move || std::fs::write(pipe, "echo one\necho two\n"));
-    assert_eq!(
-        succeed(&folder, "console emulated --file pipe"),
-        "one\ntwo\n"
-    );
+    let replies = succeed(&folder, "console emulated --file pipe");
+    assert_eq!(replies, "one\ntwo\n");
     writer.join().unwrap().unwrap();
 }
 
-/// The help of `render` and `orbit` has groups; only the options of all commands are in none.
+/// The help of `render` and `orbit` groups the options. Only options that all commands have are
+/// outside of the groups.
 #[test]
 fn the_help_has_groups() {
     let folder = folder("settings-help");
@@ -286,10 +272,8 @@ fn the_help_has_groups() {
             ("Renderer", "board"),
             ("Renderer", "baud"),
         ] {
-            assert!(
-                options.contains(&expected),
-                "{command} {expected:?}: {options:?}"
-            );
+            let has = options.contains(&expected);
+            assert!(has, "{command} {expected:?}: {options:?}");
         }
         let common = options.iter().filter(|(group, _)| *group == "Options");
         let common: Vec<_> = common.map(|(_, option)| *option).collect();
@@ -297,34 +281,32 @@ fn the_help_has_groups() {
     }
 }
 
-/// Files that a board cannot run are rejected before it is opened.
+/// A program file that a board cannot run is rejected before the board is opened.
 #[test]
 fn only_programs_are_flashed() {
     let folder = folder("settings-programs");
-    std::fs::write(folder.join("glint.elf"), b"\x7fELF\x01\x01\x01\0").unwrap();
-    std::fs::write(folder.join("notes.txt"), "read me\n").unwrap();
-    std::fs::write(folder.join("zeros.bin"), [0; 100]).unwrap();
     let flat = "expected a flat binary that begins with an RV32IM instruction";
-    for command in [
-        "flash FILE --board emulated",
-        "board --firmware FILE",
-        "info --board emulated --firmware FILE",
-        "image make --out a.bin --firmware FILE",
-    ] {
-        let cases = format!(
-            "{0}
+    files_refused(
+        &folder,
+        [
+            "flash FILE --board emulated",
+            "board --firmware FILE",
+            "info --board emulated --firmware FILE",
+            "image make --out a.bin --firmware FILE",
+        ],
+        &[
+            ("glint.elf", b"\x7fELF\x01\x01\x01\0".to_vec()),
+            ("notes.txt", b"read me\n".to_vec()),
+            ("zeros.bin", vec![0; 100]),
+            ("/dev/null", vec![]),
+        ],
+        &format!(
+            "
             glint.elf: expected a flat binary such as glint.bin, found an ELF file
-            {1}
             notes.txt: {flat}, found the text 'read'
-            {2}
             zeros.bin: {flat}, found the bytes [00, 00, 00, 00]
-            {3}
-            /dev/null: {flat}, found a file of 0 bytes",
-            command.replace("FILE", "glint.elf"),
-            command.replace("FILE", "notes.txt"),
-            command.replace("FILE", "zeros.bin"),
-            command.replace("FILE", "/dev/null"),
-        );
-        all_refused(&folder, &cases);
-    }
+            /dev/null: {flat}, found a file of 0 bytes
+            "
+        ),
+    );
 }

@@ -1,4 +1,4 @@
-//! Reads input files from standard input, by the name `-`.
+//! Input files with the name `-` are read from standard input.
 
 use crate::common::{VIEW, folder, succeed};
 use std::fs;

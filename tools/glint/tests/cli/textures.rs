@@ -1,6 +1,8 @@
 //! `glint texture`, and textures of `glint convert`.
 
-use crate::common::{SQUARE, all_refused, files_refused, folder, glint, report, said, succeed};
+use crate::common::{
+    SQUARE, all_refused, assert_has, files_refused, folder, glint, report, said, succeed,
+};
 use glint_texture::example::{repair_png, small_png};
 use glint_texture::picture::Picture;
 use std::fs;
@@ -28,14 +30,12 @@ fn a_picture_becomes_a_texture_and_a_picture_of_its_levels() {
     let sheet = Picture::decode(&fs::read(folder.join("b.png")).unwrap()).unwrap();
     assert_eq!(sheet.size, [15, 8]);
     assert_eq!(sheet.texels[0][3], 0);
-    // A texture is kept, and reads differently by options.
+    // Converting a texture keeps it, and options change only its wrap modes and filter.
     succeed(&folder, "texture a.glt b.glt");
     let read = |name: &str| fs::read(folder.join(name)).unwrap();
     assert!(read("a.glt") == read("b.glt"));
-    succeed(
-        &folder,
-        "texture a.glt b.glt --wrap clamp,mirror --filter nearest",
-    );
+    let options = "--wrap clamp,mirror --filter nearest";
+    succeed(&folder, &format!("texture a.glt b.glt {options}"));
     assert_eq!(read("b.glt")[16..19], [2, 1, 0]);
     let piped = glint(&folder, "texture a.png - --to glt");
     assert!(piped.status.success() && piped.stdout == read("a.glt"));
@@ -92,7 +92,7 @@ fn bad_pictures_and_options() {
         texture a.png out.glt --cutoff nan
             --cutoff: expected an opacity of 0 to 1, found NaN
         texture a.png out.glt --wrap clamp,clamp,clamp
-            --wrap: expected one or two words, found 3
+            --wrap: expected one or two modes, found 3
         texture a.png out.jpg
             out.jpg: expected a name that ends in .glt, .png, found '.jpg'
         texture a.png -
@@ -114,33 +114,26 @@ fn textures_of_a_mesh() {
     fs::write(folder.join("a.mtl"), mtl("sub/a b.png")).unwrap();
     fs::write(folder.join("sub/a b.png"), small_png()).unwrap();
     let text = succeed(&folder, "convert a.obj a.glm");
-    assert!(
-        text.contains("texture    'sub/a b.png': 8×8, rgb565, cut-out, 4 levels, 256 bytes, error"),
-        "{text}"
-    );
-    // The mesh in memory keeps its texture.
+    let line = "texture    'sub/a b.png': 8×8, rgb565, cut-out, 4 levels, 256 bytes, error";
+    assert_has(&text, line);
+    // A mesh in a board's memory layout keeps its texture.
     let report = report(&folder, "convert a.glm b.glm --keep-scale --keep-order");
     assert_eq!(report["textures"][0]["size"], serde_json::json!([8, 8]));
     let read = |name: &str| fs::read(folder.join(name)).unwrap();
     assert!(read("a.glm") == read("b.glm"));
-    let text = succeed(
-        &folder,
-        "convert a.glm b.glm --palette 256 --filter nearest",
-    );
-    assert!(
-        text.contains("texture    1: 8×8, palette 256, cut-out"),
-        "{text}"
-    );
-    // Without the texture the mesh is that of the material's colour.
+    let options = "--palette 256 --filter nearest";
+    let text = succeed(&folder, &format!("convert a.glm b.glm {options}"));
+    assert_has(&text, "texture    1: 8×8, palette 256, cut-out");
+    // Without the texture the mesh equals a mesh in the material's colour.
     succeed(&folder, "convert a.obj plain.glm --no-textures");
     fs::write(folder.join("a.mtl"), "newmtl a\nKd 1 0 0\n").unwrap();
     succeed(&folder, "convert a.obj b.glm");
     assert!(read("plain.glm") == read("b.glm"));
     for out in ["b.obj", "b.stl", "b.ply"] {
         let text = succeed(&folder, &format!("convert a.glm {out}"));
-        assert!(
-            text.contains("note: textures are left out: only .glm files have them"),
-            "{text}"
+        assert_has(
+            &text,
+            "note: textures are left out: only .glm files have them",
         );
     }
     fs::write(folder.join("a.obj"), SQUARE).unwrap();
@@ -148,7 +141,8 @@ fn textures_of_a_mesh() {
     assert!(!text.contains("textures"), "{text}");
 }
 
-/// Commands that take a model convert its textures by the options of `glint convert`, and print the same line.
+/// All commands that take a model have the texture options of `glint convert`, and print the same
+/// line.
 #[test]
 fn textures_where_a_model_is_taken() {
     let folder = folder("textures-taken");
@@ -158,17 +152,12 @@ fn textures_where_a_model_is_taken() {
     fs::write(folder.join("a.png"), picture.png().unwrap()).unwrap();
     let options = "--palette 16 --texture-size 16 --filter nearest";
     let line_of = |text: &str| {
-        let mut lines = text.lines();
-        lines
-            .find(|line| line.starts_with("texture "))
-            .map(str::to_owned)
+        let line = text.lines().find(|line| line.starts_with("texture "));
+        line.map(str::to_owned)
     };
     let text = succeed(&folder, &format!("convert a.obj a.glm {options}"));
     let line = line_of(&text).unwrap();
-    assert!(
-        line.contains("'a.png': 16×16, palette 16, 5 levels"),
-        "{line}"
-    );
+    assert_has(&line, "'a.png': 16×16, palette 16, 5 levels");
     for command in [
         "render a.obj --out p.png --force",
         "render cube --object a.obj --out p.png --force",
@@ -177,12 +166,13 @@ fn textures_where_a_model_is_taken() {
     ] {
         let run = |options: &str| said(&folder, &format!("{command} {options}"))[0].clone();
         assert_eq!(line_of(&run(options)).as_ref(), Some(&line), "{command}");
-        let json: serde_json::Value =
-            serde_json::from_str(&run(&format!("{options} --json"))).unwrap();
+        let json = run(&format!("{options} --json"));
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         assert_eq!(json["textures"][0]["colours"], 16, "{command}");
         assert_eq!(line_of(&run("--no-textures")), None, "{command}");
     }
-    // The picture is that of the converted mesh; a mesh in memory keeps its texture, unless an option is given.
+    // The picture equals that of the converted mesh. A mesh in a board's memory layout keeps its
+    // texture unless an option is given.
     let picture = |arguments: &str| {
         let command = format!("render {arguments} --up y --out p.png");
         succeed(&folder, &command);
@@ -235,20 +225,12 @@ fn pictures_that_cannot_be_used_are_named() {
     ] {
         fs::write(folder.join("a.mtl"), mtl(name)).unwrap();
         let text = succeed(&folder, "convert a.obj a.glm");
-        let expected = "beside the mesh: its faces have their colours";
-        assert!(
-            text.contains("note       no image file '"),
-            "{name}: {text}"
-        );
-        assert!(text.contains(expected), "{name}: {text}");
+        assert_has(&text, "note       no image file '");
+        assert_has(&text, "beside the mesh: its faces keep their own colours");
         assert!(!text.contains("texture  "), "{name}: {text}");
     }
     fs::write(folder.join("a.mtl"), mtl("damaged.png")).unwrap();
     let text = succeed(&folder, "convert a.obj a.glm");
-    assert!(
-        text.contains(
-            "note       texture 'damaged.png': expected a PNG file without damage, found"
-        ),
-        "{text}"
-    );
+    let note = "note       texture 'damaged.png': expected a PNG file without damage, found";
+    assert_has(&text, note);
 }

@@ -1,4 +1,5 @@
-//! The page with its own board in WebAssembly, from a file server. Requires the build of `cargo xtask web`.
+//! The page with its own board in WebAssembly, served by a web server for static files. Requires
+//! the build of `cargo xtask web`.
 
 use crate::browser::Browser;
 use crate::page::exercise;
@@ -44,7 +45,7 @@ impl Files {
 
 impl Drop for Files {
     fn drop(&mut self) {
-        // The server has already ended if that made the test fail.
+        // An error means that the server has already ended, which has made the test fail.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

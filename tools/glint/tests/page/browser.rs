@@ -1,4 +1,4 @@
-//! A headless Chromium, controlled by the DevTools protocol.
+//! A headless Chromium, which is controlled by the DevTools protocol.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tungstenite::{Message, WebSocket};
 
-/// Time-out of a condition.
+/// Time-out of the wait for a condition.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A headless browser.
@@ -61,7 +61,7 @@ impl Browser {
                 )
             })
             .expect("chromium has ended");
-        // The browser must not block on unread messages.
+        // The messages are read, so that the browser does not block.
         std::thread::spawn(move || lines.for_each(drop));
         let host = url.split('/').nth(2).unwrap();
         let stream = TcpStream::connect(host).unwrap();
@@ -93,7 +93,8 @@ impl Browser {
         }
     }
 
-    /// Reads a message of the browser, and counts the loaded pages.
+    /// Reads the next message of the browser, and counts the loaded pages. `wanted` names the
+    /// awaited message in an error.
     fn read(&mut self, wanted: &str) -> Value {
         loop {
             let message = self.socket.read();
@@ -157,7 +158,8 @@ impl Browser {
         }
     }
 
-    /// Moves the mouse, or presses or releases its button, at a position of the page.
+    /// Sends a mouse event of type `kind`, such as `mouseMoved`, at a position of the page in
+    /// pixels.
     pub fn mouse(&mut self, page: &Page, kind: &str, [x, y]: [f64; 2]) {
         let buttons = u8::from(kind != "mouseReleased");
         let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
@@ -212,7 +214,7 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // The browser has already ended if that made the test fail.
+        // An error means that the browser has already ended, which has made the test fail.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

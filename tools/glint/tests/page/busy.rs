@@ -10,13 +10,13 @@ fn a_model_waits_for_the_end_of_a_command_that_can_be_stopped() {
     let served = Served::start("page-busy");
     let mut page = served.viewer();
     wait_for(&mut page, r#""holder":"you""#);
-    // The sensor starts later than the board.
+    // The first measurements have no attitude, because the sensor starts later than the board.
     while !wait_for(&mut page, r#""type":"sample""#).contains(r#""attitude":["#) {}
     let command = r#"{"type":"command","line":"imu stream"}"#;
     page.send(Message::text(command)).unwrap();
     wait_for(&mut page, "gx,gy,gz");
 
-    // A page opened now receives all lists.
+    // A page that is opened during the command receives all lists.
     let mut second = served.viewer();
     let lists = wait_for(&mut second, r#""type":"lists""#);
     assert!(lists.contains("octahedron"), "{lists}");

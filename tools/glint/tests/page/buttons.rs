@@ -1,4 +1,5 @@
-//! Every button of the page that chooses a scene, a mesh or a field: the commands succeed, and the picture shows something.
+//! For every button that shows a scene, a mesh or a field, the commands succeed, and the picture is
+//! not of one colour.
 
 use crate::alone::Files;
 use crate::browser::{Browser, Page};
@@ -7,9 +8,10 @@ use glint_core::field::KINDS;
 use serde_json::Value;
 use std::collections::HashMap;
 
-/// Waits until the picture is quiet for 0.6 s, or until eight pictures have followed, and returns the number of colours of the picture, the
-/// share of the most frequent colour, and a hash of the picture.
-const LOOK: &str = "new Promise((done) => {
+/// Waits until the picture has not changed for 0.6 s, or until eight new pictures have been shown.
+/// Returns the number of colours of the picture, the share of the most frequent colour, and a hash
+/// of the picture.
+const PICTURE: &str = "new Promise((done) => {
   const canvas = document.getElementById('monitor');
   const number0 = Number(canvas.dataset.number ?? 0);
   let [shown, since] = [number0, performance.now()];
@@ -31,8 +33,8 @@ const LOOK: &str = "new Promise((done) => {
   look();
 })";
 
-/// Presses the button `number` of a list, waits for its frame, and checks console and picture. Returns the button's text and a hash of the
-/// picture.
+/// Presses the button `number` of a list, waits for its picture, and checks console and picture.
+/// Returns the button's text and a hash of the picture.
 fn press(browser: &mut Browser, page: &Page, list: &str, number: usize) -> (String, String) {
     let log = "document.getElementById('log').textContent";
     let before = browser.evaluate(page, &format!("{log}.length"));
@@ -44,7 +46,7 @@ fn press(browser: &mut Browser, page: &Page, list: &str, number: usize) -> (Stri
         page,
         &format!("{log}.length > {before} && /(ok|error: .*)$/.test({log}.trimEnd())"),
     );
-    // The command follows those of the button, and its reply follows the frame.
+    // This command is executed after the commands of the button, so its reply follows the frame.
     let before_render = browser.evaluate(page, &format!("{log}.length"));
     browser.evaluate(page, "document.getElementById('line').focus()");
     browser.type_line(page, "render");
@@ -52,7 +54,7 @@ fn press(browser: &mut Browser, page: &Page, list: &str, number: usize) -> (Stri
         page,
         &format!("/^clock [0-9]+$[^]*^ok$/m.test({log}.slice({before_render}))"),
     );
-    let found = browser.evaluate(page, LOOK);
+    let found = browser.evaluate(page, PICTURE);
     let text = browser.evaluate(page, &format!("{log}.slice({before})"));
     let text = text.as_str().unwrap();
     let [colours, share] = [0, 1].map(|index: usize| found[index].as_f64().unwrap());
@@ -74,7 +76,7 @@ fn press_all(url: &str) {
         browser.wait(&page, &format!("{buttons} > 3"));
         browser.evaluate(&page, &buttons).as_u64().unwrap() as usize
     };
-    // The sensor starts later than the board, and a scene needs it.
+    // A scene requires the sensor, which starts later than the board.
     browser.wait(
         &page,
         "/yaw -?[0-9]/.test(document.querySelector('#curve-attitude figcaption').textContent)",

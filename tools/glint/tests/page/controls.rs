@@ -1,10 +1,11 @@
-//! The page in the hand: completion of names, the camera under the mouse, sizes of controls, a telephone, and a picture at rest.
+//! The page in use: completion of names, moving the camera with the mouse, sizes of controls on a
+//! telephone, and a picture at rest.
 
 use crate::browser::{Browser, Page};
 use crate::served::Served;
 use serde_json::json;
 
-/// Opens the page of a board, and waits until its buttons and the sensor's attitude are there.
+/// Opens the page of a board, and waits until it shows its buttons and the sensor's attitude.
 fn open(browser: &mut Browser, url: &str) -> Page {
     let page = browser.open(url);
     browser.wait(&page, "document.body.dataset.holder === 'you'");
@@ -19,7 +20,7 @@ fn open(browser: &mut Browser, url: &str) -> Page {
     page
 }
 
-/// Shows the page on a display of this size.
+/// Emulates a display of this size in pixels.
 fn resize(browser: &mut Browser, page: &Page, width: u32, height: u32, is_mobile: bool) {
     let size =
         json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_mobile });
@@ -56,7 +57,7 @@ fn names_are_completed_and_tab_stays_while_there_are_some() {
         ("edges ", "edges ", "off  hidden  over"),
     ] {
         complete(&mut browser, &page, text, line, hint);
-        // A second Tab stays too.
+        // A second Tab does not leave the line either.
         browser.press(&page, "Tab", "");
         let focus = browser.evaluate(&page, "document.activeElement.id");
         assert_eq!(focus, "line", "{text}");
@@ -73,7 +74,7 @@ fn the_mouse_moves_the_camera() {
     let page = open(&mut browser, &served.url);
     let number = "Number(document.getElementById('monitor').dataset.number)";
     let log = "document.getElementById('log').textContent";
-    // The eye of the board's camera after an action, of `view EX EY EZ ...`.
+    // Returns the eye of the board's camera after an action, from the reply `view EX EY EZ ...`.
     let view_after = |browser: &mut Browser, action: &str, mark: &str| -> [f64; 3] {
         let enter = |line| format!("enter('{line}');");
         let lines = ["view", &format!("echo {mark}")].map(enter).concat();
@@ -94,7 +95,7 @@ fn the_mouse_moves_the_camera() {
     };
     let view = |browser: &mut Browser, mark: &str| view_after(browser, "", mark);
     let length = |eye: [f64; 3]| eye.iter().map(|c| c * c).sum::<f64>().sqrt();
-    // A sensor that steers does not take the camera back.
+    // A sensor that steered before does not move the camera any more.
     browser.evaluate(&page, "document.getElementById('line').focus()");
     browser.type_line(&page, "scene default");
     browser.type_line(&page, "imu orbit");
@@ -124,7 +125,7 @@ fn the_mouse_moves_the_camera() {
     let away = view(&mut browser, "away");
     assert!(length(away) > 1.15 * length(turned), "{turned:?} {away:?}");
 
-    // Two fingers that come together zoom out, and one finger turns.
+    // A pinch of two fingers zooms out, and one finger turns the camera.
     let touch = |browser: &mut Browser, kind: &str, places: &[[f64; 2]]| {
         let points: Vec<_> = places
             .iter()
@@ -143,7 +144,7 @@ fn the_mouse_moves_the_camera() {
     let near = view(&mut browser, "near");
     assert!(length(near) < 0.8 * length(away), "{away:?} {near:?}");
 
-    // The steps of keys are undone by their opposites.
+    // Opposite keys undo each other's steps.
     browser.evaluate(&page, "document.getElementById('monitor').focus()");
     for key in ["ArrowLeft", "+", "-", "ArrowRight"] {
         browser.press(&page, key, "");
@@ -154,7 +155,7 @@ fn the_mouse_moves_the_camera() {
         "{near:?} {same:?}"
     );
 
-    // A command comes after the motion before it: half a turn.
+    // A command is executed after the motion that was requested before it, here half a turn.
     let turn = "for (let step = 0; step < 36; step++) document.getElementById('monitor').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }));";
     let behind = view_after(&mut browser, turn, "behind");
     assert!(
@@ -163,7 +164,8 @@ fn the_mouse_moves_the_camera() {
     );
 }
 
-/// On a telephone the picture is in view wherever the page is scrolled, and every control has at least 24 pixels on each side.
+/// On a telephone the picture stays visible when the page is scrolled, and every control is at
+/// least 24 pixels wide and high.
 #[test]
 fn a_telephone_shows_picture_and_controls() {
     let served = Served::start("page-telephone");
@@ -204,7 +206,7 @@ fn a_telephone_shows_picture_and_controls() {
                  return height > 100 && top >= 0 && bottom <= 0.6 * innerHeight; })()",
             );
             assert_eq!(seen, json!(true), "{target} at {width}×{height}");
-            // The chosen control is not below the picture.
+            // The control in focus is not hidden by the picture.
             let is_free = browser.evaluate(
                 &page,
                 &format!(
@@ -217,7 +219,7 @@ fn a_telephone_shows_picture_and_controls() {
     }
 }
 
-/// A picture at rest is `still`, and the curves of a sensor at rest are flat.
+/// The page marks a picture at rest as `still`, and the curves of a sensor at rest are flat.
 #[test]
 fn rest_looks_like_rest() {
     let served = Served::start("page-rest");
@@ -225,7 +227,7 @@ fn rest_looks_like_rest() {
     let page = open(&mut browser, &served.url);
     let rate = "document.getElementById('rate').textContent";
     browser.wait(&page, &format!("{rate} === 'still'"));
-    // For a second of samples the angles are small and have no negative zero.
+    // For one second the angles are small, and none is shown as a negative zero.
     let caption = "document.querySelector('#curve-attitude figcaption').textContent";
     for _ in 0..20 {
         let text = browser.evaluate(
@@ -235,7 +237,7 @@ fn rest_looks_like_rest() {
         let text = text.as_str().unwrap();
         assert!(!text.contains("-0.0"), "{text}");
     }
-    // The range of rows that the curves use.
+    // The range of pixel rows that the curves use.
     let rows = browser.evaluate(
         &page,
         "(() => { const canvas = document.querySelector('#curve-attitude canvas'); const { width, height } = canvas; \

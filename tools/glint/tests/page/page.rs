@@ -10,13 +10,13 @@ use glint::convert::Options;
 use glint_core::field::EXAMPLES;
 use std::path::{Path, PathBuf};
 
-/// The pixels of a page's canvas, as text.
+/// Returns the pixels of the page's canvas as text.
 const CANVAS: &str = "(() => { const canvas = document.getElementById('monitor'); \
     const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height); \
     let text = ''; for (let i = 0; i < data.length; i += 30000) text += String.fromCharCode(...data.subarray(i, i + 30000)); \
     return btoa(text); })()";
 
-/// Sets the camera of most pictures.
+/// The command that sets the camera of most pictures.
 const CAMERA: &str = "camera 2.5 -30 75";
 
 /// Waits until the picture in the page is bit-identical to the picture on a board's monitor.
@@ -29,7 +29,7 @@ fn wait_for_picture(browser: &mut Browser, page: &Page, board: &mut SimulatedBoa
     wait_for_pixels(browser, page, &widened.collect::<Vec<u8>>());
 }
 
-/// Waits until the picture in the page has these pixels, each as red, green, blue and opacity.
+/// Waits until the picture in the page has these pixels: red, green, blue and opacity of each.
 pub fn wait_for_pixels(browser: &mut Browser, page: &Page, pixels: &[u8]) {
     let text = STANDARD.encode(pixels);
     browser.evaluate(page, &format!("globalThis.expected = '{text}'; 0"));

@@ -7,7 +7,8 @@ use crate::served::Served;
 /// Number of commands for which the time to the new picture is measured.
 const KEYS: usize = 20;
 
-/// A step that turns the sensor; 16 steps turn it by 20° to either side, so that the sponge stays in view.
+/// A step that turns the sensor. 16 steps turn it by 20° to each side, so that the sponge stays in
+/// view.
 const TURN: &str = "const turn = steps % 16; const isLeft = turn < 5 || turn > 12; \
     dispatch(new KeyboardEvent('keydown', { key: turn === 0 ? 'Home' : isLeft ? 'ArrowLeft' : 'ArrowRight' }))";
 
@@ -16,7 +17,8 @@ const HAND: &str = "dispatch(new PointerEvent('pointermove', { buttons: 1, \
     clientX: box.x + box.width * (0.5 + 0.2 * Math.sin(performance.now() / 640)), \
     clientY: box.y + box.height * (0.5 + 0.2 * Math.cos(performance.now() / 640)) }))";
 
-/// Pictures per second that the board makes while `event` moves an element, and that the page has painted in the last second.
+/// Measures how many pictures per second the board makes while `event` moves an element, and how
+/// many the page has painted in the last second.
 fn rate(browser: &mut Browser, page: &Page, element: &str, event: &str) -> String {
     let rate = browser.evaluate(
         page,
@@ -37,7 +39,7 @@ fn rate(browser: &mut Browser, page: &Page, element: &str, event: &str) -> Strin
     )
 }
 
-/// The sorted times in ms from Enter in the console to the new picture.
+/// The times in ms from pressing Enter in the console to the new picture, sorted.
 fn key_times(browser: &mut Browser, page: &Page) -> Vec<f64> {
     let time = |number: usize| {
         let time = browser.evaluate(

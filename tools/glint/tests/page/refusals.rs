@@ -1,4 +1,4 @@
-//! Tests that invalid requests and messages are rejected, and that the board continues.
+//! Tests that invalid requests and messages are rejected, and that the board continues to run.
 
 use crate::served::{Served, wait_for};
 use std::io::{Read, Write};
@@ -7,7 +7,7 @@ use tungstenite::http::StatusCode;
 use tungstenite::{Error, Message};
 
 /// Number of bytes of invalid data.
-const RUBBISH: usize = 10_000_000;
+const INVALID_BYTES: usize = 10_000_000;
 
 /// The first line of the reply to a request.
 fn answer(served: &Served, request: &str) -> String {
@@ -64,13 +64,13 @@ fn rubbish_does_no_harm() {
     let mut viewer = served.viewer();
     wait_for(&mut viewer, r#""holder":"you""#);
 
-    // Sends bytes that are not a frame of the protocol, after the handshake and before it.
-    let rubbish: Vec<u8> = (0..RUBBISH).map(|i| ((i * i) >> 7) as u8).collect();
+    // Bytes that are not a frame of the protocol are sent after the handshake and in place of it.
+    let rubbish: Vec<u8> = (0..INVALID_BYTES).map(|i| ((i * i) >> 7) as u8).collect();
     let mut other = served.viewer();
     // The server closes the connection before all bytes are written.
     let _ = other.get_mut().write_all(&rubbish);
     let _ = served.connect().write_all(&rubbish);
-    // Sends messages that are too long, and messages of an unknown type.
+    // Messages that are too long, and messages of an unknown type.
     let texts = [
         "x",
         "{}",
@@ -114,7 +114,7 @@ fn rubbish_does_no_harm() {
     wait_for(&mut second, r#""holder":"you""#);
 }
 
-/// Connections without the token that send a byte every second do not keep a page out.
+/// Connections without the token that send a byte every second cannot block a page.
 #[test]
 fn slow_connections_do_not_keep_a_page_out() {
     const STRANGERS: usize = 100;
@@ -127,7 +127,7 @@ fn slow_connections_do_not_keep_a_page_out() {
         let mut strangers: Vec<_> = (0..STRANGERS).map(|_| served.connect()).collect();
         for _ in 0..3 {
             for stranger in &mut strangers {
-                // The server has closed the oldest ones.
+                // An error means that the server has closed this connection, one of the oldest.
                 let _ = stranger.write_all(start.as_bytes());
             }
             let begun = Instant::now();
@@ -138,7 +138,7 @@ fn slow_connections_do_not_keep_a_page_out() {
     }
 }
 
-/// A peer that has been rejected cannot keep its connection by sending more.
+/// A rejected peer cannot keep its connection open by sending more bytes.
 #[test]
 fn a_rejected_connection_is_closed_in_time() {
     let served = Served::start("page-rejected");

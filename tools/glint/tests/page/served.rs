@@ -20,12 +20,13 @@ pub struct Served {
 }
 
 impl Served {
-    /// Starts an emulated board whose ready file has this name.
+    /// Starts an emulated board with its page. `name` is the name of its ready file.
     pub fn start(name: &str) -> Self {
         Self::start_with(name, &["--web"])
     }
 
-    /// Starts `glint board` with arguments. Without `--web` its address is that of a serial port.
+    /// Starts `glint board` with additional arguments. Without `--web` the address is that of a
+    /// serial port.
     pub fn start_with(name: &str, arguments: &[&str]) -> Self {
         let ready = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
@@ -74,7 +75,7 @@ impl Served {
 
 impl Drop for Served {
     fn drop(&mut self) {
-        // The program has already ended if the test has ended it.
+        // An error means that the test has already ended the program.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,5 @@
-//! Models that are dropped on the page: the picture is that of `glint render`, whatever was shown before.
+//! The picture of a model that is dropped on the page equals that of `glint render`, whatever the
+//! page has shown before.
 
 use crate::browser::{Browser, Page};
 use crate::page::wait_for_pixels;
@@ -20,7 +21,7 @@ const STL: &[u8] = b"solid a\nfacet normal 0 -1 0\nouter loop\nvertex 0 0 0\nver
 const SIGN: &[u8] = b"mtllib sign.mtl\nusemtl sign\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
 const SIGN_MTL: &[u8] = b"newmtl sign\nKd 1 1 1\nmap_Kd pictures\\sign.png\n";
 
-/// Files of a folder: their paths and contents.
+/// Paths and contents of the files of a folder.
 type Files = Vec<(&'static str, Vec<u8>)>;
 
 fn files(files: &[(&'static str, &[u8])]) -> Files {
@@ -37,7 +38,7 @@ fn squares() -> Vec<u8> {
     picture.png().unwrap()
 }
 
-/// A square as a glTF with a buffer and a picture in files of their own.
+/// A square as a glTF, with a buffer and a picture in separate files.
 fn square() -> Files {
     let positions: [[f32; 3]; 4] = [
         [-1.0, -1.0, 0.0],
@@ -180,14 +181,14 @@ fn a_dropped_mesh_is_the_picture_of_glint_render() {
         let folder = folder_of(&files);
         wait_for_pixels(&mut browser, &page, &rendered(folder.path(), &[name]));
     }
-    // The model is among the meshes.
+    // The list of meshes contains the model.
     browser.wait(
         &page,
         "[...document.querySelectorAll('#meshes button')].some(({ textContent }) => textContent === 'model')",
     );
 }
 
-/// Models with textures, as files and as a folder.
+/// Models with textures are dropped as files and as a folder.
 #[test]
 fn a_dropped_model_has_its_textures() {
     let served = Served::start("page-textures");
@@ -221,13 +222,13 @@ fn a_dropped_model_has_its_textures() {
     let notice = wait_for_notice(&mut browser, &page, SHOWN);
     assert!(!notice.contains(';'), "{notice}");
 
-    // Files of the second one and a folder together.
+    // Files and a folder of the second model are dropped together.
     let (folder, textured) = &shown[1];
     let paths = ["square.gltf", "square a.bin", "pictures"].map(|name| folder.path().join(name));
     browser.drop_paths(&page, place, &paths);
     wait_for_pixels(&mut browser, &page, textured);
 
-    // The same by the buttons.
+    // The buttons choose the same files.
     for (number, selector) in [(0, "#folder"), (1, "#file")] {
         let (folder, textured) = &shown[number];
         let files = models[number].1.iter();
@@ -241,7 +242,7 @@ fn a_dropped_model_has_its_textures() {
         wait_for_pixels(&mut browser, &page, textured);
     }
 
-    // Without a file the notice names it; without its buffer a glTF is not shown.
+    // The notice names a missing file. A glTF without its buffer is not shown.
     let (_, gltf) = &models[1];
     drop_files(&mut browser, &page, &gltf[..2]);
     let notice = wait_for_notice(&mut browser, &page, SHOWN);
@@ -249,7 +250,7 @@ fn a_dropped_model_has_its_textures() {
     assert!(
         notice.ends_with(&format!(
             "expected the file of an image in the folder of the glTF, found 'pictures/squares.png': \
-             its surfaces have their base colours; {hint} 'pictures/squares.png', or drop their folder"
+             its surfaces keep their base colours; {hint} 'pictures/squares.png', or drop their folder"
         )),
         "{notice}"
     );

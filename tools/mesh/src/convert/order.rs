@@ -5,7 +5,8 @@ use crate::formats::glm;
 use glint_core::mesh::{self, Attribute, IndexedTriangle, Vertex};
 use glint_model::triangle::vertex_cache;
 
-/// A mesh in the board's memory layout, with the number of vertices that the engine fetches for it.
+/// A mesh in the board's memory layout, and the number of vertices that the engine fetches to draw
+/// it.
 pub struct Encoded {
     /// The mesh.
     pub bytes: Vec<u8>,
@@ -13,7 +14,7 @@ pub struct Encoded {
     pub fetches: u32,
 }
 
-/// Parts of a mesh beyond vertices and triangles.
+/// The optional parts of a mesh.
 #[derive(Default)]
 pub struct Extra<'a> {
     /// The texture coordinates of the vertices in the board's memory layout; empty if the mesh has none.
@@ -59,10 +60,11 @@ impl Encoded {
 /// Returns the triangles in an order for which the engine fetches few vertices. Triangles with the same three indices keep their
 /// order.
 ///
-/// The vertices of a chunk are numbered in the order of their first use, so a new vertex replaces the oldest vertex in the direct-mapped
-/// cache, as in a FIFO of equal size. The algorithm is by Sander, Nehab and Barczak, "Fast Triangle Reordering for Vertex Locality and
-/// Reduced Overdraw", ACM Transactions on Graphics 26(3), 2007: it emits all triangles about one vertex, then about the next vertex, in
-/// linear time. `vertices` is greater than all indices.
+/// The vertices of a chunk are numbered in the order of their first use, so a new vertex replaces
+/// the oldest vertex in the direct-mapped cache, as in a FIFO of the same size. The algorithm is by
+/// Sander, Nehab and Barczak, "Fast Triangle Reordering for Vertex Locality and Reduced Overdraw",
+/// ACM Transactions on Graphics 26(3), 2007: it emits all triangles about one vertex, then about
+/// the next vertex, in linear time. `vertices` is greater than all indices.
 pub fn for_cache(vertices: usize, triangles: &[IndexedTriangle]) -> Vec<IndexedTriangle> {
     let mut fans = Fans::new(vertices, triangles);
     let mut ordered = Vec::with_capacity(triangles.len());
@@ -76,21 +78,21 @@ pub fn for_cache(vertices: usize, triangles: &[IndexedTriangle]) -> Vec<IndexedT
     ordered
 }
 
-/// The triangles about each vertex, and the state of the cache while they are drawn.
+/// The triangles about each vertex, and the state of the simulated vertex cache.
 struct Fans {
     /// Triangle numbers grouped by vertex, in each group in the order of the file.
     triangles: Vec<u32>,
     /// For each vertex, the index in `triangles` of the start of its group, followed by the end of the last group.
     starts: Vec<usize>,
-    /// Number of triangles about each vertex that are not drawn yet.
+    /// For each vertex, the number of its triangles that are not drawn yet.
     left: Vec<u32>,
     is_drawn: Vec<bool>,
     /// For each vertex, the value of the fetch counter after its last fetch.
     fetched: Vec<usize>,
     fetches: usize,
-    /// Vertices of the drawn triangles, the latest last.
+    /// Vertices of the drawn triangles, most recent last.
     recent: Vec<u32>,
-    /// All vertices before this one have no triangles left.
+    /// No vertex before this one has triangles left.
     cursor: usize,
 }
 
@@ -154,8 +156,8 @@ impl Fans {
         }
     }
 
-    /// The vertex of `drawn` with triangles left that was fetched first, among those that stay in the cache until their triangles are
-    /// drawn; if none stays, the first vertex of `drawn` with triangles left.
+    /// Chooses the next vertex among the vertices of `drawn` with triangles left: the oldest vertex
+    /// that stays in the cache until its triangles are drawn or, if none stays, the first vertex.
     fn best(&self, drawn: &[IndexedTriangle]) -> Option<u32> {
         let mut best = None;
         for vertex in drawn.iter().flat_map(|triangle| triangle.indices) {
@@ -176,7 +178,8 @@ impl Fans {
         best.map(|(_, vertex)| vertex)
     }
 
-    /// The latest drawn vertex with triangles left, otherwise the first vertex with triangles left.
+    /// The most recently drawn vertex with triangles left; otherwise the first vertex with
+    /// triangles left.
     fn after_dead_end(&mut self) -> Option<u32> {
         let is_left = |left: &[u32], vertex: u32| left[vertex as usize] > 0;
         while let Some(vertex) = self.recent.pop() {
@@ -195,7 +198,8 @@ impl Fans {
 mod tests {
     use super::*;
 
-    /// A grid of `side`² squares of two triangles, row by row. The colour of a triangle is its number.
+    /// A grid of `side`² squares, row by row, each of two triangles. The colour of a triangle is
+    /// its number.
     fn grid(side: u32) -> (Vec<Vertex>, Vec<IndexedTriangle>) {
         let row = side + 1;
         let triangles = (0..side * side).flat_map(|square| {

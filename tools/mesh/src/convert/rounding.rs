@@ -7,15 +7,18 @@ use std::collections::HashMap;
 /// One in Q2.14.
 pub const ONE: f64 = 16384.0;
 
-/// Exponents of the largest coordinate for which products of four lengths neither underflow nor overflow.
+/// Exponents of the largest coordinate of a mesh for which products of four lengths neither
+/// underflow nor overflow.
 const USUAL_EXPONENTS: std::ops::RangeInclusive<i32> = -200..=200;
 
-/// Power of two that brings coordinates to usual magnitudes, in two factors because one may exceed the range of `f64`.
+/// Power of two that scales coordinates of unusual magnitude. It is the product of two factors,
+/// because it may exceed the range of `f64`.
 #[derive(Clone, Copy)]
 pub struct Unusual([f64; 2]);
 
 impl Unusual {
-    /// The factor that brings the coordinates of used points to magnitudes up to 2; `None` if they have usual magnitudes.
+    /// The power of two that scales the coordinates of the used points to magnitudes of at most 2;
+    /// `None` if their magnitudes are usual.
     pub fn of(polygons: &Polygons) -> Option<Self> {
         let corners = polygons.corners.iter();
         let coordinates = corners.flat_map(|&corner| polygons.point(corner));
@@ -28,13 +31,13 @@ impl Unusual {
         Some(Self([first, -exponent - first].map(f64::exp2)))
     }
 
-    /// Multiplies by the factor.
+    /// Multiplies a coordinate by the power of two.
     pub fn apply(self, c: f64) -> f64 {
         let Self([a, b]) = self;
         c * a * b
     }
 
-    /// Divides by the factor.
+    /// Divides a coordinate by the power of two.
     pub fn undo(self, c: f64) -> f64 {
         let Self([a, b]) = self;
         c / a / b
@@ -61,7 +64,7 @@ impl Placing {
                 scale: 1.0,
             });
         }
-        // The bounding box includes only points that a face uses.
+        // Points that no face uses do not belong to the bounding box.
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &corner in &polygons.corners {
             for (i, &c) in polygons.point(corner).iter().enumerate() {
@@ -89,7 +92,7 @@ impl Placing {
     }
 }
 
-/// The points of a file, rounded to Q2.14. Points that round to the same position share it.
+/// The points of a file, rounded to Q2.14. Points that round to the same position share one entry.
 pub struct Rounded {
     /// For each point of the file, the index of its rounded position in `positions`, or `UNUSED` if no face uses the point.
     of_point: Vec<u32>,

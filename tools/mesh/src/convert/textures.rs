@@ -15,21 +15,24 @@ use std::sync::Arc;
 /// One in s16.16.
 const ONE: f64 = 65536.0;
 
-/// Usual number of bytes of a triangle with its share of the vertices and their texture coordinates.
+/// Typical size of a triangle in bytes, with its share of the vertices and their texture
+/// coordinates.
 const TRIANGLE_BYTES: usize = 40;
-/// Bytes that textures have in a mesh of any number of triangles: 255 textures of the smallest size fit.
-const LEAST_ROOM: usize = 1 << 20;
+/// Minimum space in bytes for the textures of a mesh with any number of triangles: 255 textures of
+/// the smallest size fit.
+const MIN_ROOM: usize = 1 << 20;
 
 /// Options of the conversion of textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureOptions {
-    /// Leaves textures out: faces have their colours.
+    /// Leaves the textures out; faces keep their own colours.
     pub left_out: bool,
-    /// The representation of texels; `None`: RGB565, and a texture in a board's memory layout keeps its own.
+    /// The representation of texels. `None` selects RGB565 for pictures, and keeps the
+    /// representation of a texture in a board's memory layout.
     pub format: Option<Format>,
-    /// The largest side.
+    /// The largest side in texels.
     pub largest_side: u32,
-    /// The colour between texels; `None`: as the file states it.
+    /// The filter; `None` keeps the filter that the file states.
     pub filter: Option<Filter>,
 }
 
@@ -54,12 +57,14 @@ pub struct TextureReport {
     pub report: Report,
 }
 
-/// The textures of a mesh that its faces use, for boards.
+/// The textures that the faces of a mesh use, converted for boards.
 #[derive(Default)]
 pub struct Textures {
-    /// For each texture of the file, in order, the number of the board's texture, from 1; 0 for none.
+    /// For each texture of the file, the number of its converted texture, counted from 1; 0 for
+    /// none.
     numbers: Vec<u8>,
-    /// For each face the repeats of the texture that its coordinates leave out; empty without textures.
+    /// For each face, the whole repeats of the texture that are subtracted from its coordinates;
+    /// empty without textures.
     bases: Vec<[f64; 2]>,
     /// The textures in the board's memory layout.
     pub encoded: Vec<Vec<u8>>,
@@ -70,8 +75,9 @@ pub struct Textures {
 }
 
 impl Textures {
-    /// Converts the textures that faces use, and prepares their coordinates. A picture that cannot be used has a remark, and the faces
-    /// keep their colours. Textures that do not fit a mesh's memory become smaller, with a remark.
+    /// Converts the textures that faces use, and prepares their coordinates. If a picture cannot be
+    /// used, its faces keep their own colours. Textures that exceed a mesh's memory are made
+    /// smaller. Both add a remark.
     pub fn of(polygons: &Polygons, options: &TextureOptions) -> Self {
         let mut textures = Self::default();
         if options.left_out || polygons.textures.is_empty() {
@@ -91,11 +97,11 @@ impl Textures {
         }
         if without > 0 {
             textures.remark(format!(
-                "{without} faces have a texture and no texture coordinates: they have their colours"
+                "{without} faces have a texture and no texture coordinates: they keep their own colours"
             ));
         }
         let room = (MAX_BYTES as usize).saturating_sub(TRIANGLE_BYTES * polygons.triangle_count());
-        let room = room.max(LEAST_ROOM);
+        let room = room.max(MIN_ROOM);
         let mut smaller = *options;
         while !textures.convert(polygons, &is_used, room, &smaller)
             && smaller.largest_side > MIN_SIDE
@@ -116,7 +122,7 @@ impl Textures {
         textures
     }
 
-    /// Converts the textures that are used, and returns whether they fit `room` bytes.
+    /// Converts the used textures, and returns whether they fit `room` bytes.
     fn convert(
         &mut self,
         polygons: &Polygons,
@@ -146,7 +152,7 @@ impl Textures {
                     self.numbers[i] = self.encoded.len() as u8;
                 }
                 Err(error) => remarks.push(format!(
-                    "texture {}: {error}: its faces have their colours",
+                    "texture {}: {error}: its faces keep their own colours",
                     texture.name
                 )),
             }
@@ -155,7 +161,7 @@ impl Textures {
         true
     }
 
-    /// The number of the board's texture of a face; 0 for none.
+    /// The number of a face's converted texture, counted from 1; 0 for none.
     pub fn number(&self, polygons: &Polygons, face: &Face) -> u8 {
         let number = place(face).and_then(|i| self.numbers.get(i)).copied();
         number
@@ -163,19 +169,20 @@ impl Textures {
             .unwrap_or(0)
     }
 
-    /// The coordinates s and t of a corner of the face with this index, s16.16, rounded to nearest and saturated; 0 without coordinates.
+    /// The texture coordinates s and t of a corner of the face with the index `face`, in s16.16,
+    /// rounded to nearest and saturated; 0 without texture coordinates.
     pub fn coordinates(&self, polygons: &Polygons, face: usize, corner: Corner) -> [i32; 2] {
         let Some(base) = self.bases.get(face) else {
             return [0; 2];
         };
         let coordinates = polygons.coordinates.get(corner.coordinates as usize);
         coordinates.map_or([0; 2], |coordinates| {
-            // The conversion saturates.
+            // The conversion `as i32` saturates.
             [0, 1].map(|axis| ((coordinates[axis] - base[axis]) * ONE).round() as i32)
         })
     }
 
-    /// A remark on coordinates that exceed s16.16.
+    /// Adds a remark if texture coordinates exceed s16.16.
     fn remark_beyond(&mut self, polygons: &Polygons) {
         let faces = polygons.faces.iter().enumerate();
         let faces = faces.filter(|(_, face)| self.number(polygons, face) != 0);
@@ -187,7 +194,7 @@ impl Textures {
         let count = beyond.count();
         if count > 0 {
             self.remark(format!(
-                "{count} faces have texture coordinates beyond 32768 repeats, which are limited to this"
+                "{count} faces have texture coordinates beyond 32768 repeats, which are clamped"
             ));
         }
     }
@@ -199,7 +206,7 @@ impl Textures {
     }
 }
 
-/// Index of a face's texture; `None` for a face without one.
+/// Index of a face's texture; `None` for a face without a texture.
 fn place(face: &Face) -> Option<usize> {
     usize::from(face.texture).checked_sub(1)
 }
@@ -209,7 +216,8 @@ fn has_coordinates(polygons: &Polygons, face: &Face) -> bool {
     corners.all(|corner| corner.coordinates != Corner::NO_COORDINATES)
 }
 
-/// Converts a texture. `last` is the picture that was decoded last, which several textures can show.
+/// Converts a texture. `last` caches the last decoded picture, because several textures can share a
+/// picture.
 fn encode(
     texture: &Texture,
     options: &TextureOptions,
@@ -243,9 +251,10 @@ fn encode(
     }
 }
 
-/// For each face with a texture the repeats that its coordinates leave out: the even number below the smallest coordinate of all faces
-/// with this texture that are connected by equal coordinates, so that they still share vertices. Two repeats are a period of a
-/// mirrored texture. A clamped one keeps its coordinates.
+/// For each face with a texture, the whole repeats that are subtracted from its coordinates, which
+/// keeps them small. Faces that share texture coordinates subtract the same number, so that they
+/// still share vertices: the largest even number up to their smallest coordinate, because two
+/// repeats are one period of a mirrored texture. Coordinates of clamped textures remain unchanged.
 fn bases(polygons: &Polygons, textures: &Textures) -> Vec<[f64; 2]> {
     let mut entries: HashMap<(u8, [u64; 2]), u32> = HashMap::new();
     let mut sets = Sets::default();
@@ -260,7 +269,7 @@ fn bases(polygons: &Polygons, textures: &Textures) -> Vec<[f64; 2]> {
             let mut first = None;
             for corner in polygons.corners_of(face) {
                 let coordinates = polygons.coordinates[corner.coordinates as usize];
-                // −0 becomes +0.
+                // The addition turns −0 into +0.
                 let key = (face.texture, coordinates.map(|c| (c + 0.0).to_bits()));
                 let entry = *entries.entry(key).or_insert_with(|| {
                     least.push(coordinates);
@@ -294,19 +303,19 @@ fn bases(polygons: &Polygons, textures: &Textures) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Disjoint sets of numbers.
+/// A disjoint-set forest.
 #[derive(Default)]
 struct Sets(Vec<u32>);
 
 impl Sets {
-    /// Adds a set with the next number.
+    /// Adds a set that contains only the next number.
     fn add(&mut self) -> u32 {
         let number = self.0.len() as u32;
         self.0.push(number);
         number
     }
 
-    /// The number that stands for a number's set.
+    /// The representative of the set that contains `number`.
     fn find(&mut self, mut number: u32) -> u32 {
         while self.0[number as usize] != number {
             let above = self.0[self.0[number as usize] as usize];
@@ -318,7 +327,8 @@ impl Sets {
 
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
-        // The lower number stays, so that the result does not depend on the order.
+        // The lower number becomes the representative, so the result does not depend on the order
+        // of the calls.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }
@@ -355,16 +365,14 @@ mod tests {
         }
     }
 
-    /// A square of two triangles, with these coordinates and this texture.
+    /// A square of two triangles with these texture coordinates and this texture.
     fn square(coordinates: [[f64; 2]; 4], texture: Texture) -> Polygons {
         let mut polygons = Polygons::default();
         for point in [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] {
             polygons.add_point(point, Location::Whole).unwrap();
         }
-        for coordinates in coordinates {
-            polygons
-                .add_coordinates(coordinates, Location::Whole)
-                .unwrap();
+        for place in coordinates {
+            polygons.add_coordinates(place, Location::Whole).unwrap();
         }
         let number = polygons.add_texture(texture).unwrap();
         for corners in [[0, 1, 2], [0, 2, 3]] {
@@ -401,40 +409,24 @@ mod tests {
         found.sort_unstable();
         assert_eq!(found, [[0, 0], [0, one], [one, 0], [one, one]]);
         let chunk = mesh.chunks().next().unwrap();
-        assert!(
-            chunk
-                .triangles()
-                .all(|t| t.texture == 1 && t.colour == Rgb565::WHITE)
-        );
+        let mut triangles = chunk.triangles();
+        assert!(triangles.all(|t| t.texture == 1 && t.colour == Rgb565::WHITE));
         assert!(chunk.vertices().all(|v| v.colour == Rgb565::WHITE));
-        let [found] = &mesh.textures().collect::<Vec<_>>()[..] else {
-            panic!("one texture");
-        };
-        assert_eq!(found.colour(0, [0, 0]), None);
-        assert_eq!(
-            found.colour(0, [1, 0]),
-            Some(Rgb565::from_rgb888([4, 255, 0]))
-        );
-        let [stated] = &report.textures[..] else {
-            panic!("one report");
-        };
-        assert_eq!(
-            (stated.name.as_str(), stated.report.size),
-            ("'a.png'", [8, 8])
-        );
+        let found: Vec<_> = mesh.textures().collect();
+        assert_eq!((found.len(), found[0].colour(0, [0, 0])), (1, None));
+        let opaque = Rgb565::from_rgb888([4, 255, 0]);
+        assert_eq!(found[0].colour(0, [1, 0]), Some(opaque));
+        let stated = &report.textures[0];
+        assert_eq!((report.textures.len(), stated.report.size), (1, [8; 2]));
+        assert_eq!(stated.name, "'a.png'");
         assert_eq!(report.bytes, bytes.len());
     }
 
     #[test]
     fn without_textures_the_mesh_is_as_before() {
         let file = png(0);
-        let left_out = Options {
-            textures: TextureOptions {
-                left_out: true,
-                ..TextureOptions::default()
-            },
-            ..Options::default()
-        };
+        let mut left_out = Options::default();
+        left_out.textures.left_out = true;
         let textured = square(UNIT, texture(&file, Wrap::Repeat));
         let mut plain = textured.clone();
         plain.faces.iter_mut().for_each(|face| face.texture = 0);
@@ -445,13 +437,9 @@ mod tests {
         let broken = square(UNIT, texture(&Arc::new(file[..40].to_vec()), Wrap::Repeat));
         let (bytes, report) = convert(&broken, Options::default()).unwrap();
         assert!(bytes == expected);
-        let [remark] = &report.remarks[..] else {
-            panic!("one remark");
-        };
-        assert!(
-            remark.starts_with("texture 'a.png': expected a PNG file without damage, found "),
-            "{remark}"
-        );
+        let start = "texture 'a.png': expected a PNG file without damage, found ";
+        assert_eq!(report.remarks.len(), 1);
+        assert!(report.remarks[0].starts_with(start), "{report:?}");
         let mut partly = textured.clone();
         for corner in &mut partly.corners {
             corner.coordinates = Corner::NO_COORDINATES;
@@ -460,7 +448,7 @@ mod tests {
         assert!(bytes == expected);
         assert_eq!(
             report.remarks,
-            ["2 faces have a texture and no texture coordinates: they have their colours"]
+            ["2 faces have a texture and no texture coordinates: they keep their own colours"]
         );
     }
 
@@ -486,8 +474,7 @@ mod tests {
             assert_eq!(found(1e9 + 1.0, wrap), (one, vec![]));
         }
         assert_eq!(found(-0.25, Wrap::Clamp), (-one / 4, vec![]));
-        let limited =
-            "2 faces have texture coordinates beyond 32768 repeats, which are limited to this";
+        let limited = "2 faces have texture coordinates beyond 32768 repeats, which are clamped";
         assert_eq!(found(1e9, Wrap::Clamp), (i32::MAX, vec![limited.into()]));
     }
 
@@ -505,16 +492,14 @@ mod tests {
     #[test]
     fn vertices_are_split_where_coordinates_differ() {
         let mut polygons = square(UNIT, texture(&png(255), Wrap::Repeat));
-        let seam = polygons
-            .add_coordinates([0.5, 0.5], Location::Whole)
-            .unwrap();
-        // A corner that both triangles have.
-        polygons.corners[0].coordinates = seam;
+        let seam = polygons.add_coordinates([0.5, 0.5], Location::Whole);
+        // This corner belongs to both triangles.
+        polygons.corners[0].coordinates = seam.unwrap();
         let (_, report) = convert(&polygons, Options::default()).unwrap();
         assert_eq!(report.vertices, 5);
         polygons.faces[0].texture = 0;
         let (_, report) = convert(&polygons, Options::default()).unwrap();
-        // Vertices of the untextured triangle have another colour.
+        // The vertices of the untextured triangle have another colour, so they are not shared.
         assert_eq!(report.vertices, 6);
     }
 
@@ -526,14 +511,9 @@ mod tests {
         let (kept, report) = convert(&again, Options::default()).unwrap();
         assert!(kept == bytes);
         assert_eq!(report.textures[0].name, "1");
-        let smaller = Options {
-            textures: TextureOptions {
-                format: Some(Format::Palette16),
-                filter: Some(Filter::Bilinear),
-                ..TextureOptions::default()
-            },
-            ..Options::default()
-        };
+        let mut smaller = Options::default();
+        smaller.textures.format = Some(Format::Palette16);
+        smaller.textures.filter = Some(Filter::Bilinear);
         for polygons in [polygons, again] {
             let (bytes, _) = convert(&polygons, smaller).unwrap();
             let mesh = glm::check(&bytes).unwrap();

@@ -4,14 +4,15 @@ use crate::polygons::{Face, Polygons, Vector};
 use crate::triangulate::{cross, dot, sub};
 use std::collections::HashMap;
 
-/// Reverses faces so that neighbours have consistent windings, and every closed part of the mesh has a positive volume: its faces are
-/// counter-clockwise seen from outside. Points with equal coordinates count as one.
+/// Reverses faces so that neighbours have consistent windings, and every closed part of the mesh
+/// has a positive volume: its faces are counter-clockwise seen from outside. Points with equal
+/// coordinates count as one point.
 ///
 /// A part is a set of faces connected by edges that have exactly two faces. Adds remarks: the number of reversed faces, and
 ///
-/// - open parts, whose outside is unknown: the winding of the majority of faces is kept;
+/// - open parts, whose outside is unknown: the winding of most of their faces is kept;
 /// - one-sided parts, such as a Möbius strip: they are left unchanged;
-/// - edges of more than two faces, at which neighbours are not compared.
+/// - edges of more than two faces: neighbours at these edges are not compared.
 pub fn repair(polygons: &mut Polygons) {
     let faces = welded(polygons);
     let edges = Edges::of(&faces);
@@ -47,7 +48,7 @@ pub fn repair(polygons: &mut Polygons) {
     }
     for (face, turned) in polygons.faces.iter().zip(&turned) {
         if *turned == Some(true) {
-            // The first corner stays, because a triangulation may depend on it.
+            // The first corner stays first, because a triangulation may depend on it.
             polygons.corners[face.first as usize..][1..face.count as usize].reverse();
             counts.turned += 1;
         }
@@ -75,16 +76,16 @@ impl Counts {
     fn remark(&self, polygons: &mut Polygons) {
         let faces = polygons.faces.len();
         let mut remark = |text: String| polygons.remarks.push(format!("winding: {text}"));
-        remark(format!("{} of {faces} faces turned over", self.turned));
+        remark(format!("{} of {faces} faces reversed", self.turned));
         if self.open > 0 {
             remark(format!(
-                "{} open parts: their outside is unknown, so the side of most of their faces is kept",
+                "{} open parts: their outside is unknown, so the winding of most of their faces is kept",
                 self.open
             ));
         }
         if self.one_sided > 0 {
             remark(format!(
-                "{} parts with one side only (as a Möbius strip): left as they were",
+                "{} one-sided parts (such as a Möbius strip): left unchanged",
                 self.one_sided
             ));
         }
@@ -105,7 +106,7 @@ fn welded(polygons: &Polygons) -> Vec<Vec<u32>> {
         .iter()
         .map(|point| {
             let next = numbers.len() as u32;
-            // −0 becomes +0.
+            // The addition turns −0 into +0.
             *numbers
                 .entry(point.map(|c| (c + 0.0).to_bits()))
                 .or_insert(next)
@@ -128,13 +129,13 @@ fn welded(polygons: &Polygons) -> Vec<Vec<u32>> {
 /// The directed edges of a face.
 fn edges_of(corners: &[u32]) -> impl Iterator<Item = (u32, u32)> {
     let next = corners.iter().cycle().skip(1);
-    // A face without area, of one or two points, has no edge.
+    // A face of one or two distinct points has no area and no edge.
     let count = if corners.len() < 3 { 0 } else { corners.len() };
     corners.iter().copied().zip(next.copied()).take(count)
 }
 
-/// For each edge, given by its lower and its higher point, the faces that use it, and whether they traverse it from the lower to the
-/// higher point.
+/// For each edge, identified by its lower and its higher point number, the faces that use it, and
+/// whether each face traverses it from the lower to the higher point.
 struct Edges(HashMap<(u32, u32), Vec<(usize, bool)>>);
 
 /// A set of faces connected by edges that have exactly two faces.
@@ -158,8 +159,8 @@ impl Edges {
         Self(edges)
     }
 
-    /// Collects the faces of a part, starting with one face, and determines for each whether it must be reversed to be consistent with the
-    /// first.
+    /// Collects the faces of a part, starting with the face `first`, and determines whether each
+    /// face must be reversed to be consistent with `first`.
     fn part(&self, faces: &[Vec<u32>], first: usize, turned: &mut [Option<bool>]) -> Patch {
         let mut part = Patch {
             faces: vec![first],
@@ -191,7 +192,8 @@ impl Edges {
     }
 }
 
-/// Whether a part is closed: after the reversals, its faces traverse each edge equally often in both directions.
+/// Whether a part is closed: after the reversals, its faces traverse each edge equally often in
+/// each direction.
 fn is_closed(faces: &[Vec<u32>], part: &[usize], turned: &[Option<bool>]) -> bool {
     let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
     for &face in part {
@@ -217,7 +219,8 @@ fn volume(polygons: &Polygons, part: &[usize], turned: &[Option<bool>]) -> f64 {
             .map(|pair| dot(*first, cross(pair[0], pair[1])))
             .sum()
     };
-    // With a point of the part as the origin, rounding errors stay small for a part far from the file's origin.
+    // A point of the part is the origin, so that rounding errors stay small for a part far from the
+    // file's origin.
     let first = part
         .first()
         .and_then(|&face| polygons.corners_of(&polygons.faces[face]).first());
@@ -268,28 +271,16 @@ mod tests {
 
     #[test]
     fn closed_meshes_are_restored() {
-        for name in [
-            "cube",
-            "icosphere:8",
-            "torus-knot",
-            "gear",
-            "teapot",
-            "sponge:2",
-            "scan:8",
-        ] {
+        for name in "cube icosphere:8 torus-knot gear teapot sponge:2 scan:8".split(' ') {
             let whole = generate::named(name).unwrap();
             for seed in [1, 1000, 77_777] {
                 let mut polygons = whole.clone();
                 let count = turn_some(&mut polygons, seed);
                 repair(&mut polygons);
                 assert!(polygons.corners == whole.corners, "{name}");
-                assert_eq!(
-                    polygons.remarks[0],
-                    format!(
-                        "winding: {count} of {} faces turned over",
-                        whole.faces.len()
-                    )
-                );
+                let faces = whole.faces.len();
+                let remark = format!("winding: {count} of {faces} faces reversed");
+                assert_eq!(polygons.remarks[0], remark);
             }
             // All faces are reversed.
             let mut polygons = whole.clone();
@@ -306,15 +297,12 @@ mod tests {
         let whole = generate::named("icosphere:4").unwrap();
         let mut apart = Polygons::default();
         for face in &whole.faces {
-            let corners = whole.corners_of(face).iter();
-            let corners: Vec<Corner> = corners
-                .map(|&corner| {
-                    apart
-                        .add_point(whole.point(corner), Location::Whole)
-                        .map(Corner::at)
-                        .unwrap()
-                })
-                .collect();
+            let points = whole
+                .corners_of(face)
+                .iter()
+                .map(|&corner| whole.point(corner));
+            let points = points.map(|point| apart.add_point(point, Location::Whole).unwrap());
+            let corners: Vec<Corner> = points.map(Corner::at).collect();
             apart.add_face(&corners, None, Location::Whole).unwrap();
         }
         let expected = apart.corners.clone();
@@ -326,27 +314,18 @@ mod tests {
     #[test]
     fn parts_are_repaired_apart() {
         // Two tetrahedra that share an edge, far from the origin; the faces of the second are reversed.
-        let at = |x: f64, y: f64, z: f64| [1e6 + x, y, z];
-        let mut polygons = strip(
-            &[
-                at(0., 0., 0.),
-                at(0., 0., 1.),
-                at(1., 0., 0.),
-                at(0., 1., 0.),
-                at(-1., 0., 0.),
-                at(0., -1., 0.),
-            ],
-            &[
-                [0, 2, 1],
-                [0, 1, 3],
-                [0, 3, 2],
-                [1, 2, 3],
-                [0, 1, 4],
-                [0, 5, 1],
-                [0, 4, 5],
-                [1, 5, 4],
-            ],
-        );
+        let [near, x, far] = [1e6 - 1.0, 1e6, 1e6 + 1.0];
+        let edge = [[x, 0.0, 0.0], [x, 0.0, 1.0]];
+        let sides = [
+            [far, 0.0, 0.0],
+            [x, 1.0, 0.0],
+            [near, 0.0, 0.0],
+            [x, -1.0, 0.0],
+        ];
+        let first = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let second = [[0, 1, 4], [0, 5, 1], [0, 4, 5], [1, 5, 4]];
+        let points = [&edge[..], &sides].concat();
+        let mut polygons = strip(&points, &[first, second].concat());
         let before = polygons.corners.clone();
         repair(&mut polygons);
         assert_eq!(polygons.corners[..12], before[..12]);
@@ -354,7 +333,7 @@ mod tests {
         assert_eq!(
             polygons.remarks,
             [
-                "winding: 4 of 8 faces turned over",
+                "winding: 4 of 8 faces reversed",
                 "winding: 1 edges of more than two faces: neighbours there are not compared"
             ]
         );
@@ -362,22 +341,14 @@ mod tests {
 
     #[test]
     fn an_open_mesh_keeps_the_side_of_most_faces() {
-        let points = [
-            [0., 0., 0.],
-            [1., 0., 0.],
-            [1., 1., 0.],
-            [0., 1., 0.],
-            [2., 0., 0.],
-        ];
+        let places = [(0., 0.), (1., 0.), (1., 1.), (0., 1.), (2., 0.)];
+        let points = places.map(|(x, y)| [x, y, 0.0]);
         let mut polygons = strip(&points, &[[0, 1, 2], [0, 3, 2], [1, 4, 2]]);
         repair(&mut polygons);
         let corners: Vec<u32> = polygons.corners.iter().map(|corner| corner.point).collect();
         assert_eq!(corners, [0, 1, 2, 0, 2, 3, 1, 4, 2]);
-        assert!(
-            polygons.remarks[1].starts_with("winding: 1 open parts"),
-            "{:?}",
-            polygons.remarks
-        );
+        let remark = &polygons.remarks[1];
+        assert!(remark.starts_with("winding: 1 open parts"), "{remark}");
     }
 
     #[test]
@@ -398,8 +369,8 @@ mod tests {
         assert_eq!(
             polygons.remarks,
             [
-                "winding: 0 of 5 faces turned over",
-                "winding: 1 parts with one side only (as a Möbius strip): left as they were"
+                "winding: 0 of 5 faces reversed",
+                "winding: 1 one-sided parts (such as a Möbius strip): left unchanged"
             ]
         );
     }

@@ -1,15 +1,15 @@
-//! Conversion of GLM, Glint's own mesh format, to polygons.
+//! Conversion of Glint's own mesh format GLM to polygons.
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Content, Corner, MAX_TEXTURES, Polygons, Rgb8, Texture};
 use glint_core::mesh::{Attribute, Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
 use glint_core::records::TextureCoordinates;
 
-/// Parses a GLM. Positions, normals and texture coordinates are converted exactly, colours by bit replication. The chunks of the mesh are
-/// merged. Textures are kept.
+/// Parses a GLM. Positions, normals and texture coordinates are converted exactly, colours by bit
+/// replication. The chunks of the mesh are merged. Textures remain in the board's memory layout.
 ///
 /// # Errors
-/// Those of [`check_file`], or the mesh has no triangles.
+/// As for [`check_file`], or the mesh has no triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     let mesh = check_file(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
@@ -62,7 +62,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
 /// First four bytes of the previous version of the format, which has no checksum.
 const WITHOUT_CHECKSUM: &[u8] = b"GLM1";
 
-/// Checks the bytes of a file with its checksum, and returns them as a mesh.
+/// Checks the bytes of a file, including its checksum, and returns them as a mesh.
 ///
 /// # Errors
 /// The file has another version or a wrong checksum, or [`Mesh::new_checked`] rejects it.
@@ -91,7 +91,7 @@ pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
 pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     Mesh::new_checked(bytes).map_err(|error| {
         let found = match error.expected {
-            glint_core::mesh::Expected::Magic => {
+            glint_core::deviation::Expected::Magic(_) => {
                 format!("'{}'", error.found.to_le_bytes().escape_ascii())
             }
             _ => error.found.to_string(),

@@ -96,7 +96,7 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     read_up_to(path, MAX_FILE)
 }
 
-/// Reads a whole file, or standard input, as [`read_file`].
+/// Reads a whole file, or standard input for [`STDIN`], of at most `most` bytes.
 ///
 /// # Errors
 /// The file cannot be read, or has more than `most` bytes.
@@ -115,8 +115,8 @@ pub fn read_up_to(path: &Path, most: usize) -> Result<Vec<u8>, InputError> {
     Ok(bytes)
 }
 
-/// Reads a mesh file of any format. Further files, such as the material files of an OBJ and the buffers of a glTF, are only read from the
-/// file's folder.
+/// Reads a mesh file of any format. Auxiliary files, such as the material files of an OBJ and the
+/// buffers of a glTF, are read only from the file's folder.
 ///
 /// # Errors
 /// The file cannot be read, or violates its format.
@@ -128,7 +128,7 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
 /// Reads the bytes of a mesh file, and detects its format from the file's name, or from its contents for standard input.
 ///
 /// # Errors
-/// The name has no extension of a mesh, or the file cannot be read.
+/// The name does not have the extension of a mesh format, or the file cannot be read.
 pub fn read_mesh(path: &Path) -> Result<(Format, Vec<u8>), InputError> {
     if path == Path::new(STDIN) {
         let bytes = read_file(path)?;
@@ -137,7 +137,7 @@ pub fn read_mesh(path: &Path) -> Result<(Format, Vec<u8>), InputError> {
     Ok((Format::of(path)?, read_file(path)?))
 }
 
-/// Reads an auxiliary file of a mesh file, by its name.
+/// A function that reads an auxiliary file of a mesh file by its name; `None` if it cannot be read.
 pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
 /// Reads a file of at most `limit` bytes.
@@ -154,9 +154,10 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Returns a reader of auxiliary files in the folder of `path` and in the folders within it; of a name with a path that does not exist
-/// there, the last part is tried. A link to a file in another folder is not followed, because a mesh file from others could then read any
-/// file.
+/// Returns a function that reads auxiliary files from the folder of `path` and its subfolders. If
+/// no file has the path that a name states, the last part of the name is tried in the folder. A
+/// link to a file outside of the folder is not followed, because an untrusted mesh file could then
+/// read any file.
 pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
     move |name| {
         let folder = Path::new(".").join(path.parent()?).canonicalize().ok()?;
@@ -165,7 +166,7 @@ pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
             let parent = file.parent()?.canonicalize().ok()?;
             let file = file.canonicalize().ok()?;
             let is_within = parent.starts_with(&folder) && file.parent() == Some(&parent);
-            // Reading a device or a pipe could block, or never end.
+            // Reading a device or a pipe could block or never end.
             let is_file = file.metadata().is_ok_and(|data| data.is_file());
             (is_within && is_file).then_some(file)
         };

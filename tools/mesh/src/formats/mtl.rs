@@ -17,25 +17,26 @@ pub struct Material {
 /// The texture of a material.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Map {
-    /// The name of its file, which may contain spaces.
+    /// The name of the image file, which may contain spaces.
     pub file: Vec<u8>,
-    /// Whether the texels at its sides continue beyond (`-clamp on`); otherwise it repeats.
+    /// Whether the texture is clamped (`-clamp on`); otherwise it repeats.
     pub is_clamped: bool,
 }
 
-/// Properties of materials that change the picture, and are ignored.
+/// Properties of materials that would change the picture, but are ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ignored {
-    /// Options of a texture other than `-clamp`, except those without effect on its colours.
+    /// Texture options that affect colours, other than `-clamp`.
     pub has_options: bool,
-    /// Transparency: an opacity `d` below 1, a transparency `Tr` above 0, or a texture of either.
+    /// Transparency: an opacity `d` below 1, a transparency `Tr` above 0, or a texture for either
+    /// property.
     pub is_transparent: bool,
-    /// Light from the surface (`Ke`).
+    /// Emitted light (`Ke`).
     pub has_light: bool,
 }
 
-/// Adds the file's materials with their diffuse colours (`Kd`) and textures (`map_Kd`) to `materials`; other statements are skipped.
-/// Returns the ignored properties, for a remark.
+/// Adds the file's materials with their diffuse colours (`Kd`) and textures (`map_Kd`) to
+/// `materials`, and skips other statements. Returns which properties were ignored, for a remark.
 ///
 /// # Errors
 /// A line is too long, or a `Kd` comes before the first `newmtl` or has no numbers.
@@ -99,15 +100,16 @@ pub fn parse(
     Ok(ignored)
 }
 
-/// The texture of a statement: a keyword, options, and the name of a file; `None` without a name. Also returns whether it has options that
-/// change its colours and are ignored.
+/// Parses a texture statement: keyword, options and file name. Returns the texture, `None` without
+/// a file name, and whether ignored options would change its colours.
 fn map(statement: &[u8]) -> (Option<Map>, bool) {
     let (_, mut rest) = first_word(statement);
     let mut map = Map::default();
     let mut is_ignored = false;
     loop {
         let (option, after) = first_word(rest);
-        // The least and the largest number of words after an option. Words after the least number belong to it if they are numbers.
+        // Minimum and maximum number of words after an option. Words beyond the minimum belong to
+        // the option if they are numbers.
         let (least, most) = match option {
             b"-clamp" | b"-cc" | b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-texres"
             | b"-boost" | b"-bm" => (1, 1),
@@ -127,7 +129,7 @@ fn map(statement: &[u8]) -> (Option<Map>, bool) {
         }
         match (option, first) {
             (b"-clamp", Some(word)) => map.is_clamped = word == b"on",
-            // These have no effect on colours between texels of level 0.
+            // These options do not affect the colours of level 0.
             (b"-cc" | b"-blendu" | b"-blendv" | b"-type" | b"-texres" | b"-boost", _) => {}
             _ => is_ignored = true,
         }
@@ -150,22 +152,18 @@ mod tests {
     #[test]
     fn colours() {
         let mut materials = HashMap::new();
-        let ignored = parse(
-            b"# c\nnewmtl a\n Kd 1 0.5 0\nnewmtl b\nKd 1\nnewmtl c\nKd spectral x.rfl\n",
-            &mut materials,
-        )
-        .unwrap();
-        assert_eq!(ignored, Ignored::default());
+        let text = b"# c\nnewmtl a\n Kd 1 0.5 0\nnewmtl b\nKd 1\nnewmtl c\nKd spectral x.rfl\n";
+        let ignored = parse(text, &mut materials);
+        assert_eq!(ignored, Ok(Ignored::default()));
         let colour = |name: &[u8]| materials.get(name).and_then(|material| material.colour);
         assert_eq!(colour(b"a"), Some(Rgb8([255, 128, 0])));
         assert_eq!(colour(b"b"), Some(Rgb8::WHITE));
         assert_eq!(materials.len(), 2);
-        assert_eq!(
-            parse(b"\nKd 1 1 1", &mut materials)
-                .unwrap_err()
-                .to_string(),
-            "line 2: expected newmtl before the first Kd, found none"
-        );
+        let error = parse(b"\nKd 1 1 1", &mut materials)
+            .unwrap_err()
+            .to_string();
+        let expected = "line 2: expected newmtl before the first Kd, found none";
+        assert_eq!(error, expected);
         assert!(parse(b"newmtl a\nKd x", &mut materials).is_err());
     }
 

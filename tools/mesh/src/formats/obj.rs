@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 //!
-//! This parser replaces `tobj`, whose errors have no line number, and which accepts NaN and infinity as coordinates and lines of any
-//! length.
+//! This parser replaces `tobj`, whose errors have no line number, and which accepts lines of any
+//! length, and NaN and infinity as coordinates.
 
 use super::mtl::{self, Ignored, Map, Material};
 use super::text::{Line, Lines, component, coordinate, vector};
@@ -44,7 +44,7 @@ const IGNORED: &[&[u8]] = &[
     b"usemap",
 ];
 
-/// Keywords of statements that other programs draw, and the remark that they are ignored.
+/// Keywords of statements that other programs draw, and the remark for each kind.
 const UNDRAWN: &[(&[&[u8]], &str)] = &[
     (&[b"l", b"p"], "points and lines are ignored"),
     (
@@ -53,7 +53,7 @@ const UNDRAWN: &[(&[&[u8]], &str)] = &[
     ),
 ];
 
-/// Opacity below which the texels of a picture are transparent. A material file does not state it.
+/// Opacity below which texels are transparent; a material file does not state a cutoff.
 const CUTOFF: f32 = 0.5;
 
 /// Reads a material file or an image file by name; `None` if it does not exist.
@@ -124,13 +124,14 @@ fn join_continued<'a>(
 #[derive(Default)]
 struct Reader {
     polygons: Polygons,
-    /// Colours of the points as in the file. Whether 1 or 255 means full intensity is known only at the end of the file.
+    /// Colours of the points as in the file. Only at the end of the file is it known whether 1 or
+    /// 255 is full intensity.
     point_colours: Vec<Option<[f32; 3]>>,
     materials: HashMap<Vec<u8>, Material>,
     colour: Option<Rgb8>,
     /// Number of the current texture; 0 for none.
     texture: u8,
-    /// The numbers of the textures that were requested; 0 for one that cannot be read.
+    /// The numbers of the textures that were requested; 0 for a texture that cannot be read.
     textures: HashMap<Map, u8>,
     /// The image files that were requested.
     pictures: HashMap<Vec<u8>, Option<Arc<Vec<u8>>>>,
@@ -175,7 +176,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Whether a statement is one that other programs draw; adds a remark for the first one of each kind.
+    /// Whether other programs draw a statement. The first statement of each kind adds a remark.
     fn is_undrawn(&mut self, keyword: &[u8]) -> bool {
         let mut kinds = UNDRAWN.iter().enumerate();
         let Some((kind, (_, remark))) = kinds.find(|(_, (words, _))| words.contains(&keyword))
@@ -188,7 +189,7 @@ impl Reader {
         true
     }
 
-    /// Skips an unknown statement, with a remark for its first occurrence.
+    /// Skips an unknown statement; the first occurrence of its keyword adds a remark.
     fn skip(&mut self, keyword: &[u8], place: Location) {
         if self.skipped.len() < MAX_REMARKS && !self.skipped.iter().any(|known| known == keyword) {
             self.skipped.push(keyword.to_vec());
@@ -217,7 +218,7 @@ impl Reader {
             count += 1;
         }
         let colour = match count {
-            // A single number after x, y and z is a weight, which only curves use.
+            // A single number after x, y and z is a weight, which is used only by curves.
             0 | 1 => None,
             // Three numbers after x, y and z are a colour. A fourth number is an opacity, which is ignored.
             3 | 4 => Some([extra[0] as f32, extra[1] as f32, extra[2] as f32]),
@@ -247,7 +248,7 @@ impl Reader {
         let t = words
             .next()
             .map_or(Ok(0.0), |word| component(word, place))?;
-        // The origin of the file's coordinates is the lower left corner.
+        // In the file, the origin of texture coordinates is the lower left corner.
         self.polygons.add_coordinates([s, 1.0 - t], place)?;
         Ok(())
     }
@@ -260,14 +261,15 @@ impl Reader {
             None => 0,
             Some(map) => self.texture(map, files)?,
         };
-        // Some programs write a black diffuse colour for a material with a texture, and mean the colours of the texture.
+        // Some programs write black as the diffuse colour of a material with a texture, although
+        // the texture is meant to be shown unchanged.
         if self.texture != 0 && self.colour == Some(Rgb8([0; 3])) {
             self.colour = None;
         }
         Ok(())
     }
 
-    /// The number of a texture, or 0 with a remark if its file cannot be read.
+    /// The number of a texture. Returns 0 and adds a remark if its file cannot be read.
     fn texture(&mut self, map: Map, files: &mut Materials) -> Result<u8, FormatError> {
         if let Some(&number) = self.textures.get(&map) {
             return Ok(number);
@@ -275,7 +277,7 @@ impl Reader {
         let picture = self.pictures.entry(map.file.clone()).or_insert_with(|| {
             let name = std::str::from_utf8(&map.file).ok()?;
             let file = files(name).or_else(|| {
-                // A name from another system.
+                // A path with separators of another operating system.
                 name.contains('\\')
                     .then(|| files(&name.replace('\\', "/")))
                     .flatten()
@@ -301,7 +303,7 @@ impl Reader {
             }
             None => {
                 self.polygons.remark(format!(
-                    "no image file {} beside the mesh: its faces have their colours",
+                    "no image file {} beside the mesh: its faces keep their own colours",
                     quote(&map.file)
                 ));
                 0
@@ -334,7 +336,8 @@ impl Reader {
                 None | Some(b"") => Corner::NO_COORDINATES,
                 Some(part) => {
                     integer(part).ok_or_else(|| expected("a texture index"))?;
-                    // Without a texture they have no effect, so their range is not checked.
+                    // Without a texture the coordinates have no effect, so their range is not
+                    // checked.
                     if self.texture == 0 {
                         Corner::NO_COORDINATES
                     } else {
@@ -347,7 +350,8 @@ impl Reader {
                 None | Some(b"") => Corner::NO_NORMAL,
                 Some(part) => {
                     integer(part).ok_or_else(|| expected("a normal index"))?;
-                    // An index before the first normal is as wrong as one after the last.
+                    // An index before the first normal becomes an index after the last normal: both
+                    // are out of range.
                     index(part, self.polygons.normals.len()).unwrap_or(Corner::NO_NORMAL - 1)
                 }
             };
@@ -417,7 +421,7 @@ impl Reader {
                 is_transparent,
                 "transparency is ignored: surfaces are opaque",
             ),
-            (has_light, "light from surfaces is ignored (Ke)"),
+            (has_light, "emitted light is ignored (Ke)"),
         ] {
             if is_ignored {
                 self.polygons.remark(remark);
@@ -434,7 +438,7 @@ impl Reader {
     }
 }
 
-/// The text after a line's keyword: a name that may contain spaces.
+/// The text after the keyword of a line: a name, which may contain spaces.
 fn rest_of(line: Line<'_>) -> &[u8] {
     let text = line.text.trim_ascii();
     text[text
@@ -464,6 +468,7 @@ fn integer(word: &[u8]) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::text::rows;
 
     fn read(text: &str) -> Result<Polygons, ObjError> {
         parse(text.as_bytes(), &mut |name| {
@@ -484,11 +489,8 @@ mod tests {
     fn polygons_and_negative_indices() {
         let polygons = read(&format!("{SQUARE}f 1 2 3 4\nf -4// -3//\\\n -2//\n")).unwrap();
         let points = |i: usize| -> Vec<u32> {
-            polygons
-                .corners_of(&polygons.faces[i])
-                .iter()
-                .map(|c| c.point)
-                .collect()
+            let corners = polygons.corners_of(&polygons.faces[i]).iter();
+            corners.map(|corner| corner.point).collect()
         };
         assert_eq!(points(0), [0, 1, 2, 3]);
         assert_eq!(points(1), [0, 1, 2]);
@@ -515,13 +517,9 @@ mod tests {
         let text = format!(
             "{SQUARE}vt 0 0\nvt 1 0\nl 1 2\np 1\nl 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1\nf 1 2 3\n"
         );
-        assert_eq!(
-            read(&text).unwrap().remarks,
-            [
-                "points and lines are ignored",
-                "curves and free-form surfaces are ignored",
-            ]
-        );
+        let points = "points and lines are ignored";
+        let curves = "curves and free-form surfaces are ignored";
+        assert_eq!(read(&text).unwrap().remarks, [points, curves]);
     }
 
     #[test]
@@ -538,23 +536,17 @@ mod tests {
             ]
         );
         let polygons = read(&format!("{SQUARE}f 1 2 3\nf 1\n")).unwrap();
-        assert_eq!(
-            polygons.remarks,
-            ["line 6: a face of fewer than three corners is skipped"]
-        );
+        let remark = "line 6: a face of fewer than three corners is skipped";
+        assert_eq!(polygons.remarks, [remark]);
     }
 
     #[test]
     fn colours_to_1_and_to_255() {
         for (one, half) in [("1", "0.5"), ("255", "127.5")] {
-            let polygons = read(&format!(
-                "v 0 0 0 {one} 0 0\nv 1 0 0 0 {half} 0 1\nv 0 1 0\nf 1 2 3"
-            ))
-            .unwrap();
-            assert_eq!(
-                polygons.point_colours,
-                [Rgb8([255, 0, 0]), Rgb8([0, 128, 0]), Rgb8::DEFAULT]
-            );
+            let text = format!("v 0 0 0 {one} 0 0\nv 1 0 0 0 {half} 0 1\nv 0 1 0\nf 1 2 3");
+            let colours = read(&text).unwrap().point_colours;
+            let expected = [Rgb8([255, 0, 0]), Rgb8([0, 128, 0]), Rgb8::DEFAULT];
+            assert_eq!(colours, expected);
         }
     }
 
@@ -566,31 +558,26 @@ mod tests {
             assert_eq!(polygons.normals, [[0.0; 3], [0.0, 0.0, 1.0]], "{word}");
         }
         let colours = "v 0 0 0 nan 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 -nan(ind)\nf 1 2 3\n";
-        assert_eq!(
-            read(colours).unwrap().point_colours,
-            [Rgb8::DEFAULT, Rgb8([255, 0, 0]), Rgb8::DEFAULT]
-        );
+        let expected = [Rgb8::DEFAULT, Rgb8([255, 0, 0]), Rgb8::DEFAULT];
+        assert_eq!(read(colours).unwrap().point_colours, expected);
     }
 
     #[test]
     fn materials() {
-        let polygons = read(&format!(
-            "mtllib a b.mtl\n{SQUARE}usemtl red #1\nf 1 2 3 # c\nusemtl none\nf 1 2 3\n"
-        ))
-        .unwrap();
+        let faces = "usemtl red #1\nf 1 2 3 # c\nusemtl none\nf 1 2 3\n";
+        let polygons = read(&format!("mtllib a b.mtl\n{SQUARE}{faces}")).unwrap();
         assert_eq!(polygons.faces[0].colour, Some(Rgb8([255, 0, 0])));
         assert_eq!(polygons.faces[1].colour, None);
         assert!(polygons.remarks.is_empty());
-        let polygons = parse(
-            format!("mtllib b\n{SQUARE}f 1 2 3\n").as_bytes(),
-            &mut |_| Some(b"newmtl b\nmap_Kd -s 2 b.png\nd 0.5\nKe 1 1 1\n".to_vec()),
-        );
+        let text = format!("mtllib b\n{SQUARE}f 1 2 3\n");
+        let mtl = b"newmtl b\nmap_Kd -s 2 b.png\nd 0.5\nKe 1 1 1\n";
+        let polygons = parse(text.as_bytes(), &mut |_| Some(mtl.to_vec()));
         assert_eq!(
             polygons.unwrap().remarks,
             [
                 "options of textures other than -clamp are ignored (map_Kd)",
                 "transparency is ignored: surfaces are opaque",
-                "light from surfaces is ignored (Ke)",
+                "emitted light is ignored (Ke)",
             ]
         );
         let polygons = read(&format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
@@ -620,24 +607,20 @@ mod tests {
         let faces = polygons.faces.iter();
         let faces: Vec<_> = faces.map(|face| (face.texture, face.colour)).collect();
         let [black, red, green] = [[0, 0, 0], [255, 0, 0], [0, 255, 0]].map(|rgb| Some(Rgb8(rgb)));
-        assert_eq!(
-            faces,
-            [(1, None), (2, green), (0, red), (0, black), (1, None)]
-        );
+        let expected = [(1, None), (2, green), (0, red), (0, black), (1, None)];
+        assert_eq!(faces, expected);
         let wraps = polygons.textures.iter().map(|one| one.sampler.wrap[0]);
         assert_eq!(wraps.collect::<Vec<_>>(), [Wrap::Repeat, Wrap::Clamp]);
         let coordinates: Vec<u32> = polygons.corners.iter().map(|c| c.coordinates).collect();
         let none = Corner::NO_COORDINATES;
         assert_eq!(coordinates[..6], [0, 1, 2, 0, 1, 2]);
-        assert_eq!(
-            coordinates[6..],
-            [[none; 6], [0, none, none, 0, 0, 0]].as_flattened()[..9]
-        );
+        assert_eq!(coordinates[6..12], [none; 6]);
+        assert_eq!(coordinates[12..], [0, none, none]);
         assert_eq!(
             polygons.remarks,
             [
-                "no image file 'gone.png' beside the mesh: its faces have their colours",
-                "line 18: 1 corners have texture coordinates that do not exist: their faces have their colours",
+                "no image file 'gone.png' beside the mesh: its faces keep their own colours",
+                "line 18: 1 corners have texture coordinates that do not exist: their faces keep their own colours",
             ]
         );
     }
@@ -646,16 +629,12 @@ mod tests {
     fn texture_coordinates_that_are_no_numbers() {
         let text = format!("{SQUARE}vt nan 0\nvt 0 inf\nvt 1e300 -1e300\nf 1 2 3\n");
         let polygons = read(&text).unwrap();
-        assert_eq!(
-            polygons.coordinates,
-            [[0.0, 1.0], [0.0, 0.0], [1e300, 1e300]]
-        );
-        let remark = "line 5: 2 texture coordinates are no finite numbers: they are 0";
+        let expected = [[0.0, 1.0], [0.0, 0.0], [1e300, 1e300]];
+        assert_eq!(polygons.coordinates, expected);
+        let remark = "line 5: 2 texture coordinates are not finite: they become 0";
         assert_eq!(polygons.remarks, [remark]);
-        assert_eq!(
-            error("vt\n"),
-            "line 1: expected one to three texture coordinates, found none"
-        );
+        let expected = "line 1: expected one to three texture coordinates, found none";
+        assert_eq!(error("vt\n"), expected);
         assert_eq!(error("vt 0 x\n"), "line 1: expected a number, found 'x'");
     }
 
@@ -664,24 +643,20 @@ mod tests {
         let names: Vec<String> = (0..256).map(|i| format!("m{i}")).collect();
         let material = |name: &String| format!("newmtl {name}\nmap_Kd {name}.png\n");
         let mtl: String = names.iter().map(material).collect();
-        let uses: String = names
-            .iter()
-            .map(|name| format!("usemtl {name}\nf 1 2 3\n"))
-            .collect();
+        let uses = names.iter().map(|name| format!("usemtl {name}\nf 1 2 3\n"));
+        let uses: String = uses.collect();
         let text = format!("mtllib m\n{SQUARE}{uses}");
         let parsed = parse(text.as_bytes(), &mut |_| Some(mtl.clone().into_bytes()));
         let Err(ObjError::Obj(error)) = parsed else {
             panic!("256 textures are refused");
         };
-        assert_eq!(
-            error.to_string(),
-            "expected at most 255 textures, found more"
-        );
+        let error = error.to_string();
+        assert_eq!(error, "expected at most 255 textures, found more");
     }
 
     #[test]
     fn errors_name_their_place() {
-        // The lines of a file, with `;` between them, and the error.
+        // The lines of a file, separated by `;`, and the expected error.
         let cases = "
             v 0 0 0 → expected at least one face, found none
             v 0 0 → line 1: expected three numbers of a vertex, found 2
@@ -696,23 +671,16 @@ mod tests {
             v 0 0 0; f 1/x 1 1 → line 2: expected a texture index in a corner v, v/vt, v//vn or v/vt/vn, found '1/x'
             v 0 0 0 1 2 → line 1: expected three colour components, found 2
         ";
-        for case in cases.lines().filter(|case| case.contains('→')) {
-            let (text, message) = case.split_once('→').unwrap();
-            let text = text.trim().replace("; ", "\n") + "\n";
-            assert_eq!(error(&text), message.trim(), "{text:?}");
+        for [text, message] in rows(cases) {
+            let text = text.replace("; ", "\n") + "\n";
+            assert_eq!(error(&text), message, "{text:?}");
         }
         assert_eq!(error(""), "expected at least one face, found none");
-        assert_eq!(
-            error("\x7fELF\0\n"),
-            "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'"
-        );
-        assert_eq!(
-            error(&format!("v {}\n", " ".repeat(1 << 20))),
-            "line 1: expected a line of at most 65536 bytes, found a longer one"
-        );
-        assert_eq!(
-            error(&"f \\\n".repeat(1 << 20)),
-            "line 1: expected a continued line of at most 65536 bytes, found a longer one"
-        );
+        let elf = "line 1: expected an OBJ statement such as v, vn or f, found '\\x7fELF\\x00'";
+        assert_eq!(error("\x7fELF\0\n"), elf);
+        let long = "line 1: expected a line of at most 65536 bytes, found a longer one";
+        assert_eq!(error(&format!("v {}\n", " ".repeat(1 << 20))), long);
+        let long = "line 1: expected a continued line of at most 65536 bytes, found a longer one";
+        assert_eq!(error(&"f \\\n".repeat(1 << 20)), long);
     }
 }

@@ -1,7 +1,8 @@
 //! STL, ASCII and binary.
 //!
-//! This parser replaces `stl_io`, whose errors have neither line nor offset, which skips the colours of the attribute word, and which
-//! treats a binary file as ASCII if its header starts with `solid`.
+//! This parser replaces `stl_io`, whose errors state neither line nor offset. It also skips the
+//! colours in the attribute word, and treats a binary file as ASCII if its header starts with
+//! `solid`.
 
 use super::text::{BYTE_ORDER_MARK, Words, any_number, coordinate, finite, vector};
 use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
@@ -10,9 +11,10 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, because ASCII text at this position would be
-/// a count too large for any file; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a
-/// remark. Normals are ignored, because the winding gives the same information more reliably.
+/// Parses an STL. A file is binary if it is long enough for the triangle count in its header: ASCII
+/// text at this position would be a count that is too large for any file. Any other file that
+/// starts with `solid` is ASCII. Bytes after the last triangle are skipped with a remark. Normals
+/// are ignored, because the winding states the same direction more reliably.
 ///
 /// # Errors
 /// The first violation of the format, with its line or offset.
@@ -53,10 +55,11 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
 /// Encoding of a colour in the attribute word of a binary record. Each channel has five bits.
 #[derive(Clone, Copy)]
 enum Colours {
-    /// The encoding of VisCAM and SolidView: a set bit 15 marks a face with a colour; red is in the highest bits.
+    /// The encoding of VisCAM and SolidView: bit 15 is set in a face with a colour; red is in the
+    /// highest bits.
     VisCam,
-    /// The encoding of Materialise Magics: the header has a default colour, and a clear bit 15 marks a face with its own colour; blue is
-    /// in the highest bits.
+    /// The encoding of Materialise Magics: the header has a default colour, and bit 15 is clear in
+    /// a face with its own colour; blue is in the highest bits.
     Magics(Rgb8),
 }
 
@@ -127,8 +130,8 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Parses an ASCII STL as programs write it: in any number of lines, with `end facet` for `endfacet`, with a facet without a normal, or
-/// without the last `endsolid`.
+/// Parses an ASCII STL, including variants that programs write: any division into lines, `end
+/// facet` for `endfacet`, facets without a normal, and a missing last `endsolid`.
 fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     let mut words = Words::new(file);
@@ -157,7 +160,8 @@ fn is(word: &[u8], keyword: &str) -> bool {
     word.eq_ignore_ascii_case(keyword.as_bytes())
 }
 
-/// Whether a word ends `keyword`: `endfacet` or `end facet`. A name may follow without a space, as in `endsolidNAME`.
+/// Whether a word starts the end of `keyword`, such as `endfacet` or `end facet`. A name may follow
+/// without a space, as in `endsolidNAME`.
 fn ends(word: &[u8], words: &mut Words, keyword: &str) -> bool {
     if is(word, "end") {
         let mut ahead = words.clone();
@@ -187,7 +191,7 @@ fn skip_name(words: &mut Words) {
     }
 }
 
-/// Adds a facet, after its first word at `place`.
+/// Adds a facet whose first word, at `place`, is already read.
 fn add_facet(
     polygons: &mut Polygons,
     words: &mut Words,
@@ -240,6 +244,7 @@ fn expect(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::text::rows;
 
     const FACET: &str = "facet normal nan 0 1\n outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\n";
 
@@ -292,22 +297,16 @@ mod tests {
         let long = format!("solid {}", FACET.replace('\n', " ").repeat(2000));
         let polygons = parse(long.as_bytes()).unwrap();
         assert_eq!(polygons.faces.len(), 2000);
-        assert_eq!(
-            polygons.remarks,
-            ["endsolid is missing at the end: the file may be cut off"]
-        );
+        let remark = "endsolid is missing at the end: the file may be cut off";
+        assert_eq!(polygons.remarks, [remark]);
         let unclosed = format!("solid a\n{FACET}solid b\n{FACET}endsolid b\n");
         assert_eq!(parse(unclosed.as_bytes()).unwrap().faces.len(), 2);
     }
 
     #[test]
     fn binary_that_calls_itself_solid() {
-        let polygons = parse(&binary(
-            b"solid really",
-            2,
-            &[(CORNERS, 0), (CORNERS, 0x7fff)],
-        ))
-        .unwrap();
+        let triangles = [(CORNERS, 0), (CORNERS, 0x7fff)];
+        let polygons = parse(&binary(b"solid really", 2, &triangles)).unwrap();
         assert_eq!(polygons.faces.len(), 2);
         assert_eq!(polygons.faces[1].colour, None);
     }
@@ -316,76 +315,48 @@ mod tests {
     fn colours() {
         let red_high = parse(&binary(b"", 1, &[(CORNERS, 0x8000 | 31 << 10 | 16)])).unwrap();
         assert_eq!(red_high.faces[0].colour, Some(Rgb8([255, 0, 132])));
-        let magics = parse(&binary(
-            b"COLOR=\x01\x02\x03\xff",
-            2,
-            &[(CORNERS, 31), (CORNERS, 0x8000)],
-        ))
-        .unwrap();
+        let triangles = [(CORNERS, 31), (CORNERS, 0x8000)];
+        let magics = parse(&binary(b"COLOR=\x01\x02\x03\xff", 2, &triangles)).unwrap();
         assert_eq!(magics.faces[0].colour, Some(Rgb8([255, 0, 0])));
         assert_eq!(magics.faces[1].colour, Some(Rgb8([1, 2, 3])));
     }
 
     #[test]
     fn errors_name_their_place() {
-        let nan = {
-            let mut c = CORNERS;
-            c[4] = f32::NAN;
-            c
-        };
-        let cases: [(Vec<u8>, &str); 12] = [
+        let mut nan = CORNERS;
+        nan[4] = f32::NAN;
+        let binaries = [
             (
-                vec![],
-                "expected an STL (solid …, or a binary header of 84 bytes), found ''",
+                binary(b"", 1 << 31, &[(CORNERS, 0)]),
+                "expected a binary STL of 2147483648 triangles to be 107374182484 bytes (or an ASCII one to start with solid), found 134",
             ),
             (
                 binary(b"", 0, &[]),
                 "expected at least one face, found none",
             ),
             (
-                binary(b"", 1 << 31, &[(CORNERS, 0)]),
-                "expected a binary STL of 2147483648 triangles to be 107374182484 bytes (or an ASCII one to start with solid), found 134",
-            ),
-            (
                 binary(b"", 1, &[(nan, 0)]),
                 "byte 112: expected a finite number, found NaN",
             ),
-            (
-                b"solid\n".to_vec(),
-                "expected at least one face, found none",
-            ),
-            (
-                b"solid\nfacet normal 0 0\n".to_vec(),
-                "line 2: expected outer loop, found the end of the file",
-            ),
-            (
-                b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(),
-                "line 4: expected three numbers of a vertex, found 2",
-            ),
-            (
-                b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3 4\n".to_vec(),
-                "line 4: expected vertex x y z, found '4'",
-            ),
-            (
-                b"solid\nendsolid\nfacet".to_vec(),
-                "line 3: expected outer loop, found the end of the file",
-            ),
-            (
-                b"solid\nfacet normal x y z".to_vec(),
-                "line 2: expected outer loop, found 'x'",
-            ),
-            (
-                b"solid\nfacets".to_vec(),
-                "line 2: expected facet, or endsolid, found 'facets'",
-            ),
-            (
-                b"solid\nfacet outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 end facet"
-                    .to_vec(),
-                "line 2: expected endloop, found 'end'",
-            ),
         ];
-        for (file, message) in cases {
+        for (file, message) in binaries {
             assert_eq!(parse(&file).unwrap_err().to_string(), message);
+        }
+        // The lines of a file, separated by `;`, and the expected error.
+        let cases = "
+            → expected an STL (solid …, or a binary header of 84 bytes), found ''
+            solid; → expected at least one face, found none
+            solid; facet normal 0 0; → line 2: expected outer loop, found the end of the file
+            solid; facet normal 0 0 1; outer loop; vertex 1 2; → line 4: expected three numbers of a vertex, found 2
+            solid; facet normal 0 0 1; outer loop; vertex 1 2 3 4; → line 4: expected vertex x y z, found '4'
+            solid; endsolid; facet → line 3: expected outer loop, found the end of the file
+            solid; facet normal x y z → line 2: expected outer loop, found 'x'
+            solid; facets → line 2: expected facet, or endsolid, found 'facets'
+            solid; facet outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 end facet → line 2: expected endloop, found 'end'
+        ";
+        for [text, message] in rows(cases) {
+            let error = parse(text.replace(';', "\n").as_bytes()).unwrap_err();
+            assert_eq!(error.to_string(), message);
         }
     }
 }

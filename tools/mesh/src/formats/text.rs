@@ -5,7 +5,7 @@ use crate::error::{FormatError, Location, MAX_LINE, quote};
 /// The byte order mark of UTF-8.
 pub const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Lines of a text, ended by LF, CR LF or CR.
+/// The lines of a text, which end in LF, CR LF or CR.
 pub struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
@@ -115,14 +115,15 @@ impl<'a> Words<'a> {
         Location::Line(self.line)
     }
 
-    /// Goes to the next line with a word, or stays on the current line if it has a further word. Returns whether there is one.
+    /// Advances to the next line with a word, unless the current line has a further word. Returns
+    /// false if no word is left.
     pub fn skip_blank_lines(&mut self) -> bool {
         while !self.has_more_on_line() {
             self.rest = match self.rest {
                 [] => return false,
                 [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
             };
-            // The end of the text is on its last line, not after it.
+            // The end of the text counts as a part of the last line.
             if !self.rest.is_empty() {
                 self.line += 1;
             }
@@ -228,6 +229,16 @@ pub fn vector<'a>(
     Ok(vector)
 }
 
+/// The rows of a table of test cases; `→` separates the `N` cells of a row.
+#[cfg(test)]
+pub fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    let rows = table.lines().filter(|row| !row.trim().is_empty());
+    rows.map(|row| {
+        let cells: Vec<_> = row.split('→').map(str::trim).collect();
+        cells.try_into().unwrap_or_else(|_| panic!("{row}"))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,33 +282,12 @@ mod tests {
 
     #[test]
     fn absurd_numbers() {
-        for word in [
-            "nan",
-            "inf",
-            "-infinity",
-            "1e309",
-            "-1e309",
-            "x",
-            "",
-            "1,5",
-            "0x10",
-            "-nan(ind)",
-            "1.#INF",
-        ] {
-            assert!(
-                coordinate(word.as_bytes(), Location::Whole).is_err(),
-                "{word}"
-            );
+        let words = "nan inf -infinity 1e309 -1e309 x 1,5 0x10 -nan(ind) 1.#INF".split(' ');
+        for word in words.chain([""]) {
+            let number = coordinate(word.as_bytes(), Location::Whole);
+            assert!(number.is_err(), "{word}");
         }
-        for word in [
-            "nan",
-            "-nan(ind)",
-            "NaN(0x1)",
-            "-1.#IND",
-            "-1.#IND00",
-            "1.#QNAN",
-            "1.#INF",
-        ] {
+        for word in "nan -nan(ind) NaN(0x1) -1.#IND -1.#IND00 1.#QNAN 1.#INF".split(' ') {
             assert!(any_number(word.as_bytes()).unwrap().is_nan(), "{word}");
         }
         for word in ["nano", "nan(", "1.#", "1.#X", "-", ""] {

@@ -1,10 +1,10 @@
-//! Builder of meshes from faces given by points; equal points are shared.
+//! Builder of meshes from faces, whose equal points become shared points.
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use std::collections::HashMap;
 
-/// Builds a mesh from faces, given by the coordinates of their points.
+/// Builds a mesh from faces that are given by the coordinates of their points.
 #[derive(Default)]
 pub struct Builder {
     polygons: Polygons,
@@ -12,8 +12,8 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Returns the index of a point, which is added if it is new. Two points are equal if all bits of their coordinates are equal; −0
-    /// counts as 0.
+    /// Returns the index of a point, and adds the point if it is new. Two points are equal if all
+    /// bits of their coordinates are equal; −0 counts as 0.
     pub fn point(&mut self, point: Vector) -> Result<u32, FormatError> {
         let point = point.map(|c| c + 0.0);
         let key = point.map(f64::to_bits);
@@ -61,7 +61,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Finishes the mesh with a colour for each point; `colour` computes it from the point.
+    /// Finishes the mesh; `colour` computes the colour of each point.
     pub fn coloured(mut self, colour: impl Fn(Vector) -> Rgb8) -> Polygons {
         self.polygons.point_colours = self
             .polygons
@@ -78,7 +78,7 @@ impl Builder {
     }
 }
 
-/// A light colour of the colour wheel, `turns` turns from red.
+/// A light colour of the colour wheel at the angle `turns` from red, in turns.
 pub fn hue(turns: f64) -> Rgb8 {
     let channel = |shift: f64| 0.62 + 0.36 * (std::f64::consts::TAU * (turns - shift)).cos();
     Rgb8::from_unit([channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)])

@@ -6,8 +6,9 @@ use crate::polygons::{Polygons, Rgb8, Vector};
 use std::f64::consts::TAU;
 
 const TEETH: usize = 20;
-/// Radius and angle of each point in the outline of one tooth, from the root over the tip to the far flank, which ends at the
-/// first point of the next tooth. Angles are in pitches: one pitch is the angle between two teeth.
+/// Radius and angle of each point in the outline of one tooth: root, tip, and the far flank, which
+/// ends at the first point of the next tooth. Angles are in pitches; a pitch is the angle between
+/// two teeth.
 const TOOTH: [(f64, f64); 6] = [
     (0.80, -0.50),
     (0.80, -0.26),
@@ -30,8 +31,8 @@ const BRASS: Rgb8 = Rgb8([0xd8, 0xa8, 0x50]);
 
 /// The gear about the z axis.
 pub fn gear() -> Result<Polygons, FormatError> {
-    // Every ring of points around the axis has the number of points of the outline, so that the surface is a grid closed in both
-    // directions.
+    // Every ring of points around the axis has as many points as the outline, so that the surface
+    // is a grid that is closed in both directions.
     let angles: Vec<(f64, f64)> = (0..TEETH)
         .flat_map(|tooth| {
             TOOTH.map(|(radius, pitch)| (radius, (tooth as f64 + pitch) / TEETH as f64 * TAU))

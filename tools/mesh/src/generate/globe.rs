@@ -1,4 +1,4 @@
-//! A globe: a sphere with a drawn map of an imaginary planet as its texture.
+//! A globe: a sphere with the generated map of an imaginary planet as its texture.
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Content, Corner, Polygons, Rgb8, Texture, Vector};
@@ -7,13 +7,13 @@ use glint_texture::picture::Picture;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Bands from pole to pole.
+/// Number of bands of quads from pole to pole.
 const BANDS: u32 = 24;
-/// Sectors around the axis.
+/// Number of sectors around the axis.
 const SECTORS: u32 = 48;
-/// Width and height of the map.
+/// Width and height of the map in texels.
 const MAP: [u32; 2] = [512, 256];
-/// Colours of the map at some heights; those between them are blended.
+/// Colours of the map at some heights; heights between them have blended colours.
 const COLOURS: [(f64, [u8; 3]); 8] = [
     (-0.3, [10, 36, 96]),
     (-0.01, [30, 100, 176]),
@@ -25,10 +25,10 @@ const COLOURS: [(f64, [u8; 3]); 8] = [
     (0.36, SNOW),
 ];
 const SNOW: [u8; 3] = [236, 240, 244];
-/// Distance from a pole, as a share of the way to the equator, within which the ground is white.
+/// Extent of the polar ice as a fraction of the distance from pole to equator.
 const ICE: f64 = 0.2;
 
-/// The point of the unit sphere at a place of the map, whose sides are 1.
+/// The point of the unit sphere at a place of the map; s and t are from 0 to 1.
 fn direction([s, t]: [f64; 2]) -> Vector {
     let ((sin, cos), (down, up)) = ((TAU * s).sin_cos(), (PI * t).sin_cos());
     [cos * down, sin * down, up]
@@ -47,7 +47,7 @@ pub fn globe() -> Result<Polygons, FormatError> {
     for band in 0..=BANDS {
         let mut points = Vec::new();
         for sector in 0..=SECTORS {
-            // A pole is one point, and the last sector ends at the first point.
+            // Each pole is a single point, and the last sector ends at the first point of its ring.
             let point = match (points.first(), sector) {
                 (Some(&first), _) if band % BANDS == 0 => first,
                 (Some(&first), SECTORS) => first,
@@ -95,7 +95,7 @@ pub fn globe() -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// The map: the longitude goes to the right, the north pole is above.
+/// The map: longitude increases to the right, and north is up.
 fn map() -> Picture {
     let [width, height] = MAP;
     Picture::drawn(MAP, |x, y| {

@@ -1,11 +1,13 @@
-//! The icosphere of frequency f: an icosahedron with edges divided into f parts, and all points projected to the sphere.
+//! The icosphere of frequency f: an icosahedron whose edges are divided into f parts, with all
+//! points projected to the sphere.
 
 use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 use crate::triangulate::unit;
 
-/// The sphere of radius 1 with 20·frequency² triangles, coloured by direction.
+/// The sphere of radius 1 with 20·frequency² triangles. The colour of a point depends on its
+/// direction.
 pub fn icosphere(frequency: u32) -> Result<Polygons, FormatError> {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     // Twelve points: the cyclic shifts of (0, ±1, ±golden).
@@ -19,7 +21,8 @@ pub fn icosphere(frequency: u32) -> Result<Polygons, FormatError> {
     let mut emit = |triangle: [Vector; 3]| divide(&mut builder, triangle, frequency);
     for sign in [1.0, -1.0] {
         for axis in 0..3 {
-            // Two triangles meet at each of six edges, such as the one between (0, 1, golden) and (0, -1, golden).
+            // Two triangles meet at each of six edges, such as the edge between (0, 1, golden) and
+            // (0, -1, golden).
             for side in [1.0, -1.0] {
                 let tip = corner((axis + 1) % 3, sign, side);
                 let (a, b) = (
@@ -48,7 +51,8 @@ fn normalised(point: Vector) -> Vector {
     unit(point).unwrap_or(point)
 }
 
-/// Returns the triangle with its corners counter-clockwise, seen from outside a solid about the origin.
+/// Orders the corners of a triangle counter-clockwise as seen from outside of a solid about the
+/// origin.
 fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     use crate::triangulate::{cross, dot};
     if dot(a, cross(b, c)) > 0.0 {

@@ -39,7 +39,7 @@ pub fn is_name(name: &str) -> bool {
 /// Generates the model with a name such as `icosphere:4`.
 ///
 /// # Errors
-/// No such model, or its number is missing or out of range.
+/// No generator has this name, or its number is missing or out of range.
 pub fn named(name: &str) -> Result<Polygons, FormatError> {
     let refuse = || {
         FormatError::whole(
@@ -156,17 +156,14 @@ mod tests {
         }
     }
 
-    /// Room and fence are open, and have textures; those of the fence have gaps.
+    /// Room and fence are open and textured; the textures of the fence have transparent texels.
     #[test]
     fn props_have_textures() {
         for (name, triangles, textures) in [("room", 8, 2), ("fence", 4, 1)] {
             let polygons = named(name).unwrap();
             let (bytes, report) = convert::convert(&polygons, Options::default()).unwrap();
-            assert_eq!(
-                (report.triangles, report.degenerate),
-                (triangles, 0),
-                "{name}"
-            );
+            let counts = (report.triangles, report.degenerate);
+            assert_eq!(counts, (triangles, 0), "{name}");
             assert_eq!(report.textures.len(), textures, "{name}");
             let cut_out = report.textures.iter().any(|texture| texture.report.cut_out);
             assert_eq!(cut_out, name == "fence");
@@ -179,17 +176,9 @@ mod tests {
 
     #[test]
     fn names() {
-        for name in [
-            "",
-            "cube:1",
-            "icosphere",
-            "icosphere:0",
-            "icosphere:65",
-            "icosphere:x",
-            "sponge:5",
-            "Teapot",
-            "sponge:-1",
-        ] {
+        let wrong =
+            "cube:1 icosphere icosphere:0 icosphere:65 icosphere:x sponge:5 Teapot sponge:-1";
+        for name in wrong.split(' ').chain([""]) {
             assert!(named(name).is_err(), "{name}");
         }
         assert!(is_name("sponge:9") && !is_name("sponge.obj"));
@@ -199,10 +188,8 @@ mod tests {
     fn volumes() {
         let close = |name: &str, expected: f64, tolerance: f64| {
             let found = volume(&named(name).unwrap());
-            assert!(
-                (found / expected - 1.0).abs() < tolerance,
-                "{name}: {found} instead of {expected}"
-            );
+            let error = (found / expected - 1.0).abs();
+            assert!(error < tolerance, "{name}: {found} instead of {expected}");
         };
         close("cube", 1.0, 1e-12);
         close("icosphere:16", 4.0 / 3.0 * std::f64::consts::PI, 0.01);
@@ -213,10 +200,8 @@ mod tests {
     fn the_sponges_count() {
         for (level, cells, eights) in [(0, 1, 1), (1, 20, 8), (2, 400, 64), (3, 8000, 512)] {
             // A sponge of level n has 2·20^n + 4·8^n outer faces.
-            assert_eq!(
-                named(&format!("sponge:{level}")).unwrap().faces.len(),
-                2 * cells + 4 * eights
-            );
+            let sponge = named(&format!("sponge:{level}")).unwrap();
+            assert_eq!(sponge.faces.len(), 2 * cells + 4 * eights);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Props of a room with drawn textures: the room, which is seen from inside, and a fence with gaps.
+//! A room that is seen from inside, and a fence with transparent gaps, with generated textures.
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Content, Corner, Polygons, Rgb8, Texture, Vector};
@@ -6,11 +6,11 @@ use glint_core::texture::{Filter, Sampler};
 use glint_texture::picture::Picture;
 use std::sync::Arc;
 
-/// Half of the width and depth of the room.
+/// Half of the width and of the depth of the room.
 const HALF: f64 = 2.0;
-/// Height of its walls.
+/// Height of the room's walls.
 const HEIGHT: f64 = 2.0;
-/// Width and height of each picture.
+/// Width and height of each picture in texels.
 const SIDE: u32 = 64;
 
 /// A floor of tiles and three walls of bricks, without a ceiling; the side at −y is open.
@@ -18,7 +18,7 @@ pub fn room() -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     let tiles = add_picture(&mut polygons, "tiles", tile)?;
     let bricks = add_picture(&mut polygons, "bricks", brick)?;
-    // Seen from inside, from below on the left, counter-clockwise.
+    // The corners run counter-clockwise as seen from inside, from the lower left corner.
     let wall = |[left, right]: [[f64; 2]; 2]| {
         let at = |[x, y]: [f64; 2], z| [x, y, z];
         [
@@ -51,7 +51,7 @@ pub fn fence() -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Adds a picture as a texture that repeats. `texel` is the colour at a place.
+/// Adds a picture as a repeating texture. `texel` computes the colour at column and row.
 fn add_picture(
     polygons: &mut Polygons,
     name: &str,
@@ -71,7 +71,8 @@ fn add_picture(
     })
 }
 
-/// Adds a rectangle that shows its texture as often as stated, from its corners: below on the left, and on counter-clockwise.
+/// Adds a rectangle that repeats its texture as often as stated. Its corners run counter-clockwise
+/// from the lower left.
 fn rectangle(
     polygons: &mut Polygons,
     corners: [Vector; 4],
@@ -95,7 +96,7 @@ fn rectangle(
     Ok(())
 }
 
-/// A floor of 2×2 tiles, light and dark ones.
+/// Texture of the floor: 2×2 tiles, alternately light and dark.
 fn tile(x: u32, y: u32) -> [u8; 4] {
     let half = SIDE / 2;
     if (x % half).min(y % half) == 0 {
@@ -110,7 +111,7 @@ fn tile(x: u32, y: u32) -> [u8; 4] {
     shaded(base, noise(x / 2, y / 2) % 14)
 }
 
-/// Four rows of two bricks, every other row by half a brick to the side.
+/// Texture of the walls: four rows of two bricks; every other row is offset by half a brick.
 fn brick(x: u32, y: u32) -> [u8; 4] {
     let [width, height] = [SIDE / 2, SIDE / 4];
     let row = y / height;
@@ -122,7 +123,7 @@ fn brick(x: u32, y: u32) -> [u8; 4] {
     shaded([190, 92, 64], number + noise(x, y) % 14)
 }
 
-/// Four pickets with points, on two rails; transparent between them.
+/// Texture of the fence: four pointed pickets on two rails, and transparent gaps.
 fn picket(x: u32, y: u32) -> [u8; 4] {
     let width = SIDE / 4;
     let from_middle = (2 * (x % width) + 1).abs_diff(width);
@@ -134,17 +135,17 @@ fn picket(x: u32, y: u32) -> [u8; 4] {
     if is_rail {
         return shaded([196, 188, 170], noise(x / 8, y) % 24);
     }
-    // The colour of the pickets, so that averages have no rim.
+    // Gaps have the colour of the pickets, so that averages at the edges show no rim.
     [236, 230, 214, 0]
 }
 
-/// An opaque colour, darker by a number.
+/// The colour, opaque, with `darker` subtracted from each channel.
 fn shaded(colour: [u8; 3], darker: u32) -> [u8; 4] {
     let [r, g, b] = colour.map(|c| c.saturating_sub(darker as u8));
     [r, g, b, 255]
 }
 
-/// A number that looks random.
+/// A pseudo-random number for a texel.
 fn noise(x: u32, y: u32) -> u32 {
     let key = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B);
     (key ^ key >> 15).wrapping_mul(0xC2B2_AE35) >> 16

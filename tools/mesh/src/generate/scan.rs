@@ -1,4 +1,5 @@
-//! A bumpy closed surface, with its triangles in an order as in files of scanned surfaces.
+//! A bumpy closed surface whose triangles are in an order that is typical of files from 3D
+//! scanners.
 
 use super::icosphere::icosphere;
 use crate::error::FormatError;
@@ -7,7 +8,8 @@ use crate::polygons::{Face, Polygons, Vector};
 /// Lengths of the runs of neighbouring triangles, used in turn.
 const RUNS: [usize; 3] = [3, 3, 4];
 
-/// The icosphere of a frequency with waves in its radius. Its triangles are divided into short runs, in a scattered order.
+/// An icosphere whose radius varies in waves. Its triangles are divided into short runs, which are
+/// in a scattered order.
 pub fn scan(frequency: u32) -> Result<Polygons, FormatError> {
     let mut polygons = icosphere(frequency)?;
     for point in &mut polygons.points {
@@ -18,7 +20,7 @@ pub fn scan(frequency: u32) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Radius of the surface in a direction: 1, and waves of three lengths along different axes.
+/// Radius of the surface in a direction: 1, plus waves of three wavelengths along different axes.
 fn radius([x, y, z]: Vector) -> f64 {
     1.0 + 0.14 * (3.0 * x + 2.0 * z).sin() * (2.0 * y - 1.0).cos()
         + 0.05 * (9.0 * y + 4.0 * x).sin() * (8.0 * z).cos()
@@ -37,7 +39,7 @@ fn scattered(faces: &[Face]) -> Vec<Face> {
         rest = later;
     }
     runs.push(rest);
-    // Every run comes once if the stride has no common factor with the number of runs.
+    // Each run occurs once if the stride and the number of runs have no common factor.
     let count = runs.len();
     let mut stride = (count as f64 * 0.618) as usize;
     while greatest_common_divisor(stride, count) > 1 {

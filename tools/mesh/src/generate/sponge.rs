@@ -1,4 +1,4 @@
-//! The Menger sponge: the faces between full and empty cells, with shared points.
+//! The Menger sponge as the faces between full and empty cells, with shared points.
 
 use super::builder::Builder;
 use crate::error::FormatError;
@@ -11,8 +11,9 @@ pub fn sponge(level: u32) -> Result<Polygons, FormatError> {
     Ok(builder.coloured(|point| Rgb8::from_unit(point.map(|c| 0.66 + 0.6 * c))))
 }
 
-/// Adds the outer faces of the full cells in the cube at `corner` with 3^`level` cells along each edge. The recursive order keeps
-/// neighbours close to each other, so that chunks of the mesh share few points.
+/// Adds the outer faces of the full cells in the cube at `corner` with 3^`level` cells along each
+/// edge. The recursive order keeps neighbouring faces close to each other in the mesh, so that its
+/// chunks share few points.
 fn cells(
     builder: &mut Builder,
     corner: [i64; 3],

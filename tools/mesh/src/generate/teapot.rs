@@ -7,7 +7,7 @@ use super::builder::Builder;
 use crate::error::FormatError;
 use crate::polygons::{Polygons, Rgb8, Vector};
 
-/// Quads along each side of a patch.
+/// Number of quads along each side of a patch.
 const CUTS: usize = 10;
 
 const GLAZE: Rgb8 = Rgb8([0xe8, 0xc8, 0xa0]);
@@ -95,7 +95,8 @@ pub fn teapot() -> Result<Polygons, FormatError> {
     let mut builder = Builder::default();
     let body = turned(&mut builder, &BODY, |_| GLAZE)?;
     let cover = turned(&mut builder, &COVER, |_| LID)?;
-    // Closes the slit between the edge of the lid (the last row of the cover) and the rim (the first row of the body).
+    // Close the slit between the edge of the lid, which is the last row of the cover, and the rim,
+    // which is the first row of the body.
     let (Some(lid_edge), Some(rim_edge)) = (cover.last(), body.first()) else {
         return Ok(builder.finish());
     };

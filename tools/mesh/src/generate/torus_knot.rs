@@ -6,9 +6,9 @@ use crate::polygons::{Polygons, Vector};
 use crate::triangulate::{cross, sub, unit};
 use std::f64::consts::TAU;
 
-/// Quads along the knot.
+/// Number of quads along the knot.
 const LENGTH: usize = 240;
-/// Quads around the tube.
+/// Number of quads around the tube.
 const GIRTH: usize = 16;
 const TUBE_RADIUS: f64 = 0.42;
 
@@ -19,7 +19,7 @@ fn line(t: f64) -> Vector {
     [r * p.cos(), r * p.sin(), q.sin()]
 }
 
-/// The tube around the knot, with one turn of the colour wheel.
+/// The tube around the knot. Its colours pass once around the colour wheel.
 pub fn torus_knot() -> Result<Polygons, FormatError> {
     let ring = |j: usize| -> Vec<Vector> {
         let t = (j % LENGTH) as f64 / LENGTH as f64;

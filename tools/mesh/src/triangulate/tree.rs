@@ -1,4 +1,4 @@
-//! A k-d tree over the corners of a polygon in its plane, to find the corners in a triangle.
+//! A k-d tree of the corners of a polygon in its plane, which finds the corners in a triangle.
 
 /// A point of a polygon's plane.
 pub type Point = [f64; 2];
@@ -8,10 +8,10 @@ pub fn area([ax, ay]: Point, [bx, by]: Point, [cx, cy]: Point) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Largest number of points in a leaf, which is searched point by point.
+/// Largest number of points in a leaf. The points of a leaf are tested one by one.
 const LEAF: usize = 16;
 
-/// The remaining points of a polygon.
+/// The points of a polygon that are not clipped yet.
 ///
 /// A node is a range of `order`, split in its middle. Its children have the numbers 2·n + 1 and 2·n + 2.
 #[derive(Default)]

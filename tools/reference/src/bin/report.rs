@@ -267,7 +267,7 @@ fn main() -> Result<()> {
         Page::Gesture { cycles } => measure_gesture(&cycles, &to)?,
         Page::Kernels { quick, cycles } => {
             let cycles = cycles.measure("kernels")?;
-            let rows = kernels::measure(None, if quick { 64 } else { 1 }, &cycles)?;
+            let rows = kernels::measure(if quick { 64 } else { 1 }, &cycles)?;
             to.write("kernels", &rows)?;
         }
         Page::Quality { quick, study, only } => {

@@ -33,7 +33,7 @@ pub enum Fault {
     SecondNear,
     /// Two hands from the beginning; one leaves at the end of the fault.
     TwoAtStart,
-    /// The light doubles, and a quarter of the hand's area leaves the colour windows.
+    /// The light doubles, and the colour of a quarter of the hand's area leaves the colour windows.
     LightLittle,
     /// The light doubles, the hand's colour leaves the colour windows, and the exposure settles after 0.5 s.
     LightMuch,

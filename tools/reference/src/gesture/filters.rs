@@ -24,17 +24,13 @@ pub enum Filter {
     Shipped,
 }
 
-/// State of the filter for one channel.
-enum Channel {
-    None,
-    Average2(Average<2>),
-    Average4(Average<4>),
-    Average8(Average<8>),
-    Average16(Average<16>),
-    LowPass(LowPass),
-    AlphaBeta(AlphaBeta),
-    OneEuro(OneEuro, Tuning),
-    Shipped(OneEuro, Backlash),
+/// The filter of one channel with its state: returns the output for an input and the time since the previous input.
+type Channel = Box<dyn FnMut(Q4_28, TimeStep) -> Q4_28>;
+
+/// A moving average of the last `FRAMES` inputs, in its steady state for the input `input`.
+fn average<const FRAMES: usize>(input: Q4_28) -> Channel {
+    let mut filter = Average::<FRAMES>::new(input);
+    Box::new(move |input, _| filter.next(input))
 }
 
 /// Returns the gains α and β for the tracking index λ, which is the ratio of the path's accelerations to the noise (Kalata, 1984).
@@ -89,17 +85,19 @@ impl Filter {
     /// Creates the filter of one channel, in its steady state for the input `input`.
     fn at(self, input: Q4_28) -> Channel {
         match self {
-            Self::None => Channel::None,
-            Self::Average(2) => Channel::Average2(Average::new(input)),
-            Self::Average(4) => Channel::Average4(Average::new(input)),
-            Self::Average(8) => Channel::Average8(Average::new(input)),
-            Self::Average(_) => Channel::Average16(Average::new(input)),
+            Self::None => Box::new(|input, _| input),
+            Self::Average(2) => average::<2>(input),
+            Self::Average(4) => average::<4>(input),
+            Self::Average(8) => average::<8>(input),
+            Self::Average(_) => average::<16>(input),
             Self::LowPass(cutoff) => {
-                Channel::LowPass(LowPass::new(U16_16::from_num(cutoff), input))
+                let mut filter = LowPass::new(U16_16::from_num(cutoff), input);
+                Box::new(move |input, step| filter.next(input, step))
             }
             Self::AlphaBeta(index) => {
                 let gains = kalata(index).map(|gain| (gain * 65_536.0).round() as u32);
-                Channel::AlphaBeta(AlphaBeta::new(gains, input))
+                let mut filter = AlphaBeta::new(gains, input);
+                Box::new(move |input, _| filter.next(input))
             }
             Self::OneEuro(parameters) => {
                 let [cutoff, speed_cutoff, slope] = parameters.map(U16_16::from_num);
@@ -108,9 +106,14 @@ impl Filter {
                     slope,
                     speed_cutoff,
                 };
-                Channel::OneEuro(OneEuro::new(input), tuning)
+                let mut filter = OneEuro::new(input);
+                Box::new(move |input, step| filter.next(input, &tuning, step))
             }
-            Self::Shipped => Channel::Shipped(OneEuro::new(input), Backlash::new(input)),
+            Self::Shipped => {
+                let [(tuning, zone), ..] = CHANNELS;
+                let (mut filter, mut backlash) = (OneEuro::new(input), Backlash::new(input));
+                Box::new(move |input, step| backlash.next(filter.next(input, &tuning, step), zone))
+            }
         }
     }
 
@@ -126,30 +129,11 @@ impl Filter {
             for ((channel, target), output) in
                 channels.iter_mut().zip(sample.target).zip(&mut filtered)
             {
-                *output = channel.next(target, step).to_num();
+                *output = channel(target, step).to_num();
             }
             filtered
         });
         outputs.collect()
-    }
-}
-
-impl Channel {
-    fn next(&mut self, input: Q4_28, step: TimeStep) -> Q4_28 {
-        match self {
-            Self::None => input,
-            Self::Average2(filter) => filter.next(input),
-            Self::Average4(filter) => filter.next(input),
-            Self::Average8(filter) => filter.next(input),
-            Self::Average16(filter) => filter.next(input),
-            Self::LowPass(filter) => filter.next(input, step),
-            Self::AlphaBeta(filter) => filter.next(input),
-            Self::OneEuro(filter, tuning) => filter.next(input, tuning, step),
-            Self::Shipped(filter, backlash) => {
-                let [(tuning, zone), ..] = CHANNELS;
-                backlash.next(filter.next(input, &tuning, step), zone)
-            }
-        }
     }
 }
 

@@ -150,7 +150,7 @@ impl Frame {
         Self { mask }
     }
 
-    /// Returns a frame with the hand's colour only in the given columns and rows.
+    /// Returns a frame with the hand's colour only in the given pixels, each a column and a row.
     pub fn of(pixels: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let mut mask = vec![false; COLUMNS * ROWS];
         for (x, y) in pixels {

@@ -37,8 +37,6 @@ pub enum Filter {
         /// Lowest and highest magnitude of a used reading, in g.
         range: [f64; 2],
     },
-    /// The firmware's filter with this time constant τ, but with the gain dt/τ per step instead of 1 − exp(−dt/τ).
-    Explicit(f64),
 }
 
 impl Filter {
@@ -57,7 +55,6 @@ impl Filter {
                 tau,
                 range: [low, high],
             } => format!("tilt, {tau} s, {low} to {high} g"),
-            Self::Explicit(tau) => format!("tilt, explicit, {tau} s"),
         }
     }
 }
@@ -87,7 +84,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// Creates an estimator that has not processed a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
+    /// Creates an estimator without samples. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,
@@ -158,27 +155,14 @@ impl Estimator {
         let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
         match self.filter {
             Filter::None => {}
-            Filter::Tilt(tau) => {
-                let gain = if strength <= 3.0 {
-                    self.aged_gain(tau, step)
-                } else {
-                    0.0
-                };
-                self.correction = turn(gain);
+            Filter::Tilt(tau) if strength <= 3.0 => {
+                self.correction = turn(self.aged_gain(tau, step))
             }
-            Filter::Gated {
-                tau,
-                range: [low, high],
-            } => {
-                let counts = (low..=high).contains(&strength);
-                let gain = if counts {
-                    self.aged_gain(tau, step)
-                } else {
-                    0.0
-                };
-                self.correction = turn(gain);
+            Filter::Gated { tau, range } if range[0] <= strength && strength <= range[1] => {
+                self.correction = turn(self.aged_gain(tau, step));
             }
-            Filter::Explicit(tau) => self.correction = turn(step / tau),
+            // A reading of a magnitude out of range does not correct the attitude.
+            Filter::Tilt(_) | Filter::Gated { .. } => {}
             Filter::Mahony {
                 proportional,
                 integral,

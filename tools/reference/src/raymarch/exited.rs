@@ -6,7 +6,7 @@ use super::metrics::RayOutcome;
 use super::rendered::{self, RenderedRay};
 use crate::camera::Vector;
 
-/// Draws the picture of one eye, row by row. With each ray, returns the number of tested spheres.
+/// Draws the picture of one eye, row by row. Returns each ray with the number of spheres that it tested.
 pub fn picture(exits: &Exits, eye: usize) -> Vec<(RenderedRay, u32)> {
     let cones = exits.cones();
     (0..exits.width * exits.height)
@@ -39,7 +39,8 @@ pub fn depth(exits: &Exits, t: i64) -> f64 {
 }
 
 /// The largest depth of a hit by an eye's ray, in world units along the camera's n. `direction` is the ray's direction, whose component along
-/// n is 1. A repeated solid ends 2^11 field units from the lower corner of the eye's cell along each axis; a surface at the end is beyond.
+/// n is 1. A repeated solid ends 2^11 field units from the lower corner of the eye's cell along each axis; a surface exactly at the end
+/// counts as beyond it.
 pub fn reach(exits: &Exits, eye: usize, direction: Vector) -> f64 {
     let far = depth(exits, exits.far);
     let is_repeated = exits

@@ -216,6 +216,12 @@ impl Subject {
     pub fn picture(&self, options: &FieldOptions) -> Vec<RenderedRay> {
         picture(&self.setup(options), 0)
     }
+
+    /// Draws this subject with the model and the options of its field, and compares the picture with the reference.
+    pub fn measure(&self) -> Measured {
+        let picture = self.picture(&FieldOptions::of(&self.parsed));
+        Measured::new(&self.expected, &picture)
+    }
 }
 
 /// Returns subjects with the Menger sponge of depth 4, one for each of the [`views`].

@@ -29,7 +29,7 @@ impl RenderedRay {
     }
 }
 
-/// Converts `end`, the model's result of a ray, to an outcome. `t` is the depth of a hit in world units, and `spheres` are those of the scene.
+/// Converts `end`, the model's result of a ray, to an outcome. `t` is the depth of a hit in world units; `spheres` are the scene's spheres.
 pub fn outcome(end: &RayEnd, t: f64, spheres: Option<&FixedSpheres>) -> RayOutcome {
     let surface = match end.state {
         State::Miss => return RayOutcome::Miss,

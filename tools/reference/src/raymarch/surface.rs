@@ -58,14 +58,6 @@ impl Face {
             },
         }
     }
-
-    /// Returns the entry face, perpendicular to `axis`, of a ray of this direction.
-    pub(super) fn entered(axis: usize, direction: Vector) -> Self {
-        Self::Axis {
-            axis,
-            positive: direction[axis] < 0.0,
-        }
-    }
 }
 
 /// The first point of a ray inside a solid.
@@ -97,10 +89,11 @@ impl Hit {
     pub(super) fn entered(t: f64, axis: usize, direction: Vector) -> Self {
         let mut normal = [0.0; 3];
         normal[axis] = -direction[axis].signum();
+        let positive = direction[axis] < 0.0;
         Self {
             t,
             normal,
-            face: Face::entered(axis, direction),
+            face: Face::Axis { axis, positive },
             member: 0,
         }
     }

@@ -3,7 +3,6 @@
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Vector, length, normalised, subtract};
-use std::fmt;
 
 /// Distance from the surface at which a trace ends, in world units.
 const NEAR: f64 = 1e-9;
@@ -20,14 +19,6 @@ pub struct Unconverged {
     /// Parameter of the ray at the last step.
     pub t: f64,
 }
-
-impl fmt::Display for Unconverged {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the ray is still beside a surface at t = {}", self.t)
-    }
-}
-
-impl std::error::Error for Unconverged {}
 
 impl Field {
     /// Finds the point of [`Self::hit`] from the field's distance alone, by one method for all fields.

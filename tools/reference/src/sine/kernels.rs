@@ -31,14 +31,17 @@ pub struct Kernel {
     pub by_phase: bool,
     /// Whether Glint itself uses the kernel.
     pub shipped: bool,
-    steps: u64,
-    run: Box<Run>,
-    show: Box<dyn Fn(u64) -> String + Sync>,
+    /// Number of steps that cover all inputs. A step covers one or several inputs.
+    pub steps: u64,
+    /// Measures the kernel.
+    pub run: Box<Run>,
+    /// Describes an input as text. The argument has the input's bits as an integer.
+    pub show: Box<dyn Fn(u64) -> String + Sync>,
 }
 
 /// Measures a kernel at the steps `stride·i` for all i in a range, and adds the errors to statistics. The arguments are the
 /// range, the stride and the statistics.
-type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
+pub type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Kernel {
     /// Makes a kernel that Glint does not use, with inputs other than phases. `labels` are name, family, config and format.
@@ -63,21 +66,6 @@ impl Kernel {
             run: Box::new(run),
             show: Box::new(show),
         }
-    }
-
-    /// Number of steps that cover all inputs. A step covers one or several inputs.
-    pub fn steps(&self) -> u64 {
-        self.steps
-    }
-
-    /// Measures the kernel at the steps `stride·i` for all i in `range`, and adds the errors to `statistics`.
-    pub fn run(&self, range: Range<u64>, stride: u64, statistics: &mut Statistics) {
-        (self.run)(range, stride, statistics);
-    }
-
-    /// Describes an input as text. `number` is the input's bits as an integer.
-    pub fn show_input(&self, number: u64) -> String {
-        (self.show)(number)
     }
 }
 
@@ -319,7 +307,7 @@ mod tests {
             ("libm", 2.5e-8, 6e-8),
         ] {
             let kernel = named(name);
-            let statistics = sweep(&kernel, kernel.steps() / 300_000 + 1, &|_| ());
+            let statistics = sweep(&kernel, kernel.steps / 300_000 + 1, &|_| ());
             let max = statistics.max;
             assert!((at_least..=at_most).contains(&max), "{name}: {max:e}");
         }

@@ -13,7 +13,7 @@ const PART: u64 = 1 << 18;
 
 /// Measures the errors of `kernel` in every `stride`-th of its steps. Calls `progress` with the number of steps of each completed part.
 pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
-    let steps = kernel.steps().div_ceil(stride);
+    let steps = kernel.steps.div_ceil(stride);
     let parts = steps.div_ceil(PART);
     let next = AtomicU64::new(0);
     let done = Mutex::new(Vec::new());
@@ -25,7 +25,7 @@ pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> S
             }
             let (first, last) = (part * PART, ((part + 1) * PART).min(steps));
             let mut statistics = Statistics::default();
-            kernel.run(first..last, stride, &mut statistics);
+            (kernel.run)(first..last, stride, &mut statistics);
             if let Ok(mut done) = done.lock() {
                 done.push((part, statistics));
             }

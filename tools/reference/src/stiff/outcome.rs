@@ -14,7 +14,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The outcome of a function that may refuse its input; `text` states its result.
+    /// Converts the result of a function that may refuse its input. `text` formats an accepted result.
     pub fn of<T, E: ToString>(result: Result<T, E>, text: impl FnOnce(T) -> String) -> Self {
         match result {
             Ok(value) => Self::Exact(text(value)),

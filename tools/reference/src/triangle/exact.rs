@@ -28,7 +28,7 @@ struct Edge {
     y: i128,
     dx: i128,
     dy: i128,
-    /// Whether a pixel centre exactly on the edge's line belongs to the triangle.
+    /// Whether a pixel centre exactly on the edge belongs to the triangle (top-left rule).
     owns_its_line: bool,
 }
 

@@ -26,9 +26,9 @@ pub struct Scene {
 
 /// A triangle with a texture.
 pub struct Drawn<'a> {
-    /// Its edges and its plane of depth.
+    /// Edges and plane of depth.
     pub setup: Setup,
-    /// The planes of its coordinates, and its texture.
+    /// Planes of the texture coordinates, and the texture.
     pub textured: Textured<'a>,
 }
 
@@ -37,9 +37,9 @@ pub struct Drawn<'a> {
 pub struct Pixel {
     /// Column in the picture.
     pub column: i32,
-    /// Depth accumulator with half a code.
+    /// Depth accumulator at the pixel's centre, plus half a code for rounding.
     pub depth: u32,
-    /// Accumulators of the coordinates.
+    /// Accumulators of the texture coordinates at the pixel's centre.
     pub values: [u32; 2],
 }
 
@@ -79,8 +79,8 @@ impl Drawn<'_> {
         self.exact_at(pixel, [0.0; 2])
     }
 
-    /// The exact position of a point beside the middle of a pixel in this row, at a distance of `offset` pixels to the right and down; `None`
-    /// if the triangle does not cover it.
+    /// The exact position, in texels of level 0, of the point `offset` pixels to the right of and below the centre of a pixel in this row;
+    /// `None` if the triangle does not cover the point.
     pub fn exact_beside(&self, pixel: &Pixel, row: i32, offset: [f64; 2]) -> Option<[f64; 2]> {
         let setup = &self.setup;
         let right = f64::from(pixel.column - setup.start_column) + offset[0];
@@ -112,7 +112,7 @@ impl Drawn<'_> {
         })
     }
 
-    /// The mip level of each pixel of a row: that of the first covered pixel of its group.
+    /// The mip level of each pixel of a row. All pixels of a group have the level of the group's first covered pixel.
     pub fn levels(&self, row: &[Pixel]) -> Vec<u32> {
         let mut level = 0;
         let levels = row.iter().enumerate().map(|(i, pixel)| {
@@ -126,7 +126,7 @@ impl Drawn<'_> {
 }
 
 impl Scene {
-    /// Calls `visit` with each triangle, the number of each of its rows and the covered pixels, band after band, as the engine draws them.
+    /// Calls `visit` for each row of each triangle, with the row's number and covered pixels. The order is that of the engine: band by band.
     ///
     /// # Panics
     /// If the model refuses the frame.
@@ -136,7 +136,7 @@ impl Scene {
         let constants = frame.constants().expect("a good frame");
         let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
         let mut drawn = Vec::new();
-        // The textures of the mesh outlive those that the model shows.
+        // The texture is taken from the mesh, because the callback's texture does not live long enough.
         let textures: Vec<_> = mesh.textures().collect();
         let texture = textures[0];
         frame
@@ -146,7 +146,7 @@ impl Scene {
                     setup: *setup,
                     textured: Textured {
                         texture,
-                        // Full light, which leaves the texels as they are.
+                        // Full light leaves the colours of the texels unchanged.
                         light: flat_light(Rgb565::WHITE, [256; 3]),
                         ..*textured
                     },
@@ -165,7 +165,8 @@ impl Scene {
     }
 }
 
-/// Black textures of any size, by the base-2 logarithms of their sides, with all mip levels or only the first one.
+/// Returns a function that makes black textures, with all mip levels or only level 0. Its argument has the base-2 logarithms of width
+/// and height in texels.
 pub fn blank(has_levels: bool) -> impl Fn([u8; 2]) -> Vec<u8> {
     move |size_log2| {
         let [width, height] = size_log2;
@@ -179,7 +180,7 @@ pub fn blank(has_levels: bool) -> impl Fn([u8; 2]) -> Vec<u8> {
     }
 }
 
-/// All scenes; `texture` makes their textures, of 1024×1024 texels and for the globe of 512×256.
+/// All scenes. `texture` makes a texture from the base-2 logarithms of its sides: 1024×1024 texels, or 512×256 for the globe.
 #[must_use]
 pub fn scenes(texture: &dyn Fn([u8; 2]) -> Vec<u8>) -> Vec<Scene> {
     let square = glint_vectors::meshes::textured_square(&[texture([10, 10])], 0.5);
@@ -229,7 +230,7 @@ fn across(angle: f64) -> Camera {
     }
 }
 
-/// A sphere of radius 1 about the origin, of `bands` bands and twice as many sectors, with a texture that spans it once.
+/// A sphere of radius 1 about the origin, of `bands` bands and twice as many sectors. The texture covers the sphere once.
 ///
 /// # Panics
 /// If it has too many vertices for a mesh.

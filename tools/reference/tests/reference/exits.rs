@@ -18,7 +18,7 @@ use glint_vectors::math::{add_scaled, dot, length};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Smallest distance in pixels between a ray and its four neighbours, which must see the same surface if the ray is compared.
+/// Smallest distance in pixels between a ray and its four neighbours. Only a ray whose neighbours see the same surface is compared.
 const BESIDE: f64 = 0.02;
 
 /// A random camera: inside the field, or outside, looking at it.
@@ -36,7 +36,7 @@ fn random_camera(number: u32, random: &mut Pcg64Mcg, inside: &mut Random) -> Cam
     Camera::looking(eye, target, half_width, near)
 }
 
-/// Rays of random cameras, with one eye or two, through random fields: away from edges, a ray sees the exact surface.
+/// Compares rays of random cameras, with one eye or two, through random fields: away from edges, a ray sees the exact surface.
 #[test]
 fn rays_away_from_edges_see_the_exact_surface() {
     let (mut random, mut inside) = (Pcg64Mcg::new(7), Random(5));
@@ -100,7 +100,7 @@ fn rays_away_from_edges_see_the_exact_surface() {
                 .zip(exact)
                 .map(|(hit, exact)| (hit.t - exact.t).abs())
                 .fold(0.0, f64::max);
-            // A ray that all but touches a sphere, or runs all but along a face, is as sensitive as one at an edge.
+            // A ray that almost touches a sphere, or runs almost along a face, is as sensitive as a ray at an edge.
             let is_steady = exact.is_none_or(|exact| change < 0.02 * exact.t);
             if !is_steady || beside.iter().any(|&hit| surface(hit) != surface(exact)) {
                 continue;
@@ -112,8 +112,8 @@ fn rays_away_from_edges_see_the_exact_surface() {
             let is_right = match (exact, exited::outcome(&exits, &beam, &end)) {
                 (None, RayOutcome::Miss) => true,
                 (Some(exact), RayOutcome::Hit { t, face, .. }) => {
-                    // A surface or an eye that is moved by rounding moves the hit by more, the smaller the angle at the surface. For
-                    // wide cameras, directions in the middle are short, and so are the products with them.
+                    // Rounding moves the surface or the eye, which moves the hit farther if the ray meets the surface at a smaller
+                    // angle. For wide cameras, directions in the middle are short, and so are the products with them.
                     let direction = ray(eye, [f64::from(x), f64::from(y)]).direction;
                     let angle = dot(exact.normal, direction).abs() / length(direction);
                     let unit = unit * f64::from(1 << exits.exponent);
@@ -167,8 +167,8 @@ fn pictures_meet_the_targets() {
     }
 }
 
-/// Shadows on the faces of sponges and repeated boxes against exact ones: the share of the compared hits whose shadow differs. A shadow may
-/// differ where a ray to the light passes an edge within the rounding of the hit.
+/// Compares shadows on the faces of sponges and repeated boxes with exact shadows, and bounds the fraction of hits whose shadow differs. A
+/// shadow may differ where the ray to the light passes an edge at a distance below the rounding of the hit.
 #[test]
 fn shadows_are_where_they_are() {
     let sun = Light::parse("1,-2,3").expect("a light").direction();

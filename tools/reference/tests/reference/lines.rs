@@ -75,14 +75,10 @@ fn check(ends: &[ScreenVertex; 2], rectangle: [i32; 4], tally: &mut Tally) {
     tally.segments += 1;
     tally.empty += u64::from(found.is_empty());
     tally.pixels += found.len() as u64;
-    tally.clipped += u64::from(
-        [a, b]
-            .iter()
-            .any(|v| v.x < 256 * rectangle[0] || v.x >= 256 * rectangle[2])
-            || [a, b]
-                .iter()
-                .any(|v| v.y < 256 * rectangle[1] || v.y >= 256 * rectangle[3]),
-    );
+    let [left, top, right, bottom] = rectangle.map(|pixels| 256 * pixels);
+    let is_outside =
+        |v: &ScreenVertex| !(left..right).contains(&v.x) || !(top..bottom).contains(&v.y);
+    tally.clipped += u64::from(ends.iter().any(is_outside));
 }
 
 fn exact(ends: &[ScreenVertex; 2]) -> ExactSegment {

@@ -23,7 +23,8 @@ use glint_reference::report::experiments::geometry::precision;
 use glint_reference::report::experiments::gouraud::forms;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
 use glint_reference::report::experiments::kernels as small_kernels;
-use glint_reference::report::experiments::raymarch::pictures::{self, Form};
+use glint_reference::report::experiments::raymarch::pictures;
+use glint_reference::report::experiments::raymarch::pictures::Form::{self, Exits, Marching};
 use glint_reference::report::experiments::raymarch::rates;
 use glint_reference::report::experiments::raymarch::requirements::SMALL;
 use glint_reference::report::experiments::{quality, sine, timeline};
@@ -35,18 +36,7 @@ use glint_reference::triangle::smooth::scenes;
 use glint_testbench::Raymarcher;
 use serde::de::DeserializeOwned;
 
-/// Transcript of the console in the firmware's form. The transcript replaces a board.
-const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
-
-/// Makes an empty folder for a test's files.
-fn folder(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).expect("a removable old folder");
-    }
-    fs::create_dir_all(&folder).expect("a writable build folder");
-    folder
-}
+use crate::{TRANSCRIPT, folder};
 
 /// Runs a program to its end.
 fn succeed(command: &mut Command) {
@@ -223,7 +213,7 @@ fn the_committed_errors_of_sines_hold() {
             (row.kernel.as_str(), row.inputs.as_str()),
             (kernel.name, kernel.inputs)
         );
-        if kernel.steps() > 1 << 19 {
+        if kernel.steps > 1 << 19 {
             continue;
         }
         let statistics = sweep(&kernel, 1, &|_| ());
@@ -254,7 +244,7 @@ fn the_committed_errors_of_geometry_hold() {
 #[test]
 fn the_committed_errors_of_small_kernels_hold() {
     let rows: Vec<small_kernels::Row> = committed("kernels.csv");
-    let now = small_kernels::measure(None, 1, &Cycles::new()).expect("cameras are accepted");
+    let now = small_kernels::measure(1, &Cycles::new()).expect("cameras are accepted");
     assert_eq!(rows.len(), now.len(), "kernels were added or removed");
     for (row, now) in rows.iter().zip(now) {
         assert_eq!((&row.config, row.samples), (&now.config, now.samples));
@@ -383,45 +373,21 @@ fn the_committed_clocks_of_pictures_hold() {
     }
 }
 
-/// Bounds of the pictures of fields whose text starts with a word: false hits and misses, undecided rays, the median and the 99th
+/// Bounds of the pictures, by form of rays and start of the field's text: false hits and misses, undecided rays, the median and the 99th
 /// percentile of the depth's error in world units, the fraction of wrong faces, the 99th percentile of the normal's error in degrees, and
-/// evaluations per ray. The first line that matches a form of rays and a field determines its bounds.
+/// evaluations per ray. The first matching line applies.
 const BOUNDS: [(Form, &str, [f64; 7]); 9] = [
     // Exact masks, and errors of depths by the rounding of the eye.
+    (Exits, "menger", [0.0, 0.0, 4e-7, 2e-6, 2e-4, 0.0, 1.9]),
+    (Exits, "box:", [0.0, 0.0, 3e-7, 2e-6, 0.0, 0.0, 0.6]),
+    (Exits, "cubes:0.25", [0.0, 0.0, 7e-7, 3e-6, 2e-4, 0.0, 1.6]),
+    (Exits, "planes:12", [0.0, 0.0, 6e-6, 2e-5, 0.0, 0.0, 0.6]),
+    (Exits, "cubes:2", [0.0, 0.0, 5e-7, 2e-5, 2e-4, 0.0, 2.3]),
+    (Exits, "planes:0.5", [0.0, 0.0, 4e-7, 8e-5, 0.0, 0.0, 1.0]),
+    (Exits, "lattice", [0.0, 0.0, 2e-6, 2e-5, 0.0, 0.06, 4.2]),
+    (Exits, "", [0.0, 0.0, 5e-6, 2e-5, 0.0, 0.02, 1.5]),
     (
-        Form::Exits,
-        "menger",
-        [0.0, 0.0, 4e-7, 2e-6, 2e-4, 0.0, 1.9],
-    ),
-    (Form::Exits, "box:", [0.0, 0.0, 3e-7, 2e-6, 0.0, 0.0, 0.6]),
-    (
-        Form::Exits,
-        "cubes:0.25",
-        [0.0, 0.0, 7e-7, 3e-6, 2e-4, 0.0, 1.6],
-    ),
-    (
-        Form::Exits,
-        "planes:12",
-        [0.0, 0.0, 6e-6, 2e-5, 0.0, 0.0, 0.6],
-    ),
-    (
-        Form::Exits,
-        "cubes:2",
-        [0.0, 0.0, 5e-7, 2e-5, 2e-4, 0.0, 2.3],
-    ),
-    (
-        Form::Exits,
-        "planes:0.5",
-        [0.0, 0.0, 4e-7, 8e-5, 0.0, 0.0, 1.0],
-    ),
-    (
-        Form::Exits,
-        "lattice",
-        [0.0, 0.0, 2e-6, 2e-5, 0.0, 0.06, 4.2],
-    ),
-    (Form::Exits, "", [0.0, 0.0, 5e-6, 2e-5, 0.0, 0.02, 1.5]),
-    (
-        Form::Marching,
+        Marching,
         "",
         [40.0, 0.0, 3e-4, 3e-3, 0.01, 0.3, f64::INFINITY],
     ),

@@ -2,15 +2,15 @@
 
 use std::fs;
 use std::os::unix::process::CommandExt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::thread;
 use std::time::SystemTime;
 
 use glint_reference::report::workspace;
 
-/// Console output with the cycles of the kernels measured in these tests.
-const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
+use crate::{TRANSCRIPT, folder};
+
 /// Jobs of the workflow that these tests run. The contents of the pages are covered by the pages' tests.
 const TABLES: [&str; 2] = ["tables/sine", "tables/raymarch-pictures"];
 
@@ -21,18 +21,14 @@ struct Run {
 
 impl Run {
     fn new(name: &str) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        if folder.exists() {
-            fs::remove_dir_all(&folder).expect("a removable old folder");
-        }
-        fs::create_dir_all(&folder).expect("the folder can be made");
+        let folder = folder(name);
         fs::write(folder.join("transcript"), TRANSCRIPT).expect("writable");
         let run = Self { folder };
         run.stamp("the first inputs");
         run
     }
 
-    /// Writes a text in place of the checksums of all files that the jobs run.
+    /// Writes a text in place of the checksums of all files that the jobs execute.
     fn stamp(&self, text: &str) {
         fs::write(self.folder.join("inputs"), text).expect("writable");
     }

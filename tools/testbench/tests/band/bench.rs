@@ -158,7 +158,7 @@ impl Bench {
                 (item[0].words()[0], data)
             }));
         if self.group_source.len() < self.groups.len() {
-            let group = self.groups.pop_front().expect("it was there");
+            let group = self.groups.pop_front().expect("it was queued");
             let cycle = module.cycles();
             assert!(
                 !self.closed,
@@ -168,7 +168,7 @@ impl Bench {
         }
         self.closed = module.is_high(self.band_valid);
         if self.band_source.len() < self.bands.len() {
-            let band = self.bands.pop_front().expect("it was there");
+            let band = self.bands.pop_front().expect("it was queued");
             self.expected
                 .extend(self.drawn.words(&band, &mut self.left));
             self.flushed_last = Some(band);
@@ -219,8 +219,9 @@ impl Bench {
 }
 
 impl Bench {
-    /// Restarts the band buffer while memory takes no words, and checks that the banks are cleared nevertheless. Then memory
-    /// takes words again: at most the words in the buffer's FIFO may follow.
+    /// Restarts the band buffer while memory takes no words, and checks that the buffer still
+    /// clears its banks. When memory takes words again, at most the words in the buffer's FIFO may
+    /// arrive.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 

@@ -1,4 +1,5 @@
-//! Tests of the band buffer: its pixels equal the pixels of a plain depth test, and each flush writes the band's changed words in order.
+//! Tests of the band buffer: the pixels must equal those of a plain depth test, and each flush must
+//! write the band's changed words in order.
 
 mod bench;
 mod pixels;
@@ -221,7 +222,8 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     const COUNT: usize = 1920;
     let mut bench = Bench::ready(7, 0.0, 0.0);
     let rows = (0..COUNT).map(|i| full_group(i, 1));
-    // Pairs of groups as from two adjacent triangles: in the same row, with different lanes (pixels of the row).
+    // Pairs of groups like those of two adjacent triangles: in the same row, with different lanes
+    // (pixels of the row).
     let lanes = (0..COUNT).map(|i| Group {
         mask: 0x0f << (i % 2 * 4),
         ..full_group(i / 2, 2)
@@ -237,7 +239,8 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
 
 #[test]
 fn a_group_waits_for_the_lanes_it_shares() {
-    // Per case: the number of groups between the two groups of a row, and the clocks for which the second group is delayed.
+    // Each case: the number of groups between two groups of the same row, and the number of clocks
+    // for which the second group is delayed.
     for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
@@ -297,8 +300,8 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Per case: the number of drawn words in every n-th line, n, and the clocks of the flush without start and end, if the
-    // previous frame drew the same words.
+    // Each case: the number of drawn words in every n-th line, n, and the number of clocks of the
+    // flush, without its start and end, if the previous frame drew the same words.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)
@@ -334,8 +337,8 @@ fn a_restart_ends_whatever_goes_on() {
         println!("seed {seed}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
-        // The restart comes during the flush of a band and the drawing of the next band. With few rows, the clearing after the
-        // restart reaches the last drawn rows early.
+        // The restart happens while a band is flushed and the next band is drawn. With few rows,
+        // the clearing after the restart soon reaches the rows that were drawn last.
         let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);

@@ -1,4 +1,4 @@
-//! Model of the band buffer: pixel groups, bands, and the words to be written by the flush of a band.
+//! Model of the band buffer: pixel groups, bands, and the expected words of the flush of a band.
 
 use glint_core::stereo::Tint;
 use std::ops::Range;

@@ -16,23 +16,25 @@ pub struct Clocks {
 }
 
 impl Clocks {
-    /// Periods in ps of the Urbana's system clock and of an image sensor that sends 640x480 pixels 60 times a second.
+    /// Periods, in ps, of the Urbana's system clock and of an image sensor that sends 640x480
+    /// pixels at 60 frames per second.
     pub const URBANA: Self = Self {
         sys: 12_308,
         camera: 20_400,
     };
 
-    /// An image sensor at twice the engine's clock: a pixel in each clock of the engine.
+    /// An image sensor with twice the engine's clock frequency: one pixel in each clock of the
+    /// engine.
     pub const TWICE: Self = Self {
         sys: 10_000,
         camera: 5_000,
     };
 }
 
-/// The build with short time-outs and with sums of products.
+/// The build with a short time-out for the sensor's clock, and with sums of products.
 pub const HASTY: &str = "gesture_engine_hasty";
 
-/// Settings that mark every pixel of a frame of this size as a hand's.
+/// Settings that mark every pixel of a frame of this size as part of a hand.
 pub const fn settings(size: [u16; 2]) -> Settings {
     const ALL: Window = window(0, 255);
     Settings {
@@ -71,7 +73,8 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins. The engine is enabled, and a frame can follow.
+    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins. The engine is
+    /// enabled and has seen a VSYNC, so a frame can follow.
     pub fn usual(clocks: Clocks, settings: Settings, seed: u64) -> Self {
         let mut bench = Self::new(HASTY, clocks, Polarity::default(), false, settings, seed);
         bench.begin();
@@ -90,7 +93,8 @@ impl Bench {
         let mut bench = Self::stopped(name, clocks, polarity, settings, seed);
         bench.falling = falling;
         bench.module.drive("pins.falling", falling);
-        // Registers without a reset start with random values, and so may the FIFO. A VSYNC discards these values.
+        // Registers without a reset start with random values, so the FIFO may contain random data.
+        // A VSYNC discards them.
         bench.idle(3000);
         bench.begin();
         bench.twin = Engine::new(polarity, settings, bench.camera.pins(false, false, 0));
@@ -148,7 +152,7 @@ impl Bench {
         bench
     }
 
-    /// Makes a bench whose camera sends nothing, not even a clock, and enables the engine.
+    /// Makes a bench whose camera sends neither frames nor a clock, and enables the engine.
     pub fn silent(name: &str) -> Self {
         let mut bench = Self::stopped(
             name,

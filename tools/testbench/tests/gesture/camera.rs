@@ -78,7 +78,7 @@ impl Camera {
             }
         }
         if end != End::Lost {
-            // HREF may stay high, as when VSYNC cuts a line.
+            // HREF may stay high, as it does when VSYNC cuts a line.
             blank(&mut sent, self.between, true);
         }
         blank(&mut sent, self.blank, false);

@@ -7,7 +7,8 @@ use glint_testbench::Module;
 /// Number of clocks from the input of a pixel to the comparison of its channels with the windows.
 const LATENCY: u32 = 4;
 
-/// The window of each colour contains only the model's value, so a marked pixel has this value.
+/// Tests each colour with a window that contains only the model's value, so a marked pixel has this
+/// value.
 #[test]
 fn every_channel_of_every_colour_is_that_of_the_model() {
     let mut module = Module::load("colour_window", 1);

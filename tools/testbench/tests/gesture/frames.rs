@@ -1,4 +1,5 @@
-//! Tests with random frames, polarities, settings and faults, and at the frame rates that the engine must support.
+//! Tests with random frames, polarities, settings and faults, and tests at the frame rates that the
+//! engine must support.
 
 use glint_core::gesture::Region;
 use glint_model::gesture::{Channel, Polarity, Settings};
@@ -65,7 +66,7 @@ fn picture(random: &mut Pcg64Mcg, size: [u16; 2]) -> Picture {
     })
 }
 
-/// Puts a fault into a picture; returns how the frame ends.
+/// Adds a fault to a picture; returns how the frame ends.
 fn spoil(random: &mut Pcg64Mcg, picture: &mut Picture) -> End {
     let count = picture.lines.len();
     let at = random.random_range(0..count);
@@ -95,7 +96,8 @@ fn spoil(random: &mut Pcg64Mcg, picture: &mut Picture) -> End {
 
 #[test]
 fn random_frames_polarities_and_faults() {
-    // Periods of the image sensor: slower than the engine, similar, and half the engine's, with a pixel in each clock of the engine.
+    // Periods of the image sensor: longer than the engine's period, similar, and half of it, with a
+    // pixel in each clock of the engine.
     let clocks = [
         (12_308, 41_600),
         (12_308, 20_400),
@@ -170,7 +172,8 @@ fn takes(clocks: Clocks, size: [u16; 2]) {
     assert_eq!((bench.twin.counts.frames, bench.twin.fault), (2, None));
 }
 
-/// 640x480 pixels 60 times a second: 784 x 510 pixel periods of two clocks in 1/60 s. The ULX3S clocks the engine with 40 MHz.
+/// 640x480 pixels at 60 frames per second: 784 x 510 pixel periods of two clocks in 1/60 s. On the
+/// ULX3S, the engine runs at 40 MHz.
 #[test]
 fn vga_at_60_frames_a_second() {
     takes(Clocks::URBANA, [640, 480]);
@@ -204,7 +207,8 @@ fn sums_of_the_largest_frame_fit() {
     );
 }
 
-/// A small picture of a frame of 640x480 is a mask of 160x120, or 40x30 colours; a larger picture is cut at the end of its memory.
+/// The small picture of a 640x480 frame is a mask of 160x120 bits, or 40x30 colours. A larger
+/// picture is truncated at the end of its memory.
 #[test]
 fn small_pictures() {
     let size = [640, 480];
@@ -222,7 +226,7 @@ fn small_pictures() {
         bench.request_snapshot(step, is_colour);
         bench.frame(&picture(&mut random, size), End::Vsync);
         bench.compare_snapshot();
-        // The snapshot is of the frame after the request, not of the frame in progress.
+        // The small picture shows the frame after the request, not the frame in progress.
         bench.frame(&picture(&mut random, size), End::Vsync);
         bench.compare_snapshot();
         assert_eq!(

@@ -1,4 +1,5 @@
-//! The stiff cases: a function for each row of the table in docs/gesture.md computes the row's outcome.
+//! The difficult cases: for each row of the table in docs/gesture.md, a function computes the
+//! outcome.
 
 use std::collections::BTreeMap;
 
@@ -92,7 +93,7 @@ const CASES: [Case; 23] = [
             camera: 2_000,
         };
         let size = [400, 4];
-        // No comparison with the model, which has no clocks.
+        // Does not compare with the model, which has no notion of clocks.
         let mut bench = Bench::usual(clocks, settings(size), 1);
         let picture = Picture::new(size, |x, _| x);
         let pins = bench.camera.send(&mut bench.random, &picture, End::Vsync);
@@ -198,12 +199,16 @@ fn spoilt(spoil: impl Fn(&mut Picture) -> End) -> String {
         bench.frame(&hand, End::Vsync);
     }
     let fault = told(&mut bench);
-    assert_eq!(bench.module.read("results.sum_x"), kept, "the results stay");
+    assert_eq!(
+        bench.module.read("results.sum_x"),
+        kept,
+        "the results must not change"
+    );
     bench.frame(&hand, End::Vsync);
     format!("{fault}; then {}", told(&mut bench))
 }
 
-/// As [`spoilt`], with a fault in the lines of the frame.
+/// Like [`spoilt`], with a fault in the lines of the frame.
 fn spoilt_lines(spoil: fn(&mut Vec<Vec<u8>>)) -> String {
     spoilt(|picture| {
         spoil(&mut picture.lines);

@@ -31,7 +31,8 @@ impl Bench {
         }
     }
 
-    /// Draws a band's pieces of segments, and compares the groups with the model's pixels. Returns the numbers of clocks and pixels.
+    /// Draws the pieces of segments in a band, and compares the groups with the model's pixels.
+    /// Returns the numbers of clocks and pixels.
     fn band(&mut self, size: usize, band: &Bounds, segments: &[Segment]) -> [u64; 2] {
         let stride = SIZES[size].0 / LANES;
         self.pipe.module.drive("first_row", band.top);
@@ -101,7 +102,7 @@ fn difficult_segments() {
     }
 }
 
-/// Pieces of any length take one clock a pixel, plus the latency of each band.
+/// Pieces of any length take one clock per pixel, plus the latency of each band.
 #[test]
 fn a_pixel_a_clock() {
     for size in 0..3 {

@@ -66,7 +66,8 @@ fn difficult_segments() {
     }
 }
 
-/// At 60 frames per second and 81.25 MHz, a frame of 10,000 segments leaves 135 clocks for each.
+/// At 60 frames per second and 81.25 MHz, a frame of 10,000 segments leaves 135 clocks for each
+/// segment.
 #[test]
 fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     for size in 0..3 {
@@ -87,8 +88,9 @@ fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     }
 }
 
-/// A segment takes 31 clocks, or 59 with a depth step, plus one for each of its 10 pixels, for its piece, and for each band above. With
-/// a depth step, the clocks for the bands overlap with the division.
+/// A segment takes 31 clocks, or 59 if the depth changes along it, plus one clock for each of its
+/// 10 pixels, one for its piece, and one for each band above the segment. If the depth changes, the
+/// clocks for the bands overlap with the division.
 #[test]
 fn clocks_of_a_segment() {
     let above = u64::from(100 / Size::W640.band_lines());

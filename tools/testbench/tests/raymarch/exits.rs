@@ -1,5 +1,5 @@
-//! Tests of the parts for rays that leave empty prisms: reciprocals, and a lane in which every ray ends once, with the model's result,
-//! under any back-pressure.
+//! Tests of the modules for rays by exits: the reciprocal, and the lane. Every ray must end exactly
+//! once, with the model's result, under any backpressure.
 
 use std::collections::HashMap;
 
@@ -8,11 +8,11 @@ use glint_core::field::{Field, Surface};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::State;
 use glint_model::raymarch::exits::{Exits, Inverse, Rule, Words};
-use glint_testbench::raymarch::{RayPlace, exit_ray, reciprocal, rule};
+use glint_testbench::raymarch::{RayPlace, exit_ray, rule};
 use glint_testbench::{Bits, Layout, Module, Pipe, Record};
 use glint_vectors::Random;
 
-use crate::scenes::{ENDLESS_UNIONS, FIELDS, SPONGES, UNIONS, camera, size, stereo};
+use crate::scenes::{ENDLESS_UNIONS, FIELDS, SPONGES, STALLS, UNIONS, camera, exits, rays};
 
 /// Number of rays in a frame.
 const RAYS: usize = 2_000;
@@ -35,7 +35,7 @@ fn all_fields() -> Vec<&'static str> {
         .collect()
 }
 
-/// Lattices of spheres: typical ones, and the smallest and the largest radius.
+/// Lattices of spheres: typical radii, and the smallest and the largest radius.
 const LATTICES: [&str; 6] = [
     "lattice:1,0.3",
     "lattice:2,0.5",
@@ -45,7 +45,7 @@ const LATTICES: [&str; 6] = [
     "lattice:1,0.01",
 ];
 
-/// Boxes everywhere, some of which touch along some axes.
+/// Fields of repeated boxes; in some of them, the boxes touch along some axes.
 const BOXES: [&str; 6] = [
     "boxes:2,0.7,0.3,0.12",
     "boxes:2,0.25,1,0.15",
@@ -55,7 +55,7 @@ const BOXES: [&str; 6] = [
     "boxes:2,1,1,1",
 ];
 
-/// Octahedra: a typical one, the smallest and the largest.
+/// Octahedra: the smallest, the largest, and two of typical sizes.
 const OCTAHEDRA: [&str; 4] = [
     "octahedron:1",
     "octahedron:0.01",
@@ -80,7 +80,7 @@ impl Seen {
         let (axis, is_positive) = (record.get("axis"), record.is_set("positive"));
         match rule {
             Rule::Octahedron => {
-                // The function `octant` of exit_pkg.
+                // The same computation as the function `octant` of exit_pkg.
                 let negative = [1, 2, 4, 0][axis as usize];
                 Self::Octant(if is_positive { !negative & 7 } else { negative })
             }
@@ -89,7 +89,8 @@ impl Seen {
     }
 }
 
-/// End of a ray. A miss has no surface, and the ray's limit as its parameter: the far limit, or the parameter at a sphere.
+/// End of a ray. A miss has no surface; its parameter is the limit of the ray: the far limit, or
+/// the parameter at a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct End {
     t: u64,
@@ -119,8 +120,9 @@ struct Sent {
     end: End,
 }
 
-/// Makes a frame in which all rays start at one place and have one direction, both among the stiffest: on borders and beside them, with
-/// components of 0 and 1 ulp. The near plane is at the eye.
+/// Makes a frame in which all rays have the same start and direction, both difficult: the start is
+/// on a border of the solid or next to one, and components of the direction are 0 or 1 ulp. The
+/// near plane is at the eye.
 fn stiff_frame(random: &mut Random, text: &str) -> Exits {
     const ONE: i64 = (1 << 27) - 1;
     let field = Field::parse(text).expect("a field");
@@ -206,7 +208,7 @@ struct Bench {
     pipe: Pipe,
     /// The unit after the lane that computes the parameters of hits on spheres of a lattice.
     landing: Option<Pipe>,
-    /// Whether rays have limits of their own; otherwise the parameter of a miss has no meaning.
+    /// Whether each ray has its own limit; otherwise the parameter of a miss has no meaning.
     has_limits: bool,
 }
 
@@ -290,11 +292,6 @@ impl Bench {
     }
 }
 
-/// Number of frames: the environment variable `GLINT_RTL_RAYS` counts their rays, by default 150,000.
-fn frames() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap()) / RAYS
-}
-
 #[test]
 fn reciprocals() {
     const LATENCY: usize = 12;
@@ -310,8 +307,12 @@ fn reciprocals() {
     module.settle();
     for clock in 0..numbers.len() + LATENCY {
         if let Some(&number) = clock.checked_sub(LATENCY).and_then(|i| numbers.get(i)) {
-            let expected = reciprocal(Inverse::of(2 * number + 1, &Words::CHOSEN));
-            assert_eq!(module.value(inverse), expected, "of {number:#x}");
+            let expected = Inverse::of(2 * number + 1, &Words::CHOSEN).word();
+            assert_eq!(
+                module.value(inverse),
+                u64::from(expected),
+                "reciprocal of {number:#x}"
+            );
         }
         let number = numbers.get(clock).copied().unwrap_or_default();
         module.set(magnitude, u64::from(number));
@@ -324,9 +325,8 @@ fn reciprocals() {
 
 fn random_rays(name: &str, fields: &[&str]) {
     let mut random = Random(7);
-    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
     let mut benches: Vec<Bench> = (1..)
-        .zip(shares)
+        .zip(STALLS)
         .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
     let layout = benches[0]
@@ -334,12 +334,8 @@ fn random_rays(name: &str, fields: &[&str]) {
         .module
         .packed_type("exit_pkg::ray_t")
         .clone();
-    for frame in 0..frames() {
-        let field = Field::parse(fields[frame % fields.len()]).expect("a field");
-        let stereo = random.coin().then(|| stereo(&mut random));
-        let (view, size) = (camera(&mut random), size(&mut random));
-        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
+    for frame in 0..rays() / RAYS {
+        let (exits, eyes) = exits(&mut random, fields[frame % fields.len()]);
         let rays = some_rays(&mut random, &layout, &exits, eyes, name == ALL, RAYS);
         benches[frame / fields.len() % 4].check(&exits, rays);
     }
@@ -364,7 +360,7 @@ fn stiff_rays(name: &str, fields: &[&str]) {
     let mut random = Random(9);
     let mut bench = Bench::new(name, 1, [0.0, 0.0]);
     let layout = bench.pipe.module.packed_type("exit_pkg::ray_t").clone();
-    for frame in 0..20 * frames() {
+    for frame in 0..20 * (rays() / RAYS) {
         let exits = stiff_frame(&mut random, fields[frame % fields.len()]);
         let rays = some_rays(&mut random, &layout, &exits, 1, name == ALL, 1);
         bench.check(&exits, rays);

@@ -1,7 +1,7 @@
 //! Tests of whole frames of the raymarcher.
 
 use glint_model::raymarch::{FieldSetup, Lights, Palette, Shine, State};
-use glint_testbench::{Raymarcher, Taken};
+use glint_testbench::{FrameCost, Raymarcher};
 use glint_vectors::Random;
 
 use crate::scenes::{
@@ -13,7 +13,7 @@ use crate::scenes::{
 const LANES: u64 = 4;
 
 /// The cost of a frame of the module `raymarcher_sponge`, as a text.
-fn busy(taken: &Taken) -> String {
+fn busy(taken: &FrameCost) -> String {
     let evaluations = taken.stats.evaluations as f64;
     format!(
         "{:.2} evaluations a ray, {:.4} a clock and lane, {} clocks, {} of lanes idle",
@@ -34,7 +34,7 @@ fn frames_of_all_fields_with_stalls() {
     for text in further_kinds() {
         draw_in_short(&mut bench, &mut random, &[text]);
     }
-    // Back-pressure of pixels blocks the ends of rays, which in turn block the rays.
+    // Backpressure at the output of pixels blocks the ends of rays, which in turn block the rays.
     assert!(bench.stalled() > 0);
 }
 
@@ -94,7 +94,8 @@ fn small_and_lit(random: &mut Random, text: &str) -> (FieldSetup, Palette) {
     (setup, palette)
 }
 
-/// Cones alone and in unions, in all lights, also after spheres and without a cone after one.
+/// Draws cones alone and in unions, in all lights. Fields with a cone follow fields without one,
+/// and vice versa.
 #[test]
 fn frames_of_cones_in_all_lights() {
     let mut random = Random(15);
@@ -115,7 +116,8 @@ fn frames_of_cones_in_all_lights() {
     }
 }
 
-/// Spheres in a repeated field need the eye's position in the world, the field that in its cell.
+/// In a repeated field, spheres need the eye's position in the world, and the field needs the eye's
+/// position in its cell.
 #[test]
 fn frames_of_spheres_in_endless_fields() {
     let mut random = Random(14);
@@ -126,7 +128,8 @@ fn frames_of_spheres_in_endless_fields() {
     }
 }
 
-/// Draws a sphere with one pass and with eight: each further pass may take one more clock for each pixel of the sphere.
+/// Draws a sphere with one lighting pass and with eight passes. Each further pass may take one more
+/// clock per pixel of the sphere.
 #[test]
 fn round_pixels_take_a_clock_a_pass() {
     let mut random = Random(13);
@@ -171,12 +174,12 @@ fn sponges_keep_the_lanes_busy() {
 }
 
 #[test]
-fn a_frame_given_up_leaves_nothing() {
+fn a_cancelled_frame_leaves_nothing() {
     let mut random = Random(11);
     let mut bench = Raymarcher::new("raymarcher", 3);
     for clocks in [1, 20, 500, 20_000] {
         let setup = setup(&mut random, &["cubes:2,0.5"]);
-        bench.give_up(&setup, clocks);
+        bench.cancel(&setup, clocks);
         let mut setup = setup;
         limit_steps(&mut setup, 8);
         bench.draw(Some(&mut random), &setup, &Palette::default());

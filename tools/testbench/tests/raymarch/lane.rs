@@ -1,12 +1,13 @@
-//! Tests of a lane of marching rays: every ray ends once, with the model's result, under any back-pressure.
+//! Tests of a lane of marching rays: every ray must end exactly once, with the model's result,
+//! under any backpressure.
 
 use std::collections::HashMap;
 
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Pipe};
 
-use crate::scenes::marching_setup;
-use glint_testbench::raymarch::{End, RayPlace, marching, ray, set_lane};
+use crate::scenes::{STALLS, marching_setup, rays};
+use glint_testbench::raymarch::{End, RayPlace, ray, set_lane};
 use glint_vectors::Random;
 
 /// Number of rays in a frame.
@@ -22,7 +23,7 @@ struct Sent {
 /// Makes random rays of a frame, with their expected ends, by place.
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<RayPlace, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
-    let marching = marching(setup);
+    let marching = setup.marching().expect("marching rays");
     let mut all = HashMap::new();
     // A place has only the parity of the band, so rays of different bands can have equal places; one ray per place is kept.
     while all.len() < RAYS {
@@ -88,25 +89,16 @@ impl Bench {
     }
 }
 
-/// Number of rays per test: the environment variable `GLINT_RTL_RAYS`, by default 150,000.
-fn rays() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
-}
-
-/// Creates benches of the module `name`, each with another share of stalls.
-fn benches(name: &str) -> Vec<Bench> {
-    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
-    let numbered = (1..).zip(shares);
-    let bench = |(seed, stalls)| Bench::new(name, seed, stalls);
-    numbered.map(bench).collect()
-}
-
 #[test]
 fn random_rays_in_smooth_unions() {
     let mut random = Random(3);
     let mut benches: Vec<_> = ["ring_lane", "ring_lane_all"]
         .into_iter()
-        .flat_map(benches)
+        .flat_map(|name| {
+            (1..)
+                .zip(STALLS)
+                .map(move |(seed, stalls)| Bench::new(name, seed, stalls))
+        })
         .collect();
     for frame in 0..rays() / RAYS {
         let setup = marching_setup(&mut random);

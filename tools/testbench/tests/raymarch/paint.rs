@@ -25,7 +25,8 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// Makes an end of a ray: the model's, or a random end with a depth above 0, even if no ray of the scene can produce it.
+/// Makes an end of a ray: the model's end, or a random end with a depth above 0, which need not be
+/// possible in the scene.
 fn ending(random: &mut Random, setup: &FieldSetup, place: RayPlace) -> RayEnd {
     let end = setup.tracer().trace(place.eye, place.column, place.line);
     if random.coin() {

@@ -4,6 +4,7 @@ use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_model::SIZES;
+use glint_model::raymarch::exits::{Exits, Words};
 use glint_model::raymarch::{FieldOptions, FieldSetup, Form, Light, Lights, Shine, Stereo, Tint};
 
 use glint_vectors::{Camera, Random};
@@ -23,7 +24,7 @@ pub const ROUND: [&str; 8] = [
     "spheres:0,0,0,0.5;1,0,0,0.5;0,1,0,0.5;0,0,1,0.5;-1,0,0,0.5;0,-1,0,0.5;0,0,-1,0.5;8,-8,8,3.5",
 ];
 
-/// Unions with a fillet, in which rays march, for a build with sponges up to depth 4.
+/// Unions with a fillet, which need marching rays, for a build with sponges up to depth 4.
 pub const SMOOTH: [&str; 9] = [
     "smooth:0.25,menger:2+sphere:1",
     "smooth:0.5,menger:3+spheres:1,1,1,0.5;-1,0,0,0.25;0,0,0,0.125",
@@ -117,14 +118,14 @@ fn camera_at(random: &mut Random, distance: f64) -> View {
     Camera::aimed(random, eye, towards, [0.0; 2], half_width, near).rounded()
 }
 
-/// Lowers the step limit of a frame's rays, which march, to `cap` if it is higher.
+/// Lowers the step limit of marching rays to `cap` if it is higher.
 pub fn limit_steps(setup: &mut FieldSetup, cap: u32) {
     if let Form::Marching(marching) = &mut setup.form {
         marching.cap = marching.cap.min(cap);
     }
 }
 
-/// Makes random frame constants as [`setup`], without shadows.
+/// Makes random frame constants like [`setup`], but without shadows.
 pub fn unshaded_setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     let mut setup = setup(random, fields);
     if let Form::Exits(exits) = &mut setup.form {
@@ -176,6 +177,23 @@ fn sun(random: &mut Random) -> [i16; 3] {
         .direction()
         .map(|part| (part * 16384.0).round() as i16)
 }
+
+/// Makes random constants of rays by exits in a field; returns them, and the number of eyes.
+pub fn exits(random: &mut Random, field: &str) -> (Exits, usize) {
+    let field = Field::parse(field).expect("a field");
+    let stereo = random.coin().then(|| stereo(random));
+    let (view, size) = (camera(random), size(random));
+    let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
+    (exits, 1 + usize::from(stereo.is_some()))
+}
+
+/// Number of rays of a test. The environment variable `GLINT_RTL_RAYS` sets it, 150,000 by default.
+pub fn rays() -> usize {
+    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
+}
+
+/// Shares of stalls of the source and of the sink of a bench.
+pub const STALLS: [[f64; 2]; 4] = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
 
 /// Makes a random size of a picture.
 pub fn size(random: &mut Random) -> (u32, u32) {

@@ -1,14 +1,13 @@
-//! Tests of the sphere unit: each pixel has the model's sphere and parameter, in order, under any back-pressure, and takes no more clocks
-//! than its cones.
+//! Tests of the sphere unit: each pixel has the model's sphere and parameter, in order, under any
+//! backpressure, and takes at most one clock per cone.
 
-use glint_core::field::Field;
-use glint_model::raymarch::exits::{Cone, Exits, Linear, Words};
+use glint_model::raymarch::exits::{Cone, Exits, Linear};
 use glint_testbench::raymarch::set_cones;
 use glint_testbench::{Module, Sink, Stalls, step};
 use glint_vectors::Random;
 use glint_vectors::rays::{self, ONE};
 
-use crate::scenes::{ENDLESS_UNIONS, ROUND, UNIONS, camera, size, stereo};
+use crate::scenes::{self, ENDLESS_UNIONS, ROUND, UNIONS};
 
 /// The radius of `sphere:1`, with 12 fraction bits.
 const RADIUS: i32 = 81 << 11;
@@ -34,7 +33,7 @@ struct Window {
 }
 
 impl Window {
-    /// Lines of the whole width.
+    /// A window of whole lines.
     fn lines(exits: &Exits, row: u32, rows: u32) -> Self {
         Self {
             first: [0, row],
@@ -42,7 +41,7 @@ impl Window {
         }
     }
 
-    /// A small window at random, in most cases close to the rectangle of some cone.
+    /// A small random window, in most cases close to the rectangle of a cone.
     fn draw(random: &mut Random, exits: &Exits, eyes: usize) -> Self {
         let cones = exits.cones();
         let list = cones[random.bits() as usize % eyes].list();
@@ -82,7 +81,7 @@ impl Window {
         };
         let mut cone = *cone;
         cone.forward = moved(cone.forward, 0);
-        // Only its lowest 32 bits count.
+        // Only the lowest 32 bits are used.
         cone.forward.first = i64::from(cone.forward.first as i32);
         cone.sides = cone.sides.map(|side| moved(side, cone.shift));
         let rectangle = &mut cone.rectangle;
@@ -105,7 +104,7 @@ impl Window {
 
 struct Bench {
     module: Module,
-    /// Share of the clocks in which no meeting is taken.
+    /// Share of the clocks in which the output stalls.
     stalls: f64,
 }
 
@@ -117,8 +116,8 @@ impl Bench {
         }
     }
 
-    /// Compares the meetings of the pixels of a window. Returns the number of clocks, of cones, of meetings, and of meetings at the near
-    /// plane.
+    /// Compares the outputs (`meeting_t`) for the pixels of a window with the model's. Returns the
+    /// numbers of clocks, of tested cones, of spheres met, and of spheres met at the near plane.
     fn check(&mut self, exits: &Exits, window: Window, eyes: usize) -> [u64; 4] {
         let Self { module, stalls } = self;
         module.drive("near_limit", exits.near);
@@ -170,11 +169,6 @@ impl Bench {
     }
 }
 
-/// Number of frames: the environment variable `GLINT_RTL_RAYS` counts their rays, by default 150,000.
-fn frames() -> usize {
-    std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap()) / 150
-}
-
 #[test]
 fn random_rays() {
     let one_eye = Bench::new("sphere_unit_one_eye", 9, 0.2);
@@ -206,12 +200,9 @@ fn random_frames(name: &str, mut one_eye: Bench, fields: &[&str]) {
         .map(|(seed, stalls)| Bench::new(name, seed, stalls))
         .collect();
     let (mut all_hits, mut all_discs) = (0, 0);
-    for frame in 0..frames() {
-        let field = Field::parse(fields[frame % fields.len()]).expect("a field");
-        let stereo = random.coin().then(|| stereo(&mut random));
-        let (view, size) = (camera(&mut random), size(&mut random));
-        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
+    let frames = scenes::rays() / 150;
+    for frame in 0..frames {
+        let (exits, eyes) = scenes::exits(&mut random, fields[frame % fields.len()]);
         let window = Window::draw(&mut random, &exits, eyes);
         let bench = match eyes {
             1 if random.coin() => &mut one_eye,
@@ -221,7 +212,7 @@ fn random_frames(name: &str, mut one_eye: Bench, fields: &[&str]) {
         all_hits += hits;
         all_discs += discs;
     }
-    let frames = frames() as u64;
+    let frames = frames as u64;
     assert!(
         all_hits > 10 * frames && all_discs > frames,
         "{all_hits}, {all_discs}"
@@ -233,16 +224,12 @@ fn lines_take_a_clock_for_each_cone() {
     let mut random = Random(12);
     let mut bench = Bench::new("sphere_unit", 1, 0.0);
     for frame in 0..40 {
-        let field = Field::parse(fields()[frame % fields().len()]).expect("a field");
-        let stereo = random.coin().then(|| stereo(&mut random));
-        let (view, size) = (camera(&mut random), size(&mut random));
-        let exits = Exits::new(&field, &view, size, stereo, Words::CHOSEN).expect("a frame");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
+        let (exits, eyes) = scenes::exits(&mut random, fields()[frame % fields().len()]);
         let row = random.integer(0, i64::from(exits.height) - 2) as u32;
         let [clocks, cones, ..] = bench.check(&exits, Window::lines(&exits, row, 2), eyes);
         let cones_of = exits.cones();
         let most = (0..eyes).map(|eye| cones_of[eye].list().len()).max();
-        // Latency, and rays that wait for the longer walks of more than 8 cones.
+        // The bound includes the latency. With more than 8 cones, rays also wait for longer walks.
         if most.is_some_and(|most| most <= 8) {
             assert!(clocks < cones + 80, "{clocks} clocks, {cones} cones");
         }
@@ -272,7 +259,8 @@ fn directed_rays() {
         (equal, [-2 * RADIUS, 0, 0], along, 0, true),
         // Eight discs in the near plane.
         (equal, [-2 * RADIUS, 0, 0], along, 60 * unit, true),
-        // Between the eye and the near plane, and cut by it on the front and on the back.
+        // Spheres between the eye and the near plane, and spheres that the near plane cuts in their
+        // front half and in their back half.
         ("sphere:1", [-2 * RADIUS, 0, 0], along, 125 * unit, false),
         ("sphere:1", [-2 * RADIUS, 0, 0], along, 50 * unit, true),
         ("sphere:1", [-2 * RADIUS, 0, 0], along, 120 * unit, true),

@@ -9,7 +9,7 @@ use crate::monitor::Monitor;
 use crate::raster::{Clocks, Raster};
 use crate::settings::{Settings, error};
 
-/// What the bench expects the module to count.
+/// Expected values of the module's counters.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counted {
     vblanks: u32,
@@ -308,7 +308,7 @@ impl Bench {
         let counted = self.module.value(self.ports.underflows);
         assert_eq!(
             counted, late,
-            "numbers of underflows and of late picture lines"
+            "number of underflows, expected the number of late lines"
         );
     }
 

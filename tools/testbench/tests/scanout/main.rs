@@ -13,7 +13,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use bench::Bench;
-use memory::Manners;
+use memory::Timing;
 use raster::{Clocks, Raster};
 use settings::{Settings, error};
 
@@ -28,7 +28,7 @@ fn restless(random: &mut Pcg64Mcg, asked: &mut Settings) {
 
 fn all_scales_are_pixel_exact(clocks: Clocks) {
     let mut bench = Bench::new("scanout", Raster::CEA, clocks, 1);
-    bench.memory.manners = Manners::BUSY;
+    bench.memory.timing = Timing::BUSY;
     for scale in [4, 2, 1] {
         bench.asked = Settings::shown(scale, 0x12_3456 * scale);
         // The module latches the settings at the vertical blanking.
@@ -64,7 +64,7 @@ fn flips_and_switches_at_any_time_with_seven_clock_ratios() {
     let ratios = [Clocks::SLOW, Clocks::FAST].into_iter().chain(ratios);
     for (seed, clocks) in (100..).zip(ratios) {
         let mut bench = Bench::small(clocks, seed);
-        bench.memory.manners = Manners::SHARED;
+        bench.memory.timing = Timing::SHARED;
         bench.software = Some(restless);
         bench.run_frames(60);
         assert_eq!(bench.monitor.late, 0, "{clocks:?}");
@@ -74,7 +74,7 @@ fn flips_and_switches_at_any_time_with_seven_clock_ratios() {
 #[test]
 fn lines_above_and_below_the_picture_are_black() {
     let mut bench = Bench::new("scanout_border", Raster::BORDER, Clocks::SLOW, 150);
-    bench.memory.manners = Manners::SHARED;
+    bench.memory.timing = Timing::SHARED;
     bench.software = Some(restless);
     bench.run_frames(60);
     assert_eq!(bench.monitor.late, 0);
@@ -112,7 +112,7 @@ fn starved_memory_never_disturbs_the_raster() {
         let mut bench = Bench::small(clocks, seed);
         bench.monitor.may_be_late = true;
         // Memory pauses at random, for a few lines up to whole frames.
-        bench.memory.manners = Manners {
+        bench.memory.timing = Timing {
             ready: 0.6,
             deliver: 0.6,
             latency: [2, 150],
@@ -166,7 +166,7 @@ fn unknown_scales_are_refused() {
 fn either_side_may_be_reset_alone() {
     let clocks = Clocks::FAST;
     let mut bench = Bench::small(clocks, 600);
-    bench.memory.manners = Manners::SHARED;
+    bench.memory.timing = Timing::SHARED;
     let frame = clocks.sys_cycles(SMALL.frame());
     for round in 0..200 {
         bench.asked = Settings::shown(1 << (round % 3), 0x1000 * round);

@@ -15,7 +15,7 @@ pub const WORD: u64 = 16;
 /// Timing of the memory: the shares of cycles in which it accepts a command (`ready`) and delivers a due word (`deliver`), and
 /// its minimum and maximum latency in cycles.
 #[derive(Clone, Copy, Debug)]
-pub struct Manners {
+pub struct Timing {
     pub ready: f64,
     pub deliver: f64,
     pub latency: [u64; 2],
@@ -24,7 +24,7 @@ pub struct Manners {
     pub pause_cycles: u64,
 }
 
-impl Manners {
+impl Timing {
     /// A memory without stalls, with a latency of 8 cycles.
     pub const PROMPT: Self = Self {
         ready: 1.0,
@@ -56,7 +56,7 @@ pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
 
 /// Model of the memory at the module's read port.
 pub struct Memory {
-    pub manners: Manners,
+    pub timing: Timing,
     /// Whether the memory is paused: takes no commands and delivers no words.
     pub stopped: bool,
     cmd: [Port; 3],
@@ -71,7 +71,7 @@ pub struct Memory {
 impl Memory {
     pub fn new(module: &Module) -> Self {
         Self {
-            manners: Manners::PROMPT,
+            timing: Timing::PROMPT,
             stopped: false,
             cmd: ["cmd_valid", "cmd_ready", "cmd_addr"].map(|name| module.port(name)),
             rdata: ["rdata_valid", "rdata"].map(|name| module.port(name)),
@@ -129,7 +129,7 @@ impl Memory {
             (self.commands.len() as u64) < raster.h_active / 8,
             "more commands in flight than a line has words"
         );
-        let [least, most] = self.manners.latency;
+        let [least, most] = self.timing.latency;
         let due = cycle + random.random_range(least..=most);
         // Words are delivered in the order of the commands.
         let due = self.commands.back().map_or(due, |&(_, last)| due.max(last));
@@ -144,17 +144,17 @@ impl Memory {
 
     /// Drives the port: chooses `ready` at random, and delivers a due word, otherwise random data that are not valid.
     pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
-        let manners = self.manners;
-        if cycle >= self.paused_until && chance(random, manners.pause) {
-            self.paused_until = cycle + random.random_range(0..manners.pause_cycles);
+        let timing = self.timing;
+        if cycle >= self.paused_until && chance(random, timing.pause) {
+            self.paused_until = cycle + random.random_range(0..timing.pause_cycles);
         }
         let awake = cycle >= self.paused_until && !self.stopped;
         module.set_value(
             self.cmd[1],
-            u64::from(awake && chance(random, manners.ready)),
+            u64::from(awake && chance(random, timing.ready)),
         );
         let due = self.commands.front().is_some_and(|&(_, due)| due <= cycle);
-        let given = awake && due && chance(random, manners.deliver);
+        let given = awake && due && chance(random, timing.deliver);
         module.set_value(self.rdata[0], u64::from(given));
         let words: [u32; 4] = match self.commands.front() {
             Some(&(address, _)) if given => {

@@ -20,7 +20,7 @@ pub struct Monitor {
     position: Option<u64>,
     vsync_before: bool,
     line: Vec<u32>,
-    /// Whether to skip the check of the current line, disturbed by a reset.
+    /// Whether to skip the check of the current line, because a reset disturbed it.
     pub line_unchecked: bool,
     /// Last source line (line of the frame in memory) shown in this video frame.
     pub line_shown: Option<u64>,
@@ -54,7 +54,7 @@ impl Monitor {
         }
     }
 
-    /// Loses synchronisation until the next vsync.
+    /// Drops the synchronisation; the next vsync restores it.
     pub fn reset(&mut self) {
         self.position = None;
         self.line.clear();

@@ -1,4 +1,4 @@
-//! Compares the texture filter with the model: averages of neighbours, and their light.
+//! Compares the texture filter with the model: averages of neighbouring texels, and lighting.
 
 use std::collections::VecDeque;
 
@@ -8,17 +8,20 @@ use glint_testbench::{Bits, Module, Port};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Clocks from a step to its light, and to its colours, as in `texture_pkg`.
+/// Number of clocks from a step to its light, as in `texture_pkg`.
 const LIGHT: usize = 6;
+/// Number of clocks from a step to its colours, as in `texture_pkg`.
 const LATENCY: usize = 9;
 /// Full light of each channel.
 const FULL: [u8; 3] = [248, 252, 248];
 
-/// A pixel of a step: what is filtered, and its light.
+/// The texels of a step's pixels, before filtering.
 #[derive(Clone, Copy, Debug)]
 enum Texels {
+    /// One texel for each lane.
     Nearest([u16; 4]),
-    /// Of two pixels, in the lanes 0 and 1, or 2 and 3.
+    /// Four neighbours for each of two pixels: in the lanes 2 and 3 if `upper` is set, else in the
+    /// lanes 0 and 1.
     Bilinear {
         upper: bool,
         neighbours: [[u16; 4]; 2],
@@ -29,7 +32,7 @@ enum Texels {
 #[derive(Clone, Copy, Debug)]
 struct Step {
     texels: Texels,
-    /// Lanes of the step that are covered; at least one.
+    /// Covered lanes of the step, one bit each; at least one lane is covered.
     mask: u8,
     half: bool,
     last: bool,
@@ -42,7 +45,7 @@ impl Step {
         matches!(self.texels, Texels::Bilinear { .. })
     }
 
-    /// The colour of each covered lane.
+    /// The model's colour of each covered lane.
     fn colours(&self) -> [Option<u16>; 4] {
         [0, 1, 2, 3].map(|lane: usize| {
             let texel = match self.texels {
@@ -69,7 +72,7 @@ struct Bench {
     lights: Port,
     inputs: [Port; 9],
     outputs: [Port; 6],
-    /// Steps of the last clocks, the newest first.
+    /// Steps of the last clocks, newest first.
     inside: VecDeque<Option<Step>>,
     checked: usize,
 }
@@ -100,17 +103,8 @@ impl Bench {
     }
 
     fn clock(&mut self, step: Option<Step>) {
-        let [
-            valid,
-            mask,
-            half,
-            last,
-            bilinear,
-            opaque,
-            texels,
-            neighbours,
-            weights,
-        ] = self.inputs;
+        let [valid, mask, half, last, bilinear, opaque, rest @ ..] = self.inputs;
+        let [texels, neighbours, weights] = rest;
         let module = &mut self.module;
         self.inside.pop_back();
         self.inside.push_front(step);
@@ -188,7 +182,7 @@ fn step(texels: Texels, lights: [[u8; 3]; 4]) -> Step {
     }
 }
 
-/// Lights of all lanes that together take all values as `number` does.
+/// Light of all lanes: over all values of `number`, each channel takes all its values.
 fn lights(number: usize) -> [[u8; 3]; 4] {
     [0, 71, 0, 71].map(|lane| {
         FULL.map(|full| {
@@ -219,7 +213,8 @@ fn averages_of_every_value_with_every_light() {
     let mut bench = Bench::new(2);
     for light in 0..=252 {
         for value in 0..64 {
-            // Every even weight, so that red and blue have all values; the other pixel has the next one.
+            // The weights of the two pixels together are all even weights, which give all values of
+            // red and blue.
             for weight in (0..16).step_by(4) {
                 let neighbours = |value: usize| {
                     let at = |value: usize| colour([value.min(31), value.min(63), value.min(31)]);
@@ -270,9 +265,10 @@ fn every_weight_with_random_and_extreme_texels() {
     assert_eq!(bench.checked, 2 * 64 * 256);
 }
 
-/// Full light leaves a texel as it is, and steps of any kind, with gaps between them, come out in order with their marks.
+/// Full light does not change a texel, and steps of any kind, with gaps between them, come out in
+/// order with their flags `half`, `last` and `opaque`.
 #[test]
-fn steps_keep_their_marks() {
+fn steps_keep_their_flags() {
     let mut bench = Bench::new(4);
     let mut random = Pcg64Mcg::new(8);
     for is_bilinear in [false, true, false, true] {
@@ -282,22 +278,10 @@ fn steps_keep_their_marks() {
                 Texels::Bilinear {
                     upper,
                     neighbours: [(); 2].map(|()| [random.random(); 4]),
-                    weights: random.random(),
+                    weights: [[(); 2]; 2].map(|pixel| pixel.map(|()| random.random_range(0..16))),
                 }
             } else {
                 Texels::Nearest(random.random())
-            };
-            let texels = match texels {
-                Texels::Bilinear {
-                    neighbours,
-                    weights,
-                    ..
-                } => Texels::Bilinear {
-                    upper,
-                    neighbours,
-                    weights: weights.map(|pixel: [u8; 2]| pixel.map(|weight| weight & 15)),
-                },
-                nearest @ Texels::Nearest(_) => nearest,
             };
             let mut step = step(texels, [FULL; 4]);
             step.mask = match (is_bilinear, upper) {

@@ -1,4 +1,5 @@
-//! Tests of the loader of textures with a model of the memory: encoded textures of all sizes and formats, and garbage.
+//! Tests of the texture loader with a model of the memory: encoded textures of all sizes and
+//! formats, and random data.
 
 use std::collections::VecDeque;
 
@@ -11,25 +12,25 @@ use rand_pcg::Pcg64Mcg;
 
 /// Words that wait for their client at a port of memory.
 const ROOM: usize = 32;
-/// Largest side and largest number of a level that the gateware has an index for.
+/// Largest base-2 logarithm of a side, and largest level number, that the gateware supports.
 const LIMIT: u64 = 10;
 
-/// What the loader gave for a texture.
+/// The loader's output for a texture.
 struct Loaded {
     sampler: Record,
-    /// The first word of each level that was written.
+    /// Word address of each level that the loader reported.
     levels: [Option<u32>; 16],
-    /// The colours that were written.
+    /// The colours that the loader wrote to the palette.
     palette: [Option<u16>; 256],
     clocks: u64,
 }
 
 struct Bench {
     module: Module,
-    /// Words beyond its end are those modulo its length.
+    /// Addresses beyond its end wrap around.
     memory: Memory,
     words: u32,
-    /// Place of the table of the textures, in words.
+    /// Word address of the table of textures.
     table: u32,
     start: Port,
     done: Port,
@@ -70,7 +71,7 @@ impl Bench {
         }
     }
 
-    /// Writes an entry of the table: the address of a texture, in bytes.
+    /// Writes an entry of the table: the byte address of a texture.
     fn set_entry(&mut self, number: u8, address: u32) {
         let place = self.table + u32::from(number) / 4;
         let mut entries = [0, 1, 2, 3].map(|i| self.memory.entry(place, i));
@@ -127,12 +128,12 @@ impl Bench {
             if self.module.is_high(self.level[0]) {
                 let found =
                     levels[value(self.level[1]) as usize].replace(value(self.level[2]) as u32);
-                assert_eq!(found, None, "a level twice");
+                assert_eq!(found, None, "a level was written twice");
             }
             if self.module.is_high(self.palette[0]) {
                 let found =
                     palette[value(self.palette[1]) as usize].replace(value(self.palette[2]) as u16);
-                assert_eq!(found, None, "a colour twice");
+                assert_eq!(found, None, "a colour was written twice");
             }
             let is_done = self.module.is_high(self.done);
             self.clock();
@@ -148,7 +149,8 @@ impl Bench {
         }
     }
 
-    /// Loads an encoded texture from a place, and compares all. Each level begins with a texel of the level's number plus 1.
+    /// Writes an encoded texture at the word address `place`, loads it, and compares the loader's
+    /// output with the source. The first texel of each level must be the level's number plus 1.
     fn check(&mut self, number: u8, place: u32, source: &Source) -> u64 {
         let bytes = encode(source).unwrap();
         let texture = Texture::new_checked(&bytes).unwrap();
@@ -222,7 +224,7 @@ fn source(random: &mut Pcg64Mcg, format: Format, size_log2: [u8; 2], has_levels:
     }
 }
 
-/// Words of the largest texture, and of the table.
+/// Number of words of the largest texture and of the table.
 const WORDS: u32 = (1 << 18) * 3 / 4 + 256;
 
 #[test]
@@ -260,7 +262,7 @@ fn a_load_takes_twice_the_latency_and_a_clock_per_colour() {
 }
 
 #[test]
-fn garbage_ends_and_is_limited() {
+fn random_memory_ends_and_is_limited() {
     const ROUNDS: u32 = 2000;
     let mut random = Pcg64Mcg::new(7);
     let mut bench = Bench::new(3, 1 << 12, 8, [0.2, 0.2]);
@@ -272,7 +274,7 @@ fn garbage_ends_and_is_limited() {
             }
         }
         let number = random.random();
-        // At any byte, most of them beyond the memory.
+        // The table's random entry can be any byte address, mostly beyond the memory.
         let loaded = bench.load(number);
         let found = |path: &str| loaded.sampler.get(path);
         let last = found("last_level");

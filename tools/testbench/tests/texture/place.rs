@@ -1,4 +1,4 @@
-//! Compares positions in a texture and mip levels with the model.
+//! Compares the positions in a texture, and the mip levels, with the model.
 
 use std::collections::VecDeque;
 
@@ -11,7 +11,7 @@ use glint_vectors::triangles::{SIZE, random_triangle};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Fraction bits of a position_t.
+/// Number of fraction bits of a `position_t`.
 const FRACTION_BITS: u32 = 18;
 
 fn texture(size_log2: [u8; 2], wrap: Wrap, is_one_level: bool) -> Vec<u8> {
@@ -33,7 +33,7 @@ fn texture(size_log2: [u8; 2], wrap: Wrap, is_one_level: bool) -> Vec<u8> {
     .unwrap()
 }
 
-/// A triangle with a texture, as a triangle of a frame, or with random planes if `is_wild`.
+/// Makes a triangle with a texture. Its planes are those of a frame, or random if `is_wild`.
 fn triangle<'a>(
     texture: Texture<'a>,
     vectors: &mut Random,
@@ -80,7 +80,8 @@ fn triangle<'a>(
     }
 }
 
-/// A quad that the module must send: its place in a group, its level, and the expected position of each covered lane.
+/// An expected quad at the output: its covered lanes and its place in the group, its level, and the
+/// position of each lane.
 #[derive(Debug)]
 struct Expected {
     mask: u64,
@@ -126,6 +127,15 @@ fn check(module: &Module, expected: &Expected, texture: &Texture) {
     }
 }
 
+/// Advances by one clock, and checks the output, if it is valid.
+fn clock(module: &mut Module, expected: &mut VecDeque<Expected>, texture: &Texture) {
+    module.settle();
+    if module.read("out_valid") == 1 {
+        check(module, &expected.pop_front().unwrap(), texture);
+    }
+    module.clock();
+}
+
 #[test]
 fn positions_and_levels() {
     let mut levels = [0; 11];
@@ -148,14 +158,11 @@ fn positions_and_levels() {
             let group = random.random_range(setup.bounds.left / 8..=(setup.bounds.right - 1) / 8);
             let row = random.random_range(setup.bounds.top..setup.bounds.bottom);
             let at = |plane: &Plane, column: i32| {
-                plane
-                    .start
-                    .wrapping_add(
-                        plane
-                            .step_x
-                            .wrapping_mul((column - setup.start_column) as u32),
-                    )
-                    .wrapping_add(plane.step_y.wrapping_mul((row - setup.bounds.top) as u32))
+                let across = (column - setup.start_column) as u32;
+                let down = (row - setup.bounds.top) as u32;
+                let step = plane.step_x.wrapping_mul(across);
+                let step = step.wrapping_add(plane.step_y.wrapping_mul(down));
+                plane.start.wrapping_add(step)
             };
             let half_code = |depth: u32| depth.wrapping_add(1 << 13);
             let pixel = |lane: i32| {
@@ -203,27 +210,15 @@ fn positions_and_levels() {
                         textured.axes
                     ),
                 });
-                module.settle();
-                if module.read("out_valid") == 1 {
-                    check(&module, &expected.pop_front().unwrap(), &texture);
-                }
-                module.clock();
+                clock(&mut module, &mut expected, &texture);
                 module.drive("in_valid", 0);
                 for _ in 0..random.random_range(0..3) {
-                    module.settle();
-                    if module.read("out_valid") == 1 {
-                        check(&module, &expected.pop_front().unwrap(), &texture);
-                    }
-                    module.clock();
+                    clock(&mut module, &mut expected, &texture);
                 }
             }
         }
         for _ in 0..30 {
-            module.settle();
-            if module.read("out_valid") == 1 {
-                check(&module, &expected.pop_front().unwrap(), &texture);
-            }
-            module.clock();
+            clock(&mut module, &mut expected, &texture);
         }
         assert!(expected.is_empty());
     }

@@ -1,4 +1,5 @@
-//! Compares the texture sampler with the texels of the model, behind a memory of any latency.
+//! Compares the texels of the texture sampler, which reads a memory of any latency, with the
+//! model's.
 
 mod bench;
 mod expected;
@@ -11,7 +12,8 @@ use rand_pcg::Pcg64Mcg;
 use bench::{Bench, Memory};
 use expected::{Quad, REPEAT};
 
-/// A random texture. Few values of texels, so that transparent ones are frequent.
+/// Makes a random texture. A quarter of the texels have the key, so that transparent texels are
+/// frequent.
 fn texture(
     random: &mut Pcg64Mcg,
     format: Format,
@@ -52,17 +54,17 @@ fn texture(
             .collect(),
         levels,
     };
-    encode(&source).expect("a texture of a right size")
+    encode(&source).expect("a texture of a valid size")
 }
 
-/// Random quads on a texture, in runs of one kind.
+/// Makes random quads on a texture, in runs of the same kind.
 fn quads(random: &mut Pcg64Mcg, texture: &Texture, count: usize) -> Vec<Quad> {
     let mut all: Vec<Quad> = Vec::new();
     while all.len() < count {
         let level = random.random_range(0..texture.levels());
         let kind = random.random_range(0..5);
         let sides = texture.level_log2(level);
-        // Positions of the first pixel, and steps of a pixel, at most one and a half texels.
+        // Position of the first pixel, and step from pixel to pixel, at most one and a half texels.
         let mut at = [0, 1].map(|_| random.random_range(-3 * REPEAT..3 * REPEAT));
         let steps = sides.map(|side| {
             let texel = REPEAT >> side;
@@ -73,19 +75,19 @@ fn quads(random: &mut Pcg64Mcg, texture: &Texture, count: usize) -> Vec<Quad> {
                 [0, 1].map(|axis: usize| {
                     let texel = REPEAT >> sides[axis];
                     match kind {
-                        // A line on the screen.
+                        // Pixels in a row of the screen.
                         0 | 1 => {
                             at[axis] += steps[axis];
                             at[axis]
                         }
-                        // Far apart.
+                        // Pixels far apart.
                         2 => random.random_range(-2 * REPEAT..3 * REPEAT),
-                        // At borders of texels and blocks.
+                        // Pixels at the borders of texels and blocks.
                         3 => {
                             texel * random.random_range(-20..20)
                                 + random.random_range(-texel / 64 - 2..=texel / 64 + 2)
                         }
-                        // At seams.
+                        // Pixels at seams, where the texture repeats.
                         _ => {
                             REPEAT * random.random_range(-2..=3)
                                 + random.random_range(-2 * texel..=2 * texel)
@@ -116,7 +118,8 @@ fn random_sampler(random: &mut Pcg64Mcg) -> Sampler {
     }
 }
 
-/// Stalls of the quads, of the asks and of the data, and the latency of memory.
+/// Shares of stalls of the quads, of the requests to memory and of its data, and the latency of
+/// memory in clocks.
 const PACES: [([f64; 3], u64); 6] = [
     ([0.0; 3], 1),
     ([0.0; 3], 20),
@@ -147,7 +150,8 @@ fn random_textures() {
     }
 }
 
-/// Every level, wrap and filter, with the positions where they differ.
+/// Draws every level with every wrap and filter, at the positions where the wraps and filters
+/// differ.
 #[test]
 fn seams() {
     let mut random = Pcg64Mcg::new(100);
@@ -213,7 +217,8 @@ fn seams() {
     }
 }
 
-/// Textures that are used in turn do not read each other's blocks; one that replaces another of the same number, neither.
+/// Textures that are used in turn do not get each other's cached blocks. A texture that replaces
+/// another texture of the same number does not get the old blocks either.
 #[test]
 fn changes_of_texture() {
     for seed in 200..206 {
@@ -229,7 +234,8 @@ fn changes_of_texture() {
             .collect();
         for round in 0..12 {
             let memory = &memories[random.random_range(0..memories.len())];
-            // A number of its own, or the same number for all of them behind a forget.
+            // Each texture has its own number; later, all textures have the same number, and the
+            // cache is invalidated before each of them.
             let is_own = round < 8;
             let number = if is_own { memory.base / 1000 } else { 77 };
             if !is_own {
@@ -242,9 +248,10 @@ fn changes_of_texture() {
     }
 }
 
-/// Quads whose blocks share their places in the cache with those of the quads before.
+/// Draws quads whose blocks compete with the blocks of previous quads for the same places in the
+/// cache.
 #[test]
-fn places_that_are_in_turn() {
+fn blocks_that_compete_for_places() {
     for (seed, filter) in [(300, Filter::Nearest), (301, Filter::Bilinear)] {
         let mut random = Pcg64Mcg::new(seed.into());
         let mut bench = Bench::new(seed, [0.0, 0.2, 0.2], 25);
@@ -258,7 +265,7 @@ fn places_that_are_in_turn() {
         let texel = REPEAT >> 10;
         let quads: Vec<_> = (0..1500)
             .map(|_| {
-                // Blocks that differ in the parts that are mixed into the places.
+                // The blocks differ in the address bits from which the cache computes their places.
                 let column = 128 * random.random_range(0..8) + 32 * random.random_range(0..2);
                 let row = 64 * random.random_range(0..16) + 8 * random.random_range(0..2);
                 let positions = [0, 1, 2, 3].map(|lane| {
@@ -305,7 +312,8 @@ fn any_values() {
     }
 }
 
-/// Clocks for quads in rows over a whole texture, a texel a pixel, and the words of memory.
+/// Draws a whole texture row by row, one texel per pixel, `rounds` times. Returns the numbers of
+/// clocks and of words read per quad in the last round.
 fn walk(filter: Filter, format: Format, side_log2: u8, rounds: usize, latency: u64) -> [f64; 2] {
     let mut random = Pcg64Mcg::new(400);
     let mut bench = Bench::new(400, [0.0; 3], latency);
@@ -352,7 +360,7 @@ fn clocks_of_quads() {
         ] {
             let [clocks, words] = walk(filter, format, side_log2, rounds, latency);
             println!(
-                "{filter:?}, {format:?}, side {}, round {rounds}, latency {latency}: {clocks:.3} clocks and {words:.3} words a quad",
+                "{filter:?}, {format:?}, side {}, round {rounds}, latency {latency}: {clocks:.3} clocks and {words:.3} words per quad",
                 1 << side_log2
             );
         }

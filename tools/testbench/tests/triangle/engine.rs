@@ -32,8 +32,10 @@ fn converted(name: &str, options: convert::Options) -> Vec<u8> {
     converted.expect("a mesh").0
 }
 
-/// Draws every scene at one size, in either frame buffer: at the smallest size with depths and without, at a larger one with or without
-/// them in turn, because writing depths triples the time, and without large meshes, whose geometry pass is the same in all sizes.
+/// Draws every scene at one size, in a random frame buffer. At the smallest size, each scene is
+/// drawn with depths and without. Larger sizes draw alternate scenes with and without depths,
+/// because writing depths triples the time, and skip large meshes, because the geometry pass does
+/// not depend on the size.
 fn all_scenes(size: (u32, u32)) {
     let mut bench = Bench::new(size.0, 0.0);
     let mut random = Pcg64Mcg::new(size.0.into());
@@ -101,8 +103,8 @@ fn scenes_in_orthographic_projection() {
     assert!(clipped > 20 && pixels > 100_000);
 }
 
-/// Draws random lists of triangles with random memory stalls, on which a frame must not depend. The environment variable
-/// `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
+/// Draws random lists of triangles with random memory stalls, which must not change a frame. The
+/// environment variable `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
 #[test]
 fn random_lists_with_random_stalls() {
     let lists = std::env::var("GLINT_RTL_LISTS").map_or(25, |text| text.parse().unwrap());
@@ -111,7 +113,7 @@ fn random_lists_with_random_stalls() {
         let stalls = [0.0, 0.2, 0.5, 0.7][seed as usize % 4];
         let smooth = seed % 3 == 0;
         let mut bench = if smooth {
-            Bench::smooth(seed, stalls)
+            Bench::of("smooth", seed, stalls)
         } else {
             Bench::new(seed, stalls)
         };
@@ -163,14 +165,8 @@ fn frames_after_each_other() {
             let expected = expected_on(clear, &mesh, &ahead(1.0, 0.1), size, false);
             if random.random_ratio(1, 8) {
                 bench.configure(&mesh, &expected);
-                bench.wait_for("status.ready");
-                bench.pulse("geometry_start");
-                bench.wait_for("status.geometry_done");
-                bench.pulse("raster_start");
-                for _ in 0..random.random_range(0..3000) {
-                    bench.clock();
-                }
-                bench.pulse("cancel");
+                bench.run_geometry();
+                bench.cancel_after("raster_start", random.random_range(0..3000));
             }
             bench.draw(&name, &mesh, &expected);
         }
@@ -273,11 +269,7 @@ fn a_cancelled_frame_leaves_a_working_engine() {
                 &mesh,
                 &expected,
             );
-            bench.pulse(port);
-            for _ in 0..clocks {
-                bench.clock();
-            }
-            bench.pulse("cancel");
+            bench.cancel_after(port, clocks);
             let busy = ["status.geometry_busy", "status.raster_busy"].map(|path| bench.read(path));
             assert_eq!(busy, [0, 0], "{port}: still busy after it was cancelled");
             bench.draw(
@@ -300,19 +292,17 @@ fn bad_meshes_and_full_lists_are_reported() {
         mesh[at..at + 4].copy_from_slice(&value.to_le_bytes());
         mesh
     };
-    for (name, mesh) in [
+    for (name, bad) in [
         ("no vertices", damaged(32, 0)),
         ("very many vertices", damaged(32, u32::MAX)),
         ("very many triangles", damaged(36, u32::MAX)),
         ("one triangle too many", damaged(36, 321)),
         ("cut short", mesh[..mesh.len() - 16].to_vec()),
     ] {
-        bench.configure(&mesh, &expected);
-        bench.wait_for("status.ready");
-        bench.pulse("geometry_start");
-        bench.wait_for("status.geometry_done");
+        bench.configure(&bad, &expected);
+        bench.run_geometry();
         assert_eq!(bench.read("status.mesh_error"), 1, "{name}");
-        bench.draw("a good mesh", &generated("icosphere:4"), &expected);
+        bench.draw("a good mesh", &mesh, &expected);
     }
     for (port, limit) in [
         ("geometry.descriptor_limit", 10),
@@ -322,8 +312,7 @@ fn bad_meshes_and_full_lists_are_reported() {
         bench.configure(&mesh, &expected);
         bench.wait_for("status.ready");
         bench.set(port, limit);
-        bench.pulse("geometry_start");
-        bench.wait_for("status.geometry_done");
+        bench.run_geometry();
         assert_eq!(bench.read("status.full"), 1, "{port} {limit}");
         bench.draw("with room", &mesh, &expected);
     }
@@ -361,9 +350,10 @@ fn frames_end_with_random_memory() {
     }
 }
 
-/// Checks the pixels drawn per clock on a sphere of 96 % of the picture's height, without memory stalls, after an identical
-/// frame. Two lower bounds: `alone`, over the clocks of both passes of a frame, and `overlapped`, over the clocks of the longer
-/// pass, as for frames with overlapping passes.
+/// Checks the pixels drawn per clock on a sphere of 96 % of the picture's height, without memory
+/// stalls, after an identical frame. There are two lower bounds: `alone` refers to the clocks of
+/// both passes of a frame, `overlapped` to the clocks of the longer pass, as for frames whose
+/// passes overlap.
 #[test]
 fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
@@ -376,7 +366,7 @@ fn a_sphere_is_drawn_fast() {
         let view = ahead(0.4781, 0.5);
         let (expected, mut bench) = if smooth {
             let expected = expected_smooth(&mesh, &view, size, true);
-            (expected, Bench::smooth(9, 0.0))
+            (expected, Bench::of("smooth", 9, 0.0))
         } else {
             let expected = expected(&mesh, &view, size, true);
             (expected, Bench::new(9, 0.0))
@@ -392,7 +382,7 @@ fn a_sphere_is_drawn_fast() {
         ];
         println!(
             "{name} at {size:?}, smooth {smooth}: {pixels} pixels, {} clocks for the geometry, {} for the raster, {} walking, {} of them empty, {} words read, {} written, \
-             {:.2} pixels a clock alone, {:.2} overlapped",
+             {:.2} pixels per clock alone, {:.2} overlapped",
             clocks.geometry,
             clocks.raster,
             bench.count("cycles_walking") - counts[0],
@@ -411,7 +401,8 @@ fn a_sphere_is_drawn_fast() {
     }
 }
 
-/// Reads are issued ahead: 64 more clocks of memory latency cost a frame only a few times 64 clocks.
+/// The engine prefetches: with 64 more clocks of memory latency, a frame takes only a few times 64
+/// clocks longer.
 #[test]
 fn latency_of_memory_is_hidden() {
     for (name, size) in [("icosphere:6", SIZES[0]), ("icosphere:12", SIZES[2])] {
@@ -427,7 +418,8 @@ fn latency_of_memory_is_hidden() {
             bench.draw(name, &mesh, &expected).raster
         });
         println!("{name} at {size:?}: {raster:?} clocks for the raster");
-        // The reads of lengths, lists and descriptors depend on each other in the first band, and a few times later.
+        // Reads of lengths, lists and descriptors depend on each other, so their latency is visible
+        // in the first band and a few times later.
         assert!(raster[1] < raster[0] + 8 * 64, "{name}: {raster:?}");
     }
 }
@@ -445,8 +437,8 @@ fn empty_bands_are_passed_fast() {
     assert!(raster < 60 * 30 + 100, "{raster} clocks");
 }
 
-/// Checks the clocks of the geometry pass for a mesh of many small triangles, without memory stalls, in `glint convert`'s order
-/// and in the order of a scanner's file.
+/// Checks the clocks of the geometry pass for a mesh of many small triangles, without memory
+/// stalls, with the triangles in the order of `glint convert` and in the order of a scanner's file.
 #[test]
 fn a_scan_is_drawn_fast() {
     for (keep_order, most) in [(false, 5.0), (true, 9.6)] {
@@ -462,12 +454,12 @@ fn a_scan_is_drawn_fast() {
         let clocks = bench.draw(&name, &mesh, &expected);
         let a_triangle = clocks.geometry as f64 / f64::from(expected.stats.triangles_in);
         println!(
-            "{name}: {} of {} triangles drawn, {} clocks for the geometry, {a_triangle:.2} a triangle, {} for the raster",
+            "{name}: {} of {} triangles drawn, {} clocks for the geometry, {a_triangle:.2} per triangle, {} for the raster",
             expected.stats.drawn, expected.stats.triangles_in, clocks.geometry, clocks.raster
         );
         assert!(
             a_triangle <= most,
-            "{name}: {a_triangle:.2} clocks a triangle"
+            "{name}: {a_triangle:.2} clocks per triangle"
         );
     }
 }

@@ -83,7 +83,7 @@ impl Bench {
         while !(all_in(self) && self.value("idle") == 1) {
             assert!(
                 self.module.cycles() < start + 1_000_000,
-                "it does not take all"
+                "an input is not taken"
             );
             self.clock();
         }
@@ -91,7 +91,7 @@ impl Bench {
         while self.value("done") == 0 || self.value("write_valid") == 1 {
             assert!(
                 self.module.cycles() < start + 1_000_000,
-                "the lists do not end"
+                "the lists are not finished"
             );
             self.clock();
         }

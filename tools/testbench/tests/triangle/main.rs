@@ -1,4 +1,5 @@
-//! Compares the triangle engine's modules, each alone and all together, with the model, and tests the control of the passes.
+//! Compares the triangle engine's modules, each module alone and all modules together, with the
+//! model, and tests the control of the passes.
 
 mod control;
 mod engine;

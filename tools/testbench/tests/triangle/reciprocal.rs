@@ -19,7 +19,7 @@ fn reciprocals() {
     let mut found = Vec::new();
     while found.len() < numbers.len() {
         let cycles = module.cycles();
-        assert!(cycles < 10 * numbers.len() as u64 + 20, "too slow");
+        assert!(cycles < 10 * numbers.len() as u64 + 20, "{cycles} clocks");
         module.set(in_valid, u64::from(next.is_some()));
         module.set(in_m, u64::from(next.copied().unwrap_or(0)));
         module.settle();
@@ -32,6 +32,6 @@ fn reciprocals() {
         module.clock();
     }
     for (&m, y) in numbers.iter().zip(found) {
-        assert_eq!(y, u64::from(recip(m)), "of {m:#x}");
+        assert_eq!(y, u64::from(recip(m)), "reciprocal of {m:#x}");
     }
 }

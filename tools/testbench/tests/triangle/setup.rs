@@ -250,7 +250,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     }
 }
 
-/// Makes random light of a vertex seen from the front, from the back or edge on.
+/// Makes random light of a vertex, on its front or its back side.
 fn light(random: &mut Pcg64Mcg) -> Light {
     let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
     let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];

@@ -105,6 +105,15 @@ fn position(random: &mut Random) -> [i16; 3] {
     [0; 3].map(|_| random.integer(-reach, reach - 1) as i16)
 }
 
+/// Index of a vertex's kind: 0 nearer than the near plane, 1 beyond the guard band, 2 visible.
+fn kind(frame: &MeshSetup, position: [i16; 3]) -> usize {
+    match project(frame, &transform(frame, position)) {
+        Projected::Behind => 0,
+        Projected::BeyondGuard(_) => 1,
+        Projected::Visible(_) => 2,
+    }
+}
+
 const RADIUS: u32 = 56_756;
 
 #[test]
@@ -112,7 +121,6 @@ fn random_cameras_and_vertices() {
     let mut random = Random(1);
     let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.95, 0.0]];
     let mut benches = [0, 1, 2, 3].map(|seed| Bench::new(seed, shares[seed as usize]));
-    // Numbers of tested vertices nearer than the near plane, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];
@@ -124,12 +132,7 @@ fn random_cameras_and_vertices() {
         let frame = MeshSetup::new(&view, width, height, radius).unwrap();
         let positions: Vec<_> = (0..60).map(|_| position(&mut random)).collect();
         for &position in &positions {
-            let kind = match project(&frame, &transform(&frame, position)) {
-                Projected::Behind => 0,
-                Projected::BeyondGuard(_) => 1,
-                Projected::Visible(_) => 2,
-            };
-            seen[kind] += 1;
+            seen[kind(&frame, position)] += 1;
         }
         benches[round as usize % 4].check(&frame, &positions);
     }
@@ -151,7 +154,8 @@ fn edges() {
         let at = position(&mut random);
         let z = transform(&frame, at).z;
 
-        // Puts the near plane at the vertex, one unit in the last place nearer and farther, and at larger distances from the vertex.
+        // Puts the near plane at the vertex, 1 ulp nearer and farther, and at larger distances from
+        // the vertex.
         if (least + 1..1 << 38).contains(&z) {
             near_planes += 1;
             for off in [-1, 0, 1, -(1 << 20), 1 << 20] {
@@ -248,12 +252,7 @@ fn orthographic_edges() {
             x.clamp(-1 << 42, (1 << 42) - 1)
         };
         frame.translation = [place(width), place(height), z];
-        let kind = match project(&frame, &transform(&frame, [0; 3])) {
-            Projected::Behind => 0,
-            Projected::BeyondGuard(_) => 1,
-            Projected::Visible(_) => 2,
-        };
-        seen[kind] += 1;
+        seen[kind(&frame, [0; 3])] += 1;
         bench.check(&frame, &[[0; 3]]);
     }
     println!("behind, beyond the guard band, visible: {seen:?}");

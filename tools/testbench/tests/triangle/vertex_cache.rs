@@ -78,7 +78,7 @@ impl Bench {
         );
         for item in self.fetches.take() {
             let expected = self.expected_fetches.pop_front();
-            let (chunk, index) = expected.expect("a fetch of a cached vertex");
+            let (chunk, index) = expected.expect("an unexpected fetch");
             assert_eq!(item[0], Bits::from(u64::from(index)), "chunk {chunk}");
             let last = self.on_the_way.back().map_or(0, |&(due, _)| due);
             let due = (now + self.latency).max(last + self.pace);
@@ -118,7 +118,7 @@ impl Bench {
         let mut items = self.out.take().into_iter();
         for (chunk, triangles) in (first..).zip(chunks) {
             for (number, triangle) in triangles.iter().enumerate() {
-                let item = items.next().expect("as many as went in");
+                let item = items.next().expect("an output for each input");
                 let place = format!("triangle {number} of chunk {chunk}: {triangle:?}");
                 let mut vertices = self.module.record("out_vertices");
                 for (part, &index) in ["[0]", "[1]", "[2]"].into_iter().zip(triangle) {
@@ -134,8 +134,9 @@ impl Bench {
     }
 }
 
-/// Makes triangles of one random kind. Their vertices are from a window of 20 that advances by one every two triangles, from three that
-/// share a slot of the cache, from the first six, or any.
+/// Makes triangles of one random kind. Their vertices are from a window of 20 vertices that
+/// advances by one vertex every two triangles, from three vertices that share a slot of the cache,
+/// from the first six vertices, or from all vertices.
 fn triangles(random: &mut Pcg64Mcg, count: usize) -> Vec<Triangle> {
     let kind = random.random_range(0..4);
     let base: u16 = random.random();

@@ -115,5 +115,5 @@ fn a_cached_line_is_read_anew(board: &mut VirtualBoard) {
     assert_eq!(mem_read(board, address), [0x11; 16]);
     assert_eq!(mem_read(board, address), [0x11; 16]);
     board.ddr_write(address, &[0x22; 16]).expect("main RAM");
-    assert_eq!(mem_read(board, address), [0x22; 16], "stale");
+    assert_eq!(mem_read(board, address), [0x22; 16], "stale data");
 }

@@ -79,7 +79,7 @@ fn replayed((mut board, said): (impl Console, String), script: &str) -> String {
     let end = transcript
         .strip_suffix(PROMPT)
         .expect("a prompt at the end");
-    lasting(end, board.clock())
+    lasting(end, board.clock_hz())
 }
 
 /// Compares a transcript with the committed transcript, line by line.
@@ -103,11 +103,12 @@ fn console_output_matches_the_transcript() {
     check(&found, &path, &expected);
 }
 
-/// Keys of lines that differ on the emulated board: it has its own name, and does not count groups of pixels that the engine's walker
-/// visits without coverage.
+/// Keys of lines that differ on the emulated board: it has its own name, and does not count groups
+/// without covered pixels that the engine visits.
 const GATEWARE: [&str; 3] = ["board ", "cycles_walking ", "cycles_empty "];
 
-/// The emulated board has the shading of the virtual board's gateware here, because the size of a descriptor depends on it.
+/// Replays the transcript on the emulated board, which is set to the shading and textures of the
+/// virtual board's gateware, because the size of a descriptor depends on them.
 #[test]
 fn the_emulated_board_prints_the_transcript_too() {
     let (path, expected) = committed();

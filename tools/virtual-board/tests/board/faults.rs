@@ -1,4 +1,4 @@
-//! Tests of the firmware on gateware of another build, and of its report of traps.
+//! Tests of the firmware on the gateware of another build, and of its reports of traps.
 
 use crate::firmware::{LIMIT, PROMPT, address, command, emulated, image, patch, started};
 use emulated_board::EmulatedBoard;
@@ -45,7 +45,7 @@ fn firmware_for_more_memory_than_the_board_has_is_refused() {
     let mut board = EmulatedBoard::fast(&image).expect("an image that fits");
     let said = board
         .read_until("press Enter to restart\r\n", LIMIT)
-        .expect("a refusal");
+        .expect("a message that refuses to start");
     let refusal = "\r\ncannot start: main memory: this firmware expects at least 256 MB, the board has 128 MB; build the firmware of \
                    this board with `cargo xtask firmware --board BOARD`\r\n";
     assert!(said.contains(refusal), "{said}");
@@ -73,7 +73,7 @@ fn a_trap_reports_its_cause_and_address_and_enter_restarts() {
         board.uart_write(b"reboot\r");
         let said = board
             .read_until("press Enter to restart\r\n", LIMIT)
-            .expect("last words");
+            .expect("a report of the trap");
         let place = reboot + 4 * (code.len() as u32 - 1);
         let trap = format!("trap: {cause} at {place:#010x}, mtval {value:#010x}");
         assert!(said.contains(&trap), "expected {trap:?} in {said}");

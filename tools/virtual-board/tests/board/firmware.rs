@@ -53,42 +53,25 @@ pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
 }
 
 /// A board with a console.
-pub trait Console {
-    /// Frequency of the system clock in Hz.
-    fn clock(&self) -> u32;
-
-    /// Sends bytes to the UART.
-    fn send(&mut self, bytes: &[u8]);
-
+pub trait Console: Uart + Sized {
     /// Runs until the board has sent `expected`; returns the output up to the end of `expected`.
     ///
     /// # Panics
     /// If `expected` has not come within [`LIMIT`]; the message contains `what`, the test's action.
-    fn expect(&mut self, expected: &str, what: &str) -> String;
+    fn expect(&mut self, expected: &str, what: &str) -> String {
+        self.read_until(expected, LIMIT)
+            .unwrap_or_else(|error| panic!("`{what}`: {error}"))
+    }
 }
 
-/// Implements [`Console`] by the methods of equal names of a board.
-macro_rules! console_of {
-    ($board:ty) => {
-        impl Console for $board {
-            fn clock(&self) -> u32 {
-                self.clock_hz()
-            }
+impl<B: Uart> Console for B {}
 
-            fn send(&mut self, bytes: &[u8]) {
-                self.uart_write(bytes);
-            }
-
-            fn expect(&mut self, expected: &str, what: &str) -> String {
-                self.read_until(expected, LIMIT)
-                    .unwrap_or_else(|error| panic!("`{what}`: {error}"))
-            }
-        }
-    };
+/// Creates a virtual board that starts with `image` in main RAM.
+pub fn preloaded(image: &[u8]) -> VirtualBoard {
+    let start = Start::Fast { firmware: image };
+    let board = VirtualBoard::builder().start(start).build();
+    board.expect("a virtual board")
 }
-
-console_of!(VirtualBoard);
-console_of!(EmulatedBoard);
 
 /// Starts an emulated board with `image`; returns the board, and its output up to the first prompt.
 pub fn emulated(image: &[u8]) -> (EmulatedBoard, String) {
@@ -99,20 +82,16 @@ pub fn emulated(image: &[u8]) -> (EmulatedBoard, String) {
 
 /// Starts a virtual board with `image`; returns the board, and its output up to the first prompt.
 pub fn started(image: &[u8]) -> (VirtualBoard, String) {
-    let start = Start::Fast { firmware: image };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
+    let mut board = preloaded(image);
     let said = board.expect(PROMPT, "start");
     (board, said)
 }
 
-/// Sends a line and returns the output up to the next prompt, echo first. A note on the last frame, which may come before the echo, is left
-/// out.
+/// Sends a line and returns the output up to the next prompt; the output begins with the echo.
+/// Skips a note on the last frame, which may come before the echo.
 pub fn command(board: &mut impl Console, line: &str) -> String {
-    board.send(line.as_bytes());
-    board.send(b"\r");
+    board.uart_write(line.as_bytes());
+    board.uart_write(b"\r");
     loop {
         let answer = board.expect(PROMPT, line);
         if !answer
@@ -122,4 +101,12 @@ pub fn command(board: &mut impl Console, line: &str) -> String {
             return answer;
         }
     }
+}
+
+/// Finds the line of `answer` that starts with `key`, and returns the rest of that line.
+pub fn value<'a>(answer: &'a str, key: &str) -> &'a str {
+    let mut lines = answer.lines();
+    lines
+        .find_map(|line| line.strip_prefix(key)?.strip_prefix(' '))
+        .unwrap_or_else(|| panic!("no {key} in {answer}"))
 }

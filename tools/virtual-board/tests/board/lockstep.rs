@@ -8,16 +8,17 @@ use emulated_board::{EmulatedBoard, Executed};
 use glint_vectors::Random;
 use litex_pac::ctrl;
 use litex_pac::memories::{MAIN_RAM, SRAM};
-use virtual_board::{Instruction, Start, VirtualBoard};
+use virtual_board::Instruction;
 
 use crate::console::committed;
-use crate::firmware::{PROMPT, image};
+use crate::firmware::{PROMPT, image, preloaded};
 
 /// Number of random instructions of a program; its registers are stored after them.
 const BODY: usize = 64;
 /// Number of programs in an image.
 const PROGRAMS: usize = 1500;
-/// Default number of random instructions of the test, one image; `GLINT_LOCKSTEP` overrides it.
+/// Default number of random instructions of the test: those of one image. `GLINT_LOCKSTEP`
+/// overrides it.
 const INSTRUCTIONS: usize = BODY * PROGRAMS;
 
 /// Addresses of the trap handler, the first program, the results (32 words per program), the traps (four words per trap), and the data
@@ -27,7 +28,8 @@ const FIRST: u32 = MAIN_RAM.base + 0x400;
 const RESULTS: u32 = 0x4600_0000;
 const TRAPS: u32 = 0x4700_0000;
 const DATA: u32 = 0x47f0_0000;
-/// The word after the last program's results, which is set after the end of all programs.
+/// Address of the word after the last program's results. The word is not 0 after the end of all
+/// programs.
 const DONE: u32 = RESULTS + 128 * PROGRAMS as u32;
 
 /// Number of bytes of the data window, which loads and stores address relative to its middle.
@@ -52,8 +54,8 @@ const MSTATUS: u32 = 0x300;
 const MTVEC: u32 = 0x305;
 const MIP: u32 = 0x344;
 
-/// Control registers that random instructions access, some of which do not exist. Registers for time, for the trap handler and for the
-/// implementation are excluded.
+/// Control registers that random instructions access; some of them do not exist. The list excludes
+/// registers for time, for the trap handler and for the implementation.
 const CSRS: [u32; 19] = [
     MSTATUS, 0x301, 0x304, MSCRATCH, MEPC, MCAUSE, MTVAL, 0xbc0, 0xfc0, 0xcc0, 0xf11, 0xf12, 0xf14,
     0x180, 0x306, 0x7c0, 0xc01, 0xf15, 0x105,
@@ -101,7 +103,8 @@ fn csrr(rd: u32, csr: u32) -> u32 {
     i(csr, 0, 2, rd, 0x73)
 }
 
-/// Constants in all registers, the trap handler, and a jump over the handler.
+/// Returns code that loads constants into all registers, the trap handler, and a jump over the
+/// handler.
 fn set_up(random: &mut Random) -> Vec<u32> {
     let mut code: Vec<u32> = (1..32).flat_map(|x| li(x, random.bits() as u32)).collect();
     for (x, value) in [
@@ -133,7 +136,8 @@ fn place(code: &mut Vec<u32>, address: u32) {
     code.resize(length, 0);
 }
 
-/// Stores cause, value and address of a trap and continues with the next instruction.
+/// Returns a trap handler that stores cause, value and address of the trap, and continues with the
+/// next instruction.
 fn handler() -> Vec<u32> {
     let stored = [MCAUSE, MTVAL, MSTATUS, MEPC]
         .into_iter()
@@ -301,18 +305,28 @@ struct Left {
 }
 
 impl Left {
-    fn read(mut memory: impl FnMut(u32, &mut [u8])) -> Self {
+    /// Runs the programs on a board with the initial `data`. Returns `None` if they do not end.
+    fn of(board: &mut impl Simulation, data: &[u8]) -> Option<Self> {
+        board.write_memory(DATA, data).expect("main RAM");
+        let mut done = [0; 4];
+        for _ in 0..LIMIT / SLICE {
+            board.run(SLICE);
+            board.read_memory(DONE, &mut done).expect("main RAM");
+            if done != [0; 4] {
+                break;
+            }
+        }
         let mut words = |address, bytes: usize| {
             let mut buffer = vec![0; bytes];
-            memory(address, &mut buffer);
+            board.read_memory(address, &mut buffer).expect("main RAM");
             let words = buffer.as_chunks().0.iter();
             words.map(|word| u32::from_le_bytes(*word)).collect()
         };
-        Self {
+        (done != [0; 4]).then(|| Self {
             results: words(RESULTS, 128 * PROGRAMS),
             traps: words(TRAPS, 16 * BODY * PROGRAMS),
             data: words(DATA, WINDOW as usize),
-        }
+        })
     }
 }
 
@@ -326,37 +340,17 @@ fn compare(seed: u64) {
         program(&mut code, &mut random);
     }
     starts.push(code.len());
-    // The end: a word that is not 0, and a loop.
+    // Ends the programs: stores a word that is not 0, then loops.
     code.extend([sw(RESULT, 0, RESULT), 0x0000_006f]);
     let image: Vec<u8> = code.iter().flat_map(|word| word.to_le_bytes()).collect();
     let data: Vec<u8> = (0..WINDOW).map(|_| random.bits() as u8).collect();
 
     let mut emulated = EmulatedBoard::fast(&image).expect("an image that fits");
-    emulated.write_memory(DATA, &data).expect("main RAM");
-    let ended = emulated.run_until(LIMIT, |board| {
-        let mut done = [0; 4];
-        board.read_memory(DONE, &mut done).expect("main RAM");
-        done != [0; 4]
-    });
-    assert!(ended, "seed {seed}: the emulated board did not end");
-    let found =
-        Left::read(|address, bytes| emulated.read_memory(address, bytes).expect("main RAM"));
-
-    let start = Start::Fast { firmware: &image };
-    let mut verilated = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
-    verilated.ddr_write(DATA, &data).expect("main RAM");
-    let ended = (0..LIMIT / 100_000).any(|_| {
-        verilated.run(100_000);
-        let mut done = [0; 4];
-        verilated.ddr_read(DONE, &mut done).expect("main RAM");
-        done != [0; 4]
-    });
-    assert!(ended, "seed {seed}: the virtual board did not end");
-    let expected =
-        Left::read(|address, bytes| verilated.ddr_read(address, bytes).expect("main RAM"));
+    let found = Left::of(&mut emulated, &data)
+        .unwrap_or_else(|| panic!("seed {seed}: the emulated board did not end"));
+    let mut verilated = preloaded(&image);
+    let expected = Left::of(&mut verilated, &data)
+        .unwrap_or_else(|| panic!("seed {seed}: the virtual board did not end"));
 
     let results = expected.results.chunks(32).zip(found.results.chunks(32));
     for (number, (expected, found)) in results.enumerate() {
@@ -396,7 +390,7 @@ fn random_programs_leave_the_same_on_both_boards() {
 /// Default number of firmware cycles that are compared; `GLINT_LOCKSTEP_CYCLES` overrides it.
 const CYCLES: u64 = 3_000_000;
 
-/// Number of cycles between two comparisons.
+/// Number of cycles between two checks of a board.
 const SLICE: u64 = 100_000;
 
 /// Compares each instruction of the firmware, from its start through the commands of the console's transcript.
@@ -406,11 +400,7 @@ fn the_firmware_executes_the_same_instructions() {
     let cycles = std::env::var("GLINT_LOCKSTEP_CYCLES").ok();
     let cycles = cycles.map_or(CYCLES, |text| text.parse().expect("a number"));
     let firmware = image();
-    let start = Start::Fast {
-        firmware: &firmware,
-    };
-    let board = VirtualBoard::builder().start(start).build();
-    let mut verilated = board.expect("a virtual board");
+    let mut verilated = preloaded(&firmware);
     let mut emulated = EmulatedBoard::fast(&firmware).expect("firmware that fits");
     verilated.record_instructions(true);
 

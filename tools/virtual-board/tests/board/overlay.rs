@@ -12,7 +12,7 @@ use embedded_graphics::text::{Baseline, Text};
 use embedded_graphics::{Drawable, Pixel};
 use emulated_board::EmulatedBoard;
 
-use crate::firmware::{command, emulated, image};
+use crate::firmware::{command, emulated, image, value};
 
 /// Width of the smallest picture, in pixels.
 const WIDTH: usize = 320;
@@ -25,7 +25,7 @@ const MARGIN: usize = 4;
 /// Height of a line of text, in pixels.
 const LINE: usize = 11;
 
-/// The colours of the last frame, of the first size.
+/// The pixels of the last frame, which has the smallest size.
 fn frame(board: &mut EmulatedBoard) -> Vec<u16> {
     let answer = command(board, "info frame");
     let word = answer
@@ -99,13 +99,6 @@ fn text(frame: &[u16], line: usize) -> String {
     cells.collect()
 }
 
-/// The value in a line of a reply.
-fn value(answer: &str, key: &str) -> u64 {
-    let mut lines = answer.lines();
-    let value = lines.find_map(|line| line.strip_prefix(key)?.strip_prefix(' '));
-    value.expect("the key").parse().expect("a number")
-}
-
 #[test]
 fn the_overlay_says_what_is_shown_and_goes_again() {
     let (mut board, _) = emulated(&image());
@@ -116,7 +109,8 @@ fn the_overlay_says_what_is_shown_and_goes_again() {
     let plain = frame(&mut board);
     command(&mut board, "overlay on");
     let stats = command(&mut board, "render");
-    let (cycles, hertz) = (value(&stats, "cycles"), u64::from(board.clock_hz()));
+    let cycles: u64 = value(&stats, "cycles").parse().expect("a number");
+    let hertz = u64::from(board.clock_hz());
     // Drawn twice, so that both frame buffers have the text.
     for _ in 0..2 {
         let over = frame(&mut board);

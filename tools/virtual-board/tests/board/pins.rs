@@ -54,9 +54,10 @@ fn the_program_reads_buttons_and_switches_and_sets_the_leds() {
 #[test]
 fn the_back_door_reaches_what_the_caches_hold() {
     let mut board = board();
-    // The many writes occur at every point of the program's loop. In 16 of 32 iterations, the program evicts the word from the cache and
-    // loads it again. If such a load brought data from before a write, the LEDs would continue to show them, because the word then stays
-    // in the cache for 16 iterations.
+    // The many writes occur at every point of the program's loop. In 16 of 32 iterations, the
+    // program evicts the word from the cache and loads it again. If such a load returned data from
+    // before a write, the LEDs would continue to show the old data, because the word then stays in
+    // the cache for 16 iterations.
     for i in 0..600_u16 {
         let value = (i * 7) & 15;
         board.ddr_write(WORD, &[value as u8]).expect("main RAM");

@@ -4,20 +4,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::VirtualBoard;
+
+use crate::firmware::preloaded;
 
 /// Lock on the assembled files: tests run in parallel, and some assemble the same program.
 static FILES: Mutex<()> = Mutex::new(());
 
 /// Starts a board that runs `tests/board/programs/NAME.S` from the start of main RAM; `symbols` are constants for the assembler.
 pub fn started(name: &str, symbols: &[(&str, u32)]) -> VirtualBoard {
-    let start = Start::Fast {
-        firmware: &assemble(name, symbols),
-    };
-    VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board")
+    preloaded(&assemble(name, symbols))
 }
 
 /// Assembles a program; returns its image.

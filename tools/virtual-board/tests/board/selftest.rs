@@ -1,7 +1,7 @@
 //! Tests of the command `selftest`: it finds plugged sensors, and reports faults. For the virtual board, a test of `glint` runs the
 //! command, on a board that starts from its flash.
 
-use crate::firmware::{Console, PROMPT, address, command, emulated, image, patch};
+use crate::firmware::{Console, PROMPT, address, command, emulated, image, patch, value};
 use crate::sensor::{emulated_with_sensor, sensor};
 use emulated_board::EmulatedBoard;
 use glint_core::block::Block;
@@ -35,11 +35,7 @@ const PARTS: [&str; 17] = [
 
 /// The result for the part `name`.
 fn verdict<'a>(answer: &'a str, name: &str) -> &'a str {
-    let key = format!("selftest {name} ");
-    let mut lines = answer.lines();
-    lines
-        .find_map(|line| line.strip_prefix(&key))
-        .unwrap_or_else(|| panic!("no {name} in {answer}"))
+    value(answer, &format!("selftest {name}"))
 }
 
 /// Checks that every part passes, except that the results of sensors are `sensors`.

@@ -1,12 +1,11 @@
 //! Tests of the SoC's I2C master, and of the firmware's attitude, with a virtual MPU-6050 on the pins.
 
-use crate::firmware::{Console, PROMPT, command, image};
+use crate::firmware::{Console, PROMPT, command, image, preloaded, value};
 use crate::program;
 use emulated_board::EmulatedBoard;
 use litex_pac::{i2c, leds};
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
-use virtual_board::{Simulation, Uart};
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::{Simulation, Uart, VirtualBoard};
 
 /// Interval between two checks for the end of a fault, in ms.
 const STEP: u64 = 8;
@@ -77,14 +76,6 @@ fn turn(time: f64) -> State {
 /// Tolerance of measured angles, in degrees.
 const ANGLE: f64 = 0.1;
 
-/// Finds the line of `answer` that starts with `key`, and returns the rest of that line.
-fn line<'a>(answer: &'a str, key: &str) -> &'a str {
-    let mut lines = answer.lines();
-    lines
-        .find_map(|line| line.strip_prefix(key)?.strip_prefix(' '))
-        .unwrap_or_else(|| panic!("no {key} in {answer}"))
-}
-
 fn numbers(text: &str) -> Vec<f64> {
     let words = text.split(' ');
     words.map(|word| word.parse().expect("a number")).collect()
@@ -108,12 +99,7 @@ fn ready_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
 
 /// Starts a virtual board with a sensor.
 fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
-    let image = image();
-    let start = Start::Fast { firmware: &image };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
+    let mut board = preloaded(&image());
     board.plug(ready_sensor(motion));
     board.expect(PROMPT, "start");
     board
@@ -134,17 +120,17 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     command(&mut board, "imu look");
     board.run((55 * millisecond).saturating_sub(board.cycles()));
     let status = command(&mut board, "imu");
-    assert_eq!(line(&status, "sensor"), "MPU-6050");
-    assert_eq!(line(&status, "failure"), "none");
-    assert_eq!(line(&status, "failures"), "0");
-    let samples: u32 = line(&status, "samples").parse().expect("a number");
+    assert_eq!(value(&status, "sensor"), "MPU-6050");
+    assert_eq!(value(&status, "failure"), "none");
+    assert_eq!(value(&status, "failures"), "0");
+    let samples: u32 = value(&status, "samples").parse().expect("a number");
     assert!((45..57).contains(&samples), "{status}");
-    let angles = numbers(line(&status, "angles"));
+    let angles = numbers(value(&status, "angles"));
     assert!((angles[0] - TURNED).abs() < ANGLE, "{status}");
     // The camera follows the attitude in the next frame.
     board.run(35 * millisecond);
     let view = command(&mut board, "view");
-    let view = numbers(line(&view, "view"));
+    let view = numbers(value(&view, "view"));
     let (sine, cosine) = TURNED.to_radians().sin_cos();
     for (found, expected) in view[9..12].iter().zip([-sine, cosine, 0.0]) {
         assert!((found - expected).abs() < ANGLE.to_radians(), "{view:?}");
@@ -155,7 +141,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     board.run(40 * millisecond);
     let status = command(&mut board, "imu");
     assert_eq!(
-        line(&status, "failure"),
+        value(&status, "failure"),
         "i2c: no device acknowledged the address"
     );
     let refused = command(&mut board, "imu calibrate");
@@ -166,14 +152,14 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     board.plug(sensor);
     board.run(40 * millisecond);
     let status = command(&mut board, "imu");
-    assert_eq!(line(&status, "failure"), "none");
-    let angles = numbers(line(&status, "angles"));
+    assert_eq!(value(&status, "failure"), "none");
+    let angles = numbers(value(&status, "angles"));
     assert!((angles[0] - TURNED).abs() < ANGLE, "{status}");
     let answer = command(&mut board, "info video_underflows");
-    assert_eq!(line(&answer, "video_underflows"), "0");
-    let cycles = |key| line(&status, key).parse::<u32>().expect("a number");
+    assert_eq!(value(&answer, "video_underflows"), "0");
+    let cycles = |key| value(&status, key).parse::<u32>().expect("a number");
     let [read, tracked] = ["cycles_read", "cycles_tracked"].map(cycles);
-    println!("cycles a sample: {read} to read it, {tracked} to make an attitude of it");
+    println!("cycles per sample: {read} to read it, {tracked} to compute the attitude");
     assert!(u64::from(read) < millisecond / 20, "5 % of 1 ms: {status}");
     assert!(tracked < 4_500, "{status}");
     let violations = board.unplug().expect("the sensor").violations;
@@ -205,9 +191,10 @@ impl Part {
         }
     }
 
-    /// Returns the state at `time` in a part of duration `length`, both in s. The three numbers are: the rotation so far, as the time in s
-    /// that it would take at the rate `rate`; the current rate as a multiple of `rate`; and the current acceleration as a multiple of
-    /// `shake`. The rate starts and ends smoothly, as sampling requires.
+    /// Returns the state at `time` in a part of duration `length`, both in s. The three numbers
+    /// are: the rotation so far, as the time in s that it takes at the rate `rate`; the current
+    /// rate as a multiple of `rate`; and the current acceleration as a multiple of `shake`. The
+    /// rate starts and ends smoothly, as sampling requires.
     fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
         if self.swings > 0.0 {
             let turns = std::f64::consts::TAU * self.swings / length;
@@ -253,26 +240,16 @@ fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     if length == 0.0 {
         return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     }
-    let [x, y, z] = axis.map(|a| a / length);
+    let axis = axis.map(|x| x / length);
+    let [x, y, z] = axis;
+    let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
     let (sin, cos) = (length * degrees).to_radians().sin_cos();
-    let versine = 1.0 - cos;
-    [
-        [
-            cos + x * x * versine,
-            x * y * versine - z * sin,
-            x * z * versine + y * sin,
-        ],
-        [
-            x * y * versine + z * sin,
-            cos + y * y * versine,
-            y * z * versine - x * sin,
-        ],
-        [
-            x * z * versine - y * sin,
-            y * z * versine + x * sin,
-            cos + z * z * versine,
-        ],
-    ]
+    [0, 1, 2].map(|i| {
+        [0, 1, 2].map(|j| {
+            let diagonal = if i == j { cos } else { 0.0 };
+            diagonal + (1.0 - cos) * axis[i] * axis[j] + sin * cross[i][j]
+        })
+    })
 }
 
 /// Returns the total rotation of `SCRIPT` until `time`, and the sensor's motion at that time. `stretch`
@@ -312,7 +289,7 @@ fn the_camera_follows_a_script() {
     command(&mut board, "imu look");
     let camera = |board: &mut EmulatedBoard| -> [[f64; 3]; 3] {
         let view = command(board, "view");
-        let view = numbers(line(&view, "view"));
+        let view = numbers(value(&view, "view"));
         [3, 6, 9].map(|at| [0, 1, 2].map(|i| view[at + i]))
     };
     let mut end = BEGIN;
@@ -335,9 +312,9 @@ fn the_camera_follows_a_script() {
         }
     }
     let status = command(&mut board, "imu");
-    assert_eq!(line(&status, "failures"), "0", "{status}");
+    assert_eq!(value(&status, "failures"), "0", "{status}");
     let answer = command(&mut board, "info video_underflows");
-    assert_eq!(line(&answer, "video_underflows"), "0");
+    assert_eq!(value(&answer, "video_underflows"), "0");
 }
 
 /// Every fault of the sensor is reported on the console, ends in time, and does not affect the pictures. This takes a
@@ -350,8 +327,8 @@ fn every_fault_is_reported_and_recovered() {
     board.run(20 * millisecond);
     let failures = |board: &mut EmulatedBoard| {
         let status = command(board, "imu");
-        let number = |key| line(&status, key).parse::<u32>().expect("a number");
-        let failure = line(&status, "failure").to_owned();
+        let number = |key| value(&status, key).parse::<u32>().expect("a number");
+        let failure = value(&status, "failure").to_owned();
         (failure, number("failures"), number("samples"))
     };
     let gone = "i2c: no device acknowledged the address";
@@ -433,5 +410,5 @@ fn every_fault_is_reported_and_recovered() {
         );
     }
     let answer = command(&mut board, "info video_underflows");
-    assert_eq!(line(&answer, "video_underflows"), "0");
+    assert_eq!(value(&answer, "video_underflows"), "0");
 }

@@ -1,4 +1,4 @@
-//! Tests of the monitor's pictures during changes of scenes.
+//! Tests of the pictures on the monitor while scenes change.
 
 use emulated_board::{EmulatedBoard, Frame};
 use virtual_board::Uart;

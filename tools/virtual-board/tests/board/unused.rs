@@ -1,11 +1,12 @@
-//! Loads and stores at unused addresses: the emulated board counts bus errors and waits like the verilated SoC.
+//! Tests of loads and stores at unused addresses: the emulated board counts bus errors and waits
+//! like the verilated SoC.
 
 use emulated_board::EmulatedBoard;
 use litex_pac::ctrl;
 use litex_pac::memories::MAIN_RAM;
-use virtual_board::{Simulation, Uart};
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::Simulation;
 
+use crate::firmware::preloaded;
 use crate::program::assemble;
 
 /// Address of the program's results.
@@ -22,12 +23,13 @@ const SLICE: u64 = 500_000;
 /// Maximum number of cycles until the results are complete.
 const LIMIT: u64 = 40_000_000;
 
-/// For each access, the bus's count of errors, and the duration in time-outs. `run` runs a board for some cycles and
-/// reads the results.
-fn counts(mut run: impl FnMut(u64, &mut [u8])) -> Vec<[u32; 2]> {
+/// Runs the program on a board. Returns for each access the increment of the count of bus errors,
+/// and the duration in time-outs.
+fn counts(board: &mut impl Simulation) -> Vec<[u32; 2]> {
     let mut bytes = [0; 4 * WORDS];
     for _ in 0..LIMIT / SLICE {
-        run(SLICE, &mut bytes);
+        board.run(SLICE);
+        board.read_memory(RESULTS, &mut bytes).expect("main RAM");
         let (words, _) = bytes.as_chunks();
         let words: Vec<u32> = words.iter().map(|&word| u32::from_le_bytes(word)).collect();
         if words[WORDS - 1] != 0 {
@@ -57,19 +59,7 @@ fn accesses_to_unused_addresses_count_and_wait_alike() {
         ],
     );
     let mut emulated = EmulatedBoard::fast(&image).expect("an image that fits");
-    let expected = counts(|cycles, bytes| {
-        emulated.run(cycles);
-        emulated.read_memory(RESULTS, bytes).expect("main memory");
-    });
+    let expected = counts(&mut emulated);
     assert_eq!(expected.len(), ACCESSES);
-    let start = Start::Fast { firmware: &image };
-    let mut verilated = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
-    let found = counts(|cycles, bytes| {
-        verilated.run(cycles);
-        verilated.ddr_read(RESULTS, bytes).expect("main memory");
-    });
-    assert_eq!(found, expected);
+    assert_eq!(counts(&mut preloaded(&image)), expected);
 }

@@ -26,14 +26,14 @@ const UNITS: [&str; 11] = [
     r" ULP\b",
     r" °/h",
     r" (?:pixels? off|wrong pixels|wrong faces)",
-    // Ratio.
+    // Ratios.
     r"(?:(?: ?%| times|×|x) (?:fewer|less|more|faster|slower|smaller|larger|longer|shorter|as \w+)\b|x speed-up)",
 ];
 
-/// Units that make a claim only with a decimal number: a mean of clocks, and an error in pixels.
+/// Units that make a claim only after a decimal number: a mean of clocks, and an error in pixels.
 const DECIMALS: &str = r"\b\d+\.\d+ clocks\b|\b\d\.\d+(?:/256)? (?:pixels?|px)\b";
 
-/// A figure that the text itself calls measured.
+/// A decimal number after a form of the verb "measure".
 const MEASURED: &str = r"\bmeasures?\b[^.;:]{0,20} \d+\.\d";
 
 static CLAIM: LazyLock<Regex> = LazyLock::new(|| {

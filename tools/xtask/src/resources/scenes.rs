@@ -16,8 +16,8 @@ use crate::{firmware, paths, run, scenes};
 /// Name of the build for all scenes.
 const ALL: &str = "all";
 
-/// Makes the builds for each scene and for all of them, and draws the frames on the virtual board. Returns the file that describes them
-/// for `gateware/resources/scenes.py`.
+/// Makes a build for each scene and one for all scenes, and draws the frames on the virtual board. Returns the path of a file for
+/// `gateware/resources/scenes.py`, which describes builds and frames.
 ///
 /// # Errors
 /// A build fails.
@@ -99,8 +99,8 @@ fn stack(scene: &SceneFile, image: &Image) -> Result<u64> {
     bytes.with_context(|| format!("the stack of {name}: expected a number of bytes, got {last:?}"))
 }
 
-/// Draws a scene's frame on the virtual board with all blocks, which has no smooth shading: a scene with it is drawn by its own build.
-/// Returns the statistics of the frame and its number of pixels.
+/// Draws a scene's frame on the virtual board with all blocks. This board has no smooth shading, so a scene with smooth shading is drawn
+/// by its own build. Returns the statistics of the frame and its number of pixels.
 fn frame(scene: &SceneFile) -> Result<Value> {
     let name = scene.name();
     let needs = scene.needs();

@@ -3,11 +3,12 @@
 use super::{Filter, Format, MAGIC, Texture, TextureHeader, texel_bit};
 use crate::colour::Rgb565;
 
-/// Texels of a block.
+/// Number of texels in a block.
 const BLOCK: usize = 16;
 
-/// Writes a texture in RGB565 with all mip levels, which repeats and is filtered. `texel` is the colour at a place of the largest level;
-/// smaller levels have averages of colours. Returns the length in bytes; `None` if `memory` is too short.
+/// Writes a texture in RGB565 with all mip levels, which is repeated and sampled bilinearly. `texel`
+/// returns the colour of a texel of the largest level; texels of smaller levels are averages. Returns
+/// the length in bytes; `None` if `memory` is too short.
 pub fn draw(
     memory: &mut [u8],
     size_log2: [u8; 2],
@@ -59,24 +60,25 @@ pub fn draw(
     Some(length)
 }
 
-/// The place of a level.
+/// The position of a level in memory.
 #[derive(Clone, Copy)]
 struct Level {
-    /// Number of texels before it.
+    /// Number of texels before the level.
     start: usize,
     /// Base-2 logarithm of the number of blocks across.
     across: u32,
 }
 
 impl Level {
-    /// The number of a texel in memory.
+    /// Index of a texel in memory.
     fn index(self, [x, y]: [u32; 2]) -> usize {
         let block = ((y >> 2) << self.across) + (x >> 2);
         self.start + BLOCK * block as usize + texel_bit(Format::Rgb565, [x, y]) / 16
     }
 }
 
-/// The average of the four texels of a level that a texel of the next level covers; of two, twice, in a level of one row or column.
+/// The average of the four texels of a level that a texel of the next level covers. In a level of one
+/// row or column, each of two texels counts twice.
 fn average(texels: &[[u8; 2]], (level, size): (Level, [u32; 2]), [x, y]: [u32; 2]) -> Rgb565 {
     let mut sums = [2; 3];
     for corner in 0..4 {

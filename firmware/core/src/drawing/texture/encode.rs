@@ -3,19 +3,19 @@
 use alloc::vec::Vec;
 
 use super::{
-    BLOCK_BYTES, Format, MAGIC, SIDES_LOG2, Sampler, Texture, TextureError, TextureHeader,
-    checksum, texel_bit,
+    BLOCK_BYTES, Format, MAGIC, SIDES_LOG2, Sampler, Texture, TextureHeader, checksum, texel_bit,
 };
 use crate::colour::Rgb565;
+use crate::deviation::Deviation;
 
 /// The contents of a texture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Source {
-    /// The representation of the texels.
+    /// The format of the texels.
     pub format: Format,
     /// Base-2 logarithms of width and height.
     pub size_log2: [u8; 2],
-    /// How it is read.
+    /// The sampling rules.
     pub sampler: Sampler,
     /// The value of a transparent texel.
     pub key: Option<u16>,
@@ -28,8 +28,8 @@ pub struct Source {
 /// Encodes a texture.
 ///
 /// # Errors
-/// A size, a key or a number of levels is out of range: those of [`Texture::new_checked`].
-pub fn encode(source: &Source) -> Result<Vec<u8>, TextureError> {
+/// A size, the key or the number of levels is out of range: [`Texture::new_checked`] rejects it.
+pub fn encode(source: &Source) -> Result<Vec<u8>, Deviation> {
     let (format, [width_log2, height_log2]) = (source.format, source.size_log2);
     let Sampler { wrap, filter } = source.sampler;
     let header = TextureHeader {
@@ -53,7 +53,7 @@ pub fn encode(source: &Source) -> Result<Vec<u8>, TextureError> {
         .size_log2
         .iter()
         .all(|side| SIDES_LOG2.contains(side));
-    // The check at the end refuses other sizes.
+    // The check at the end rejects other sizes.
     for (level, texels) in (0_u8..).zip(&source.levels).take_while(|_| has_size) {
         let size = source.size_log2.map(|side| side.saturating_sub(level));
         blocks(format, size, texels, &mut body);

@@ -26,7 +26,8 @@ impl FieldKind for Cone {
 
     const NAME: &'static str = "cone";
     const FORM: &'static str = "cone:R,H";
-    const ABOUT: &'static str = "a cone about the z axis, by the radius of its base and its height";
+    const ABOUT: &'static str =
+        "a cone about the z axis with the radius R of its base and the height H";
     const EXAMPLE: &'static str = "cone:0.8,1.6";
     const MEMBER: Option<Member> = Some(Member::Second);
     const ROUND: bool = true;
@@ -67,7 +68,7 @@ impl Cone {
     }
 }
 
-/// The sphere around a cone: through apex and base, or about the base if this is wider than high.
+/// The sphere around a cone: through apex and base, or about the base if the cone is wider than high.
 fn around(cone: &FixedCone) -> FixedSphere {
     let (radius, height) = (i64::from(cone.radius), 2 * i64::from(cone.half));
     let (z, size) = match radius > height {

@@ -1,4 +1,5 @@
-//! `box:X,Y,Z` and `planes:HALF`: a box, and the space between a floor and a ceiling; the solid of these and of lattices of boxes.
+//! `box:X,Y,Z` and `planes:HALF`: a box, and the space between a floor and a ceiling. Their solid is
+//! also that of lattices of boxes.
 
 use core::fmt;
 
@@ -29,7 +30,7 @@ impl FieldKind for Cuboid {
 
     const NAME: &'static str = "box";
     const FORM: &'static str = "box:X,Y,Z";
-    const ABOUT: &'static str = "a box about the origin, by half its sides";
+    const ABOUT: &'static str = "a box about the origin with half the sides X, Y, Z";
     const EXAMPLE: &'static str = "box:1,0.5,0.25";
     const MEMBER: Option<Member> = Some(Member::First);
 
@@ -93,8 +94,8 @@ impl FieldKind for Planes {
 /// A box, a lattice of boxes, or a room (the space inside a box, with the solid around it), in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedBox {
-    /// Half the length of each side, u10.12; `None` along an axis on which the box is unbounded. Repeated boxes whose half side is 2^17
-    /// touch along an axis: no coordinate in a cell is as large.
+    /// Half the length of each side, u10.12; `None` along an axis on which the box is unbounded. Repeated boxes with the half side
+    /// 2^17 touch along this axis, because every coordinate in a cell is below 2^17.
     half: [Option<i32>; 3],
     /// Whether the box is a room, with the solid outside the box.
     room: bool,
@@ -103,7 +104,7 @@ pub struct FixedBox {
 }
 
 impl FixedBox {
-    /// A lattice of boxes, by half their sides, at most 2^17.
+    /// A lattice of boxes with these half sides, at most 2^17.
     pub(super) fn repeated(half: [i32; 3]) -> Self {
         Self {
             half: half.map(Some),

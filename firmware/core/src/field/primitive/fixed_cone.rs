@@ -15,8 +15,9 @@ pub struct FixedCone {
     pub half: i32,
     /// The sine and the cosine of the half angle at the apex, u0.30.
     pub angle: [i32; 2],
-    /// The normal's components along x, y and along z at the distance 1 from the apex along the axis, divided by that along x and y at the
-    /// distance 1 from the axis: cos·height/radius and sin, times 2^−`lead`, u0.30.
+    /// Factors of the normal at a point of the lateral face, times 2^−`lead`, u0.30: cos·height/radius
+    /// for x and y, sin for z. The normal is (a·x, a·y, b·d)/d with the factors a and b, for a point at
+    /// the distance d below the apex.
     slopes: [i32; 2],
     /// The smallest exponent, 0 to 11, for which both `slopes` are at most 1.
     pub lead: u32,
@@ -42,8 +43,8 @@ impl FixedCone {
         }
     }
 
-    /// A cone with the apex at z = `half` whose directions to lights are already those of [`lit_from`](Self::lit_from), as the gateware has
-    /// them.
+    /// A cone with the apex at z = `half`, for directions to lights that [`lit_from`](Self::lit_from) has
+    /// already converted, as in the gateware's registers.
     pub const fn lit(half: i32, lead: u32) -> Self {
         Self {
             radius: half,
@@ -59,15 +60,17 @@ impl FixedCone {
         [0, 0, self.half]
     }
 
-    /// A vector for the product with the vector q from the apex to a point of the lateral face. The product is the cosine of the angle
-    /// between the normal and `direction`, times 2^−`lead` and the distance from the apex along the axis.
+    /// Converts a direction to a vector whose scalar product with the vector from the apex to a point of
+    /// the lateral face is the cosine of the angle between the normal and `direction`, times 2^−`lead` and
+    /// the distance from the apex along the axis.
     pub fn lit_from(&self, direction: [i32; 3]) -> [i32; 3] {
         let [across, along] = self.slopes.map(i64::from);
         let [x, y, z] = direction.map(i64::from);
         [across * x, across * y, -along * z].map(|product| ((product + (1 << 29)) >> 30) as i32)
     }
 
-    /// The direction of the normal at the point of the lateral face to which `from_apex` leads. It has no certain length.
+    /// The direction of the normal at a point of the lateral face, with any length. `from_apex` is the
+    /// vector from the apex to the point.
     pub fn normal(&self, from_apex: [i32; 3]) -> [i32; 3] {
         let [across, along] = self.slopes.map(i64::from);
         let [x, y, z] = from_apex.map(i64::from);
@@ -76,7 +79,7 @@ impl FixedCone {
 
     /// Returns a lower bound of the distance from a point to the cone, rounded down, and the nearest surface. The bound is the larger one of
     /// the distances to the cone without a base and to the half-space above the base. `from_axis` is the point's distance from the axis,
-    /// `number` that of the lateral face.
+    /// `number` the number of the lateral face.
     pub(super) fn sample(&self, from_axis: i32, z: i32, number: u8) -> FieldSample {
         let [sine, cosine] = self.angle.map(i64::from);
         let below_apex = i64::from(self.half) - i64::from(z);

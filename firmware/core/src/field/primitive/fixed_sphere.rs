@@ -12,7 +12,7 @@ use crate::field::surface::{FRACTION, FieldSample, Surface, cropped, magnitude};
 pub struct FixedSphere {
     /// The centre, s10.12.
     pub centre: [i32; 3],
-    /// The radius, u10.12: from 2^6 to 2^22 − 1 units of 2^−12; below 2^21 if rays march.
+    /// The radius, u10.12: from 2^6 to 2^22 − 1 units of 2^−12; below 2^21 for marching rays.
     pub radius: i32,
     /// Reciprocal of the radius: 2^37 over the radius, which is first shifted until it has 21 bits. The quotient is rounded
     /// to nearest and saturates to 17 bits.
@@ -53,7 +53,7 @@ pub struct FixedSpheres {
 const MOST: i32 = (1 << 21) - 1;
 
 impl FixedSpheres {
-    /// Adds the spheres of a list, as many as there is room for.
+    /// Adds the spheres of a list until this list is full.
     pub fn add(&mut self, list: &Self) {
         let places = self.list.iter_mut().skip(self.count);
         for (place, sphere) in places.zip(list.list.iter().take(list.count)) {

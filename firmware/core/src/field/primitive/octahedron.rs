@@ -22,7 +22,7 @@ impl FieldKind for Octahedron {
     const NAME: &'static str = "octahedron";
     const FORM: &'static str = "octahedron:S";
     const ABOUT: &'static str =
-        "a regular octahedron about the origin, by the distance of its corners";
+        "a regular octahedron about the origin with corners at the distance S";
     const EXAMPLE: &'static str = "octahedron:1";
     const OCTANTS: bool = true;
 

@@ -57,7 +57,7 @@ impl Spheres {
         let mut list = [Sphere::default(); MAX_SPHERES];
         let count = spheres.len();
         if count == 0 || count > MAX_SPHERES {
-            return Err(FieldError::Spheres { most: MAX_SPHERES });
+            return Err(FieldError::Spheres(MAX_SPHERES));
         }
         for (place, sphere) in list.iter_mut().zip(spheres) {
             *place = sphere.checked()?;
@@ -165,7 +165,7 @@ impl FieldKind for Spheres {
             let radius = numbers.number("radius", [SMALLEST, beside])?;
             *list
                 .get_mut(count)
-                .ok_or(FieldError::Spheres { most: MAX_SPHERES })? = Sphere { centre, radius };
+                .ok_or(FieldError::Spheres(MAX_SPHERES))? = Sphere { centre, radius };
             count += 1;
         }
         Self::new(list.get(..count).unwrap_or_default())

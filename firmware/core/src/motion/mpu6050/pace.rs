@@ -2,7 +2,7 @@
 
 /// A model of the sensor's clock, which computes the times at which samples were measured.
 ///
-/// A new sample was measured between the previous read and the present read, and at most a period before the present read. The
+/// A new sample was measured between the previous read and the current read, and at most a period before the current read. The
 /// sample period is not a multiple of the read period, so the reads drift relative to the samples, and from time to time the
 /// interval begins or ends close to the sample's time. The clock predicts the time of each sample. A prediction outside the
 /// interval is moved to the nearer end of the interval.
@@ -12,7 +12,7 @@ pub struct Pace {
     nominal: u32,
     period: u32,
     /// Time of the previous read, in µs.
-    looked: Option<u64>,
+    previous: Option<u64>,
     /// Predicted time of the next sample, in 2^−8 µs.
     expected: Option<u64>,
     /// Number of samples until corrections also change the estimated period.
@@ -36,7 +36,7 @@ impl Pace {
         Self {
             nominal: period << 8,
             period: period << 8,
-            looked: None,
+            previous: None,
             expected: None,
             settling: SETTLED,
         }
@@ -46,7 +46,7 @@ impl Pace {
     /// new sample, returns the time in µs at which this sample was measured. The result is `None` for the first read, because its
     /// sample may be old.
     pub fn on_poll(&mut self, time: u64, found: bool) -> Option<u64> {
-        let before = self.looked.replace(time)?;
+        let before = self.previous.replace(time)?;
         if !found {
             return None;
         }

@@ -18,7 +18,7 @@ const SLOW_POLL_PERIOD: u32 = 960;
 
 /// Longest accepted time without a new sample, in µs.
 const SILENCE: u32 = 20_000;
-/// Number of successive equal samples that is an error.
+/// Number of successive equal samples that counts as an error.
 const FROZEN: u32 = 50;
 /// Pause before the next attempt to find the chip, in ms. The pause limits the CPU load while the sensor is absent.
 const RETRY_DELAY: u32 = 30;
@@ -27,7 +27,7 @@ const RETRY_DELAY: u32 = 30;
 pub trait Sink<E> {
     /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
-    /// Takes a sample and its time in µs. The time is delayed against the measured motion by the chip's filter. Apart
+    /// Takes a sample and its time in µs. The chip's filter delays the time relative to the measured motion. Apart
     /// from this delay, the error of the time is at most 0.1 ms, or 0.3 ms for the first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
     /// The chip was not found, or reading it failed. The stream then retries.

@@ -93,15 +93,15 @@ fn approach(x: u64) -> u32 {
 fn series(x: u32) -> u32 {
     let times = |a: u32, b: u32| ((u64::from(a) * u64::from(b)) >> 32) as u32;
     let part = |n: u32| times(x, ((1 << 32) / u64::from(n)) as u32);
-    // Evaluates a bracket of the series, from the innermost bracket outwards: part·(1 − lack), rounded down, where `lack` is 1
+    // Evaluates a bracket of the series, from the innermost bracket outwards: part·(1 − deficit), rounded down, where `deficit` is 1
     // minus the inner bracket.
-    let less = |part: u32, lack: u32| {
-        part - ((u64::from(part) * u64::from(lack) + u64::from(u32::MAX)) >> 32) as u32
+    let less = |part: u32, deficit: u32| {
+        part - ((u64::from(part) * u64::from(deficit) + u64::from(u32::MAX)) >> 32) as u32
     };
-    let lack = less(part(4), part(5));
-    let lack = less(part(3), lack);
-    let lack = less(part(2), lack);
-    // The result x·(1 − lack) is rounded to nearest.
-    let taken = u64::from(x) * u64::from(lack);
+    let deficit = less(part(4), part(5));
+    let deficit = less(part(3), deficit);
+    let deficit = less(part(2), deficit);
+    // The result x·(1 − deficit) is rounded to nearest.
+    let taken = u64::from(x) * u64::from(deficit);
     x - ((taken + (1 << 31) - 1) >> 32) as u32
 }

@@ -50,7 +50,7 @@ impl Integrator {
         self.rounded = attitude;
     }
 
-    /// Drops the earlier rates and continues from `rate` (in 1/256 LSB) with the present attitude.
+    /// Drops the earlier rates and continues from `rate` (in 1/256 LSB) with the current attitude.
     pub fn restart(&mut self, rate: [i32; 3]) {
         self.history.start(rate);
     }
@@ -135,20 +135,20 @@ impl Integrator {
     // Inlined in the code that runs for every sample; `turn_far` contains a second copy.
     #[inline(always)]
     fn turn_part(&mut self, half: [i64; 3]) {
-        // h with 32 fraction bits, rounded down, in 32-bit words as all of the following numbers.
+        // h with 32 fraction bits, rounded down, in 32-bit words like all of the following numbers.
         let short = half.map(|x| (((x >> 32) as i32) << 16) | (x as u32 >> 16).cast_signed());
         // `square` is |h|² with 32 fraction bits, rounded down; each of its three addends is below 2^26.
         let square = short
             .map(|x| ((i64::from(x) * i64::from(x)) >> 32) as u32)
             .iter()
             .sum();
-        let (versine, lack) = series(square);
+        let (versine, deficit) = series(square);
         let q = &self.rounded.parts;
         // The scalar part of `change` uses half of 1 − |q|², with 32 fraction bits, rounded down.
         let mut change = [(excess(q) >> 27) - versine as i32, 0, 0, 0];
         for i in 0..3 {
             // h·sin|h|/|h| is h minus this product, which has 64 fraction bits.
-            let less = i64::from(short[i]) * i64::from(lack);
+            let less = i64::from(short[i]) * i64::from(deficit);
             // Rounding remainder of the difference, with 48 fraction bits, plus 2^−33 so that the shift rounds to nearest.
             let low = (half[i] as i32 & 0xFFFF) - (less as u32 >> 16) as i32 + (1 << 15);
             change[i + 1] = short[i] - (less >> 32) as i32 + (low >> 16);
@@ -183,7 +183,7 @@ fn series(square: u32) -> (u32, u32) {
     let times = |a: u32| ((u64::from(square) * u64::from(a)) >> 32) as u32;
     let versine = times(one_over(24) - times(one_over(720)));
     let versine = times((1 << 31) - versine);
-    let lack = times(one_over(120) - times(one_over(5_040)));
-    let lack = times(one_over(6) - lack);
-    (versine, lack)
+    let deficit = times(one_over(120) - times(one_over(5_040)));
+    let deficit = times(one_over(6) - deficit);
+    (versine, deficit)
 }

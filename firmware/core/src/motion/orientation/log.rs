@@ -303,7 +303,7 @@ pub const START: u64 = 1 << 31;
 pub const fn sample([time, ax_ay, az_gx, gy_gz]: Record, last: u64) -> Sample {
     let step = time.wrapping_sub(last as u32).cast_signed();
     Sample {
-        // Times wrap, as their differences do: a time before 0 does not change the times after it.
+        // Times wrap modulo 2^64, so a time before 0 does not affect later times.
         t_us: last.wrapping_add_signed(step as i64),
         accel: [ax_ay as i16, (ax_ay >> 16) as i16, az_gx as i16],
         gyro: [(az_gx >> 16) as i16, gy_gz as i16, (gy_gz >> 16) as i16],

@@ -52,7 +52,7 @@ pub struct Tilt {
     /// Square of the largest accepted reading, in LSB².
     largest: u32,
     time_constant: u32,
-    /// Total time of the readings so far in µs, limited to `time_constant`. The filter uses this time as its present time
+    /// Total time of the readings so far in µs, limited to `time_constant`. The filter uses this time as its current time
     /// constant, so that the first readings form a running mean.
     age: u32,
     gain: Gain,
@@ -84,7 +84,8 @@ impl Tilt {
         self.set_age(self.age.min(DOUBTFUL));
     }
 
-    /// The age of the attitude in µs: the total time of the readings so far, less after a doubt.
+    /// The age of the attitude in µs: the total time of the readings so far, reduced by
+    /// [`doubt`](Self::doubt).
     pub(super) const fn age(&self) -> u32 {
         self.age
     }
@@ -160,7 +161,7 @@ impl Tilt {
         true
     }
 
-    /// Lengthens the filter's present time constant by `step` µs, to at most `time_constant`.
+    /// Lengthens the filter's current time constant by `step` µs, to at most `time_constant`.
     #[inline(never)]
     fn grow(&mut self, step: u32) {
         self.age = self.age.saturating_add(step).min(self.time_constant);

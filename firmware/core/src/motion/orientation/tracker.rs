@@ -41,10 +41,11 @@ pub struct Counts {
 const LARGEST_BIAS: i32 = 1 << 30;
 
 /// Number of successive stale samples, each later than the one before, after which the clock counts as restarted. A few samples out
-/// of order are no restart.
+/// of order do not count as a restart.
 const RESTART: u8 = 4;
 
-/// The samples since the last step whose times do not follow it, from which a wrong time or a restart of the clock is recognised.
+/// The samples since the last step whose times do not follow it. They show whether single times were
+/// wrong or the clock has restarted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Detour {
     /// Time of the first sample after the latest gap.
@@ -107,7 +108,7 @@ impl Tracker {
         self.resting = Some(resting);
     }
 
-    /// Present bias of the gyroscope in 1/256 LSB.
+    /// Current bias of the gyroscope in 1/256 LSB.
     pub const fn bias(&self) -> [i32; 3] {
         self.bias
     }
@@ -207,18 +208,19 @@ impl Tracker {
         effect
     }
 
-    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap. A clock that returns
-    /// from gaps has had wrong times in between; the attitude then continues from the time before the gaps.
+    /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap. If the time goes back
+    /// to before earlier gaps, the times in between were wrong; the attitude then continues from before the
+    /// gaps.
     #[cold]
     #[inline(never)]
     fn hold(&mut self, sample: &Sample, last: u64) -> SampleEffect {
         let mut detour = self.detour;
-        // A clock that has had right steps for longer does not return.
+        // After a longer series of valid steps, the times after the gaps count as right.
         let since = last.wrapping_sub(detour.start);
         if since > u64::from(LONGEST_STEP) {
             detour.before = None;
         }
-        // The steps since the gap have integrated their time.
+        // The time of the steps since the gap has been integrated.
         let before = detour.before;
         let before = before.map(|(before, age)| (before.wrapping_add(since), age));
         if let Some((before, age)) = before

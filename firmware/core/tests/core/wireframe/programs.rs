@@ -125,70 +125,31 @@ proptest! {
     }
 }
 
+/// Texts, with `|` in place of line feeds, and their errors.
+const MISTAKES: &str = r#"
+ => line 1: expected end, found the end of the input
+eye 0 0 8||# no end| => line 4: expected end, found the end of the input
+camera 0 0 8| => line 1: expected eye, plane, window, segment or end, found "camera" (column 1)
+|eye 0 0| => line 2: expected 3 numbers after eye, found 2
+plane| => line 1: expected 1 number after plane, found 0
+plane 1 2| => line 1: expected the end of the line, found "2" (column 9)
+eye 0 0 16| => line 1: expected a number from -16 to 15.9995, found "16" (column 9)
+eye 0 nan 1| => line 1: expected a number from -16 to 15.9995, found "nan" (column 7)
+eye 0 0 -0.001| => line 1: expected a z of the eye of at least 0, found -0.001
+plane 2|eye 0 0 2| => line 2: expected a z of the eye above that of the view plane, 2, found 2
+eye 0 0 1|plane 2| => line 2: expected a z of the eye above that of the view plane, 2, found 1
+window 1 0 1 1| => line 1: expected x of the window's lower corner below 1, found 1
+window 0 2 1 1.5| => line 1: expected y of the window's lower corner below 1.5, found 2
+eye 0 0 1|eye 0 0 1| => line 2: expected one eye in the program, found a second one
+eye 0 0 1|plane 0|end| => line 3: expected one window in the program, found none
+eye 0 0 1|plane 0|window 0 0 1 1|end|# comment|end| => line 6: expected nothing after end, found "end" (column 1)
+"#;
+
 #[test]
 fn refused_texts() {
-    let cases = [
-        ("", "line 1: expected end, found the end of the input"),
-        (
-            "eye 0 0 8\n\n# no end\n",
-            "line 4: expected end, found the end of the input",
-        ),
-        (
-            "camera 0 0 8\n",
-            "line 1: expected eye, plane, window, segment or end, found \"camera\" (column 1)",
-        ),
-        (
-            "\neye 0 0\n",
-            "line 2: expected 3 numbers after eye, found 2",
-        ),
-        ("plane\n", "line 1: expected 1 number after plane, found 0"),
-        (
-            "plane 1 2\n",
-            "line 1: expected the end of the line, found \"2\" (column 9)",
-        ),
-        (
-            "eye 0 0 16\n",
-            "line 1: expected a number from -16 to 15.9995, found \"16\" (column 9)",
-        ),
-        (
-            "eye 0 nan 1\n",
-            "line 1: expected a number from -16 to 15.9995, found \"nan\" (column 7)",
-        ),
-        (
-            "eye 0 0 -0.001\n",
-            "line 1: expected a z of the eye of at least 0, found -0.001",
-        ),
-        (
-            "plane 2\neye 0 0 2\n",
-            "line 2: expected a z of the eye above that of the view plane, 2, found 2",
-        ),
-        (
-            "eye 0 0 1\nplane 2\n",
-            "line 2: expected a z of the eye above that of the view plane, 2, found 1",
-        ),
-        (
-            "window 1 0 1 1\n",
-            "line 1: expected x of the window's lower corner below 1, found 1",
-        ),
-        (
-            "window 0 2 1 1.5\n",
-            "line 1: expected y of the window's lower corner below 1.5, found 2",
-        ),
-        (
-            "eye 0 0 1\neye 0 0 1\n",
-            "line 2: expected one eye in the program, found a second one",
-        ),
-        (
-            "eye 0 0 1\nplane 0\nend\n",
-            "line 3: expected one window in the program, found none",
-        ),
-        (
-            "eye 0 0 1\nplane 0\nwindow 0 0 1 1\nend\n# comment\nend\n",
-            "line 6: expected nothing after end, found \"end\" (column 1)",
-        ),
-    ];
-    for (text, message) in cases {
-        let error = assemble(text).expect_err(text).to_string();
+    for (text, message) in MISTAKES.lines().filter_map(|line| line.split_once(" => ")) {
+        let text = text.replace('|', "\n");
+        let error = assemble(&text).expect_err(&text).to_string();
         assert_eq!(error, format!("wireframe program, {message}"), "{text:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of the projection against f64, and of its stiff cases.
+//! Tests of the projection against f64, and of its difficult cases.
 
 use glint_core::fixed::{Q5_11, Q12_20};
 use glint_core::picture::Size;

@@ -1,33 +1,33 @@
-//! Codes of intervals, as the gateware and its registers have them.
+//! Codes of intervals, as the gateware and its registers store them.
 
 use super::intervals::{Rule, Solid};
 
-/// Bits of the code of an interval ([`Solid::code`]).
+/// Number of bits of an interval's code ([`Solid::code`]).
 pub const CODE_BITS: u32 = 13;
 
-/// Bits of a code after the first one.
+/// Number of bits of a code after the first bit.
 const DIGITS: u32 = CODE_BITS - 1;
 
-/// The first bit of a code, 0 below the solid.
+/// The first bit of a code: 0 below the solid, otherwise 1.
 const NOT_BELOW: u32 = 1 << DIGITS;
 
 /// The code above a solid that is not repeated.
 const ABOVE: u32 = NOT_BELOW | 3 << (DIGITS - 2);
 
-/// Bits of a cell's number of a repeated solid, and the places of the cell and of its gap in a code.
+/// For a repeated solid: number of bits of a cell's number, and the bit positions of this number and of the gap in a code.
 const CELL_BITS: u32 = 6;
 const CELL: u32 = DIGITS - CELL_BITS;
 const GAP: u32 = CELL - 2;
 
 impl Solid {
-    /// The code of an interval, a number of [`CODE_BITS`] bits. A higher interval has a higher code. The first bit is 0 below the solid. The
-    /// other bits are
-    /// - of a sponge, the ternary digits of the smallest cell in two bits each, the first digit first, and 3 in the first digit above the
-    ///   sponge,
-    /// - of a repeated solid, the number of the cell in six bits, modulo 64, and 1 in the next two bits for the gap above the cube,
-    /// - of other solids, 0 inside, and 3 in the first two bits above.
+    /// The code of an interval, a number of [`CODE_BITS`] bits. A higher interval has a higher code. The first bit is 0 below the solid.
+    /// The next bits depend on the solid:
+    /// - Sponge: the ternary digits of the smallest cell, two bits each, the most significant digit first. Above the sponge the first digit
+    ///   is 3.
+    /// - Repeated solid: the number of the cell modulo 64 in six bits, then two bits that are 1 for the gap above the cube.
+    /// - Other solids: two bits, 0 inside and 3 above.
     ///
-    /// The rest is 0. All intervals below a solid that is not repeated have the code 0, as the lowest one.
+    /// All other bits are 0. The lowest interval, and all intervals below a solid that is not repeated, have the code 0.
     pub fn code(&self, interval: i32) -> u32 {
         match self.rule {
             _ if interval == i32::MIN => 0,
@@ -46,7 +46,7 @@ impl Solid {
         }
     }
 
-    /// The interval with a [`code`](Self::code); the lowest one for the code 0.
+    /// The interval with a [`code`](Self::code); the lowest interval for the code 0.
     pub fn interval(&self, code: u32) -> i32 {
         let is_below = code & NOT_BELOW == 0;
         match self.rule {
@@ -66,7 +66,7 @@ impl Solid {
     }
 }
 
-/// The place in a code of each digit of a sponge's cell, and the digit's weight; `cells` is a power of three.
+/// The bit position in a code of each digit of a sponge's cell, and the digit's weight; `cells` is a power of three.
 fn places(cells: i32) -> impl Iterator<Item = (u32, i32)> {
     let weights = core::iter::successors(Some(cells / 3), |weight| Some(weight / 3));
     let shifts = (0..DIGITS / 2).map(|digit| DIGITS - 2 - 2 * digit);

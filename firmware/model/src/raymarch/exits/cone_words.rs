@@ -1,4 +1,4 @@
-//! Words of the constants of cones, as the gateware and its registers have them (gateware/rtl/raymarch/sphere_unit.sv).
+//! The constants of cones in words, as the gateware and its registers store them (gateware/rtl/raymarch/sphere_unit.sv).
 
 use super::cones::{Cone, ConeKind, Cones, Linear};
 use super::rectangle::Rectangle;
@@ -7,10 +7,10 @@ impl Cone {
     /// Number of words of a cone.
     pub const WORDS: usize = 16;
 
-    /// Number of words of a cone in which an eye sees a sphere: the last word is that of solid cones alone.
+    /// Number of words of a cone in which an eye sees a sphere: only solid cones use the last word.
     pub const SPHERE_WORDS: usize = 15;
 
-    /// The words of the cone: all numbers start at bit 0, in two's complement; those of more than 32 bits have two words, the low one first.
+    /// The words of the cone, with numbers in two's complement. A number of more than 32 bits takes two words, the low word first.
     pub fn words(&self) -> [u32; Self::WORDS] {
         let [columns, rows] = [self.rectangle.columns, self.rectangle.rows];
         let ([a, b], forward) = (self.sides, self.forward);
@@ -76,7 +76,7 @@ impl Cone {
 }
 
 impl Cones {
-    /// These cones, in the order of the list; at most 16.
+    /// A list of these cones, in their order; cones that do not fit the list are dropped.
     pub fn of(cones: impl IntoIterator<Item = Cone>) -> Self {
         let mut all = Self::default();
         cones.into_iter().for_each(|cone| all.push(cone));

@@ -2,14 +2,14 @@
 //!
 //! An eye outside of a sphere sees it in a cone. With q from the centre to the eye, the unit vector c towards the centre, and the unit
 //! vectors a and b perpendicular to c and to each other, a ray with the direction D meets the sphere of the radius r if
-//! (c·D)² > κ²·((a·D)² + (b·D)²) and c·D > 0, where κ² = |q|²/r² − 1. With ρ² the difference of the two sides, it meets it at
-//! T = (|q|² − r²)/|q| / (c·D + (r/|q|)·ρ). This form of the quadratic equation's solution has no difference of nearly equal numbers.
+//! (c·D)² > κ²·((a·D)² + (b·D)²) and c·D > 0, where κ² = |q|²/r² − 1. If ρ² is the difference of the two sides, the ray meets
+//! the sphere at T = (|q|² − r²)/|q| / (c·D + (r/|q|)·ρ). This form of the quadratic equation's solution subtracts no nearly equal numbers.
 //!
-//! A sphere that the near plane cuts shows a disc there. The rays through a disc are a cone too, with 1 in place of c·D, and the share 0 in
-//! place of r/|q|: its T is constant.
+//! If the near plane cuts a sphere, the section is a disc. The rays through a disc form a cone too, with 1 in place of c·D, and 0 in place
+//! of r/|q|, so that T is constant.
 //!
-//! All of these are linear in a pixel's column and row. The vector b is perpendicular to the direction's change per column, so that b·D
-//! depends on the row only.
+//! The products with D are linear in a pixel's column and row. The vector b is perpendicular to the direction's change per column, so that
+//! b·D depends on the row only.
 
 use glint_core::feature::SPHERES;
 use glint_core::field::{FixedSphere, MAX_SPHERES};
@@ -33,9 +33,9 @@ const MOST_HALVINGS: i32 = 20;
 pub(super) const SHARE: u32 = 17;
 /// Bits of the mantissa of a cone's distance.
 const DISTANCE: u32 = 24;
-/// A cone's distance is the mantissa times 2 to the exponent less this number.
+/// The bias of a cone's exponent: its distance is the mantissa times 2^(exponent − bias).
 pub(super) const DISTANCE_OFFSET: i32 = 24;
-/// Exponents of a cone's distance: 0 to this number.
+/// Largest exponent of a cone's distance; the smallest is 0.
 const MOST_DISTANCE: i32 = 15;
 
 /// Largest number of cones: two for each sphere, three for a solid cone with at most one sphere beside it.
@@ -49,10 +49,10 @@ pub struct Cones {
 }
 
 impl Cone {
-    /// The number of the base of a solid cone, in place of a sphere's.
+    /// The number of the base of a solid cone, in place of a sphere's number.
     pub const BASE: u8 = 7;
 
-    /// The forward function of a pixel, s1.30. Far from the rectangle of a solid cone it may be too large for its word, modulo 4.
+    /// The forward function at a pixel, s1.30. Far from the rectangle of a solid cone it may exceed its word; it then wraps modulo 4.
     pub(super) const fn forward_at(&self, column: u32, row: u32) -> i64 {
         self.forward.at(column, row, 0) as i32 as i64
     }
@@ -84,15 +84,15 @@ pub struct Cone {
     pub rectangle: Rectangle,
     /// c·D, 1 for a disc.
     pub forward: Linear,
-    /// κ·(a·D) and κ·(b·D); of a disc, its centre's distances from the ray along a and b, in radii. Only solid cones have a second side that
-    /// changes in the row.
+    /// κ·(a·D) and κ·(b·D); for a disc, the distances of its centre from the ray along a and b, in radii. The second side changes along a
+    /// row only for solid cones.
     pub sides: [Linear; 2],
     /// Exponent of 2 by which the changes of `sides` are multiplied: 0, 2, 4 or 6.
     pub shift: u32,
     /// r/|q|, u0.17; 0 for a disc.
     pub share: i64,
-    /// (|q|² − r²)/|q| in field units, T of the near plane for a disc: a mantissa of 24 bits and an exponent from 0 to 15, which counts
-    /// from −24.
+    /// (|q|² − r²)/|q| in field units, or T of the near plane for a disc: a mantissa of 24 bits and an exponent of 0 to 15, with a bias
+    /// of 24.
     pub distance: (i64, u32),
 }
 
@@ -116,7 +116,7 @@ pub enum ConeKind {
 }
 
 impl ConeKind {
-    /// All kinds by their number in the gateware; unused numbers are those of spheres.
+    /// All kinds, by their number in the gateware; unused numbers act as spheres.
     pub(super) const ALL: [Self; 8] = [
         Self::Sphere,
         Self::Base,
@@ -129,10 +129,10 @@ impl ConeKind {
     ];
 }
 
-/// A number that is linear in the column and the row of a pixel, with 30 fraction bits.
+/// A function that is linear in the column and the row of a pixel, with 30 fraction bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Linear {
-    /// The number of the first pixel, s15.30.
+    /// The value at the first pixel, s15.30.
     pub first: i64,
     /// Change per column, of 24 bits and a sign.
     pub across: i64,
@@ -141,23 +141,23 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The number of a pixel, with the changes multiplied by 2^`shift`.
+    /// The value at a pixel, with the changes multiplied by 2^`shift`.
     pub(super) const fn at(&self, column: u32, row: u32, shift: u32) -> i64 {
         self.first + ((column as i64 * self.across + row as i64 * self.down) << shift)
     }
 }
 
-/// What an eye sees.
+/// The view of an eye: its position, rays and near plane.
 pub(super) struct Sight {
     /// Position in field units, s13.12.
     pub(super) origin: [i32; 3],
     /// Direction D of the first ray, and its changes per column and row, s2.30.
     pub(super) directions: [Vector; 3],
-    /// The parameter T of the near plane, u14.14, slightly behind it: a sphere's hit that is rounded to before the plane is in the disc.
+    /// The parameter T of the near plane, u14.14, slightly enlarged: a hit on a sphere that rounding moves before the plane is in the disc.
     pub(super) near: Scaled,
-    /// T for the hits in a disc: that of the near plane, or larger by at most 2^−16.
+    /// T of the hits in a disc: T of the near plane, or larger by at most 2^−16.
     disc: Scaled,
-    /// The near plane's normal, and two axes in it; the second is perpendicular to the change per column.
+    /// The near plane's normal, and two axes in the plane; the second is perpendicular to the change per column.
     pub(super) plane: [Vector; 3],
     /// The first ray's point in the near plane, from the eye, with 16 fraction bits.
     pub(super) point: Vector,
@@ -171,10 +171,10 @@ pub(super) struct Pixel {
 }
 
 impl Sight {
-    /// What an eye at `origin` sees, with the near plane at the parameter `near`, u14.14.
+    /// The view of an eye at `origin`, with the near plane at the parameter `near`, u14.14.
     pub(super) fn new(origin: [i32; 3], directions: [Vector; 3], near: i64) -> Self {
         let [first, step, down] = directions;
-        // A picture of a single ray has no such axes.
+        // In a picture of a single ray, the changes are 0.
         let normal = match cross(step, down) {
             [0, 0, 0] => unit(first.map(i64::from)),
             normal => unit(normal),
@@ -201,7 +201,7 @@ impl Sight {
         if cone.rectangle.is_empty() {
             return;
         }
-        // From the centre to the eye.
+        // The vector from the sphere's centre to the eye.
         let place = [0, 1, 2].map(|i: usize| self.origin[i] - sphere.centre[i]);
         let middle = self.pixel(cone.rectangle.middle());
         if self.outline(cone, &place, sphere.radius, &middle) {
@@ -242,7 +242,7 @@ impl Sight {
         }
     }
 
-    /// Sets the numbers of the cone around a sphere, from whose centre `q` leads to the eye. Returns `false` for an eye inside.
+    /// Sets the constants of the cone around a sphere. `q` leads from the sphere's centre to the eye. Returns `false` for an eye inside.
     fn outline(&self, cone: &mut Cone, q: &Vector, radius: i32, middle: &Pixel) -> bool {
         let radius = i64::from(radius.max(1));
         let square = product(q, q);
@@ -251,10 +251,10 @@ impl Sight {
             return false;
         }
         let forward = unit(q.map(|part| -i64::from(part)));
-        // The direction does not change in the row, or it changes towards the centre: then any perpendicular one.
+        // Any axis perpendicular to `forward` if the direction does not change along a row, or changes towards the centre.
         let b = perpendicular(&forward, &self.directions[1]);
         let a = perpendicular(&b, &forward);
-        // Quotients and roots are products with reciprocals of roots; that of the radius is also the root of its square.
+        // Quotients and roots are computed as products with reciprocal square roots.
         let reciprocal = |square: i64| Scaled::inverse_root(square.cast_unsigned(), -24);
         let inverse_length = reciprocal(square);
         let inverse_radius = reciprocal(radius * radius);
@@ -283,14 +283,14 @@ impl Sight {
         true
     }
 
-    /// Sets the numbers of the cone of a disc in the near plane. `q` leads from the sphere's centre to the eye, with 16 fraction bits. `square`
-    /// is the square of the disc's radius, with 32 fraction bits.
+    /// Sets the constants of the cone of a disc in the near plane. `q` leads from the sphere's centre to the eye, with 16 fraction bits.
+    /// `square` is the square of the disc's radius, with 32 fraction bits.
     // Not inlined, because most spheres do not reach the near plane.
     #[inline(never)]
     fn disc(&self, cone: &mut Cone, q: &Vector, square: i64, middle: &Pixel) {
         let [_, a, b] = &self.plane;
         let inverse_radius = Scaled::inverse_root(square.cast_unsigned(), -32);
-        // From the centre to the eye, along a and b, in radii of the disc.
+        // The vector from the centre to the eye, along a and b, in radii of the disc.
         let offsets = [a, b].map(|axis| {
             let offset = rounded(product(q, axis), 30);
             let size = Scaled::new(offset.unsigned_abs(), -16).by(inverse_radius);
@@ -308,13 +308,13 @@ impl Sight {
             ..Linear::default()
         };
         cone.share = 0;
-        // All rays have one divisor, 2^22 and a half if there are no halvings.
+        // All rays have the same divisor: 2^22 + 1/2 in units of 2^−22, if there are no halvings.
         let divisor = Scaled::new((1 << (23 - halvings)) + 1, -23);
         cone.distance = distance(self.disc.by(divisor));
     }
 
-    /// Sets the sides of a cone. `varies` states whether the second one changes in the row; otherwise its axis is perpendicular to the change
-    /// per column. Returns the number of times that the cone's numbers are halved, so that they fit their words.
+    /// Sets the sides of a cone. `varies` states whether the second side changes along a row; otherwise its axis is perpendicular to the
+    /// change per column. Returns how often the constants of the cone are halved, so that they fit their words.
     #[inline(never)]
     pub(super) fn set_sides(
         &self,
@@ -348,18 +348,18 @@ impl Sight {
 pub(super) struct Function<'a> {
     pub axis: &'a Vector,
     pub factor: Scaled,
-    /// 30 fraction bits.
+    /// The offset, with 30 fraction bits.
     pub offset: i64,
 }
 
 impl Function<'_> {
-    /// Its change with D, 30 fraction bits.
+    /// The change of the function for a change `step` of D, 30 fraction bits.
     pub(super) fn change(&self, step: &Vector) -> i64 {
         self.factor.times(product(self.axis, step))
     }
 
-    /// Its numbers, given its changes per column and row, after `halvings`, with its changes in units of 2^`shift`. Rounding of the changes
-    /// has the smallest effect in the middle of a sphere's rectangle.
+    /// The function of a pixel, from its changes per column and row: halved `halvings` times, with the changes in units of 2^`shift`. The
+    /// rounding of the changes has the smallest effect at the pixel `middle`.
     #[inline(never)]
     pub(super) fn words(
         &self,
@@ -383,8 +383,8 @@ impl Function<'_> {
     }
 }
 
-/// The mantissa and the exponent of a cone's distance. It is larger than the exact one by 2^−19, because the mantissa of a reciprocal is
-/// rounded down to 18 fraction bits.
+/// The mantissa and the exponent of a cone's distance. It is larger than the exact distance by a relative 2^−19, because the mantissa of a
+/// reciprocal is rounded down to 18 fraction bits.
 pub(super) fn distance(exact: Scaled) -> (i64, u32) {
     let exponent = (exact.log2() + 1 - DISTANCE as i32 + DISTANCE_OFFSET).clamp(0, MOST_DISTANCE);
     let mantissa = exact.fixed_at(exponent - DISTANCE_OFFSET);

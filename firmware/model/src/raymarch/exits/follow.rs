@@ -1,4 +1,4 @@
-//! The way of a ray through the empty prisms of a solid, to its end.
+//! The path of a ray through the empty prisms of a solid, to its end.
 
 use glint_core::field::Surface;
 
@@ -15,7 +15,7 @@ use crate::raymarch::State;
 pub struct End {
     /// A hit or a miss; no ray is undecided.
     pub state: State,
-    /// Parameter T at the end, u14 with the fraction bits of `Words::parameter`; of a miss, the last exit.
+    /// Parameter T at the end, u14 with the fraction bits of `Words::parameter`; for a miss, T at the last exit.
     pub t: i64,
     /// Number of evaluations of the flat solid or the lattice.
     pub steps: u32,
@@ -29,7 +29,7 @@ impl Exits {
         self.follow(beam, &corner, met, met.map_or(self.far, |met| met.t))
     }
 
-    /// The surface with the number of a cone.
+    /// The surface that belongs to the number of a cone.
     const fn surface(&self, number: u8) -> Surface {
         match number == Cone::BASE && self.spheres.cone.is_some() {
             true => Surface::BASE,
@@ -37,10 +37,11 @@ impl Exits {
         }
     }
 
-    /// Follows a ray from an origin at `corner`, the position from the solid's lower corner along the mirrored axes, to its end, up to the parameter `limit`. `met` is the sphere of a list that it meets there.
+    /// Follows a ray to its end, up to the parameter `limit`. `corner` is the ray's origin, from the solid's lower corner along the
+    /// mirrored axes. `met` is the sphere of a list that the ray meets at `limit`, if any.
     ///
     /// Each evaluation advances the interval of at least one axis, and no interval ever decreases. A ray therefore always ends.
-    // Inlined, so that the code for a ray to the light, which most frames do not have, is apart from that for all others.
+    // Inlined, so that shadow rays, which most frames do not have, have their own copy of the code.
     #[inline(always)]
     pub(super) fn follow(
         &self,
@@ -50,7 +51,7 @@ impl Exits {
         limit: i64,
     ) -> End {
         let end = |state, t, steps| End { state, t, steps };
-        // The end of a ray that meets nothing but possibly a sphere of the list.
+        // The end of a ray that does not meet the solid: a sphere of the list, or a miss.
         let beyond = |t, steps| match met {
             Some(met) => end(State::Hit(self.surface(met.number)), met.t, steps),
             None => end(State::Miss, t, steps),

@@ -1,7 +1,7 @@
 //! Solids as rules about the intervals of a point along three axes.
 //!
-//! Coordinates are those of mirrored axes, along which every ray leads up, from the solid's lower corner: a bounded solid is between 0 and
-//! its side. Interval numbers increase along every axis.
+//! Coordinates are counted from the solid's lower corner, along axes that are mirrored so that every ray points up: a bounded solid is
+//! between 0 and its side. Interval numbers increase along every axis.
 
 use core::ops::Range;
 
@@ -19,34 +19,34 @@ const LAST_CELL: i64 = 32;
 /// The rule of a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rule {
-    /// The inside of a box. Intervals: below −1, inside 0, above 1.
+    /// The inside of a box. Interval numbers: −1 below the box, 0 inside, 1 above.
     #[default]
     Box,
-    /// The outside of a slab between two planes perpendicular to z, with the same intervals.
+    /// The outside of a slab between two planes perpendicular to z, with the same interval numbers.
     Planes,
-    /// The Menger sponge. Intervals: the smallest cells that the scale has, from 0; below −1.
+    /// The Menger sponge. Interval numbers: −1 below the sponge, then the numbers of the smallest cells of the scale, from 0.
     Sponge {
         /// Number of the smallest cells along an axis: 3^4 or 3^6.
         cells: i32,
-        /// Side of the last level's cells, in smallest cells.
+        /// Side of the last level's cells, in units of the smallest cells.
         last: i32,
         /// Exponent of the side of a smallest cell, with 12 fraction bits.
         exponent: u32,
     },
-    /// Boxes, or spheres in cubes, in every cell of a lattice. Intervals: 2·cell in a box, 2·cell + 1 in the gap above it. An axis on which
-    /// the side of a box is the period has no gaps. The solid ends before cell `LAST_CELL`.
+    /// Boxes, or spheres in cubes, in every cell of a lattice. Interval numbers: 2·cell in a box, 2·cell + 1 in the gap above the box. An
+    /// axis along which the side of a box equals the period has no gaps. The solid ends before cell `LAST_CELL`.
     Repeated {
         /// Whether spheres with the side of a cube as diameter replace the boxes.
         round: bool,
     },
-    /// The octahedron: a box along its four diagonals, with the intervals of a box. An octahedron is convex: after a ray has left the prism
-    /// around the eye, it is below no slab, so a lane needs no border of the fourth one.
+    /// The octahedron: a box along its four diagonals, with the interval numbers of a box. An octahedron is convex: a ray that has left the
+    /// prism around the eye is not below any slab, so a lane does not need the border of the fourth slab.
     Octahedron,
 }
 
 impl Rule {
-    /// The sponge with this number of levels, at most 6. The side of its smallest cells is a power of two: a field unit, or an eighth of one
-    /// in a sponge of more than four levels.
+    /// The sponge with this number of levels, at most 6. The side of its smallest cells is a power of two: a field unit, or an eighth of
+    /// one in a sponge of more than four levels.
     pub const fn sponge(levels: u32) -> Self {
         let (cells, exponent) = match levels {
             ..=4 => (81, FRACTION),
@@ -64,14 +64,14 @@ impl Rule {
         matches!(self, Self::Repeated { round: true })
     }
 
-    /// Whether the solid throws shadows on its own faces. Boxes and octahedra are convex, the room between planes has no light from outside,
-    /// and spheres have no shadows.
+    /// Whether the solid casts shadows on its own faces. Boxes and octahedra are convex, no light enters the room between planes from
+    /// outside, and shadows of spheres are not drawn.
     pub const fn has_shadows(&self) -> bool {
         matches!(self, Self::Sponge { .. } | Self::Repeated { round: false })
     }
 
-    /// Number of levels of a sponge; 1 of spheres in place of cubes and of an octahedron in place of a box, by which the gateware tells them
-    /// apart; 0 for other solids.
+    /// Number of levels of a sponge. With the number 1 the gateware distinguishes spheres from cubes, and an octahedron from a box; other
+    /// solids have 0.
     pub const fn levels(&self) -> u32 {
         match *self {
             Self::Octahedron => 1,
@@ -91,7 +91,7 @@ pub struct Solid {
     pub side: [i64; AXES],
 }
 
-/// The place of a point in a solid.
+/// Where a point is, relative to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In the solid.
@@ -122,7 +122,7 @@ pub struct Border {
     pub next: i32,
 }
 
-/// Which of the exits along the axes leaves a prism.
+/// Which of the exits along the axes, in the order in which a ray reaches them, leaves a prism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Exit {
     /// The first: the ray is in a prism while it is in all intervals.
@@ -130,7 +130,7 @@ pub enum Exit {
     First,
     /// The second of three: the ray is in one of three prisms while it is in two of the intervals.
     Second,
-    /// The last: each interval alone is empty.
+    /// The last: the ray is in a prism while it is in any of the intervals.
     Last,
 }
 
@@ -164,8 +164,8 @@ impl Solid {
         [(x / 2) as i32, (y / 2) as i32, (z / 2) as i32]
     }
 
-    /// The coordinate from the centre, s9.12, of a plane perpendicular to each of the axes x, y and z: the lower plane of a box and of a
-    /// sponge, the upper one of planes, and the lower one of the box after the middle one of repeated boxes.
+    /// For each of the axes x, y and z, the coordinate from the centre, s9.12, of one plane perpendicular to the axis: the lower plane of a
+    /// box or sponge, the upper of two planes, or the lower plane of the box above the middle box of repeated boxes.
     pub fn borders(&self) -> [i32; 3] {
         self.half().map(|half| match self.rule {
             Rule::Planes => half,
@@ -196,7 +196,7 @@ impl Solid {
         })
     }
 
-    /// The place of a point with these intervals.
+    /// Where a point with these intervals is.
     pub(super) fn place(&self, k: &[i32; AXES]) -> Place {
         match self.rule {
             Rule::Box => outside(k, 1, 0..3).unwrap_or(Place::Solid),
@@ -260,7 +260,7 @@ impl Solid {
         }
     }
 
-    /// The surface at a hit by a ray that has crossed a border along the axis `face` last, with the axes mirrored that are `down`.
+    /// The surface that a ray hits after its last crossing of a border, along the axis `face`. `down` states which axes are mirrored.
     pub(super) fn surface(&self, down: &[bool; AXES], face: usize) -> Surface {
         match self.rule {
             Rule::Octahedron => {
@@ -286,7 +286,7 @@ fn prism(exit: Exit, border: impl Fn(usize) -> Option<Border>) -> Prism {
     }
 }
 
-/// The place of a point outside a box, `None` inside. `above` is the first interval above the box.
+/// Where a point outside of a box is; `None` for a point inside. `above` is the first interval above the box.
 fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
     if axes.clone().any(|axis| k[axis] >= above) {
         return Some(Place::Gone);
@@ -298,11 +298,11 @@ fn outside(k: &[i32; AXES], above: i32, axes: Range<usize>) -> Option<Place> {
     })
 }
 
-/// The place of a point in the cube about a sponge.
+/// The empty prism of a point in the cube about a sponge.
 ///
-/// The sponge is what three extruded carpets have in common: a point is outside if, at some level, two of its digits are 1. It is then in a
-/// prism between the borders of the two cells, which goes through the whole sponge along the third axis. With three such digits there are
-/// three prisms.
+/// The sponge is the intersection of three extruded Sierpinski carpets: a point is outside if two of its digits are 1 at some level. It is
+/// then in a prism between the borders of the two cells, which goes through the whole sponge along the third axis. With three such digits
+/// there are three prisms.
 ///
 /// Returns which exit leaves the prism, and the cells above its borders; `None` in the sponge.
 fn sponge(k: &[i32; AXES], cells: i32, last: i32) -> Option<(Exit, [i32; AXES])> {

@@ -1,6 +1,6 @@
 //! Spheres of a lattice: a ray in the box about a sphere meets the sphere, or leaves the box.
 //!
-//! The direction D is doubled until its length is from 1 to 2, so that short numbers are as exact for all cameras.
+//! The direction D is doubled until its length is from 1 to 2, so that numbers of few bits are equally exact for all cameras.
 
 use super::intervals::{AXES, PERIOD, Solid};
 use super::narrow::{floor, nearest, normalised, squared};
@@ -19,7 +19,8 @@ const ROOT: u32 = 15;
 /// Fraction bits of the mantissa of 1/|D|².
 const MANTISSA: i32 = 18;
 
-/// The parameter at which a ray in a sphere's box meets the sphere. `point` is the ray's point at the parameter `t`.
+/// The parameter at which a ray in a sphere's box meets the sphere; `None` if it misses the sphere. `point` is the ray's point at the
+/// parameter `t`.
 pub(super) fn meet(
     exits: &Exits,
     solid: &Solid,
@@ -34,7 +35,7 @@ pub(super) fn meet(
         let within = point[axis] & ((1 << PERIOD) - 1);
         (if within >= side { 0 } else { within }) - radius
     });
-    // |q|² − r², of which 24 fraction bits are computed, rounded down.
+    // |q|² − r², computed with 24 fraction bits and then rounded down.
     let beyond = (q.map(|x| x * x).iter().sum::<i64>() - radius * radius) >> (24 - BEYOND);
     if beyond < 0 {
         return Some(t);
@@ -43,8 +44,8 @@ pub(super) fn meet(
     let along: i64 = (0..3).map(|axis| q[axis] * exits.speed(beam, axis)).sum();
     let fraction = 13 + words.direction - beam.doublings;
     let along = floor(along, fraction as i32 - words.along as i32);
-    // (q·D)² − |D|²·(|q|² − r²), an integer to the one below. The first square is without that of the bits after the first 18, and |D|² is
-    // rounded to nearest.
+    // (q·D)² − |D|²·(|q|² − r²), rounded down; an integer becomes the next lower integer. The first square omits the square of the bits
+    // after the first 18, and |D|² is rounded to nearest.
     let square = squared(along, words.along.saturating_sub(10));
     let square = floor(square, 2 * words.along as i32 - REST as i32);
     let length = nearest(beam.square, 23 - SQUARE as i32).min((4 << SQUARE) - 1);
@@ -53,13 +54,13 @@ pub(super) fn meet(
     if along >= 0 || rest < 0 {
         return None;
     }
-    // A root of 0 counts as one of 1.
+    // A square of 0 counts as 1.
     let (root, shift) = normalised((rest >> (REST - SHORT_REST)).max(1));
     let root = floor(
         i64::from(root),
         2 + (shift + SHORT_REST as i32) / 2 - ROOT as i32,
     );
-    // Only a root of 0 is too large.
+    // Only the root of a square of 0, which counts as 1, can make the distance negative.
     let distance = -floor(along, words.along as i32 - ROOT as i32) - root;
     let distance = distance.max(0);
     let inverse = beam.inverse_square;

@@ -13,7 +13,7 @@ pub(super) const fn floor(x: i64, bits: i32) -> i64 {
     }
 }
 
-/// Returns x·2^−`bits`, rounded to nearest, halves up. For negative `bits` the number is multiplied.
+/// Returns x·2^−`bits`, rounded to nearest, ties up. For negative `bits` the number is multiplied.
 pub(super) const fn nearest(x: i64, bits: i32) -> i64 {
     if bits <= 0 {
         floor(x, bits)
@@ -48,15 +48,14 @@ pub(super) const fn shifted(x: i64, shift: i32, bits: u32) -> i64 {
     }
 }
 
-/// The square of x without the square of its lowest `cut` bits: the product of its other bits and of a number as long as x, so that only one
-/// factor is short.
+/// The square of x less the square of its lowest `cut` bits, computed as one product in which one factor is shorter than x.
 pub(super) const fn squared(x: i64, cut: u32) -> i64 {
     let first = x >> cut << cut;
     first * (2 * x - first)
 }
 
-/// A lower bound of 4·√(x·2^shift), from 2^18 to below 2^19 and too small by at most a relative 2^−18, and the even shift that brings x, at
-/// least 1, to the range from 2^32 to 2^34.
+/// Returns a lower bound of 4·√(x·2^shift), in [2^18, 2^19) and at most a relative 2^−18 too small, and the shift: the even number that
+/// brings x, at least 1, to [2^32, 2^34).
 pub(super) fn normalised(x: i64) -> (u32, i32) {
     let shift = 32 - (x.ilog2() as i32 & !1);
     (normalised_root(shifted(x, shift, 34) as u64), shift)

@@ -16,7 +16,7 @@ pub struct Beam {
     pub column: u32,
     /// Row of the pixel.
     pub row: u32,
-    /// Whether the ray leads down along an axis; the axis is then mirrored.
+    /// Whether the ray points down along each axis; the axis is then mirrored.
     pub down: [bool; AXES],
     /// Magnitude of the direction's component along each axis, u0.28: an odd number, the middle of the interval of the truncated
     /// component.
@@ -25,7 +25,7 @@ pub struct Beam {
     pub inverse: [Inverse; AXES],
     /// The number of doublings, 0 to 3, that brings the direction's length to between 1 and 2.
     pub doublings: u32,
-    /// The first bits of D's components along x, y and z, s1.10, or of half of these for an octahedron; rounded down.
+    /// D's components along x, y and z, s1.10, rounded down; for an octahedron, half of them.
     pub heading: [i32; 3],
     /// The square of the doubled direction's length, u2.23, rounded down.
     pub square: i64,
@@ -33,11 +33,11 @@ pub struct Beam {
     pub inverse_square: Inverse,
     /// Where the ray leaves the empty prism around the eye.
     pub start: Way,
-    /// Whether the ray leads away from the flat solid.
+    /// Whether the ray points away from the flat solid.
     pub is_away: bool,
 }
 
-/// A place on a ray's way.
+/// A point on a ray's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
     /// The parameter T, u14 with the fraction bits of `Words::parameter`.
@@ -57,8 +57,8 @@ impl Beam {
         })
     }
 
-    /// How far up the ray leads ([`RayEnd::height`](crate::raymarch::RayEnd::height)): the first ten bits of the component along z, divided
-    /// by those of the largest component and one more.
+    /// Height of the direction ([`RayEnd::height`](crate::raymarch::RayEnd::height)): the first ten bits of the component along z, divided
+    /// by the first ten bits of the largest component plus 1.
     pub fn height(&self) -> u8 {
         let [x, y, z] = self.heading.map(magnitude);
         match self.heading[2] < 0 {
@@ -81,8 +81,8 @@ impl Exits {
         // The direction D, s1.27, rounded down: the component k stands for the middle of its interval, k + 1/2. The magnitude of a negative
         // component is therefore its complement. The component wraps only for invalid frame constants.
         let [x, y, z] = self.direction(eye, column, row).map(|part| part << 1 >> 4);
-        // The fourth diagonal of an octahedron is the sum of the others: of three middles k + 1/2, the middle of the next integer. The sum of
-        // two diagonals is half an axis.
+        // The component along the fourth diagonal of an octahedron is the sum of the others. The sum of three middles k + 1/2 is again the
+        // middle of an interval. The sum of the components along two diagonals is half the component along an axis.
         let first @ [a, b, c] = [x, y, z].map(|part| part >> 17);
         let (fourth, heading) = match self.octahedron() {
             Some(_) => ((x + y + z + 1) << 4 >> 4, [b + c, a + c, a + b]),
@@ -91,10 +91,10 @@ impl Exits {
         let direction = [x, y, z, fourth];
         let down = direction.map(|part| part < 0);
         let speed = direction.map(|part| 2 * magnitude(part) + 1);
-        // The square is that of 23 bits, without the square of the lowest 6.
+        // The squares of the first 23 bits, without the square of the lowest 6 of them.
         let [x, y, z, _] = speed.map(|speed| squared(i64::from(speed >> 5), 6));
         let square = x + y + z;
-        // No direction that a camera can have is shorter than 1/8.
+        // No camera has a direction shorter than 1/8.
         let doublings = (0..3).find(|&doublings| square >> (46 - 2 * doublings) != 0);
         let doublings = doublings.unwrap_or(3);
         let square = square >> (23 - 2 * doublings);
@@ -114,11 +114,11 @@ impl Exits {
                 exponent: quarter.exponent + doublings as i32 - 2,
                 ..quarter
             },
-            // The face of a ray that starts in the solid is perpendicular to the z axis.
+            // A ray that starts in the solid hits a face perpendicular to the z axis.
             start: Way {
                 t: self.near,
                 face: 2,
-                // An octahedron's fourth slab has no interval below.
+                // A lane needs no border of an octahedron's fourth slab, so no ray is below the slab.
                 reached: [i32::MIN, i32::MIN, i32::MIN, 0],
             },
             is_away: false,
@@ -139,7 +139,7 @@ impl Exits {
         beam.is_away || self.solid.as_ref().is_none_or(has_left)
     }
 
-    /// The place where a ray from an origin at `corner` leaves a prism that contains `way`.
+    /// The point where a ray with its origin at `corner` leaves the prism that contains the point `way`.
     pub(super) fn left(&self, beam: &Beam, corner: &[i64; AXES], way: &Way, prism: &Prism) -> Way {
         let borders = [0, 1, 2, 3].map(|axis: usize| {
             let border = prism.borders[axis]?;
@@ -148,8 +148,8 @@ impl Exits {
         self.leave(beam, way, prism.exit, &borders)
     }
 
-    /// The place where a ray leaves a prism that contains `way`. `borders` has the distance from the eye to each of the prism's borders, and
-    /// the interval beyond it.
+    /// The point where a ray leaves the prism that contains the point `way`. `borders` has the distance from the eye to each of the prism's
+    /// borders, and the interval beyond it.
     fn leave(
         &self,
         beam: &Beam,
@@ -180,8 +180,8 @@ impl Exits {
         i64::from((beam.speed[axis] >> 1 >> cut) << 1 | 1)
     }
 
-    /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12: rounded down, and in a
-    /// lattice to nearest. `corner` is the ray's origin, s13.12, likewise.
+    /// The point of a ray at the parameter `t`, from the solid's lower corner along each mirrored axis, s15.12: rounded down, but to
+    /// nearest in a lattice. `corner` is the ray's origin in the same coordinates, s13.12.
     pub(super) fn point(&self, beam: &Beam, corner: &[i64; AXES], t: i64) -> [i64; AXES] {
         let bits = (self.words.parameter + self.words.direction + 1) as i32 - 12;
         let is_lattice = (self.solid).is_some_and(|solid| solid.rule.is_lattice());

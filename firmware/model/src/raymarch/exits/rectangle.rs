@@ -6,13 +6,13 @@ use glint_core::fixed::Q32_32;
 
 use super::vectors::{Scaled, product};
 
-/// Columns of a group. Rectangles consist of whole groups: the gateware finds the spheres of a group at once.
+/// Number of columns of a group. Rectangles consist of whole groups: the gateware finds the spheres of a group at once.
 const GROUP: u32 = 8;
 
-/// Far limit, as an exponent of the depth in field units.
+/// Base-2 logarithm of the far limit's depth in field units.
 pub(super) const FAR: u32 = 11;
 
-/// Pixels from a first to a last column and row.
+/// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rectangle {
     /// First and last column, of whole groups of eight; the first exceeds the last if no pixel sees the sphere.
@@ -22,7 +22,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// No pixel.
+    /// The rectangle without pixels.
     pub(super) const NONE: Self = Self {
         columns: [1, 0],
         rows: [1, 0],
@@ -86,7 +86,7 @@ impl Screen {
         // The camera's axes may be longer than 1 by 10^−4.
         let radius = radius + (radius >> 10) + 4;
         let place = [0, 1, 2].map(|i: usize| centre[i] - self.eye[i]);
-        // Of 27 bits at most.
+        // Each has at most 27 bits.
         let [right, down, depth] = self.axes.map(|axis| (product(&axis, &place) >> 23) as i32);
         if depth - radius >= 1 << (FAR + FRACTION) {
             return Rectangle::NONE;
@@ -107,7 +107,7 @@ impl Screen {
         let slopes = |side: i32| {
             let square = wide(side, side) + divisor;
             let root = Scaled::new(square.cast_unsigned(), 0).by(reciprocal(square));
-            // The root is rounded.
+            // The addend covers the rounding of the root.
             let reach = wide(radius, root.fixed(0) as i32 + 2);
             [-reach, reach].map(|reach| {
                 let dividend = wide(side, depth) + reach;
@@ -124,7 +124,7 @@ impl Screen {
             let pixel = |slope: i32| {
                 (slope * width as i32 / 2).div_euclid(self.half_width) + (count / 2) as i32
             };
-            // A slope is rounded, and so are the camera's axes.
+            // The margin covers the rounding of the slopes and of the camera's axes.
             let margin = 2 + width as i32 / self.half_width;
             let [first, last] = slopes.map(pixel);
             let most = count as i32 - 1;

@@ -24,8 +24,8 @@ impl Exits {
         }
     }
 
-    /// The vector from the centre of the sphere or the apex of the cone that was hit to the hit, in field units with 12 fraction bits; `None`
-    /// if the ray hit neither. It is about as long as the radius. T has 10 fraction bits.
+    /// The vector to the hit from the centre of the sphere, or from the apex of the cone, in field units with 12 fraction bits; `None` if
+    /// the ray hit neither. From a centre, it is about as long as the radius. It is computed from 10 fraction bits of T.
     pub fn normal(&self, beam: &Beam, end: &End) -> Option<[i32; 3]> {
         let State::Hit(surface) = end.state else {
             return None;

@@ -18,11 +18,11 @@ use super::words::Words;
 use crate::error::RenderError;
 use crate::raymarch::directions::{Directions, check};
 
-/// Largest number of spheres that are met in cones.
+/// Largest number of spheres of a list, which rays meet in cones.
 const SEEN_SPHERES: usize = if SPHERES.is_built { MAX_SPHERES } else { 0 };
 
-// Named, so that the compiler reads the decimals: the soft core would take 6,000 cycles for each in every frame.
-/// Field units per world unit of a sponge of five or six levels: the smallest cells of six levels have 1/8 unit.
+// Constants, so that the compiler parses the decimals: the soft core would take 6,000 cycles for each, in every frame.
+/// Field units per world unit of a sponge of five or six levels: the side of the smallest cells of six levels is 1/8 field unit.
 const DEEP_SPONGE: Q32_32 = Q32_32::lit("45.5625");
 /// Field units per world unit of an octahedron.
 const OCTAHEDRON: Q32_32 = Q32_32::lit("81");
@@ -32,18 +32,18 @@ const OCTAHEDRON: Q32_32 = Q32_32::lit("81");
 pub struct Eye {
     /// Position in field units, s13.12: in x, y and z, or along the first three diagonals of an octahedron.
     pub origin: [i32; 3],
-    /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis; of a repeated solid, the position in the
-    /// cell about the origin.
+    /// Position from the solid's lower corner, s13.12, along each axis, and along each mirrored axis; for a repeated solid, the position in
+    /// the cell about the origin.
     pub corners: [[i64; AXES]; 2],
-    /// Direction D of the first pixel's ray along each axis, s2.30. The fourth number is not used: a ray's component along the fourth axis is
-    /// the sum of the three others.
+    /// Direction D of the first pixel's ray along each axis, s2.30. The fourth number is not used: a ray's component along the fourth axis
+    /// is the sum of the three others.
     pub first: [i32; AXES],
     /// The empty prism around the eye.
     pub start: Start,
 }
 
 /// The empty prism around an eye, which all rays leave first. It has no borders if the eye is not in an empty prism, or if the eye is on a
-/// border, so that the prism is not the same for all rays: they then start at the near plane.
+/// border, so that the prism is not the same for all rays. The rays then start at the near plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Start {
     /// The exit at which a ray leaves the prism.
@@ -61,14 +61,14 @@ pub struct Side {
     pub distance: i64,
     /// The interval beyond the border; 0 without a border.
     pub next: i32,
-    /// Whether a ray to this side leads away from the solid.
+    /// Whether a ray to this side points away from the solid.
     pub is_away: bool,
     /// Whether the interval beyond the border is above the solid.
     pub is_last: bool,
 }
 
 impl Eye {
-    /// An eye at a position in field units, s13.12, with the directions of its rays and its prism still to be set.
+    /// An eye at a position in field units, s13.12. The directions of its rays and its prism are not set.
     pub fn at(origin: [i32; 3], solid: &Option<Solid>) -> Self {
         Self::placed(along(solid, origin.map(i64::from)), solid)
     }
@@ -95,7 +95,7 @@ impl Eye {
         [0, 1, 2].map(|axis: usize| ((up[axis] - down[axis]) / 2) as i32)
     }
 
-    /// The position from the solid's lower corner, with the axes mirrored that are `down`.
+    /// The position from the solid's lower corner. `down` states which axes are mirrored.
     pub(super) fn corner(&self, down: &[bool; AXES]) -> [i64; AXES] {
         [0, 1, 2, 3].map(|axis: usize| self.corners[usize::from(down[axis])][axis])
     }
@@ -122,18 +122,18 @@ pub struct Exits {
     pub near: i64,
     /// Largest parameter of a hit.
     pub far: i64,
-    /// The flat solid or the lattice; `None` for a list of spheres alone.
+    /// The flat solid or the lattice; `None` if there is only a list of spheres.
     pub solid: Option<Solid>,
-    /// The rays to the first light; `None` without shadows.
+    /// The shadow rays to the first light; `None` without shadows.
     pub sun: Option<Sun>,
-    /// The spheres: that of a lattice, and those of a list.
+    /// The spheres: first the sphere of a lattice, if any, then the spheres of a list.
     pub spheres: FixedSpheres,
-    /// The pixels by which each eye may see each sphere of `spheres` that is one of a list; none for the right eye without stereo.
+    /// The pixels at which each eye may see each sphere of the list in `spheres`; none for the right eye without stereo.
     pub rectangles: [[Rectangle; SEEN_SPHERES]; 2],
 }
 
 impl Exits {
-    /// Whether pictures of a field are drawn by exits. Rays march in all other fields.
+    /// Whether the rays of a field go by exits. Rays march in all other fields.
     pub fn draws(field: &Field) -> bool {
         match field {
             Field::Primitive(_) => true,
@@ -167,7 +167,7 @@ impl Exits {
         let eye = |i: usize| {
             let eye = Eye::at(views[i].eye().map(|x| units(x, scale) as i32), &solid);
             Eye {
-                // Only spheres of a list need the position in the world, so only builds with such spheres can reduce it themselves.
+                // Only spheres of a list need the position in the world, so only gateware with such spheres reduces it to a cell.
                 origin: match field.is_repeated_union() {
                     true => eye.origin,
                     false => eye.place(),
@@ -220,7 +220,7 @@ impl Exits {
         Ok(exits)
     }
 
-    /// Lets faces that the first light shines on have shadows, if the solid throws any. `direction` is that to the light, s1.14, of length 1.
+    /// Adds shadows to faces that the first light shines on, if the solid casts any. `direction` points to the light, s1.14, of length 1.
     #[must_use]
     pub fn with_shadows(self, direction: [i16; 3]) -> Self {
         let has_shadows = self.solid.is_some_and(|solid| solid.rule.has_shadows());
@@ -285,7 +285,7 @@ impl Exits {
         let world = |[x, y, z, _]: [i32; AXES]| [x, y, z];
         let [across, down] = self.steps.map(world);
         let Eye { origin, first, .. } = self.eyes[eye];
-        // The bits of the parameter T that the constants use.
+        // The cones use 14 fraction bits of the parameter T.
         let near = floor(self.near, self.words.parameter as i32 - 14);
         let sight = Sight::new(origin, [world(first), across, down], near);
         let spheres = self.spheres.list.iter().take(self.spheres.count);
@@ -303,8 +303,8 @@ impl Exits {
         }
     }
 
-    /// Whether an eye is inside a sphere or the flat solid, and not on its surface: in the solid for rays that lead up, and for rays that
-    /// lead down.
+    /// Whether an eye is inside a sphere or the flat solid, and not on its surface: it is in the solid both for rays that point up and for
+    /// rays that point down.
     pub(in crate::raymarch) fn is_inside(&self, eye: usize) -> bool {
         let eye = &self.eyes[eye];
         let in_solid = |solid: &Solid| {
@@ -336,7 +336,7 @@ impl Exits {
 }
 
 impl Start {
-    /// Without a flat solid, all rays lead away.
+    /// The prism without a flat solid: all rays point away.
     fn away() -> Self {
         let side = Side {
             is_away: true,
@@ -348,8 +348,8 @@ impl Start {
         }
     }
 
-    /// The empty prism around an eye at `corners`, if it is the same for all rays that do not lead away from the solid: for each of the
-    /// ways to mirror the axes, the borders along an axis depend only on this axis.
+    /// The empty prism around an eye at `corners`, if it is the same for all rays that do not point away from the solid: the border
+    /// along an axis may only depend on whether this axis is mirrored, not on the other axes.
     fn new(solid: &Solid, corners: &[[i64; AXES]; 2]) -> Self {
         let intervals = corners.map(|corner| solid.intervals(&corner, &[i32::MIN; AXES]));
         let is_away = intervals
@@ -399,8 +399,8 @@ impl Start {
     }
 }
 
-/// The direction of the first pixel's ray, such that the ray of the pixel `middle` has the nearest direction: rounding of the steps changes
-/// the direction by more, the farther a pixel is from this one.
+/// The direction of the first pixel's ray, chosen so that the ray of the pixel `middle` is rounded to nearest: the error from the rounded
+/// steps grows with the distance from this pixel.
 fn first(
     rays: &Directions,
     eye: usize,
@@ -420,8 +420,8 @@ fn first(
     })
 }
 
-/// A vector along the axes of a solid. Those of an octahedron are a quarter of its diagonals, so that no component exceeds the range of
-/// the vector's own; other solids have no fourth axis.
+/// The components of a vector along the axes of a solid. The axes of an octahedron are its diagonals divided by 4, so that no component
+/// exceeds the range of x, y and z; other solids have no fourth axis.
 fn along(solid: &Option<Solid>, [x, y, z]: [i64; 3]) -> [i64; AXES] {
     match solid.map(|solid| solid.rule) {
         Some(Rule::Octahedron) => {
@@ -431,7 +431,8 @@ fn along(solid: &Option<Solid>, [x, y, z]: [i64; 3]) -> [i64; AXES] {
     }
 }
 
-/// The solid of a field that has no list of spheres, and the field units per world unit. `world` is the field as rays that march see it.
+/// The flat solid or lattice of a field, `None` for a list of spheres, and the field units per world unit. `world` is the field as marching
+/// rays use it.
 fn placed(primitive: &Primitive, world: &Placed<Kind>) -> (Option<Solid>, Q32_32) {
     let constants = match &world.solid {
         Kind::Flat(flat) => Some(flat.constants()),

@@ -1,4 +1,4 @@
-//! Hard shadows: from a hit on a face that the first light shines on, a second ray leads to the light.
+//! Hard shadows: from a hit on a face that the first light shines on, a shadow ray goes to the light.
 
 use glint_core::field::Surface;
 
@@ -8,30 +8,30 @@ use super::ray::{Beam, Way};
 use super::setup::Exits;
 use crate::raymarch::State;
 
-/// Exponent of the distance, with 12 fraction bits, to whose multiples a hit is rounded along the normal of its face: that of the smallest
-/// cells of a sponge. All faces that have shadows are at multiples of it, from the solid's lower corner.
+/// A hit is rounded along the normal of its face to a multiple of 2^`GRID`, with 12 fraction bits: the side of a sponge's smallest cells.
+/// All faces that can be in shadow are at such multiples from the solid's lower corner.
 const GRID: u32 = 9;
 
-/// Bits of a coordinate of a hit from the solid's lower corner.
+/// Number of bits of a hit's coordinate from the solid's lower corner.
 const SPOT: u32 = 19;
 
 impl Exits {
-    /// Whether the solid is between the end of a ray, on a face that is turned to the first light, and the light; and the number of
-    /// evaluations of the ray to the light.
+    /// Whether the end of a ray is in shadow: on a face that is turned to the first light, with the solid between the face and the light.
+    /// Also returns the number of evaluations of the shadow ray.
     // Not inlined, so that the code for a frame without shadows takes fewer lines of the instruction cache.
     #[inline(never)]
     pub(super) fn shadow(&self, beam: &Beam, end: &End) -> (bool, u32) {
         let Some((ray, corner)) = self.light_ray(beam, end) else {
             return (false, 0);
         };
-        // A parameter that is not saturated.
+        // The largest parameter that is not saturated.
         let limit = (1 << (14 + self.words.parameter)) - 2;
         let found = self.follow(&ray, &corner, None, limit);
         (matches!(found.state, State::Hit(_)), found.steps)
     }
 
-    /// The ray from a hit to the first light. It starts on the plane of the face, in the interval before it, at the
-    /// returned position from the solid's lower corner.
+    /// The shadow ray from a hit to the first light, and its origin from the solid's lower corner. It starts on the plane of the face, in
+    /// the interval before the plane. `None` for an end that cannot be in shadow.
     fn light_ray(&self, beam: &Beam, end: &End) -> Option<(Beam, [i64; AXES])> {
         let sun = self.sun.as_ref()?;
         let solid = self

@@ -1,18 +1,18 @@
-//! The cones in which an eye sees a solid cone: that of its base, that of its lateral face, and that of its section by the near plane.
+//! The cones in which an eye sees a solid cone: the cones of its base, of its lateral face, and of its section by the near plane.
 //!
 //! With q from the apex to the eye, k the ratio of radius to height, and the z axis as that of the solid cone, a ray meets the double cone
 //! x² + y² = k²·z² about the apex at the solutions of A·T² + 2·B·T + C = 0, where A = Dx² + Dy² − k²·Dz², B = qx·Dx + qy·Dy − k²·qz·Dz and
 //! C = qx² + qy² − k²·qz². Outside of the double cone C is positive, and B² − A·C is the product of two linear functions of D, those of the
 //! tangent planes through the eye: f² − a² with f = k·(qz·Dr − E·Dz) and a = √C·Dφ, where E is the eye's distance from the axis, r the
-//! direction from the axis to the eye, and φ that around the axis. With f > 0 the ray meets the lower half first at T = C/(ρ − B), where
-//! ρ² = f² − a²: as for spheres, the root is in the divisor. −B is the divisor's addend in place of f.
+//! direction from the axis to the eye, and φ the direction around the axis. With f > 0 the ray meets the lower half first at T = C/(ρ − B),
+//! where ρ² = f² − a²: as for spheres, the root is in the divisor. −B is the divisor's addend in place of f.
 //!
-//! An eye above the apex in the upper half sees the lower half all around, with no outline. There C is negative, and the ray meets the lower
-//! half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half sees the lateral face nowhere. Only for an eye close to the
+//! An eye above the apex in the upper half sees the lower half all around, with no outline. There C is negative, and the ray meets the
+//! lower half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half does not see the lateral face. Only for an eye close to the
 //! surface of the upper half are ρ and B nearly equal.
 //!
-//! The base is a disc, which an eye below its plane sees in a cone, as the disc of a sphere in the near plane. The lateral face is before the
-//! plane for an eye above the plane, and behind it for an eye below.
+//! The base is a disc, which an eye below its plane sees in a cone, as the disc of a sphere in the near plane. The lateral face is before
+//! the plane for an eye above the plane, and behind it for an eye below.
 //!
 //! The section by the near plane has the points x² + y² < k²·z² of the plane, again functions that are linear in a pixel's column and row.
 
@@ -37,7 +37,8 @@ const UP: Vector = [0, 0, 1 << 30];
 const DOWN: Vector = [0, 0, -1 << 30];
 
 impl Sight {
-    /// Computes the cones of a solid cone, whose number and rectangle are those of `cone`. `is_cut` states whether the near plane may cut it.
+    /// Computes the cones of a solid cone, whose number and rectangle are those of `cone`. `is_cut` states whether the near plane may cut
+    /// it.
     // Not inlined, because few frames have a solid cone.
     #[inline(never)]
     pub(super) fn solid_cone(
@@ -63,14 +64,14 @@ impl Sight {
         cone.kind = ConeKind::Sphere;
     }
 
-    /// Sets the numbers of the base and its plane.
+    /// Sets the constants of the base and its plane.
     fn base(&self, shape: &FixedCone, cone: &mut Cone, middle: &Pixel) {
         let [x, y, z] = self.origin;
         let up = -shape.half - z;
         let mut to_plane = Scaled::new(up.unsigned_abs().into(), -12);
         let (axis, halvings) = if up >= 0 {
             cone.kind = ConeKind::Base;
-            // Smaller by 2^−17, so that faces behind the plane are behind it after rounding, too.
+            // Smaller by 2^−17, so that faces behind the plane are also behind it after rounding.
             to_plane = to_plane.by(Scaled::new((1 << 17) - 1, -17));
             // Where the ray meets the plane, in radii, times D's component along z.
             let axes = [[up, 0, x], [0, up, y]];
@@ -92,7 +93,7 @@ impl Sight {
         cone.distance = distance(to_plane.halved(halvings));
     }
 
-    /// Sets the numbers of the lateral face. Returns `false` for an eye that does not see it.
+    /// Sets the constants of the lateral face. Returns `false` for an eye that does not see it.
     fn lateral(&self, shape: &FixedCone, cone: &mut Cone, middle: &Pixel) -> bool {
         let q = self.beside_surface(shape);
         let [x, y, z] = q.map(i64::from);
@@ -194,13 +195,13 @@ impl Sight {
         [q[0] + a, q[1] + b, q[2] + along]
     }
 
-    /// Sets the numbers of the section by the near plane.
+    /// Sets the constants of the section by the near plane.
     fn section(&self, shape: &FixedCone, cone: &mut Cone, middle: &Pixel) {
         let [x, y, z] = self.origin;
         let z = z - shape.half;
         let near = self.near.fixed(12).unsigned_abs();
         let [radius, height] = [shape.radius, 2 * shape.half].map(|x| u64::from(x.unsigned_abs()));
-        // Radius, height and the numbers of the plane such that all functions are below 1.
+        // Scales radius and height so that all functions are below 1.
         let most = |sum: u32| u64::from(sum) + 4 * near;
         let sum =
             height * most(x.unsigned_abs() + y.unsigned_abs()) + radius * most(z.unsigned_abs());
@@ -241,7 +242,7 @@ impl Sight {
         }
     }
 
-    /// A number with the bits of all magnitudes of a function in the corners of a cone's rectangle, 30 fraction bits.
+    /// The bitwise OR of a function's magnitudes in the corners of a cone's rectangle, 30 fraction bits.
     fn largest(&self, cone: &Cone, function: &Function) -> u64 {
         let [columns, rows] = [cone.rectangle.columns, cone.rectangle.rows];
         let corners = [0, 1, 2, 3].map(|i: usize| self.pixel([columns[i % 2], rows[i / 2]]));
@@ -250,7 +251,7 @@ impl Sight {
         })
     }
 
-    /// A number with the bits of the changes of a function per column and row, 30 fraction bits.
+    /// The bitwise OR of the magnitudes of a function's changes per column and row, 30 fraction bits.
     fn largest_change(&self, function: &Function) -> u64 {
         let [_, step, down] = &self.directions;
         function.change(step).unsigned_abs() | function.change(down).unsigned_abs()

@@ -10,8 +10,7 @@ use super::words::Inverse;
 const LENGTH: i32 = 22;
 /// Fraction bits of the square of the root.
 const SQUARE: i32 = 30;
-/// A ray meets a sphere if the square of the root exceeds 2 to the power of minus this number: a tangent misses, however its words are
-/// rounded.
+/// A ray meets a sphere if the square of the root exceeds 2^−`LEAST`, so that a tangent ray misses with any rounding of the words.
 const LEAST: i32 = 20;
 /// Fraction bits of the mantissa of a reciprocal.
 const MANTISSA: i32 = 18;
@@ -26,12 +25,12 @@ pub struct Met {
 }
 
 impl Exits {
-    /// The first sphere of the list that a ray meets up to the far limit, the first in the list of several at one parameter, and the number
-    /// of tested cones.
+    /// The first sphere of the list that a ray meets up to the far limit, and the number of tested cones. Of several spheres at one
+    /// parameter, the first in the list counts.
     pub fn meet(&self, cones: &[Cones; 2], beam: &Beam) -> (Option<Met>, u32) {
         let mut best: Option<Met> = None;
         let mut tests = 0;
-        // The parameters between which the faces of a solid cone are, other than its base.
+        // The lateral face and the section of a solid cone are between these parameters.
         let mut limits = (0, i64::MAX);
         for cone in cones[beam.eye].list() {
             if !cone.rectangle.holds(beam.column, beam.row) {
@@ -59,7 +58,7 @@ impl Exits {
         (best.filter(|met| met.t <= self.far), tests)
     }
 
-    /// The parameter at which a ray crosses the plane of a solid cone's base, or the largest number.
+    /// The parameter at which a ray crosses the plane of a solid cone's base; `i64::MAX` if it never does.
     #[inline(never)]
     fn crossing(&self, beam: &Beam, cone: &Cone) -> i64 {
         let forward = cone.forward_at(beam.column, beam.row);
@@ -69,7 +68,7 @@ impl Exits {
         }
     }
 
-    /// The parameter at which a ray in a cone meets the sphere or the face, if this is not before the near plane.
+    /// The parameter at which a ray in a cone meets the sphere or the face; `None` if it does not, or before the near plane.
     fn meet_cone(&self, beam: &Beam, cone: &Cone) -> Option<i64> {
         let (column, row) = (beam.column, beam.row);
         let sides = cone.sides.map(|side| side.at(column, row, cone.shift));
@@ -78,7 +77,7 @@ impl Exits {
             return None;
         }
         let forward = cone.forward_at(column, row);
-        // The squares are without those of the bits after the first 18.
+        // The squares omit the square of the bits after the first 18.
         let fraction = self.words.outline as i32;
         let cut = (fraction - 16).max(0) as u32;
         let square = |x| squared(floor(x, FRACTION as i32 - fraction), cut);
@@ -86,7 +85,7 @@ impl Exits {
         let rounded = |rest| floor(rest, 2 * fraction - SQUARE);
         let (rest, least) = match cone.kind {
             ConeKind::Limit => return None,
-            // Rounded down, and an integer to the one below.
+            // Rounded down; an integer becomes the next lower integer.
             ConeKind::Sphere => (rounded(square(forward) - a - b - 1), SQUARE - LEAST),
             ConeKind::Base | ConeKind::Section => (rounded(square(forward) - a - b - 1), 0),
             ConeKind::Lateral => (rounded(square(forward) - a - 1), 0),
@@ -120,9 +119,9 @@ impl Exits {
         (t >= self.near).then_some(t)
     }
 
-    /// The parameter with a divisor of 22 fraction bits.
+    /// The parameter at a hit: the distance of the cone divided by `divisor`, which has 22 fraction bits.
     fn parameter(&self, cone: &Cone, divisor: i64) -> i64 {
-        // It exceeds 24 bits only for invalid constants.
+        // The divisor exceeds 24 bits only for invalid constants.
         let inverse = Inverse::of(((divisor as u32 & 0xFF_FFFF) << 1 | 1) << 3, &self.words);
         let mantissa = floor(
             i64::from(inverse.mantissa),

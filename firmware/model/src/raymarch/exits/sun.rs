@@ -1,23 +1,22 @@
-//! The rays from hits to the first light.
+//! The shadow rays from hits to the first light.
 
 use super::words::{Inverse, Words};
 
-/// The rays to the first light, which is far away: all have its direction.
+/// The shadow rays. The light is far away, so all of them have one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sun {
     /// The direction, s1.14, of length 1.
     pub direction: [i16; 3],
-    /// Whether the direction leads down along each axis.
+    /// Whether the direction points down along each axis.
     pub down: [bool; 3],
-    /// Magnitude of the direction's components, u0.28: half of those of a direction of length 1, odd numbers, the middles of
-    /// intervals.
+    /// Magnitudes of the components of half the direction, u0.28: odd numbers, the middles of their intervals.
     pub speed: [u32; 3],
     /// Reciprocals of `speed`.
     pub inverse: [Inverse; 3],
 }
 
 impl Sun {
-    /// The rays to a light in this direction, s1.14, of length 1.
+    /// The shadow rays to a light in this direction, s1.14, of length 1.
     pub fn new(direction: [i16; 3], words: &Words) -> Self {
         let inverse = Self::speed(direction).map(|speed| Inverse::of(speed, words));
         Self::with_inverse(direction, inverse)

@@ -1,14 +1,14 @@
 //! Vectors of integers, and positive numbers with an exponent, for the constants of a frame.
 //!
-//! The soft core computes cones mostly in the functions of this module. They are not inlined, so that their code stays in its instruction
-//! cache, and have no divisions, which it lacks for 64 bits.
+//! The soft core computes cones mostly in the functions of this module. They are not inlined, so that their code stays in the
+//! instruction cache, and they do not divide, because the soft core has no 64-bit division.
 
 use glint_core::root::inverse_root;
 use glint_core::vector::{self, cross, dot};
 
 use super::narrow::nearest;
 
-/// A vector. A *unit vector* has the length 1 and 30 fraction bits.
+/// A vector. A *unit vector* has length 1, with 30 fraction bits.
 pub(super) type Vector = [i32; 3];
 
 /// Fraction bits of a unit vector.
@@ -20,7 +20,7 @@ pub(super) fn product(a: &Vector, b: &Vector) -> i64 {
     dot(*a, *b)
 }
 
-/// The unit vector of the direction of a vector. The vector 0 has the direction of the z axis.
+/// The unit vector in the direction of a vector; for the zero vector, along the z axis.
 pub(super) fn unit(vector: [i64; 3]) -> Vector {
     vector::unit::<UNIT>(vector).unwrap_or([0, 0, 1 << UNIT])
 }
@@ -41,13 +41,13 @@ fn shortest_axis(vector: &Vector) -> Vector {
     [0, 1, 2].map(|i: usize| i32::from(i == axis))
 }
 
-/// Returns x·2^−`bits`, rounded to nearest, halves up. For negative `bits` the number is multiplied.
+/// [`nearest`], as a function that is not inlined.
 #[inline(never)]
 pub(super) const fn rounded(x: i64, bits: i32) -> i64 {
     nearest(x, bits)
 }
 
-/// Number of bits from the first 1 on.
+/// Number of bits of x without leading zeros; 0 for 0.
 #[inline(never)]
 pub(super) const fn bits(x: u64) -> i32 {
     let (high, low) = ((x >> 32) as u32, x as u32);
@@ -64,7 +64,7 @@ pub(super) const fn bits(x: u64) -> i32 {
     bits + word as i32
 }
 
-/// A number of at least 0: a mantissa of 31 bits, rounded down, and an exponent of 2. The mantissa 0 is the number 0.
+/// A non-negative floating-point number: a mantissa of 31 bits, rounded down, times 2^`exponent`. The mantissa 0 is the number 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scaled {
     mantissa: u32,
@@ -100,7 +100,7 @@ impl Scaled {
     /// The reciprocal of the square root of x·2^`exponent`, x at least 1 and the exponent even. Its relative error is at most 5·10^−9.
     #[inline(never)]
     pub(super) fn inverse_root(x: u64, exponent: i32) -> Self {
-        // From 1 to below 4 with 30 fraction bits, times 2^(32 − shift).
+        // The argument is in [1, 4), with 30 fraction bits: x is this integer times 2^(32 − shift).
         let shift = (64 - bits(x)) & !1;
         let root = inverse_root::<2>((x << shift >> 32) as u32);
         Self {
@@ -127,7 +127,7 @@ impl Scaled {
         }
     }
 
-    /// The logarithm to the base 2, rounded down; of 0, a number far below all others.
+    /// The base-2 logarithm, rounded down; for 0, far below the logarithm of any other number.
     pub(super) const fn log2(self) -> i32 {
         self.exponent + Self::BITS - 1
     }
@@ -142,10 +142,10 @@ impl Scaled {
         rounded(self.mantissa as i64, exponent - self.exponent)
     }
 
-    /// The product with x, which has 60 fraction bits. The product has 30, rounded to nearest.
+    /// The product with x (60 fraction bits), with 30 fraction bits, rounded to nearest.
     #[inline(never)]
     pub(super) const fn times(self, x: i64) -> i64 {
-        // Without the last 32 bits of 95.
+        // The product of 95 bits without its lowest 32 bits.
         let low = (self.mantissa as u64 * (x as u32 as u64)) >> 32;
         let high = self.mantissa as i64 * (x >> 32);
         rounded(high + low as i64, -2 - self.exponent)

@@ -33,21 +33,22 @@ impl Words {
         along: 14,
     };
 
-    /// The magnitude of a component, u0.28, an odd number, as the middle of the interval of a number with [`component`](Self::component)
-    /// fraction bits.
+    /// Truncates a component's magnitude, an odd number, u0.28, to [`component`](Self::component) fraction bits, and returns the middle of
+    /// the interval.
     pub(super) const fn component_of(&self, magnitude: u32) -> u32 {
         let cut = 27 - self.component;
         (magnitude >> 1 >> cut << 1 | 1) << cut
     }
 
-    /// The parameter of a ray at a distance, with 25 bits and these `fraction` bits, times a reciprocal. Rounded down, saturated.
+    /// The parameter of a ray at a distance along an axis: the distance, of 25 bits with `fraction` fraction bits, times a reciprocal.
+    /// Rounded down, saturated.
     pub(super) const fn divided(&self, distance: i64, fraction: u32, inverse: Inverse) -> i64 {
         let Inverse { mantissa, exponent } = inverse;
         let bits = fraction as i32 + self.inverse as i32 - exponent;
         self.parameter_of(distance * mantissa as i64, bits)
     }
 
-    /// The parameter x with these `fraction` bits. Rounded down, saturated.
+    /// Converts a parameter x with `fraction` fraction bits to the format of T. Rounded down, saturated.
     pub(super) const fn parameter_of(&self, x: i64, fraction: i32) -> i64 {
         let bits = self.parameter as i32 - fraction;
         shifted(x, bits, PARAMETER_INTEGER + self.parameter)
@@ -56,7 +57,7 @@ impl Words {
 
 /// The reciprocal of a number.
 ///
-/// The range of mantissas is about 1, so that a product with one is the other factor plus its product with a signed number below 1/2.
+/// Mantissas are around 1, so that a product with a mantissa is the other factor plus its product with a signed number below 1/2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inverse {
     /// The mantissa, from 3/4 to below 3/2, with the fraction bits of [`Words::inverse`].
@@ -66,8 +67,8 @@ pub struct Inverse {
 }
 
 impl Inverse {
-    /// The reciprocal as the gateware has it: the mantissa, shifted by the exponent modulo 8, in 30 bits, and before it a scale of powers of
-    /// 2^8.
+    /// The reciprocal as the gateware stores it: in the low 30 bits the mantissa, shifted left by the exponent modulo 8; in the two highest
+    /// bits the exponent divided by 8.
     pub const fn word(self) -> u32 {
         (self.exponent as u32 / 8) << 30 | self.mantissa << (self.exponent % 8)
     }
@@ -102,17 +103,17 @@ impl Inverse {
     }
 }
 
-/// Longest fraction of a mantissa from [`TABLE`]; longer ones are divided exactly.
+/// Largest number of fraction bits of a mantissa from [`TABLE`]; longer mantissas are divided exactly.
 const TABLE_BITS: u32 = 22;
 
-/// Bits of an index of [`TABLE`], and of the rest of a number after its first one and its index.
+/// Number of bits of an index of [`TABLE`], and of the remaining bits of a number after its leading 1 and its index.
 const INDEX: u32 = 10;
 const REST: u32 = 24 - INDEX;
 /// Fraction bits of the entries of [`TABLE`].
 const ENTRY: u32 = 24;
 
-/// 1/(1 + i/2^10), u1.24, and its decrease to the next entry. The value is lower than the nearest by half of the largest error of the
-/// interpolation after it, so that errors have both signs.
+/// 1/(1 + i/2^10), u1.24, and its decrease to the next entry. The value is lower than the nearest value by half of the largest error of
+/// the interpolation after it, so that errors have both signs.
 const TABLE: [(u32, u32); 1 << INDEX] = {
     let mut table = [(0, 0); 1 << INDEX];
     let mut i = 0;

@@ -14,7 +14,7 @@ use crate::line::{Line, Piece};
 use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
 use crate::triangle::textured::{Axis, OfTexture, weight};
 
-/// Primitive that a descriptor in memory represents.
+/// The primitive that a descriptor in memory describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// A triangle, with its colour under flat shading, and its texture if it has one. The left and right bounds are rounded to groups.
@@ -26,7 +26,7 @@ pub enum Contents {
 }
 
 impl OfTexture {
-    /// The same texture of the part of its triangle that begins `rows` rows below.
+    /// The texture for the part of its triangle that begins `rows` rows below the triangle's top.
     pub fn moved(&self, rows: i32) -> Self {
         let axes = self.axes.map(|axis| Axis {
             plane: axis.plane.moved_down(rows),

@@ -92,8 +92,8 @@ impl Port {
         self.find_change();
     }
 
-    /// Returns the next edge of the sensor's clock up to the cycle `now`, as its cycle and the pins' levels. `falling` selects falling
-    /// edges.
+    /// Returns the next edge of the sensor's clock up to the cycle `now`: its cycle, and the levels
+    /// of the pins. `falling` selects falling edges.
     pub fn next(&mut self, now: u64, falling: bool) -> Option<(u64, Pins)> {
         while let Some(&levels) = self.frame.get(self.at) {
             // Levels change at the beginning of a period, and PCLK rises in its middle.

@@ -4,7 +4,7 @@ use glint_core::field::MAX_SPHERES;
 use glint_model::raymarch::exits::{Cone, Cones};
 use litex_pac::raymarch::Solid;
 
-/// Number of places for constants of a cone.
+/// Number of words for the constants of a cone.
 const PLACES: usize = Cone::WORDS;
 
 /// The constants that writes to the registers have set, by eye and cone.
@@ -28,7 +28,8 @@ impl ConeWords {
         self.address = self.address.wrapping_add(1);
     }
 
-    /// The cones of each eye, up to the last ones of the register `solid`.
+    /// The cones of each eye. The register `solid` contains the number of the last cone of each
+    /// eye.
     pub fn of(&self, solid: Solid) -> [Cones; 2] {
         let last = [solid.last_cone_left(), solid.last_cone_right()];
         [0, 1].map(|eye: usize| {

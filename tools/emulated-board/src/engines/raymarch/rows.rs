@@ -9,8 +9,8 @@ use glint_model::raymarch::{FieldStats, Palette, RayEnd, Tracer, render_rows};
 /// Number of rows of a strip.
 const ROWS: usize = 16;
 
-/// Draws a field into a picture that already contains its triangles. Returns the counts of its rays, and the number of pixels
-/// that triangles hide.
+/// Draws a field into a picture that already contains the triangles of the frame. Returns the
+/// counts of its rays, and the number of pixels that triangles hide.
 pub fn render(tracer: &Tracer, palette: &Palette, target: &mut FrameBuffer) -> (FieldStats, u32) {
     let pixels = ROWS * target.width as usize;
     let strips = target.colour.chunks_mut(pixels);

@@ -129,7 +129,7 @@ fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option
     const AXIS: u32 = offset::NEXT_LEFT_Y - offset::NEXT_LEFT_X;
     let side = |way: u32, axis: u32| {
         let plane = parameters.word(first + START + way * MIRRORED + 4 * axis);
-        // Along the fourth axis a ray always leads into the slab.
+        // Along the fourth axis, a ray always enters the slab.
         let next = match axis {
             3 => 0,
             _ => solid.interval(parameters.word(first + NEXT + axis * AXIS) >> (16 * way) & 0x1FFF),
@@ -152,7 +152,8 @@ fn start(parameters: &Parameters, solid: &exits::Solid, first: u32, exit: Option
     }
 }
 
-/// The constants of marching rays. `entry` is that of the rays by exits to the bounding box.
+/// The constants of marching rays. `entry` has the constants of the rays by exits up to the
+/// bounding box.
 fn marching(parameters: &Parameters, spheres: &Spheres, entry: Exits) -> Marching {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));

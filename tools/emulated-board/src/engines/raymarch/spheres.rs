@@ -56,11 +56,12 @@ impl Spheres {
         }
     }
 
-    /// The lights of a frame whose lights have the numbers 0 to `last`, with one eye or two.
+    /// The lights of a frame: the lights with the numbers 0 to `last`. `is_stereo` states whether
+    /// the frame has two eyes.
     pub fn lights(&self, last: u8, is_stereo: bool) -> Lights {
         let [has_normals, is_lit, has_highlight] = [0, 1, 2].map(|bit| self.kinds >> bit & 1 != 0);
         Lights {
-            // Without colours by normals there is always a light.
+            // Without colours by normals, there is at least one light.
             count: if is_lit || !has_normals {
                 usize::from(last) + 1
             } else {

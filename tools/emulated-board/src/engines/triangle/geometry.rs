@@ -48,7 +48,7 @@ impl GeometryUnit {
         }
     }
 
-    /// Discards the output, so that the next pass cannot continue it.
+    /// Discards the output, so that the next pass starts with empty lists.
     pub const fn cancel(&mut self) {
         self.has_output = false;
     }
@@ -220,13 +220,15 @@ struct Textures {
     is_drawn: bool,
     /// Address of the vertices' texture coordinates.
     coordinates: u32,
-    /// Number in the frame's table before that of the first texture.
+    /// Offset that is added to a texture number of the mesh, which begins at 1, to get the number
+    /// in the frame's table.
     before: u8,
 }
 
 impl Textures {
-    /// The number of a triangle's texture, and the coordinates of its vertices; `None` without a texture. `first` is the number in the mesh of
-    /// the first vertex of its chunk.
+    /// The number of a triangle's texture in the frame's table, and the texture coordinates of its
+    /// vertices; `None` without a texture. `first` is the index in the mesh of the first vertex of
+    /// the triangle's chunk.
     fn of(&self, ram: &MainMemory, first: u32, triangle: &Triangle) -> Option<(u8, [[i32; 2]; 3])> {
         if !self.is_drawn || triangle.texture == 0 {
             return None;

@@ -256,7 +256,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Draws the list of a band of a set.
+    /// Draws the descriptors in one band's list of a set.
     fn draw_list(&mut self, set: &Set, band: u32, list_shift: u32, ram: &MainMemory) {
         let length = entry(ram, set.lists, band);
         self.counts.read += 1;
@@ -321,13 +321,14 @@ impl Drawing<'_> {
                 let below = part.bounds.top - setup.bounds.top;
                 let textured = texture.and_then(|texture| {
                     let texture = read_texture(ram, *textures, &texture.moved(below))?;
-                    // An estimate: the words of the header. The cache of texels is not modelled.
+                    // An estimate: counts only the words of the texture's header, because the texel
+                    // cache is not modelled.
                     self.counts.read += 2;
                     Some(texture)
                 });
                 let coverage = draw_groups(&part, colour, textured.as_ref(), target, &mut visit);
                 colours = match textured {
-                    // With smooth shading a pixel takes a cycle.
+                    // With smooth shading, the engine draws one pixel per cycle.
                     _ if part.light.is_some() => coverage.covered,
                     Some(textured) => {
                         coverage.covered / quad_pixels(textured.texture.sampler().filter)
@@ -383,7 +384,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Number of pixels with a texture that the engine draws in a cycle.
+/// Number of textured pixels that the engine draws per cycle.
 const fn quad_pixels(filter: Filter) -> u32 {
     match filter {
         Filter::Nearest => 4,
@@ -391,7 +392,8 @@ const fn quad_pixels(filter: Filter) -> u32 {
     }
 }
 
-/// Reads a texture of the frame's table, which is at an address in 16-byte words; `None` if it is none.
+/// Reads a texture through the frame's table at the address `table`, in 16-byte words. Returns
+/// `None` if the table's entry does not point to a valid texture.
 fn read_texture<'a>(ram: &'a MainMemory, table: u32, of: &OfTexture) -> Option<Textured<'a>> {
     let place = entry(ram, table, of.number.into());
     let length = u32::from_le_bytes(ram.array(place.wrapping_add(4))?);

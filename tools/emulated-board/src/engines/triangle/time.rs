@@ -14,7 +14,8 @@ pub const REFUSAL: u64 = 20;
 /// Number of cycles from `cancel` until the engine is ready again. In this time the band buffer is cleared, one row per cycle.
 pub const RECOVERY: u64 = 2_100;
 
-/// Constant number of cycles of a geometry pass, in which parameters are copied and the lists are emptied and closed.
+/// Constant number of cycles of a geometry pass, to copy the parameters and to open and close the
+/// lists.
 const GEOMETRY: u64 = 400;
 /// Constant number of cycles of a raster pass.
 const RASTER: u64 = 250;
@@ -102,7 +103,8 @@ pub struct RasterTime {
 }
 
 impl RasterTime {
-    /// Adds a triangle or a piece of a line that has `groups` groups in the current band, whose colours take `colours` cycles.
+    /// Adds a triangle or a piece of a line to the current band: it has `groups` groups, and its
+    /// colours take `colours` cycles.
     pub fn add(&mut self, groups: u32, colours: u32) {
         self.walking += u64::from(groups);
         self.band += u64::from(groups.max(colours)).max(ENTRY);

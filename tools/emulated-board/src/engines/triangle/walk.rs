@@ -17,7 +17,7 @@ pub struct Walk {
     /// Index of the first word after the mesh.
     past: u64,
     has_begun: bool,
-    /// Number of vertices of the chunks before.
+    /// Number of vertices of the previous chunks.
     vertices: u32,
     /// Whether the iterator has stopped at a chunk that has no vertices, has more than [`MOST`] vertices or triangles, or extends
     /// beyond the mesh's end.

@@ -24,11 +24,13 @@ use std::path::{Path, PathBuf};
 
 /// Compute the attitudes of a log with the firmware's integer arithmetic.
 ///
-/// LOG.csv has a header with t_us,ax,ay,az,gx,gy,gz and optionally temp, in any order, then one sample a line in raw counts.
-/// ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll for each sample: the quaternion from body to world (z up), and intrinsic
-/// z-y-x angles in degrees. The first attitude is the identity; with tilt correction it has yaw 0 and the measured direction of
-/// gravity. Samples whose time stamp is not later than the previous one, or does not fit the next ones, are ignored. Over a gap of
-/// more than half a second, or a restart of the clock, the attitude does not change; a clock of 32 bits may wrap.
+/// LOG.csv has a header with t_us,ax,ay,az,gx,gy,gz and optionally temp, in any order, then one
+/// sample a line in raw counts. ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll for each sample:
+/// the quaternion from body to world (z up), and intrinsic z-y-x angles in degrees. The first
+/// attitude is the identity; with tilt correction it has yaw 0 and the measured direction of
+/// gravity. Samples whose time stamp is not later than the previous time stamp, or does not fit the
+/// next time stamps, are ignored. The attitude does not change over a gap of more than half a
+/// second or a restart of the clock. A 32-bit clock may wrap.
 #[derive(Args)]
 pub struct ReplayArguments {
     /// Log to read; `-` is standard input.
@@ -50,8 +52,9 @@ pub struct ReplayArguments {
     /// Accelerometer scale in LSB per g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
     #[arg(long, value_name = "LSB", default_value = "4096")]
     accel_lsb: String,
-    /// Duration of the rest at the start of the log, in seconds. The mean rate during the rest is the bias; motion during the
-    /// rest is an error. 0 disables the bias measurement.
+    /// Duration of the rest at the start of the log, in seconds. The mean rate during this time is
+    /// the gyroscope's bias; motion during this time is an error. 0 disables the measurement of the
+    /// bias.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     still: Option<String>,
     /// Disable tilt correction by the accelerometer.
@@ -181,7 +184,7 @@ impl ReplayArguments {
                 Stage::Replay => replay,
             };
             if now != stage {
-                // Resets both progress bars, so that only the bar of the new stage is shown.
+                // Resetting both progress bars leaves only the bar of the new stage visible.
                 bars.iter().for_each(Step::reset);
                 stage = now;
             }
@@ -236,13 +239,13 @@ impl ReplayArguments {
         let log = self.log.display();
         if counts.stale > 0 {
             warn(format_args!(
-                "{log}: ignored samples: {}, whose time stamps are not later than the previous one, or do not fit the next ones",
+                "{log}: ignored samples: {}, whose time stamps are not later than the previous time stamp, or do not fit the next time stamps",
                 counts.stale
             ));
         }
         if counts.gaps > 0 {
             warn(format_args!(
-                "{log}: gaps: {}, where the time stamps restart or skip more than half a second; the attitude was held",
+                "{log}: gaps: {}, where the time stamps restart or skip more than half a second; the attitude did not change",
                 counts.gaps
             ));
         }

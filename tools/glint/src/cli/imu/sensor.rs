@@ -47,7 +47,7 @@ fn line(entry: &Entry) -> String {
     format!("{},{ax},{ay},{az},{gx},{gy},{gz}", entry.t_us)
 }
 
-/// Measure the gyroscope's bias at rest; the board stores it and tracks it from then on.
+/// Measure the gyroscope's bias at rest. The board stores the bias, and tracks it from then on.
 #[derive(Args)]
 pub struct CalibrateArguments {
     /// Number of samples to average.

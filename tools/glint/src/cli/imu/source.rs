@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct SensorArguments {
     #[command(flatten)]
     board: BoardChoice,
-    /// Motion of the virtual sensor: a log in raw counts, which begins at the board's start [default: at rest, with noise and
-    /// bias].
+    /// Motion of the virtual sensor: a log of raw counts that starts together with the board
+    /// [default: at rest, with noise and bias].
     #[arg(long, value_name = "LOG.csv")]
     sensor: Option<PathBuf>,
     #[command(flatten)]

@@ -15,7 +15,7 @@ use super::compare;
 use crate::common::{mesh, plain, renderer, running_board};
 use glint_vectors::Camera;
 
-/// Representative fields.
+/// Representative fields, as arguments of the command `field`.
 const FIELDS: [&str; 17] = [
     "menger:4",
     "menger:6",
@@ -62,7 +62,8 @@ fn views() -> [View; 3] {
     ]
 }
 
-/// Returns the settings for one eye, and for two eyes with each tint (a pair of colours for the eyes).
+/// Returns the settings for one eye, and for two eyes with each tint, which is a pair of colours
+/// for the eyes.
 fn eyes() -> [Option<Stereo>; 3] {
     let stereo = |tint| Stereo {
         half_separation: Q32_32::lit("0.03"),
@@ -76,14 +77,15 @@ fn eyes() -> [Option<Stereo>; 3] {
     ]
 }
 
-/// Whether the environment variable `GLINT_RTL_FIELDS` requests more combinations of fields, cameras and sizes, which take a long
-/// time.
+/// Whether the environment variable `GLINT_RTL_FIELDS` requests all combinations of fields, cameras
+/// and sizes, which take a long time.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Draws every fourth field from one camera with one or two eyes; also one field of each kind that is not in `FIELDS`. With
-/// `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye and with two eyes.
+/// Draws every fourth field, and one field of each kind that is not in `FIELDS`, from one camera
+/// with one or two eyes. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one
+/// eye and with two eyes.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = running_board();

@@ -1,10 +1,12 @@
 //! Compares the whole SoC, including its triangle engine, with glint-model: the pictures on the monitor, the depths in
 //! memory, and the counts of triangles.
 //!
-//! The tests require the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them too.
+//! The tests require the builds of `cargo xtask gateware` and `cargo xtask firmware`, which `cargo
+//! xtask test` makes.
 //!
-//! The board draws a frame while the monitor captures the previous frame, so each scene takes the time of one video frame. Video
-//! frames take most of the test's time. In the chart, `d` stands for draw:
+//! The board draws a frame while the monitor captures the previous frame, so each scene takes the
+//! time of one video frame. The simulation of video frames takes most of the test's time. In the
+//! chart, `d` stands for draw:
 //!
 //! ```text
 //! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...
@@ -33,7 +35,7 @@ use rand_pcg::Pcg64Mcg;
 const PATIENCE_MS: u64 = 2000;
 
 /// Longest wait for a picture: the time of three video frames.
-const MOST_WAIT_MS: u64 = 50;
+const MAX_WAIT_MS: u64 = 50;
 
 /// A board whose pictures are compared with an expected sequence.
 struct Watched {
@@ -52,13 +54,15 @@ impl Watched {
     /// Appends a frame to the expected frames.
     fn expect(&mut self, name: &str, frame: Vec<u16>) {
         match self.expected.last_mut() {
-            // Equal consecutive frames look like one frame on the monitor.
+            // Equal consecutive frames cannot be distinguished on the monitor, so they count as
+            // one.
             Some((last, old)) if *old == frame => name.clone_into(last),
             _ => self.expected.push((name.to_owned(), frame)),
         }
     }
 
-    /// Takes a new picture, if any, and checks that it equals the current or the next expected frame, and never a mix of both.
+    /// Takes a new picture, if any, and checks that it equals the current or the next expected
+    /// frame, not a mixture of both.
     fn look(&mut self) {
         let Some(picture) = self.board.inner().monitor().take_picture() else {
             return;
@@ -93,7 +97,7 @@ impl Watched {
     }
 
     fn run_until(&mut self, done: impl Fn(&Self) -> bool) {
-        for _ in 0..MOST_WAIT_MS {
+        for _ in 0..MAX_WAIT_MS {
             if done(self) {
                 return;
             }
@@ -157,8 +161,8 @@ fn compare_frames(name: &str, size: Size, found: &Rendered, expected: &Rendered)
     }
 }
 
-/// Draws a frame, whose meshes the board has under the name `model`, by the gateware and by the model, and compares them. Returns the
-/// board's statistics.
+/// Draws a frame by the gateware and by the model, and compares the results. The board has the
+/// meshes of the frame under the name `model`. Returns the board's statistics.
 fn compare(renderer: &mut BoardRenderer<SimulatedBoard>, frame: &Frame, with_depth: bool) -> Stats {
     let lines = render::commands(frame, "model", |_| "model".to_owned()).unwrap();
     let found = renderer.render_after(&lines, frame.size, parts(with_depth));
@@ -209,11 +213,12 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let shown = renderer.render_after(&start, size, Parts::COLOUR);
     let shown = shown.unwrap().image.colour;
     renderer.board().expect("the start", shown);
-    // The firmware's count of video frames at the last drawn scene.
+    // The firmware's count of video frames at the time of the last drawn scene.
     let mut drawn: u32 = info(renderer.console(), "video_frames");
 
     for (name, mesh, view, cull) in scenes {
-        // Further views are drawn without depths, so that the triangle engine writes only the changed part of a frame.
+        // Additional views are drawn without depths, so that the triangle engine writes only the
+        // changed part of a frame.
         let others = if name == "a sphere" {
             ["2,60,100", "3,200,60"].map(view::spherical).to_vec()
         } else {
@@ -249,7 +254,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             for line in &lines {
                 console.reply(line).unwrap();
             }
-            // Waits until the monitor shows the last frame; otherwise `render` would replace it first.
+            // The monitor must show the last frame before `render` can replace it.
             while info::<u32>(console, "video_frames") == drawn {
                 console.board().wait_for_picture();
             }
@@ -277,8 +282,9 @@ fn the_soc_draws_at_320x180() {
     draw(Size::W320, third(0));
 }
 
-/// Returns the sphere, which is drawn in several views, and every third of the other scenes, starting with number `first`. The
-/// test of the triangle engine alone draws all scenes in all sizes.
+/// Returns the sphere, which is drawn in several views, and every third of the other scenes,
+/// starting with number `first`. The tests of the triangle engine without the SoC draw all scenes
+/// in all sizes.
 fn third(first: usize) -> Vec<Scene> {
     let scenes = scenes(true).into_iter().enumerate();
     let chosen = scenes.filter(|(number, (name, ..))| *name == "a sphere" || number % 3 == first);

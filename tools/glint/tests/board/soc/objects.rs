@@ -13,8 +13,9 @@ use glint_vectors::Camera;
 use super::compare;
 use crate::common::{mesh, object, renderer, running_board};
 
-/// Placements of the objects that the gateware draws. The first object is around the eye of the last camera, and others cross its
-/// near plane, so that triangles of several objects are clipped.
+/// Placements of the objects that the gateware draws. The first object encloses the eye of the last
+/// camera, and other objects cross the near plane of this camera, so that triangles of several
+/// objects are clipped.
 const OBJECTS: [&str; 5] = [
     "scale 1.7 rotate x 20",
     "scale 0.3 rotate z 30 move 0.4,0.3,0.1",
@@ -41,12 +42,13 @@ fn the_soc_draws_objects() {
     let all = OBJECTS.len();
     let usual = [0, 1].map(|view| (view, Clip::Guard, Winding::Mesh));
     let far = U8_28::lit("2.5");
-    // Geometry passes lack these options, so that the CPU makes all descriptors.
+    // Geometry passes do not support these options, so the CPU computes all descriptors.
     let by_cpu = [
         (0, Clip::View { far }, Winding::Mesh),
         (1, Clip::Guard, Winding::Screen),
     ];
-    // One object, and all objects that the gateware draws; then one more, in two sizes, and with the options.
+    // One object, all objects that the gateware draws, and one object more; in two sizes, and with
+    // the options.
     let usual_at = |count, size| usual.map(|options| (count, size, options));
     let frames = [
         usual_at(1, Size::W320),

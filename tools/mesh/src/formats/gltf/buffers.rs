@@ -1,4 +1,4 @@
-//! Buffers of a glTF, and their values.
+//! The buffers of a glTF, and access to the values in them.
 
 use super::json::{Accessor, Dimensions, Index, Root, item};
 use crate::error::{FormatError, MAX_FILE, MAX_POINTS, quote};
@@ -19,7 +19,8 @@ impl<'a> Buffers<'a> {
     /// Reads all buffers. `binary` is the binary chunk of a `.glb`; `beside` reads a file in the same folder.
     ///
     /// # Errors
-    /// A buffer cannot be read or is too short, or all buffers together are longer than [`MAX_FILE`].
+    /// A buffer cannot be read or is too short, or the total length of the buffers exceeds
+    /// [`MAX_FILE`].
     pub fn read(root: &'a Root, binary: &'a [u8], beside: Beside) -> Result<Self, FormatError> {
         let mut buffers = Vec::new();
         let mut total = 0;
@@ -47,10 +48,11 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// The values of an accessor, which must have one of these dimensions, and `count` values if given.
+    /// The values of an accessor. It must have one of the given dimensions and, if `count` is
+    /// given, this number of values.
     ///
     /// # Errors
-    /// The accessor does not exist, its values have another type or count, or are not within their buffer.
+    /// The accessor does not exist, its values have another type or count, or exceed their buffer.
     pub fn values(
         &self,
         index: Index,
@@ -113,7 +115,8 @@ impl<'a> Buffers<'a> {
         buffer.get(view.byte_offset..)?.get(..view.byte_length)
     }
 
-    /// The bytes of `count` values of `size` bytes, from an offset in a view on, and the distance between values.
+    /// The bytes of `count` values of `size` bytes each, starting at an offset in a view, and the
+    /// stride of the values in bytes.
     fn slice(
         &self,
         accessor: Index,
@@ -151,7 +154,7 @@ impl<'a> Buffers<'a> {
         Ok((Cow::Borrowed(bytes), stride))
     }
 
-    /// Replaces the values that a sparse accessor lists.
+    /// Replaces the values that are listed by a sparse accessor.
     fn replace_sparse(
         &self,
         values: &mut Values,
@@ -193,7 +196,8 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Reads a buffer or, by `what`, another part by its URI: data within the file, or a file in the same folder.
+/// Reads the data of a URI, which contains the data or names a file in the same folder. `what`
+/// names the part of the glTF in errors.
 ///
 /// # Errors
 /// The data are not in base64, or the file cannot be read.
@@ -254,7 +258,7 @@ pub struct Values<'a> {
     /// Number of values.
     pub count: usize,
     kind: Kind,
-    /// Whether integers are fractions of their type's largest value.
+    /// Whether an integer is a fraction whose denominator is the largest value of its type.
     pub normalised: bool,
 }
 
@@ -266,7 +270,7 @@ impl Values<'_> {
             .map(|bytes| number(bytes, self.kind, self.normalised))
     }
 
-    /// The first numbers of an existing value; missing numbers are 0.
+    /// The first N numbers of the value at `index`, which must exist; missing numbers are 0.
     pub fn vector<const N: usize>(&self, index: usize) -> [f64; N] {
         let mut vector = [0.0; N];
         for (c, number) in vector.iter_mut().zip(self.numbers(index)) {
@@ -275,7 +279,7 @@ impl Values<'_> {
         vector
     }
 
-    /// The first number of an existing value, as an index.
+    /// The first number of the value at `index`, which must exist, as an index.
     pub fn index(&self, index: usize) -> usize {
         self.numbers(index).next().unwrap_or(0.0) as usize
     }

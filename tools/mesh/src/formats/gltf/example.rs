@@ -3,10 +3,10 @@
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
-/// A glTF of two meshes, with its buffer in base64.
+/// A glTF with two meshes and a base64 buffer.
 pub const TWO_MESHES: &str = include_str!("two-meshes.gltf");
 
-/// Converts a glTF with one buffer in base64 to `.glb`; returns the `.glb` and the buffer.
+/// Converts a glTF with one base64 buffer to `.glb`. Returns the `.glb` and the buffer.
 pub fn as_binary(gltf: &str) -> Option<(Vec<u8>, Vec<u8>)> {
     let (start, rest) = gltf.split_once("\"uri\": \"data:application/octet-stream;base64,")?;
     let (data, end) = rest.split_once("\", ")?;

@@ -1,5 +1,6 @@
-//! The parts of a glTF's JSON that Glint reads. Everything else is skipped unchecked, so that it cannot be the reason to reject a file.
-//! Textures of another form count as missing, since a mesh is also of use without them.
+//! The parts of a glTF's JSON that Glint reads. All other parts are skipped without a check, so
+//! that a fault in them does not reject a file. Invalid textures count as missing, because a mesh
+//! is useful without textures.
 
 use crate::error::FormatError;
 use serde::Deserialize;
@@ -8,10 +9,10 @@ use serde::de::{Deserializer, IgnoredAny};
 /// Index into a list of [`Root`].
 pub type Index = u32;
 
-/// The item of a list with this index.
+/// Returns the item of a list at `index`.
 ///
 /// # Errors
-/// There is no such item; the error names the list.
+/// The index is out of range; the error states `name`, the name of the list.
 pub fn item<'a, T>(list: &'a [T], index: Index, name: &str) -> Result<&'a T, FormatError> {
     list.get(index as usize).ok_or_else(|| {
         FormatError::whole(
@@ -21,7 +22,7 @@ pub fn item<'a, T>(list: &'a [T], index: Index, name: &str) -> Result<&'a T, For
     })
 }
 
-/// Reads a value of the expected form; any other value counts as missing.
+/// Reads a value; a value of another type counts as missing.
 fn if_valid<'de, D: Deserializer<'de>, T: Default + Deserialize<'de>>(
     deserializer: D,
 ) -> Result<T, D::Error> {
@@ -66,7 +67,7 @@ pub struct Image {
     pub uri: Option<String>,
 }
 
-/// How a texture is read, by numbers of OpenGL.
+/// Wrap modes and filters of a texture, as OpenGL constants.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Sampler {
@@ -98,7 +99,7 @@ pub struct TextureExtensions {
     pub transform: Option<Transform>,
 }
 
-/// Scale, then rotation, then offset of texture coordinates.
+/// A transform of texture coordinates: first scale, then rotation, then offset.
 #[derive(Clone, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Transform {
@@ -158,7 +159,7 @@ pub struct Accessor {
     pub dimensions: Dimensions,
 }
 
-/// Number of components of a value, by the name of its type.
+/// Number of components of a value, named by its type in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Dimensions {
@@ -170,7 +171,7 @@ pub enum Dimensions {
     Other,
 }
 
-/// Values of an accessor that differ from its view, or from 0 without a view.
+/// The values of an accessor that differ from the values in its view, or from 0 if it has no view.
 #[derive(Deserialize)]
 pub struct Sparse {
     pub count: usize,
@@ -236,7 +237,7 @@ impl Attributes {
     }
 }
 
-/// Use of a primitive's corners.
+/// How the corners of a primitive form triangles.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "u32")]
 pub enum Mode {

@@ -8,25 +8,25 @@ use glint_core::texture::{Filter, Sampler, Wrap};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The cutoff of a material that does not state it.
+/// Default alpha cutoff of a material.
 const CUTOFF: f32 = 0.5;
-/// The outcome for a texture that cannot be used, in remarks.
-const INSTEAD: &str = "its surfaces have their base colours";
+/// End of the remark on a texture that cannot be used.
+const INSTEAD: &str = "its surfaces keep their base colours";
 
-/// Reads textures, each picture once.
+/// Reads the textures of materials, and each picture only once.
 pub struct Materials<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
     beside: Beside<'a>,
-    /// The pictures that were requested; `None` for one that cannot be read.
+    /// The pictures that were requested; `None` for a picture that cannot be read.
     pictures: HashMap<Index, Option<Arc<Vec<u8>>>>,
-    /// The numbers of the textures: by picture, numbers of wraps and filter, and bits of the cutoff.
+    /// The numbers of the textures by picture, wrap modes and filter, and bits of the cutoff.
     numbers: HashMap<(Index, [u8; 3], Option<u32>), u8>,
 }
 
 /// The use of a texture by a material.
 pub struct Use {
-    /// The number of the texture in the polygons, from 1.
+    /// The number of the texture in the polygons, counted from 1.
     pub texture: u8,
     /// The number of the set of texture coordinates.
     pub set: u32,
@@ -44,7 +44,7 @@ impl Use {
         } = &self.transform;
         let [s, t] = [s * f64::from(scale[0]), t * f64::from(scale[1])];
         let (sin, cos) = f64::from(*rotation).sin_cos();
-        // Counter-clockwise, where t goes down.
+        // The rotation is counter-clockwise, and t points down.
         [
             f64::from(offset[0]) + s * cos + t * sin,
             f64::from(offset[1]) - s * sin + t * cos,
@@ -64,7 +64,8 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Adds the texture of a material to the polygons, if it has one; a texture that cannot be used has a remark.
+    /// Adds the texture of a material, if any, to the polygons. For a texture that cannot be used
+    /// it adds a remark.
     ///
     /// # Errors
     /// There are too many textures.
@@ -84,7 +85,7 @@ impl<'a> Materials<'a> {
         let Some(texture) = self.root.textures.get(used.index as usize) else {
             let count = self.root.textures.len();
             polygons.remark(format!(
-                "expected a texture below {count}, found {}: {INSTEAD}",
+                "expected a texture index below {count}, found {}: {INSTEAD}",
                 used.index
             ));
             return Ok(None);
@@ -100,7 +101,7 @@ impl<'a> Materials<'a> {
         let sampler = sampler.and_then(|index| self.root.samplers.get(index as usize));
         let sampler = sampler_of(sampler);
         let cutoff = (material.alpha_mode.as_deref() == Some("MASK")).then(|| {
-            // The opacity of the material multiplies that of the texels.
+            // The opacity of the material multiplies the opacity of the texels.
             let cutoff = material.alpha_cutoff.unwrap_or(CUTOFF);
             if opacity > 0.0 || cutoff <= 0.0 {
                 cutoff / opacity.max(f32::MIN_POSITIVE)
@@ -144,14 +145,14 @@ impl<'a> Materials<'a> {
         }))
     }
 
-    /// The bytes of a picture; `None` with a remark if they cannot be read.
+    /// The bytes of a picture. Returns `None` and adds a remark if the picture cannot be read.
     fn picture(&mut self, index: Index, polygons: &mut Polygons) -> Option<Arc<Vec<u8>>> {
         if let Some(picture) = self.pictures.get(&index) {
             return picture.clone();
         }
         let found = match self.root.images.get(index as usize) {
             None => {
-                let expected = format!("an image below {}", self.root.images.len());
+                let expected = format!("an image index below {}", self.root.images.len());
                 Err(FormatError::whole(expected, index.to_string()))
             }
             Some(image) => match (image.buffer_view, &image.uri) {
@@ -182,8 +183,8 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// The sampler with the given numbers of OpenGL. An unknown number counts as none. Without a filter, textures are filtered as most
-/// viewers do.
+/// Converts a sampler of OpenGL constants; an unknown constant counts as missing. The default
+/// filter is the one that most viewers use.
 fn sampler_of(sampler: Option<&json::Sampler>) -> Sampler {
     let wrap = |number: Option<u32>| match number {
         Some(33_071) => Wrap::Clamp,
@@ -196,7 +197,8 @@ fn sampler_of(sampler: Option<&json::Sampler>) -> Sampler {
             filter: Filter::Bilinear,
         };
     };
-    // The filter of a magnified texture, and without it that of a smaller one: 9984 and 9986 are nearest in each level.
+    // The magnification filter counts or, without it, the minification filter: 9984 and 9986 select
+    // the nearest texel within a level.
     let filter = match sampler.mag_filter.or(sampler.min_filter) {
         Some(9728 | 9984 | 9986) => Filter::Nearest,
         _ => Filter::Bilinear,

@@ -1,7 +1,8 @@
 //! glTF 2.0, as JSON (`.gltf`) or binary (`.glb`).
 //!
-//! This parser replaces the crate `gltf`, which rejects files for faults in parts that Glint ignores, such as attributes of
-//! applications, textures and required extensions of materials, and which panics on offsets out of range.
+//! This parser replaces the crate `gltf`, which rejects files for faults in parts that Glint
+//! ignores, such as application-specific attributes, textures and required material extensions, and
+//! which panics on offsets out of range.
 
 mod buffers;
 pub mod example;
@@ -16,8 +17,9 @@ use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root,
 use materials::Materials;
 use serde::Deserialize;
 
-/// Maximum number of bytes of JSON outside of strings. This bounds the memory, because three such bytes can become an object of some
-/// hundred bytes. Buffers within the file are strings.
+/// Maximum number of bytes of JSON outside of strings. It bounds the memory for parsed JSON: three
+/// such bytes can become an object of some hundred bytes. Buffers within the file are strings, so
+/// they are not counted.
 const MAX_STRUCTURE: usize = 4 << 20;
 /// Maximum number of characters of the JSON parser's message in an error.
 const MAX_MESSAGE: usize = 200;
@@ -27,11 +29,13 @@ type Affine = [Vector; 4];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
 
-/// Parses a glTF. The meshes of the default scene, or of the first scene if there is no default, are merged, each with the transforms
-/// of its nodes and instances (EXT_mesh_gpu_instancing), without hidden nodes (KHR_node_visibility). Colours come from materials, also
-/// of KHR_materials_pbrSpecularGlossiness, and vertices, converted from linear intensities to sRGB. Textures are those of base colours,
-/// with their samplers, KHR_texture_transform, and cut-out; a texture that cannot be used has a remark. Skins, morph targets and animations
-/// are ignored with a remark. `beside` reads a file in the same folder.
+/// Parses a glTF. The meshes of the default scene, or of the first scene if there is no default,
+/// are merged, with the transforms of their nodes and instances (EXT_mesh_gpu_instancing). Hidden
+/// nodes (KHR_node_visibility) are left out. Colours come from materials, including
+/// KHR_materials_pbrSpecularGlossiness, and from vertices, and are converted from linear
+/// intensities to sRGB. Base colour textures are read with their samplers, KHR_texture_transform
+/// and alpha cutoff; a texture that cannot be used adds a remark. Skins, morph targets and
+/// animations are ignored with a remark. `beside` reads a file in the same folder.
 ///
 /// # Errors
 /// The first violation of the format in the parts that Glint reads, a required extension that can change the shape, or a buffer file that
@@ -127,7 +131,7 @@ fn split(file: &[u8]) -> Result<(&[u8], &[u8]), FormatError> {
     Ok((json, binary.unwrap_or_default()))
 }
 
-/// Number of bytes of a JSON text outside of strings.
+/// Counts the bytes of a JSON text outside of strings.
 fn structure(json: &[u8]) -> usize {
     let (mut in_string, mut escaped, mut count) = (false, false, 0);
     for &byte in json {
@@ -158,7 +162,8 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Checks that the file's version is 2.x, and that its `minVersion`, if any, is 2.0: a reader of 2.0 can then read the file.
+/// Checks that the file's version is 2.x, and that its `minVersion`, if any, is 2.0. A reader of
+/// version 2.0 can then read the file.
 fn check_version(json: &[u8]) -> Result<(), FormatError> {
     let Head { asset } = from_json(json)?;
     let minor = asset.version.strip_prefix("2.").unwrap_or_default();
@@ -185,7 +190,7 @@ const SUPPORTED: [&str; 3] = [
     "KHR_node_visibility",
 ];
 
-/// Parts of the names of extensions without effect on shapes and base colours.
+/// Substrings of the names of extensions that affect neither shapes nor base colours.
 const WITHOUT_EFFECT: [&str; 5] = [
     "_materials_",
     "_texture_",
@@ -218,7 +223,7 @@ struct Reader<'a> {
     buffers: &'a Buffers<'a>,
     materials: Materials<'a>,
     polygons: Polygons,
-    /// Number of primitives added so far, once for each node and instance.
+    /// Number of primitives added so far, counted once per node and instance.
     placed: usize,
 }
 
@@ -362,7 +367,7 @@ impl Reader<'_> {
             (Some(used), Some(_)) => Some(used),
             (Some(used), None) => {
                 polygons.remark(format!(
-                    "no texture coordinates TEXCOORD_{} (up to 3 are read): surfaces have their base colours",
+                    "no texture coordinates TEXCOORD_{} (up to 3 are read): surfaces keep their base colours",
                     used.set
                 ));
                 None
@@ -458,7 +463,8 @@ fn add_points(
     Ok(())
 }
 
-/// The colour of a material, as linear intensities; `None` for the default material without vertex colours.
+/// The base colour of a material as linear intensities; `None` for the default material without
+/// vertex colours.
 fn base_colour(
     polygons: &mut Polygons,
     material: Option<&Material>,
@@ -475,7 +481,7 @@ fn base_colour(
         polygons.remark("transparency is ignored: surfaces are opaque");
     }
     if material.emissive_factor != [0.0; 3] {
-        polygons.remark("light from surfaces is ignored (emissiveFactor)");
+        polygons.remark("emitted light is ignored (emissiveFactor)");
     }
     let [red, green, blue, _] = factor;
     Some([red, green, blue].map(f64::from))
@@ -496,7 +502,7 @@ fn srgb(linear: Vector) -> Rgb8 {
     }))
 }
 
-/// The map from a node to its parent.
+/// The affine map from a node's coordinates to its parent's.
 fn local(node: &Node) -> Affine {
     match &node.matrix {
         Some(matrix) => [0, 4, 8, 12].map(|i| [i, i + 1, i + 2].map(|i| f64::from(matrix[i]))),

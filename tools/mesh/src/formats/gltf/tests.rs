@@ -1,12 +1,13 @@
-//! Tests with a file of two meshes under a node: one mesh rotated by 90° about z, with a material and indices; the other mesh mirrored, a
-//! strip with vertex colours.
+//! Tests with a file that has two meshes under one node: an indexed mesh with a material, rotated
+//! by 90° about z, and a mirrored strip with vertex colours.
 
 use super::example::{TWO_MESHES, as_binary};
 use super::*;
+use crate::formats::text::rows;
 use crate::polygons::Content;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use glint_core::texture::{Filter, Wrap};
+use glint_texture::options::{filter_name, wrap_name};
 
 fn read(text: &str) -> Result<Polygons, FormatError> {
     parse(text.as_bytes(), &mut |_| None)
@@ -39,7 +40,7 @@ fn transforms_colours_and_strips() {
     assert_eq!(
         faces(&polygons),
         [
-            // The strip, mirrored, so with reversed winding.
+            // The strip is mirrored, so its winding is reversed.
             vec![[10, 0, 0], [10, 2, 0], [8, 0, 0]],
             vec![[10, 2, 0], [8, 2, 1], [8, 0, 0]],
             // The indexed triangles, rotated.
@@ -47,7 +48,7 @@ fn transforms_colours_and_strips() {
             vec![[10, 2, 0], [8, 2, 1], [8, 0, 0]],
         ]
     );
-    // The linear intensity 0.214 is half of the full sRGB value.
+    // The linear intensity 0.214 corresponds to half of the full sRGB value.
     let material = Rgb8([127, 255, 0]);
     assert_eq!(polygons.faces[3].colour, Some(material));
     assert_eq!(polygons.faces[0].colour, None);
@@ -83,64 +84,27 @@ fn binary_and_beside() {
 
 #[test]
 fn errors() {
+    let cases = r#"
+        "children": [1, 2] → "children": [1, 0] → expected one parent of node 0, found several
+        "byteLength": 12} → "byteLength": 10} → expected accessor 3 within its buffer, found 6 values that end outside of it
+        "byteLength": 124 → "byteLength": 125 → expected 125 bytes in buffer 0, found 124
+        "byteOffset": 112 → "byteOffset": 96 → expected an index below 4, found 255
+        "POSITION": 0 → "POSITION": 4 → expected an index below 4 in the list of accessors, found 4
+        [10, 0, 0] → [10, 0, 0], "scale": [1e39, 1, 1] → expected a finite number, found NaN
+        "scenes": [{"nodes": [0]}] → "scenes": [] → expected an index below 0 in the list of scenes, found 0
+        "version": "2.0" → "version": "1.0" → expected an asset.version 2.0 or 2.x, found '1.0'
+        "version": "2.0" → "version": "2" → expected an asset.version 2.0 or 2.x, found '2'
+        "version": "2.0" → "version": "2.1", "minVersion": "2.1" → expected an asset.minVersion of 2.0 or none, found '2.1'
+        "scene": 0 → "extensionsRequired": ["KHR_draco_mesh_compression"], "scene": 0 → expected a file without compression, found 'KHR_draco_mesh_compression'
+    "#;
+    for [from, to, message] in rows(cases) {
+        assert_eq!(error(from, to), message);
+    }
+    let error = error("octet-stream;base64,", "octet-stream;base64,-");
+    assert!(error.starts_with("expected data of a buffer in base64,"));
+    let error = parse(b"glTF\x02\0\0\0\x05\0\0\0", &mut |_| None).unwrap_err();
     assert_eq!(
-        error("\"children\": [1, 2]", "\"children\": [1, 0]"),
-        "expected one parent of node 0, found several"
-    );
-    assert_eq!(
-        error("\"byteLength\": 12}", "\"byteLength\": 10}"),
-        "expected accessor 3 within its buffer, found 6 values that end outside of it"
-    );
-    assert_eq!(
-        error("\"byteLength\": 124", "\"byteLength\": 125"),
-        "expected 125 bytes in buffer 0, found 124"
-    );
-    assert_eq!(
-        error("\"byteOffset\": 112", "\"byteOffset\": 96"),
-        "expected an index below 4, found 255"
-    );
-    assert_eq!(
-        error("\"POSITION\": 0", "\"POSITION\": 4"),
-        "expected an index below 4 in the list of accessors, found 4"
-    );
-    assert_eq!(
-        error("[10, 0, 0]", "[10, 0, 0], \"scale\": [1e39, 1, 1]"),
-        "expected a finite number, found NaN"
-    );
-    assert_eq!(
-        error("\"scenes\": [{\"nodes\": [0]}]", "\"scenes\": []"),
-        "expected an index below 0 in the list of scenes, found 0"
-    );
-    assert_eq!(
-        error("octet-stream;base64,", "octet-stream;base64,-")
-            .split(',')
-            .next(),
-        Some("expected data of a buffer in base64")
-    );
-    assert_eq!(
-        error("\"version\": \"2.0\"", "\"version\": \"1.0\""),
-        "expected an asset.version 2.0 or 2.x, found '1.0'"
-    );
-    assert_eq!(
-        error("\"version\": \"2.0\"", "\"version\": \"2\""),
-        "expected an asset.version 2.0 or 2.x, found '2'"
-    );
-    assert_eq!(
-        error(
-            "\"version\": \"2.0\"",
-            "\"version\": \"2.1\", \"minVersion\": \"2.1\""
-        ),
-        "expected an asset.minVersion of 2.0 or none, found '2.1'"
-    );
-    let draco = "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"scene\": 0";
-    assert_eq!(
-        error("\"scene\": 0", draco),
-        "expected a file without compression, found 'KHR_draco_mesh_compression'"
-    );
-    assert_eq!(
-        parse(b"glTF\x02\0\0\0\x05\0\0\0", &mut |_| None)
-            .unwrap_err()
-            .to_string(),
+        error.to_string(),
         "byte 8: expected a length of 12 to 12 bytes, found 5"
     );
 }
@@ -158,7 +122,7 @@ fn memory_is_bounded() {
     assert_eq!(structure(br#"{"a\"{{{": "}}}\\"}"#), 8);
 }
 
-/// Minor versions are compatible.
+/// A file of a later minor version is compatible.
 #[test]
 fn a_later_minor_version_is_read() {
     for version in ["2.1", "2.10\", \"minVersion\": \"2.0"] {
@@ -169,37 +133,28 @@ fn a_later_minor_version_is_read() {
 
 #[test]
 fn what_is_ignored_is_remarked() {
-    let text = TWO_MESHES
-        .replacen(
-            "\"baseColorFactor\"",
-            "\"baseColorTexture\": {\"index\": 0}, \"baseColorFactor\"",
-            1,
-        )
-        .replacen(
-            "\"pbrMetallicRoughness\"",
-            "\"alphaMode\": \"BLEND\", \"emissiveFactor\": [0, 1, 0], \"pbrMetallicRoughness\"",
-            1,
-        )
-        .replacen("\"mesh\": 0", "\"mesh\": 0, \"skin\": 0", 1)
-        .replacen(
-            "\"scene\": 0",
-            "\"skins\": [{\"joints\": [0]}], \"images\": [{\"uri\": \"x.png\"}], \"textures\": [{\"source\": 0}], \"scene\": 0",
-            1,
-        );
-    let polygons = read(&text).unwrap();
+    let changes = r#"
+        "baseColorFactor" → "baseColorTexture": {"index": 0}, "baseColorFactor"
+        "pbrMetallicRoughness" → "alphaMode": "BLEND", "emissiveFactor": [0, 1, 0], "pbrMetallicRoughness"
+        "mesh": 0 → "mesh": 0, "skin": 0
+        "scene": 0 → "skins": [{"joints": [0]}], "images": [{"uri": "x.png"}], "textures": [{"source": 0}], "scene": 0
+    "#;
+    let text = rows(changes).fold(TWO_MESHES.to_owned(), |text, [from, to]| {
+        text.replacen(from, to, 1)
+    });
     assert_eq!(
-        polygons.remarks,
+        read(&text).unwrap().remarks,
         [
             "points and lines are ignored",
             "skins are ignored: meshes have their rest pose",
-            "expected the file of an image in the folder of the glTF, found 'x.png': its surfaces have their base colours",
+            "expected the file of an image in the folder of the glTF, found 'x.png': its surfaces keep their base colours",
             "transparency is ignored: surfaces are opaque",
-            "light from surfaces is ignored (emissiveFactor)",
+            "emitted light is ignored (emissiveFactor)",
         ]
     );
 }
 
-/// Whether the file with a changed text has the faces of the file without a change.
+/// Whether the replacement of `from` by `to` in the file leaves its faces unchanged.
 fn is_unchanged(from: &str, to: &str) -> bool {
     assert!(TWO_MESHES.contains(from), "{from}");
     let read = |text: &str| read(text).unwrap_or_else(|error| panic!("{to}: {error}"));
@@ -213,31 +168,25 @@ fn faults_in_ignored_parts_are_ignored() {
         let to = format!("\"{more}\": 77, {positions}");
         assert!(is_unchanged(positions, &to));
     }
-    for name in [
-        "KHR_materials_unlit",
-        "KHR_texture_transform",
-        "EXT_texture_webp",
-        "KHR_texture_basisu",
-        "KHR_lights_punctual",
-        "KHR_mesh_quantization",
-    ] {
-        let to = format!("\"extensionsRequired\": [\"{name}\"], \"scene\": 0");
+    let members = r#"
+        "extensionsRequired": ["KHR_materials_unlit"]
+        "extensionsRequired": ["KHR_texture_transform"]
+        "extensionsRequired": ["EXT_texture_webp"]
+        "extensionsRequired": ["KHR_texture_basisu"]
+        "extensionsRequired": ["KHR_lights_punctual"]
+        "extensionsRequired": ["KHR_mesh_quantization"]
+        "textures": [{}, {"source": 9}]
+        "images": [{"mimeType": 1}]
+        "samplers": 7
+        "images": [1]
+        "textures": [{"source": -1}]
+        "cameras": [{}]
+        "skins": [{}]
+        "animations": [{"channels": [{"target": {"path": "pointer"}}]}]
+    "#;
+    for [member] in rows(members) {
+        let to = format!("{member}, \"scene\": 0");
         assert!(is_unchanged("\"scene\": 0", &to));
-    }
-    for more in [
-        "\"textures\": [{}, {\"source\": 9}]",
-        "\"images\": [{\"mimeType\": 1}]",
-        "\"samplers\": 7",
-        "\"images\": [1]",
-        "\"textures\": [{\"source\": -1}]",
-        "\"cameras\": [{}]",
-        "\"skins\": [{}]",
-        "\"animations\": [{\"channels\": [{\"target\": {\"path\": \"pointer\"}}]}]",
-    ] {
-        assert!(is_unchanged(
-            "\"scene\": 0",
-            &format!("{more}, \"scene\": 0")
-        ));
     }
     let limits = ", \"min\": [0, 0, 0], \"max\": [2, 2, 1]";
     assert!(is_unchanged(limits, ""));
@@ -260,8 +209,8 @@ fn required_extensions_of_the_shape_are_named() {
     }
 }
 
-/// A node whose extension places an instance, scaled and moved by the last point of the positions, (2, 2, 1); then two instances, by the
-/// last two points.
+/// First the extension of a node places one instance, scaled and moved by the last point of the
+/// positions, (2, 2, 1); then it places two instances by the last two points.
 #[test]
 fn instances_of_a_mesh() {
     let views = "\"accessors\": [";
@@ -305,7 +254,8 @@ fn hidden_nodes_and_colours_of_an_extension() {
     assert_eq!(polygons.faces[3].colour, Some(Rgb8([255, 0, 0])));
 }
 
-/// The sparse index, the number of 16 bits at the start of view 3, is 0: the first normal, (0, 0, 1), replaces point 0.
+/// The 16-bit sparse index at the start of view 3 is 0, so the first normal, (0, 0, 1), replaces
+/// point 0.
 #[test]
 fn sparse_positions() {
     let sparse = "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 3, \"componentType\": 5123}, \"values\": {\"bufferView\": 1}}";
@@ -340,7 +290,8 @@ fn double_sided_materials() {
     assert_eq!(sides, [false, false, true, true]);
 }
 
-/// A square with two sets of texture coordinates: 32-bit numbers from 0 to 1 in steps of 1/2, and normalised bytes.
+/// A square with two sets of texture coordinates: 32-bit floats from 0 to 1 in steps of 1/2, and
+/// normalised bytes.
 struct Textured {
     material: String,
     textures: String,
@@ -394,7 +345,11 @@ impl Textured {
     }
 }
 
-/// A material with the first texture, and more members of the material and of the texture.
+/// An image whose file exists.
+const A_B: &str = r#"{"uri": "a%20b.png"}"#;
+
+/// A material with the first texture. `more` adds members to the material, and `of_texture` adds
+/// members to its texture.
 fn material(more: &str, of_texture: &str) -> String {
     format!(
         "{{{more}\"pbrMetallicRoughness\": {{\"baseColorTexture\": {{\"index\": 0{of_texture}}}}}}}"
@@ -414,19 +369,13 @@ fn pictures(polygons: &Polygons) -> Vec<&[u8]> {
 
 #[test]
 fn textures_from_files_data_and_buffers() {
+    // The content determines the type of the picture.
+    let data = r#"{"uri": "data:text/plain;base64,AQID", "mimeType": "image/x"}"#;
+    let view = r#"{"bufferView": 1, "mimeType": "image/jpeg"}"#;
     for (image, picture, name) in [
-        ("{\"uri\": \"a%20b.png\"}", &b"file"[..], "'a%20b.png'"),
-        // The contents decide the type.
-        (
-            "{\"uri\": \"data:text/plain;base64,AQID\", \"mimeType\": \"image/x\"}",
-            &[1, 2, 3],
-            "image 0",
-        ),
-        (
-            "{\"bufferView\": 1, \"mimeType\": \"image/jpeg\"}",
-            &[9; 3],
-            "image 0",
-        ),
+        (A_B, &b"file"[..], "'a%20b.png'"),
+        (data, &[1, 2, 3], "image 0"),
+        (view, &[9; 3], "image 0"),
     ] {
         let polygons = Textured::new(&material("", ""), image).read();
         assert_eq!(pictures(&polygons), [picture]);
@@ -443,89 +392,55 @@ fn textures_from_files_data_and_buffers() {
 
 #[test]
 fn pictures_that_cannot_be_read_are_remarked() {
-    for (image, expected) in [
-        (
-            "{\"uri\": \"gone.png\"}",
-            "expected the file of an image in the folder of the glTF, found 'gone.png'",
-        ),
-        (
-            "{\"uri\": \"../a b.png\"}",
-            "expected the file of an image in the folder of the glTF, found '../a b.png'",
-        ),
-        (
-            "{\"uri\": \"data:image/png;base64,-\"}",
-            "expected data of an image in base64, found 'data:image/png;base64,-'",
-        ),
-        (
-            "{\"bufferView\": 2}",
-            "expected image 0 within a buffer, found a view 2 outside of it",
-        ),
-        (
-            "{\"bufferView\": 7}",
-            "expected image 0 within a buffer, found a view 7 outside of it",
-        ),
-        (
-            "{}",
-            "expected image 0 with a URI or a view of a buffer, found neither",
-        ),
-        ("", "expected an image below 0, found 0"),
-    ] {
+    let cases = r#"
+        {"uri": "gone.png"} → expected the file of an image in the folder of the glTF, found 'gone.png'
+        {"uri": "../a b.png"} → expected the file of an image in the folder of the glTF, found '../a b.png'
+        {"uri": "data:image/png;base64,-"} → expected data of an image in base64, found 'data:image/png;base64,-'
+        {"bufferView": 2} → expected image 0 within a buffer, found a view 2 outside of it
+        {"bufferView": 7} → expected image 0 within a buffer, found a view 7 outside of it
+        {} → expected image 0 with a URI or a view of a buffer, found neither
+        → expected an image index below 0, found 0
+    "#;
+    for [image, expected] in rows(cases) {
         let polygons = Textured::new(&material("", ""), image).read();
-        assert_eq!(
-            polygons.remarks,
-            [format!("{expected}: its surfaces have their base colours")]
-        );
+        let expected = format!("{expected}: its surfaces keep their base colours");
+        assert_eq!(polygons.remarks, [expected]);
         assert!(polygons.textures.is_empty());
         assert!(polygons.faces.iter().all(|face| face.texture == 0));
     }
     let mut other = Textured::new(&material("", ""), "{}");
-    other.textures = "[{\"extensions\": {\"KHR_texture_basisu\": {\"source\": 0}}}]".into();
-    let expected = "texture 0 has no PNG or JPEG file: its surfaces have their base colours";
+    other.textures = r#"[{"extensions": {"KHR_texture_basisu": {"source": 0}}}]"#.into();
+    let expected = "texture 0 has no PNG or JPEG file: its surfaces keep their base colours";
     assert_eq!(other.read().remarks, [expected]);
     other.textures = "[]".into();
-    let expected = "expected a texture below 0, found 0: its surfaces have their base colours";
+    let expected =
+        "expected a texture index below 0, found 0: its surfaces keep their base colours";
     assert_eq!(other.read().remarks, [expected]);
     let set = material("", ", \"texCoord\": 2");
     let expected =
-        "no texture coordinates TEXCOORD_2 (up to 3 are read): surfaces have their base colours";
-    assert_eq!(
-        Textured::new(&set, "{\"uri\": \"a b.png\"}").read().remarks,
-        [expected]
-    );
+        "no texture coordinates TEXCOORD_2 (up to 3 are read): surfaces keep their base colours";
+    assert_eq!(Textured::new(&set, A_B).read().remarks, [expected]);
 }
 
 #[test]
 fn samplers() {
-    let mut file = Textured::new(&material("", ""), "{\"uri\": \"a b.png\"}");
-    file.textures = "[{\"source\": 0, \"sampler\": 0}]".into();
-    for (sampler, wrap, filter) in [
-        ("{}", [Wrap::Repeat; 2], Filter::Bilinear),
-        (
-            "{\"wrapS\": 33071, \"wrapT\": 33648}",
-            [Wrap::Clamp, Wrap::Mirror],
-            Filter::Bilinear,
-        ),
-        (
-            "{\"wrapS\": 10497, \"wrapT\": 7}",
-            [Wrap::Repeat; 2],
-            Filter::Bilinear,
-        ),
-        (
-            "{\"magFilter\": 9728, \"minFilter\": 9987}",
-            [Wrap::Repeat; 2],
-            Filter::Nearest,
-        ),
-        (
-            "{\"magFilter\": 9729, \"minFilter\": 9728}",
-            [Wrap::Repeat; 2],
-            Filter::Bilinear,
-        ),
-        ("{\"minFilter\": 9984}", [Wrap::Repeat; 2], Filter::Nearest),
-        ("{\"minFilter\": 9987}", [Wrap::Repeat; 2], Filter::Bilinear),
-    ] {
+    let mut file = Textured::new(&material("", ""), A_B);
+    file.textures = r#"[{"source": 0, "sampler": 0}]"#.into();
+    let cases = r#"
+        {} → repeat repeat bilinear
+        {"wrapS": 33071, "wrapT": 33648} → clamp mirror bilinear
+        {"wrapS": 10497, "wrapT": 7} → repeat repeat bilinear
+        {"magFilter": 9728, "minFilter": 9987} → repeat repeat nearest
+        {"magFilter": 9729, "minFilter": 9728} → repeat repeat bilinear
+        {"minFilter": 9984} → repeat repeat nearest
+        {"minFilter": 9987} → repeat repeat bilinear
+    "#;
+    for [sampler, expected] in rows(cases) {
         file.samplers = format!("[{sampler}]");
         let found = file.read().textures[0].sampler;
-        assert_eq!((found.wrap, found.filter), (wrap, filter), "{sampler}");
+        let [s, t] = found.wrap.map(wrap_name);
+        let found = format!("{s} {t} {}", filter_name(found.filter));
+        assert_eq!(found, expected, "{sampler}");
     }
     file.samplers = "[]".into();
     assert_eq!(file.read().textures.len(), 1);
@@ -533,36 +448,26 @@ fn samplers() {
 
 #[test]
 fn cut_out_by_the_mask() {
-    let image = "{\"uri\": \"a b.png\"}";
-    let cutoff = |more: &str| {
+    let cutoff = |members: &str, opacity: &str| {
         let factor = "\"pbrMetallicRoughness\": {";
-        let (before, opacity) = more.split_once(';').unwrap_or((more, ""));
-        let material = material(before, "").replace(factor, &format!("{factor}{opacity}"));
-        Textured::new(&material, image).read().textures[0].cutoff
+        let material = material(members, "").replace(factor, &format!("{factor}{opacity}"));
+        Textured::new(&material, A_B).read().textures[0].cutoff
     };
-    assert_eq!(cutoff("\"alphaMode\": \"OPAQUE\", "), None);
-    assert_eq!(cutoff("\"alphaMode\": \"BLEND\", "), None);
+    assert_eq!(cutoff("\"alphaMode\": \"OPAQUE\", ", ""), None);
+    assert_eq!(cutoff("\"alphaMode\": \"BLEND\", ", ""), None);
     let mask = "\"alphaMode\": \"MASK\", ";
-    assert_eq!(cutoff(mask), Some(0.5));
-    assert_eq!(
-        cutoff(&format!("\"alphaCutoff\": 0.25, {mask}")),
-        Some(0.25)
-    );
-    assert_eq!(
-        cutoff(&format!("{mask};\"baseColorFactor\": [1, 1, 1, 0.5], ")),
-        Some(1.0)
-    );
-    assert_eq!(
-        cutoff(&format!("{mask};\"baseColorFactor\": [1, 1, 1, 0], ")),
-        Some(f32::INFINITY)
-    );
+    assert_eq!(cutoff(mask, ""), Some(0.5));
+    let quarter = format!("\"alphaCutoff\": 0.25, {mask}");
+    assert_eq!(cutoff(&quarter, ""), Some(0.25));
+    let opacity = |opacity: f32| format!("\"baseColorFactor\": [1, 1, 1, {opacity}], ");
+    assert_eq!(cutoff(mask, &opacity(0.5)), Some(1.0));
+    assert_eq!(cutoff(mask, &opacity(0.0)), Some(f32::INFINITY));
 }
 
 #[test]
 fn transforms_of_textures() {
-    let image = "{\"uri\": \"a b.png\"}";
     let read = |of_texture: &str| {
-        let polygons = Textured::new(&material("", of_texture), image).read();
+        let polygons = Textured::new(&material("", of_texture), A_B).read();
         let coordinates = polygons.coordinates.iter();
         coordinates
             .map(|c| c.map(|c| (1e6 * c).round() / 1e6))
@@ -580,7 +485,8 @@ fn transforms_of_textures() {
         transformed("\"offset\": [0.25, 2], \"scale\": [2, -1]"),
         [[0.25, 1.0], [1.25, 1.0], [1.25, 2.0], [0.25, 2.0]]
     );
-    // The example of the extension: the lower left quarter, turned clockwise by 90°.
+    // The example from the extension's specification: the lower left quarter, rotated clockwise by
+    // 90°.
     assert_eq!(
         transformed("\"offset\": [0, 1], \"rotation\": 1.57079632679, \"scale\": [0.5, 0.5]"),
         [[0.5, 1.0], [0.5, 0.75], [0.0, 0.75], [0.0, 1.0]]
@@ -589,7 +495,7 @@ fn transforms_of_textures() {
 
 #[test]
 fn several_materials_share_pictures() {
-    let mut file = Textured::new("", "{\"uri\": \"a b.png\"}");
+    let mut file = Textured::new("", A_B);
     let mask = material("\"alphaMode\": \"MASK\", ", "");
     file.material = [&material("", "")[..], &mask, &material("", "")].join(", ");
     let more = |number: u32| {

@@ -3,7 +3,7 @@
 use crate::error::{FormatError, Location, MAX_REMARKS, quote};
 use crate::formats::text::{Line, Lines};
 
-/// Maximum number of elements in a header, and of properties in an element; real files have fewer.
+/// Maximum number of elements in a header and of properties in an element; real files have fewer.
 const MAX_DECLARED: usize = 64;
 
 /// Encoding of the values after the header.
@@ -151,7 +151,7 @@ pub struct Header {
     pub encoding: Encoding,
     /// Elements in file order.
     pub elements: Vec<Element>,
-    /// Remarks on skipped lines, which start with no keyword.
+    /// Remarks on skipped lines, which do not start with a keyword.
     pub remarks: Vec<String>,
 }
 
@@ -219,7 +219,7 @@ impl Header {
                 }
                 ([b"end_header"], _) => {
                     let encoding =
-                        encoding.ok_or_else(|| refuse("a line format before end_header"))?;
+                        encoding.ok_or_else(|| refuse("a format line before end_header"))?;
                     return Ok(Self {
                         encoding,
                         elements,

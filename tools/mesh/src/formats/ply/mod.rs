@@ -88,52 +88,60 @@ fn list_length(count: Scalar, source: &mut impl Source) -> Result<u64, FormatErr
     Ok(length as u64)
 }
 
-/// The coordinate or colour channel that a scalar property sets.
-#[derive(Clone, Copy)]
-enum Slot {
-    Position(usize),
-    Normal(usize),
-    /// Number of the channel, and the value of full intensity in the property's type.
-    Colour(usize, f64),
+/// The vector that a scalar property is a component of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Target {
+    Position,
+    Normal,
+    Colour,
     None,
+}
+
+/// The component that a property sets.
+struct Slot {
+    target: Target,
+    /// Index of the component in the vector.
+    index: usize,
+    /// The value that means full intensity, if the vector is a colour.
+    full: f64,
 }
 
 impl Slot {
     fn of(property: &Property) -> Self {
-        let Kind::Scalar(scalar) = property.kind else {
-            return Self::None;
+        let (target, index) = match property.name.as_slice() {
+            b"x" => (Target::Position, 0),
+            b"y" => (Target::Position, 1),
+            b"z" => (Target::Position, 2),
+            b"nx" => (Target::Normal, 0),
+            b"ny" => (Target::Normal, 1),
+            b"nz" => (Target::Normal, 2),
+            b"red" | b"r" | b"diffuse_red" => (Target::Colour, 0),
+            b"green" | b"g" | b"diffuse_green" => (Target::Colour, 1),
+            b"blue" | b"b" | b"diffuse_blue" => (Target::Colour, 2),
+            _ => (Target::None, 0),
         };
-        match property.name.as_slice() {
-            b"x" => Self::Position(0),
-            b"y" => Self::Position(1),
-            b"z" => Self::Position(2),
-            b"nx" => Self::Normal(0),
-            b"ny" => Self::Normal(1),
-            b"nz" => Self::Normal(2),
-            b"red" | b"r" | b"diffuse_red" => Self::Colour(0, scalar.full_scale()),
-            b"green" | b"g" | b"diffuse_green" => Self::Colour(1, scalar.full_scale()),
-            b"blue" | b"b" | b"diffuse_blue" => Self::Colour(2, scalar.full_scale()),
-            _ => Self::None,
+        let (target, full) = match property.kind {
+            Kind::Scalar(scalar) => (target, scalar.full_scale()),
+            Kind::List { .. } => (Target::None, 1.0),
+        };
+        Self {
+            target,
+            index,
+            full,
         }
     }
 }
 
-/// Whether the properties of an element set x, y and z, or red, green and blue, as selected by `kind`.
-fn has_all(slots: &[Slot], kind: impl Fn(&Slot) -> Option<usize>) -> bool {
-    (0..3).all(|i| slots.iter().any(|slot| kind(slot) == Some(i)))
+/// Whether an element has all three components of a vector.
+fn has_all(slots: &[Slot], target: Target) -> bool {
+    let has = |index| {
+        let mut slots = slots.iter();
+        slots.any(|slot| slot.target == target && slot.index == index)
+    };
+    (0..3).all(has)
 }
 
-fn has_colour(slots: &[Slot]) -> bool {
-    has_all(slots, |slot| {
-        if let Slot::Colour(i, _) = slot {
-            Some(*i)
-        } else {
-            None
-        }
-    })
-}
-
-/// Adds a remark for each list of an element that is skipped.
+/// Adds a remark for each skipped list of an element.
 fn remark_lists(element: &Element, used: impl Fn(&Property) -> bool, polygons: &mut Polygons) {
     for property in &element.properties {
         if matches!(property.kind, Kind::List { .. }) && !used(property) {
@@ -150,27 +158,15 @@ fn read_vertices(
 ) -> Result<(), FormatError> {
     let slots: Vec<Slot> = element.properties.iter().map(Slot::of).collect();
     remark_lists(element, |_| false, polygons);
-    if !has_all(&slots, |slot| {
-        if let Slot::Position(i) = slot {
-            Some(*i)
-        } else {
-            None
-        }
-    }) {
+    if !has_all(&slots, Target::Position) {
         return Err(FormatError::new(
             element.place,
             "the properties x, y and z of vertex",
             "not all of them",
         ));
     }
-    let with_normal = has_all(&slots, |slot| {
-        if let Slot::Normal(i) = slot {
-            Some(*i)
-        } else {
-            None
-        }
-    });
-    let with_colour = has_colour(&slots);
+    let with_normal = has_all(&slots, Target::Normal);
+    let with_colour = has_all(&slots, Target::Colour);
     let mut colours = Vec::new();
     for _ in 0..element.count {
         source.start()?;
@@ -183,11 +179,11 @@ fn read_vertices(
             };
             let place = source.place();
             let value = source.value(scalar)?;
-            match *slot {
-                Slot::Position(i) => point[i] = finite(value, place)?,
-                Slot::Normal(i) => normal[i] = value,
-                Slot::Colour(i, full) => colour[i] = (value / full) as f32,
-                Slot::None => {}
+            match slot.target {
+                Target::Position => point[slot.index] = finite(value, place)?,
+                Target::Normal => normal[slot.index] = value,
+                Target::Colour => colour[slot.index] = (value / slot.full) as f32,
+                Target::None => {}
             }
         }
         source.end()?;
@@ -230,8 +226,9 @@ fn read_faces(
 ) -> Result<(), FormatError> {
     let slots: Vec<Slot> = element.properties.iter().map(Slot::of).collect();
     check_lists(element, polygons)?;
-    let with_colour = has_colour(&slots);
-    // Faces use the normals of the vertices only if the vertices come first, as in every known file.
+    let with_colour = has_all(&slots, Target::Colour);
+    // Faces use the normals of the vertices only if the vertices precede the faces, as in every
+    // known file.
     let with_normal = !polygons.normals.is_empty();
     let mut corners = Vec::new();
     let first = polygons.faces.len();
@@ -249,8 +246,8 @@ fn read_faces(
                 Kind::List { .. } => skip_property(property, source)?,
                 Kind::Scalar(scalar) => {
                     let value = source.value(scalar)?;
-                    if let Slot::Colour(i, full) = *slot {
-                        colour[i] = (value / full) as f32;
+                    if slot.target == Target::Colour {
+                        colour[slot.index] = (value / slot.full) as f32;
                     }
                 }
             }
@@ -312,7 +309,8 @@ fn read_strip(
         let (Some(a), Some(b)) = (a, b) else {
             continue;
         };
-        // Two equal corners continue a strip elsewhere: the triangle has no area.
+        // Writers repeat a corner to continue a strip at another place; such a triangle has no
+        // area.
         if a != b && b != c && c != a {
             let face = if reversed { [b, a, c] } else { [a, b, c] };
             polygons.add_face(&face, None, place)?;
@@ -366,6 +364,7 @@ fn corner(index: f64, with_normal: bool, place: Location) -> Result<Corner, Form
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::text::rows;
 
     const ASCII: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement other 1\nproperty list uchar int a\nproperty int b\nelement nothing 4000000000\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0 255 0 0\n1 0 0 0 255 0\n1 1 0 0 0 255\n\n0 1 0 1 2 3\n2 7 8 9\n4 0 1 2 3\n3 2 1 0\n";
 
@@ -374,10 +373,8 @@ mod tests {
         let polygons = parse(ASCII.as_bytes()).unwrap();
         assert_eq!(polygons.points[3], [0.0, 1.0, 0.0]);
         assert_eq!(polygons.point_colours[3], Rgb8([1, 2, 3]));
-        assert_eq!(
-            polygons.faces.iter().map(|f| f.count).collect::<Vec<_>>(),
-            [4, 3]
-        );
+        let counts: Vec<u32> = polygons.faces.iter().map(|face| face.count).collect();
+        assert_eq!(counts, [4, 3]);
     }
 
     const VERTICES: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
@@ -389,19 +386,15 @@ mod tests {
         );
         let polygons = parse(text.as_bytes()).unwrap();
         let corners: Vec<u32> = polygons.corners.iter().map(|corner| corner.point).collect();
-        assert_eq!(
-            corners,
-            [[0, 1, 2], [2, 1, 3], [2, 1, 0], [1, 3, 2]].as_flattened()
-        );
+        let expected = [[0, 1, 2], [2, 1, 3], [2, 1, 0], [1, 3, 2]];
+        assert_eq!(corners, expected.as_flattened());
         assert!(polygons.remarks.is_empty());
-        let error = parse(text.replace("8 3 1 3 2", "8 3 1 3 -2").as_bytes()).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "line 16: expected an index (0, 1, …), found -2"
-        );
+        let error = parse(text.replace("8 3 1 3 2", "8 3 1 3 -2").as_bytes());
+        let error = error.unwrap_err().to_string();
+        assert_eq!(error, "line 16: expected an index (0, 1, …), found -2");
     }
 
-    /// A strip is one line of any length.
+    /// A strip is one line, which may have any length.
     #[test]
     fn long_strips() {
         let count = 100_000;
@@ -427,10 +420,8 @@ mod tests {
             assert_eq!(polygons.point_colours[3], Rgb8::DEFAULT);
             let colours: Vec<_> = polygons.faces.iter().map(|face| face.colour).collect();
             assert_eq!(colours, [Some(Rgb8([0, 128, 255])), Some(Rgb8([0; 3]))]);
-            assert_eq!(
-                polygons.remarks,
-                ["line 21: a face of fewer than three corners is skipped"]
-            );
+            let remark = "line 21: a face of fewer than three corners is skipped";
+            assert_eq!(polygons.remarks, [remark]);
         }
     }
 
@@ -450,13 +441,11 @@ mod tests {
             put(&f32::from(i).to_le_bytes());
             put(&f64::from(i * i).to_le_bytes());
             put(&(-i).to_le_bytes());
-            [0.0f32, 0.0, f32::NAN]
-                .iter()
-                .for_each(|c| put(&c.to_le_bytes()));
+            let normal = [0.0f32, 0.0, f32::NAN];
+            normal.iter().for_each(|c| put(&c.to_le_bytes()));
         }
-        [0, 65535, 32768u16, 3]
-            .iter()
-            .for_each(|c| put(&c.to_le_bytes()));
+        let shorts = [0, 65535, 32768u16, 3];
+        shorts.iter().for_each(|c| put(&c.to_le_bytes()));
         [0, 1, index].iter().for_each(|i| put(&i.to_le_bytes()));
         file
     }
@@ -467,13 +456,8 @@ mod tests {
             let polygons = parse(&binary(order, swap, 2)).unwrap();
             assert_eq!(polygons.points[2], [2.0, 4.0, -2.0]);
             assert_eq!(polygons.faces[0].colour, Some(Rgb8([0, 255, 128])));
-            assert_eq!(
-                polygons.corners[2],
-                Corner {
-                    normal: 2,
-                    ..Corner::at(2)
-                }
-            );
+            let corner = polygons.corners[2];
+            assert_eq!((corner.point, corner.normal), (2, 2));
             assert_eq!(polygons.normals[2], [0.0; 3]);
         }
     }
@@ -488,62 +472,45 @@ mod tests {
     #[test]
     fn errors_name_their_place() {
         let good = binary("little", false, 2);
-        let ascii = |from: &str, to: &str| ASCII.replace(from, to).into_bytes();
-        let cases: [(Vec<u8>, &str); 14] = [
-            (vec![], "line 1: expected ply, found the end of the file"),
-            (b"plx\n".to_vec(), "line 1: expected ply, found 'plx'"),
+        let cases = [
+            (&[][..], "line 1: expected ply, found the end of the file"),
+            (b"plx\n", "line 1: expected ply, found 'plx'"),
             (
-                b"ply\nformat ascii 1.0\n".to_vec(),
+                b"ply\nformat ascii 1.0\n",
                 "line 2: expected end_header, found the end of the file",
             ),
             (
-                b"ply\nend_header\n".to_vec(),
-                "line 2: expected a line format before end_header, found 'end_header'",
+                b"ply\nend_header\n",
+                "line 2: expected a format line before end_header, found 'end_header'",
             ),
             (
-                b"ply\nformat ascii 1.0\nend_header\n".to_vec(),
+                b"ply\nformat ascii 1.0\nend_header\n",
                 "expected at least one face, found none",
             ),
             (
-                ascii("element vertex 4", "element vertex 4294967296"),
-                "line 4: expected a count of elements up to 2^32 - 1, found 'element vertex 4294967296'",
-            ),
-            (
-                ascii("element vertex 4", "element vertex 4000000000"),
-                "line 23: expected a uint8, found the end of the line",
-            ),
-            (
-                ascii("1 1 0 0 0 255", "1 1 0 0 0 256"),
-                "line 20: expected a uint8, found '256'",
-            ),
-            (
-                ascii("1 1 0 0 0 255", "1 nan 0 0 0 255"),
-                "line 20: expected a finite number, found NaN",
-            ),
-            (
-                ascii("property double z", "property double w"),
-                "line 4: expected the properties x, y and z of vertex, found not all of them",
-            ),
-            (
-                ascii("3 2 1 0\n", "3 2 1 -1\n"),
-                "line 25: expected an index (0, 1, …), found -1",
-            ),
-            (
-                ascii("3 2 1 0\n", "3 2 1 4\n"),
-                "line 25: expected a point index below 4, found 4 (counted from 0)",
-            ),
-            (
-                good[..good.len() - 1].to_vec(),
+                &good[..good.len() - 1],
                 "byte 395: expected an int32, found the end of the file",
             ),
             (
-                binary("little", false, -7),
+                &binary("little", false, -7),
                 "byte 395: expected an index (0, 1, …), found -7",
             ),
         ];
         for (file, message) in cases {
-            let found = parse(&file).unwrap_err().to_string();
-            assert_eq!(found, message);
+            assert_eq!(parse(file).unwrap_err().to_string(), message);
+        }
+        let changes = "
+            element vertex 4 → element vertex 4294967296 → line 4: expected a count of elements up to 2^32 - 1, found 'element vertex 4294967296'
+            element vertex 4 → element vertex 4000000000 → line 23: expected a uint8, found the end of the line
+            1 1 0 0 0 255 → 1 1 0 0 0 256 → line 20: expected a uint8, found '256'
+            1 1 0 0 0 255 → 1 nan 0 0 0 255 → line 20: expected a finite number, found NaN
+            property double z → property double w → line 4: expected the properties x, y and z of vertex, found not all of them
+            3 2 1 0 → 3 2 1 -1 → line 25: expected an index (0, 1, …), found -1
+            3 2 1 0 → 3 2 1 4 → line 25: expected a point index below 4, found 4 (counted from 0)
+        ";
+        for [from, to, message] in rows(changes) {
+            let error = parse(ASCII.replace(from, to).as_bytes()).unwrap_err();
+            assert_eq!(error.to_string(), message);
         }
     }
 }

@@ -6,17 +6,18 @@ use crate::formats::text::{Lines, Words, any_number};
 
 /// The values of a PLY's elements in file order.
 pub trait Source {
-    /// Starts the next instance of an element, a row of its table.
+    /// Starts the next instance of an element, which is a row of its table.
     fn start(&mut self) -> Result<(), FormatError>;
     /// Reads the next value of the instance.
     fn value(&mut self, scalar: Scalar) -> Result<f64, FormatError>;
-    /// Ends the instance. In an ASCII file the line must have no further word.
+    /// Ends the instance. In an ASCII file the line must end here.
     fn end(&mut self) -> Result<(), FormatError>;
     /// The position of the next value.
     fn place(&self) -> Location;
 }
 
-/// Values as decimal words, with one line per instance of an element. A line may have any length, as that of a strip of triangles.
+/// Values as decimal words, with one line per instance of an element. A line may have any length,
+/// because a triangle strip is one line.
 pub struct AsciiSource<'a> {
     words: Words<'a>,
     /// The line of the instance.

@@ -45,12 +45,12 @@ pub struct Row {
 /// Name of a family, and the function that measures the family's trials with a given thinning of the inputs.
 type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 
-/// Measures all configurations, or only the configurations of the family `only`. With a `thinning` of n, every n-th input of a kernel is
-/// measured. `cycles` is the result of the console command `bench kernels`.
+/// Measures all configurations. With a `thinning` of n, every n-th input of a kernel is measured. `cycles` is the result of the console
+/// command `bench kernels`.
 ///
 /// # Errors
 /// When the terminal refuses a progress bar, or a camera is invalid.
-pub fn measure(only: Option<&str>, thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
+pub fn measure(thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
     let families: [Family; 9] = [
         ("reciprocal", |thinning| {
             Ok(arithmetic::reciprocals(thinning))
@@ -66,18 +66,15 @@ pub fn measure(only: Option<&str>, thinning: u32, cycles: &Cycles) -> Result<Vec
         ("colour", |thinning| Ok(pixels::colours(thinning))),
         ("format", formats::formats),
     ];
-    let chosen = families
-        .iter()
-        .filter(|(name, _)| only.is_none_or(|only| only == *name));
     let bar = progress::bar(families.len() as u64)?;
     let mut rows = Vec::new();
-    for (family, trials) in chosen {
-        bar.set_message((*family).to_owned());
+    for (family, trials) in families {
+        bar.set_message(family);
         for trial in trials(thinning)? {
             let cycles = cycles.get(trial.kernel);
             let errors = trial.errors;
             rows.push(Row {
-                family: (*family).to_owned(),
+                family: family.to_owned(),
                 kernel: trial.kernel.to_owned(),
                 config: trial.config,
                 shipped: trial.shipped,

@@ -77,7 +77,7 @@ impl Row {
             argmax: format!(
                 "{} of {}",
                 statistics.worst_function,
-                kernel.show_input(statistics.worst_input)
+                (kernel.show)(statistics.worst_input)
             ),
             max_norm: statistics.max_norm,
             asymmetric: kernel.by_phase.then_some(statistics.asymmetric),
@@ -103,12 +103,12 @@ pub struct Reference {
 pub fn measure(quick: bool, cycles: &Cycles) -> Result<(Vec<Row>, Reference)> {
     let kernels = kernels::kernels();
     let stride = |kernel: &Kernel| match quick {
-        true => (kernel.steps() / SAMPLE) | 1,
+        true => (kernel.steps / SAMPLE) | 1,
         false => 1,
     };
     let steps = kernels
         .iter()
-        .map(|kernel| kernel.steps().div_ceil(stride(kernel)))
+        .map(|kernel| kernel.steps.div_ceil(stride(kernel)))
         .sum();
     let bar = progress::bar(steps)?;
     let rows = kernels

@@ -94,9 +94,10 @@ struct Spherical {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Fitted {
-    /// Half the side of a cube in 2^-14. `place` is its position in world units.
+    /// Half the side of a cube, in units of 2^-14.
     half: i16,
     scale: f64,
+    /// Position of the cube in world units.
     place: [f64; 3],
     /// Horizontal field of view in degrees.
     angle: Option<f64>,

@@ -80,7 +80,7 @@ struct Point {
     point: [i32; 3],
 }
 
-/// The distance of a field whose rays march, at a point.
+/// The distance at a point, for a field that is drawn by marching rays.
 fn distance(Point { field, point }: Point) -> Result<Outcome> {
     let field = Field::parse(&field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let view = View::spherical(Q32_32::from_num(4), Default::default(), Default::default())?;

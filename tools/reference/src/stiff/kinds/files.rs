@@ -40,7 +40,7 @@ pub fn kinds() -> Vec<Kind> {
 struct File {
     /// Name, whose extension selects the format.
     name: String,
-    /// Content. `repeated` follows `times` times, then `end`.
+    /// Start of the content. Then `repeated` follows `times` times, then `end`, then `hex`.
     text: String,
     #[serde(default)]
     repeated: String,
@@ -96,7 +96,7 @@ struct Bytes {
     checksum: bool,
 }
 
-/// A mesh in memory: a damaged cube of 368 bytes with 8 vertices and 12 triangles.
+/// Checks a mesh in memory: a damaged cube of 368 bytes, with 8 vertices and 12 triangles without damage.
 fn mesh_bytes(input: Bytes) -> Result<Outcome> {
     let mut bytes = Model::cube(8192).encoded();
     if input.checksum {

@@ -24,7 +24,7 @@ pub fn mesh(bytes: &[u8]) -> Mesh<'_> {
     Mesh::new_checked(bytes).expect("a generated mesh is valid")
 }
 
-/// An object without its own colour.
+/// An object with the colours of its mesh.
 pub fn object(bytes: &[u8], matrix: Matrix) -> Object<'_> {
     Object {
         subject: MeshSubject::new(mesh(bytes)),

@@ -29,8 +29,8 @@ enum Step {
     CloseGaps,
 }
 
-/// Runs steps on a memory of at most four regions; states the allocated regions, the moves of each compaction, the final gap, and the
-/// number of free bytes.
+/// Runs steps on a memory of at most four regions. The outcome states the allocated regions, the moves of each compaction, the final
+/// gap, and the number of free bytes.
 fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
     let mut memory = Allocator::<4>::new(length);
     let mut kept: Vec<Region> = Vec::new();

@@ -63,7 +63,7 @@ enum Step {
     Previous,
     /// Holds the scene from this time on.
     Hold(u64),
-    /// Ends a hold at this time.
+    /// Ends the hold at this time.
     GoOn(u64),
     Stop,
 }

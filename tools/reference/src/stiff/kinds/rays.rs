@@ -20,7 +20,7 @@ struct Input {
     field: String,
     /// The eye in 2^-12 field units.
     eye: [i32; 3],
-    /// The direction D in units of 2^-27. A component of 0 leads up.
+    /// The direction D in units of 2^-27. A component of 0 counts as positive.
     direction: [i32; 3],
     /// The far limit, in units of the parameter from the ray's end at the usual far limit.
     far: Option<i64>,

@@ -34,7 +34,7 @@ pub fn kinds() -> Vec<Kind> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Typed {
-    /// Typed text. `repeated` follows `times` times, then `end`.
+    /// Start of the typed text. Then `repeated` follows `times` times, then `end`.
     #[serde(default)]
     text: String,
     #[serde(default)]

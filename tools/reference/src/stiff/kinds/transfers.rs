@@ -44,7 +44,7 @@ fn silence(line: Line) -> Result<Outcome> {
         receiver.on_bytes(now, &frame[..length]);
         receiver.poll(now, &mut answer);
     }
-    // A failed transfer sends its last message three times, and then waits for a quiet line ten times as long as a completed transfer.
+    // A failed transfer sends its last message three times. Then it waits for a quiet line, ten times as long as a completed transfer.
     for _ in 0..6 {
         now += 10 * Timing::CONSOLE.quiet_ms;
         receiver.poll(now, &mut answer);

@@ -105,7 +105,7 @@ fn deep_volume(Deep { near, far, cubes }: Deep) -> Result<Outcome> {
     )))
 }
 
-/// Clips a triangle with this vertex, in the eye's plane, to the near plane alone and to a view volume.
+/// Clips a triangle with this vertex, which lies in the eye's plane, first to the near plane alone and then to a view volume.
 fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
     let view = Camera {
         eye: [0.0; 3],
@@ -125,7 +125,7 @@ fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
         }
     }
     Ok(Outcome::exact(
-        "cut off: what remains is at the near plane or beyond",
+        "cut off: the rest is at the near plane or beyond",
     ))
 }
 

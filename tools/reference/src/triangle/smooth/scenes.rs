@@ -178,7 +178,6 @@ pub fn scenes() -> Vec<Scene> {
         size,
         cull,
     };
-    let mut soup = |triangles: &[_]| soup(&mut random, triangles);
     let common = |name, farthest, content| Scene {
         name,
         bound: bound(farthest),
@@ -189,58 +188,44 @@ pub fn scenes() -> Vec<Scene> {
         stiff: true,
         ..common(name, farthest, content)
     };
+    // A mesh of triangles with random colours and normals, without culling. The eye is at (0, `y`, 0), the near plane at 0.01.
+    let mut meshed = |name, triangles: &[_], (y, half_width), size| {
+        let (bytes, view) = (soup(&mut random, triangles), along(y, half_width, 0.01));
+        stiff(name, 600.0, mesh(bytes, view, size, false))
+    };
+    let near = (-1.99, 0.9);
     let everyday = Box::new(glint::view::spherical("2,30,60").expect("a good camera"));
+    let sphere = |name| mesh(generated(name), everyday.clone(), small, true);
+    let inside = mesh(
+        generated("icosphere:2"),
+        along(0.1, 1.5, 0.01),
+        small,
+        false,
+    );
     vec![
-        common(
-            "icosphere:6 from 2",
-            80_000.0,
-            mesh(generated("icosphere:6"), everyday.clone(), small, true),
-        ),
-        common(
-            "icosphere:2 from 2",
-            80_000.0,
-            mesh(generated("icosphere:2"), everyday, small, true),
-        ),
-        stiff(
+        common("icosphere:6 from 2", 80_000.0, sphere("icosphere:6")),
+        common("icosphere:2 from 2", 80_000.0, sphere("icosphere:2")),
+        meshed(
             "a floor from 0.02 to 4, near plane at 0.01",
-            600.0,
-            mesh(soup(&floor(-1.97)), along(-1.99, 0.9, 0.01), small, false),
+            &floor(-1.97),
+            near,
+            small,
         ),
-        stiff(
+        meshed(
             "the floor, cut by the near plane",
-            600.0,
-            mesh(soup(&floor(-2.0)), along(-1.9, 0.9, 0.01), small, false),
+            &floor(-2.0),
+            (-1.9, 0.9),
+            small,
         ),
-        stiff(
-            "slivers from 0.02 to 4, 1280×720",
-            600.0,
-            mesh(soup(&thin), along(-1.99, 0.9, 0.01), large, false),
-        ),
-        common(
-            "inside icosphere:2, back faces",
-            600.0,
-            mesh(
-                generated("icosphere:2"),
-                along(0.1, 1.5, 0.01),
-                small,
-                false,
-            ),
-        ),
-        stiff(
+        meshed("slivers from 0.02 to 4, 1280×720", &thin, near, large),
+        common("inside icosphere:2, back faces", 600.0, inside),
+        meshed(
             "inside a soup of triangles larger than the picture, 1280×720",
-            600.0,
-            mesh(
-                soup(&full),
-                along(-0.5, 1.0, 0.01),
-                glint_model::SIZES[2],
-                false,
-            ),
+            &full,
+            (-0.5, 1.0),
+            large,
         ),
-        stiff(
-            "inside a soup of triangles",
-            600.0,
-            mesh(soup(&crowd), along(-0.2, 3.0, 0.01), small, false),
-        ),
+        meshed("inside a soup of triangles", &crowd, (-0.2, 3.0), small),
         stiff(
             "triangles on the screen over the whole range of depths",
             FARTHEST,
@@ -251,15 +236,12 @@ pub fn scenes() -> Vec<Scene> {
             FARTHEST,
             Content::Screen(screen_thin),
         ),
-        stiff(
-            "a floor seen edge on, 1280×720",
-            600.0,
-            mesh(soup(&edge_on), along(-1.99, 0.9, 0.01), large, false),
-        ),
-        stiff(
+        meshed("a floor seen edge on, 1280×720", &edge_on, near, large),
+        meshed(
             "a vertex at 0.011, the others at 4, 1280×720",
-            600.0,
-            mesh(soup(&close), along(-1.99, 0.9, 0.01), large, false),
+            &close,
+            near,
+            large,
         ),
         stiff(
             "the largest ratio of depths in a triangle, 1,150",

@@ -1,4 +1,4 @@
-//! The sampler between quads and a memory.
+//! Test bench of the texture sampler: a source of quads, and a memory.
 
 use std::collections::VecDeque;
 
@@ -10,12 +10,12 @@ use rand_pcg::Pcg64Mcg;
 
 use super::expected::{Quad, REPEAT, Texels, check_sample, steps, texels};
 
-/// Bytes of a word of memory.
+/// Number of bytes of a memory word.
 const WORD: usize = 16;
 /// Words that the port of the memory holds for the sampler.
 const PORT_WORDS: usize = 32;
 
-/// A texture in memory; without bytes, any words.
+/// A texture in memory. Without bytes, each word of the memory contains its address.
 pub struct Memory {
     /// Word address of the texture.
     pub base: u32,
@@ -116,7 +116,8 @@ impl Bench {
         }
     }
 
-    /// Sets a texture, as the loader does: its sampler, its palette and the addresses of its levels.
+    /// Drives the settings of a texture as the loader does: its sampler, its palette and the
+    /// addresses of its levels.
     pub fn load(&mut self, memory: &Memory, number: u8) {
         assert!(self.module.is_high(self.ports.idle));
         let texture = memory.texture();
@@ -125,14 +126,9 @@ impl Bench {
         let module = &mut self.module;
         module.drive("number", i128::from(number));
         module.drive("sampler.format", i128::from(header.format));
-        for (axis, (side, wrap)) in [header.width_log2, header.height_log2]
-            .into_iter()
-            .zip(header.wrap)
-            .enumerate()
-        {
-            module.drive(&format!("sampler.side_log2[{axis}]"), i128::from(side));
-            module.drive(&format!("sampler.wrap[{axis}]"), i128::from(wrap));
-        }
+        let sides = [header.width_log2, header.height_log2];
+        module.drive_all("sampler.side_log2", sides);
+        module.drive_all("sampler.wrap", header.wrap);
         module.drive("sampler.last_level", i128::from(header.levels - 1));
         module.drive("sampler.bilinear", i128::from(header.filter));
         module.drive("sampler.cut_out", i128::from(header.cut_out));
@@ -161,7 +157,7 @@ impl Bench {
         assert_eq!(at, memory.bytes.len());
     }
 
-    /// Sets any values in place of a texture's.
+    /// Drives random settings.
     pub fn load_any(&mut self, random: &mut Pcg64Mcg) {
         assert!(self.module.is_high(self.ports.idle));
         for name in ["number", "sampler", "level_first"] {
@@ -172,7 +168,7 @@ impl Bench {
         }
     }
 
-    /// Sends quads, and checks that the steps serve their lanes.
+    /// Sends quads, and checks that their steps serve each covered lane once.
     pub fn check_any(&mut self, memory: &Memory, quads: &[Quad]) {
         self.push(quads);
         let limit = self.module.cycles() + 1000 + quads.len() as u64 * (200 + 20 * self.latency);
@@ -219,10 +215,10 @@ impl Bench {
         }
     }
 
-    /// Checks that nothing is left.
+    /// Checks that the sampler is idle and sends no further steps.
     fn rest(&mut self, memory: &Memory) {
         for _ in 0..20 {
-            assert!(self.clock(memory).is_none(), "a step without a quad");
+            assert!(self.clock(memory).is_none(), "a step after the last quad");
         }
         assert!(self.module.is_high(self.ports.idle));
         assert!(self.asked.is_empty(), "words that nobody takes");
@@ -286,7 +282,7 @@ impl Bench {
                 first.get_or_insert(self.module.cycles());
                 self.compare(&texture, quad, number, mask, &step, &mut left);
             }
-            assert_eq!(left, 0, "all lanes in a step");
+            assert_eq!(left, 0, "lanes without a step");
         }
         let end = self.module.cycles();
         self.rest(memory);

@@ -1,32 +1,32 @@
-//! What the sampler should give for a quad, by the model.
+//! Expected output of the sampler for a quad, computed with the model.
 
 use glint_core::colour::Rgb565;
 use glint_core::texture::{Filter, Texture};
-use glint_model::triangle::quotient::CHANNEL_BITS;
-use glint_model::triangle::textured::sample;
+use glint_model::triangle::textured::{average, sample};
 
-/// A repeat of a texture, in the units of a position.
+/// One repeat of a texture, in the units of a position.
 pub const REPEAT: i64 = 1 << POSITION_BITS;
 const POSITION_BITS: u32 = 18;
 
-/// Four pixels.
+/// Four neighbouring pixels of a row.
 #[derive(Clone, Copy, Debug)]
 pub struct Quad {
-    /// Covered pixels.
+    /// Covered pixels, one bit each.
     pub mask: u8,
     pub half: bool,
     pub last: bool,
     pub level: u32,
-    /// By lane, then axis, in 2^-18 repeats.
+    /// Positions by lane, then by axis, in 2^-18 repeats.
     pub positions: [[i64; 2]; 4],
 }
 
 /// The texels of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Texels {
-    /// The nearest one; `None` if it is transparent.
+    /// The nearest texel; `None` if it is transparent.
     pub nearest: Option<u16>,
-    /// The colours of the neighbours, with those that are not transparent or have the nearest one's; without meaning where it is.
+    /// The colours of the four neighbours; a transparent neighbour has the colour of the nearest
+    /// texel. Without meaning if the nearest texel is transparent.
     pub neighbours: [u16; 4],
     pub weights: [u8; 2],
 }
@@ -35,7 +35,7 @@ pub struct Texels {
 pub fn texels(texture: &Texture, level: u32, position: [i64; 2]) -> Texels {
     let sides = texture.level_log2(level);
     let wrap = texture.sampler().wrap;
-    // In 1/256 texels of the level.
+    // In units of 1/256 texel of the level.
     let places = [0, 1].map(|axis: usize| position[axis] >> (POSITION_BITS - 8 - sides[axis]));
     let at = |place: [i64; 2]| {
         let place = [0, 1].map(|axis: usize| wrap[axis].place(place[axis] as i32, sides[axis]));
@@ -53,8 +53,10 @@ pub fn texels(texture: &Texture, level: u32, position: [i64; 2]) -> Texels {
     }
 }
 
-/// The lanes of each step of a quad. The first lane that waits is in the step, and every other one of its pair or quad whose texels are all
-/// in the block column and the block row of the first waiting texel with their parity.
+/// Returns the lanes of each step of a quad. A step serves the first waiting lane, and each other
+/// waiting lane of its pair (bilinear) or quad (nearest) whose texels the same blocks contain: for
+/// each parity of block columns, only the column of the first waiting texel of this parity, and
+/// likewise for block rows.
 pub fn steps(texture: &Texture, quad: &Quad) -> Vec<u8> {
     let is_bilinear = texture.sampler().filter == Filter::Bilinear;
     let (sides, block) = (
@@ -93,11 +95,11 @@ pub fn steps(texture: &Texture, quad: &Quad) -> Vec<u8> {
     steps
 }
 
-/// Compares the texels that the sampler gave for a pixel with the model's sample. `texels` has the nearest one where the texture is not
-/// filtered, and otherwise the neighbours.
+/// Compares the sampler's texels of a pixel with the model's sample. Without filtering only
+/// `texels.nearest` is used, with filtering also the neighbours and weights.
 pub fn check_sample(texture: &Texture, level: u32, position: [i64; 2], texels: &Texels) {
     let sides = texture.size_log2();
-    // In 1/256 texels of level 0, of which the last bits do not matter.
+    // In units of 1/256 texel of level 0.
     let places = [0, 1].map(|axis: usize| position[axis] >> (POSITION_BITS - 8 - sides[axis]));
     let expected = sample(texture, level, places);
     let found = texels
@@ -108,16 +110,8 @@ pub fn check_sample(texture: &Texture, level: u32, position: [i64; 2], texels: &
                 [r << 3, g << 2, b << 3]
             }
             Filter::Bilinear => {
-                let channels = texels
-                    .neighbours
-                    .map(|colour| Rgb565(colour).channels().map(u32::from));
-                [0, 1, 2].map(|channel: usize| {
-                    let [a, b, c, d] = channels.map(|texel| texel[channel]);
-                    let [x, y] = texels.weights.map(u32::from);
-                    let sum = (a * (16 - x) + b * x) * (16 - y) + (c * (16 - x) + d * x) * y;
-                    let bits = CHANNEL_BITS[channel];
-                    ((sum + (1 << (bits - 1))) >> bits) as u8
-                })
+                let neighbours = texels.neighbours.map(|colour| Rgb565(colour).channels());
+                average(neighbours, texels.weights.map(u32::from))
             }
         });
     assert_eq!(found, expected, "the model's sample at {position:?}");

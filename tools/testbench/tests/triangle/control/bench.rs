@@ -17,7 +17,8 @@ pub enum State {
     Runs(u64),
 }
 
-/// Whether the engine can start a pass: with `Since`, from this clock on; with `Waits`, not until it is ready again after a cancel.
+/// Whether the engine can start a pass: `Since` this clock, or not yet, because it `Waits` until it
+/// is ready after a cancel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
@@ -33,25 +34,28 @@ pub struct Bench {
     pub list_shift: u64,
     pub limits: Limits,
     pub states: [State; 2],
-    /// Expected values of each pass's output `error`; `kept` holds the expected values of each pass's output `kept`.
+    /// Expected value of the output `error` of each pass.
     pub errors: [u64; 2],
+    /// Expected flags at the output `kept` of each pass.
     pub kept: [Option<Flags>; 2],
     pub recovery: Recovery,
     /// Number of clocks until the engine is ready again.
     pub ready_in: u64,
-    /// Run time of each pass in clocks; `ends` has the result of each pass.
+    /// Run time of each pass in clocks.
     pub runs: [u64; 2],
+    /// Result of each pass, an error code.
     pub ends: [u64; 2],
-    /// Load time of each pass's parameters after an accepted request, in clocks; `loading` has the remaining clocks. The
-    /// addresses of the regions are wrong while they load.
+    /// Load time of each pass's parameters after an accepted request, in clocks. While the
+    /// parameters load, the addresses of the regions are wrong.
     pub loads: [u64; 2],
+    /// Remaining load time of each pass, in clocks.
     pub loading: [u64; 2],
     /// Numbers of accepted requests, starts and ends of each pass.
     pub counts: [[u64; 3]; 2],
     pub clocks: u64,
 }
 
-/// Actions of software in one clock.
+/// Requests of software in one clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Events {
     pub ask: [bool; 2],
@@ -61,7 +65,7 @@ pub struct Events {
 }
 
 impl Events {
-    /// Software requests passes.
+    /// Requests passes.
     pub fn ask(ask: [bool; 2]) -> Self {
         Self {
             ask,
@@ -69,7 +73,7 @@ impl Events {
         }
     }
 
-    /// Software cancels passes; the engine is ready again after some clocks.
+    /// Cancels passes; the engine is ready again after `recovers` clocks.
     pub fn cancel(recovers: u64) -> Self {
         Self {
             cancel: true,
@@ -305,7 +309,7 @@ impl Bench {
                     assert!(!started, "{name} starts twice");
                     self.states[which] = State::Runs(left - 1);
                 }
-                State::Idle => assert!(!started, "{name} starts unasked"),
+                State::Idle => assert!(!started, "{name} starts without a request"),
             }
             assert_eq!(
                 told, expects_end,

@@ -10,21 +10,22 @@ use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePor
 
 use super::expected::{Expected, SIZES};
 
-// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: one for the engine, one for the
-// clipper (firmware on the board, here the model).
+// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` have two areas each: one for
+// the engine, and one for the clipper, which is the firmware on the board and the model here.
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 pub const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
 pub const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
 pub const MESH: u32 = 0x1c_0000;
-/// The table of textures, and the first texture.
+/// The table of textures.
 const TEXTURES: u32 = 0x1e_0000;
+/// The first texture.
 const TEXTURE: u32 = 0x1e_0100;
-/// Distance of two textures, more than the words of one.
+/// Number of words from one texture to the next; no texture is longer.
 const TEXTURE_WORDS: u32 = 0x1000;
 const WORDS: usize = 0x20_0000;
-/// Logarithm to base 2 of the words per list.
+/// Base-2 logarithm of the number of words per list.
 pub const LIST_SHIFT: u32 = 11;
 /// Number of words after a picture that are checked to be unchanged: more than the size of a bank of the band buffer.
 const BEHIND: usize = 4096;
@@ -37,7 +38,8 @@ fn bytes(word: u32) -> u64 {
     u64::from(word) * 16
 }
 
-/// Writes the second set of lists and descriptors to memory, as the firmware does, for a build whose descriptors have this layout.
+/// Writes the second set of lists and descriptors to memory, as the firmware does, with descriptors
+/// of this layout.
 fn write_set(memory: &mut Memory, width: u32, triangles: &[(Descriptor, Bounds)], layout: Layout) {
     let rows = band_rows(width);
     let mut lists = vec![Vec::new(); 64];
@@ -87,45 +89,21 @@ pub struct Clocks {
 impl Bench {
     /// Creates a bench with the module for flat shading; each memory port stalls in the share `stalls` of the clocks.
     pub fn new(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine", Layout::FLAT, seed, stalls)
+        Self::with_module("triangle_engine", Layout::FLAT, seed, stalls)
     }
 
-    /// Creates a bench as [`new`](Self::new) does, with the module for flat and smooth shading.
-    pub fn smooth(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_smooth", Layout::SMOOTH, seed, stalls)
+    /// Creates a bench as [`new`](Self::new) does, with a variant of the module, such as `lines`:
+    /// the module `triangle_engine_lines`.
+    pub fn of(variant: &str, seed: u32, stalls: f64) -> Self {
+        let layout = match variant {
+            "smooth" => Layout::SMOOTH,
+            "texture" => Layout::TEXTURED,
+            _ => Layout::FLAT,
+        };
+        Self::with_module(&format!("triangle_engine_{variant}"), layout, seed, stalls)
     }
 
-    /// Creates a bench as [`new`](Self::new) does, with the module for triangles with textures.
-    pub fn textured(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_texture", Layout::TEXTURED, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for triangles and lines.
-    pub fn lines(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_lines", Layout::FLAT, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for lines without triangles and without the depth buffer.
-    pub fn lines_alone(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_lines_alone", Layout::FLAT, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for triangles without the geometry pass.
-    pub fn no_geometry(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_no_geometry", Layout::FLAT, seed, stalls)
-    }
-
-    /// Creates a bench as [`new`](Self::new) does, with the module for fields without triangles.
-    pub fn fields_alone(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_fields_alone", Layout::FLAT, seed, stalls)
-    }
-
-    /// As [`fields_alone`](Self::fields_alone), without the depth buffer.
-    pub fn no_depths(seed: u32, stalls: f64) -> Self {
-        Self::of("triangle_engine_no_depths", Layout::FLAT, seed, stalls)
-    }
-
-    fn of(name: &str, layout: Layout, seed: u32, stalls: f64) -> Self {
+    fn with_module(name: &str, layout: Layout, seed: u32, stalls: f64) -> Self {
         let module = Module::new(name, seed);
         let seed = u64::from(seed);
         Self {
@@ -183,7 +161,7 @@ impl Bench {
             let clocks = self.module.cycles() - start;
             assert!(
                 clocks < 2_000_000,
-                "no end after {clocks} clocks: given {:?} written {} groups {}",
+                "no end after {clocks} clocks: words read {:?}, words written {}, groups {}",
                 self.reads.each_ref().map(|read| read.given),
                 self.frame_words(),
                 self.count("groups")
@@ -207,6 +185,20 @@ impl Bench {
         self.set(port, 1);
         self.clock();
         self.set(port, 0);
+    }
+
+    /// Waits until the engine is ready, and runs the geometry pass; returns its number of clocks.
+    pub fn run_geometry(&mut self) -> u64 {
+        self.wait_for("status.ready");
+        self.pulse("geometry_start");
+        self.wait_for("status.geometry_done")
+    }
+
+    /// Starts a pass, and cancels it after `clocks` clocks.
+    pub fn cancel_after(&mut self, start: &str, clocks: u32) {
+        self.pulse(start);
+        (0..clocks).for_each(|_| self.clock());
+        self.pulse("cancel");
     }
 
     /// Sets the engine's parameters: mesh, frame constants, memory map.
@@ -301,13 +293,21 @@ impl Bench {
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
     }
 
+    /// Sets the sets that the raster pass draws: the number of descriptors of the first set, if it
+    /// is drawn, and of the second set, which is drawn if it is not empty.
+    pub fn set_sets(&mut self, first: Option<u64>, second: usize) {
+        let counts = [first.unwrap_or(0), second as u64];
+        self.module.drive_all("raster.count", counts);
+        self.set("raster_flags.first", u64::from(first.is_some()));
+        self.set("raster_flags.second", u64::from(second > 0));
+    }
+
     /// Draws a frame and compares it with the expected frame.
     pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
         self.configure(mesh, expected);
         self.wait_for("status.ready");
         let fetched = self.count("vertices");
-        self.pulse("geometry_start");
-        let geometry = self.wait_for("status.geometry_done");
+        let geometry = self.run_geometry();
         let fetches = vertex_cache::fetches(&Mesh::new_checked(mesh).expect("a valid mesh"));
         assert_eq!(
             self.count("vertices") - fetched,
@@ -323,7 +323,10 @@ impl Bench {
         .map(|path| self.read(path));
         let stats = &expected.stats;
         let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
-        assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
+        assert_eq!(
+            counts, wanted,
+            "{name}: mesh_error, full, triangles, exceptions"
+        );
 
         self.draw_lists(name, expected, geometry)
     }
@@ -335,16 +338,7 @@ impl Bench {
             .map(|(setup, colour)| (Descriptor::new(setup, *colour, None), setup.bounds))
             .collect();
         write_set(&mut self.memory, expected.size.0, &clipped, self.layout);
-        let counts = [
-            self.read("results.descriptor_count"),
-            expected.clipped.len() as u64,
-        ];
-        self.module.drive_all("raster.count", counts);
-        self.set("raster_flags.first", 1);
-        self.set(
-            "raster_flags.second",
-            u64::from(!expected.clipped.is_empty()),
-        );
+        self.set_sets(Some(self.read("results.descriptor_count")), clipped.len());
         self.pulse("raster_start");
         let (read, written) = (self.reads[2].given, self.frame_words());
         let raster = self.finish(name, expected);
@@ -356,8 +350,8 @@ impl Bench {
         }
     }
 
-    /// Draws a mesh with textures, whose clipped triangles are the second set, and compares the frame with the expected frame. Returns the
-    /// numbers of clocks of both passes.
+    /// Draws a mesh with textures, and its clipped triangles as the second set, and compares the
+    /// frame with the expected frame. Returns the numbers of clocks of both passes.
     pub fn draw_textured(
         &mut self,
         name: &str,
@@ -375,30 +369,20 @@ impl Bench {
         self.set("geometry.first_texture", 4);
         let place = bytes(MESH) + offset(coordinates) as u64;
         self.set("geometry.coordinates", place);
-        self.wait_for("status.ready");
-        self.pulse("geometry_start");
-        let geometry = self.wait_for("status.geometry_done");
+        let geometry = self.run_geometry();
         let counts = ["status.mesh_error", "status.full"].map(|path| self.read(path));
-        assert_eq!(counts, [0, 0], "{name}: error, full");
+        assert_eq!(counts, [0, 0], "{name}: mesh_error, full");
         write_set(&mut self.memory, expected.size.0, clipped, self.layout);
         let addresses = mesh
             .textures()
             .map(|texture| offset(texture.bytes()) as u64);
-        let table = [0; 5]
-            .into_iter()
-            .chain(addresses.map(|at| bytes(MESH) + at));
-        let table: Vec<u8> = table.flat_map(|at| (at as u32).to_le_bytes()).collect();
-        self.memory.write(TEXTURES, &table);
-        self.set("raster.textures", bytes(TEXTURES));
-        let counts = [self.read("results.descriptor_count"), clipped.len() as u64];
-        self.module.drive_all("raster.count", counts);
-        self.set("raster_flags.first", 1);
-        self.set("raster_flags.second", u64::from(!clipped.is_empty()));
+        self.write_table(addresses.map(|at| bytes(MESH) + at));
+        self.set_sets(Some(self.read("results.descriptor_count")), clipped.len());
         self.pulse("raster_start");
         [geometry, self.finish(name, expected)]
     }
 
-    /// Writes the table of textures, whose first ones are not used.
+    /// Writes the table of textures. Its first five entries are unused.
     fn write_table(&mut self, addresses: impl Iterator<Item = u64>) {
         let table = [0; 5].into_iter().chain(addresses);
         let table: Vec<u8> = table.flat_map(|at| (at as u32).to_le_bytes()).collect();
@@ -406,8 +390,8 @@ impl Bench {
         self.set("raster.textures", bytes(TEXTURES));
     }
 
-    /// Draws the second set alone, of triangles whose textures have the numbers from 5 on, and compares the frame with the expected frame. Returns the
-    /// number of clocks.
+    /// Draws only the second set, from triangles whose texture numbers begin at 5, and compares the
+    /// frame with the expected frame. Returns the number of clocks.
     pub fn draw_set(
         &mut self,
         name: &str,
@@ -423,10 +407,7 @@ impl Bench {
             self.memory.write(place, texture);
         }
         self.write_table(places.into_iter().map(bytes));
-        self.module
-            .drive_all("raster.count", [0, triangles.len() as u32]);
-        self.set("raster_flags.first", 0);
-        self.set("raster_flags.second", 1);
+        self.set_sets(None, triangles.len());
         self.wait_for("status.ready");
         self.pulse("raster_start");
         self.finish(name, expected)
@@ -443,7 +424,7 @@ impl Bench {
     pub fn finish(&mut self, name: &str, expected: &Expected) -> u64 {
         let clocks = self.wait_for("status.raster_done");
         self.left[self.slot] = Some((expected.size, expected.options.clear));
-        assert_eq!(self.read("status.list_error"), 0, "{name}: the lists");
+        assert_eq!(self.read("status.list_error"), 0, "{name}: list_error");
         self.compare(name, expected);
         clocks
     }
@@ -472,9 +453,7 @@ impl Bench {
         }
         let behind = FRAMES[self.slot] + expected.size.0 * expected.size.1 / 8;
         self.memory.write(behind, &[0x77; 16 * BEHIND]);
-        self.set("raster.count[0]", descriptors.len() as u64 / 48);
-        self.set("raster_flags.first", 1);
-        self.set("raster_flags.second", 0);
+        self.set_sets(Some(descriptors.len() as u64 / 48), 0);
         self.wait_for("status.ready");
         self.pulse("raster_start");
         self.wait_for("status.raster_done");
@@ -489,7 +468,7 @@ impl Bench {
         }
     }
 
-    /// Overwrites the frame buffer: its last frame counts as unknown.
+    /// Overwrites the frame buffer, whose content then counts as unknown.
     pub fn scribble(&mut self) {
         self.memory
             .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);

@@ -16,7 +16,7 @@ use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
 
 use super::bench::Bench;
-use super::expected::{CLEAR, Expected, picture};
+use super::expected::{Expected, picture};
 
 /// The picture of a field, and the pixels of each band.
 struct Picture {
@@ -135,7 +135,7 @@ fn fields_are_drawn_without_triangles() {
     ]
     .map(|(name, text, tint)| (name, Picture::new(text, Size::W320, tint)));
     for (seed, stalls) in [(1, 0.0), (2, 0.4)] {
-        let mut bench = Bench::fields_alone(seed, stalls);
+        let mut bench = Bench::of("fields_alone", seed, stalls);
         for (name, picture) in &mut pictures {
             bench.slot = random.random_range(0..2);
             bench.with_depth = random.random();
@@ -145,7 +145,7 @@ fn fields_are_drawn_without_triangles() {
         assert_eq!(read, [0; 3], "words read");
     }
     // Without the depth buffer the colours are unchanged, and depths are written as 0.
-    let mut bench = Bench::no_depths(3, 0.4);
+    let mut bench = Bench::of("no_depths", 3, 0.4);
     for (name, picture) in &mut pictures {
         picture.expected.depth.fill(0);
         for with_depth in [false, true] {
@@ -159,12 +159,9 @@ fn fields_are_drawn_without_triangles() {
 #[test]
 fn pictures_without_a_field_are_clear() {
     let mut random = Pcg64Mcg::new(4);
-    let mut bench = Bench::fields_alone(3, 0.2);
+    let mut bench = Bench::of("fields_alone", 3, 0.2);
     let mut field = Picture::new("menger:1", Size::W320, None);
-    let (width, height) = field.expected.size;
-    let pixels = (width * height) as usize;
-    let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();
-    let clear = picture((width, height), &view, vec![CLEAR; pixels], vec![0; pixels]);
+    let clear = Expected::clear(field.expected.size);
     for sent in [1, 500, 10_000] {
         start(&mut bench, &field);
         bench.wait_for("field_sink.open");

@@ -80,11 +80,9 @@ impl Bench {
     /// Runs the configured geometry pass, whose descriptors must all fit, and returns its clocks. Appends its descriptors and
     /// lists to `gathered`.
     pub fn gather(&mut self, name: &str, gathered: &mut Gathered) -> u64 {
-        self.wait_for("status.ready");
-        self.pulse("geometry_start");
-        let clocks = self.wait_for("status.geometry_done");
+        let clocks = self.run_geometry();
         let errors = ["status.mesh_error", "status.full"].map(|path| self.read(path));
-        assert_eq!(errors, [0; 2], "{name}: error, full");
+        assert_eq!(errors, [0; 2], "{name}: mesh_error, full");
         self.set("geometry_flags.lines", 0);
 
         let first = gathered.descriptors.len() as u32 / 3;
@@ -121,9 +119,7 @@ impl Bench {
             let place = LISTS[0] + list_word(band, LIST_SHIFT);
             self.memory.write(place, &bytes(list));
         }
-        self.set("raster.count[0]", gathered.descriptors.len() as u64 / 3);
-        self.set("raster_flags.first", 1);
-        self.set("raster_flags.second", 0);
+        self.set_sets(Some(gathered.descriptors.len() as u64 / 3), 0);
         self.wait_for("status.ready");
         self.pulse("raster_start");
     }

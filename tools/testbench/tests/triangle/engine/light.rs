@@ -17,7 +17,7 @@ use super::generated;
 fn scenes_in_any_light() {
     let mut random = Pcg64Mcg::new(9);
     for stalls in [0.0, 0.4] {
-        let mut bench = Bench::smooth(6, stalls);
+        let mut bench = Bench::of("smooth", 6, stalls);
         for (name, mesh, view, cull) in scenes(generated) {
             // Skips large meshes, which take long and add no coverage.
             if mesh.len() > 1 << 20 {

@@ -31,7 +31,7 @@ fn random_segments_with_random_stalls() {
     for seed in 0..12 {
         let mut numbers = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
         let size = seed as usize % 3;
-        let mut bench = Bench::lines(seed, [0.0, 0.2, 0.5, 0.7][seed as usize % 4]);
+        let mut bench = Bench::of("lines", seed, [0.0, 0.2, 0.5, 0.7][seed as usize % 4]);
         bench.with_depth = seed % 5 == 0;
         for frame in 0..3 {
             let count = numbers.random_range(0..150);
@@ -43,13 +43,13 @@ fn random_segments_with_random_stalls() {
     }
 }
 
-/// A build for lines alone draws lines without depths as one for triangles and lines does.
+/// A build for lines alone draws lines without depths like a build for triangles and lines.
 #[test]
 fn a_build_for_lines_alone_draws_them() {
     for (size, &picture) in SIZES.iter().enumerate() {
         let mut numbers = Pcg64Mcg::new((size as u128) << 1 | 1);
         let stalls = [0.0, 0.3, 0.7][size];
-        let mut bench = Bench::lines_alone(size as u32, stalls);
+        let mut bench = Bench::of("lines_alone", size as u32, stalls);
         bench.with_depth = false;
         for frame in 0..4 {
             let count = numbers.random_range(0..150);
@@ -71,10 +71,14 @@ fn a_build_for_lines_alone_draws_them() {
 #[test]
 fn a_build_for_lines_alone_reports_triangles() {
     let (gathered, _) = gathered_face(29);
-    let mut bench = Bench::lines_alone(30, 0.0);
+    let mut bench = Bench::of("lines_alone", 30, 0.0);
     bench.with_depth = false;
-    let clear = Expected::clear(SIZES[0]);
-    bench.start_gathered(&gathered, &clear);
+    reports(&mut bench, &gathered);
+}
+
+/// Checks that a raster pass reports the descriptors of another build.
+fn reports(bench: &mut Bench, gathered: &Gathered) {
+    bench.start_gathered(gathered, &Expected::clear(SIZES[0]));
     bench.wait_for("status.raster_done");
     assert_eq!(bench.read("status.list_error"), 1);
 }
@@ -83,7 +87,7 @@ fn a_build_for_lines_alone_reports_triangles() {
 #[test]
 fn a_build_without_geometry_draws_lists() {
     let (gathered, frame) = gathered_face(31);
-    let mut bench = Bench::no_geometry(32, 0.3);
+    let mut bench = Bench::of("no_geometry", 32, 0.3);
     bench.draw_gathered("a face", &gathered, &frame);
 }
 
@@ -101,7 +105,7 @@ fn gathered_face(seed: u32) -> (Gathered, Expected) {
 #[test]
 fn difficult_segments() {
     for (size, &picture) in SIZES.iter().enumerate() {
-        let mut bench = Bench::lines(21, 0.1);
+        let mut bench = Bench::of("lines", 21, 0.1);
         draw(&mut bench, "difficult segments", picture, &difficult(size));
     }
 }
@@ -110,7 +114,7 @@ fn difficult_segments() {
 #[test]
 fn ten_thousand_segments_of_50_pixels() {
     for (size, &picture) in SIZES.iter().enumerate() {
-        let mut bench = Bench::lines(22, 0.0);
+        let mut bench = Bench::of("lines", 22, 0.0);
         bench.with_depth = false;
         let segments = of_50_pixels(size, 10_000);
         let [geometry, raster] = draw(&mut bench, "50 pixels", picture, &segments);
@@ -145,7 +149,7 @@ fn face(distance: f64, colour: u16) -> Vec<u8> {
     meshes::mesh(&[triangle([0, 1, 2]), triangle([0, 2, 3])], 100)
 }
 
-/// Lines and faces of a list keep their order, even at equal depths.
+/// Lines and faces are drawn in the order of the list, even at equal depths.
 #[test]
 fn lines_and_faces_in_turn() {
     let mut numbers = Pcg64Mcg::new(23);
@@ -170,7 +174,7 @@ fn lines_and_faces_in_turn() {
             Step::Lines(lines.collect())
         });
         let steps: Vec<Step> = steps.collect();
-        let mut bench = Bench::lines(round as u32, [0.0, 0.3][round / 4]);
+        let mut bench = Bench::of("lines", round as u32, [0.0, 0.3][round / 4]);
         let mut gathered = Gathered::default();
         let mut frame = Expected::clear(SIZES[size]);
         let name = format!("round {round}");
@@ -195,13 +199,11 @@ fn lines_and_faces_in_turn() {
 
 #[test]
 fn full_lists_and_damaged_segments_are_reported() {
-    let mut bench = Bench::lines(24, 0.2);
+    let mut bench = Bench::of("lines", 24, 0.2);
     let segments = of_50_pixels(0, 60);
     let clear = Expected::clear(SIZES[0]);
     let run = |bench: &mut Bench| {
-        bench.wait_for("status.ready");
-        bench.pulse("geometry_start");
-        bench.wait_for("status.geometry_done");
+        bench.run_geometry();
         bench.set("geometry_flags.lines", 0);
         ["status.full", "status.mesh_error"].map(|path| bench.read(path))
     };
@@ -234,14 +236,12 @@ fn a_cancelled_frame_leaves_a_working_engine() {
     let faces = expected(&mesh, &ahead(1.0, 0.1), SIZES[0], true);
     let mut numbers = Pcg64Mcg::new(25);
     for stalls in [0.0, 0.6] {
-        let mut bench = Bench::lines(25, stalls);
+        let mut bench = Bench::of("lines", 25, stalls);
         for start in ["geometry_start", "raster_start"] {
             for _ in 0..4 {
                 draw(&mut bench, "before", SIZES[0], &segments);
                 bench.configure_lines(&segments, &Expected::clear(SIZES[0]));
-                bench.pulse(start);
-                (0..numbers.random_range(0..4000)).for_each(|_| bench.clock());
-                bench.pulse("cancel");
+                bench.cancel_after(start, numbers.random_range(0..4000));
                 bench.set("geometry_flags.lines", 0);
                 if numbers.random() {
                     bench.draw("triangles", &mesh, &faces);
@@ -254,7 +254,7 @@ fn a_cancelled_frame_leaves_a_working_engine() {
 /// Draws frames from random pieces. Such a frame ends and writes only its own memory, and the next frame is correct.
 #[test]
 fn frames_end_with_random_pieces() {
-    let mut bench = Bench::lines(26, 0.1);
+    let mut bench = Bench::of("lines", 26, 0.1);
     bench.with_depth = false;
     for seed in 0..9 {
         let mut numbers = Pcg64Mcg::new(seed);
@@ -272,13 +272,7 @@ fn frames_end_with_random_pieces() {
         assert_eq!(bench.read("status.list_error"), 0, "{name}");
         let segments = of_50_pixels(0, 20);
         draw(&mut bench, &format!("after {name}"), SIZES[0], &segments);
-        let nothing: [Segment; 0] = [];
-        draw(
-            &mut bench,
-            &format!("nothing after {name}"),
-            SIZES[2],
-            &nothing,
-        );
+        draw(&mut bench, &format!("nothing after {name}"), SIZES[2], &[]);
     }
 }
 
@@ -290,13 +284,9 @@ fn a_build_without_lines_reports_pieces() {
         colour: Rgb565(0xffff),
         depth: LineDepth::Over,
     };
-    let clear = Expected::clear(SIZES[0]);
     let mut gathered = Gathered::default();
-    let mut bench = Bench::lines(27, 0.0);
-    bench.configure_lines(&[segment], &clear);
+    let mut bench = Bench::of("lines", 27, 0.0);
+    bench.configure_lines(&[segment], &Expected::clear(SIZES[0]));
     bench.gather("a piece", &mut gathered);
-    let mut bench = Bench::new(28, 0.0);
-    bench.start_gathered(&gathered, &clear);
-    bench.wait_for("status.raster_done");
-    assert_eq!(bench.read("status.list_error"), 1);
+    reports(&mut Bench::new(28, 0.0), &gathered);
 }

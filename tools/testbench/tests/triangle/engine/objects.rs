@@ -85,9 +85,7 @@ fn draw(bench: &mut Bench, name: &str, things: &[Thing], setups: &[MeshSetup]) -
     for (number, (bytes, (mesh, setup, options))) in things.iter().enumerate() {
         bench.configure_geometry(bytes, setup, options);
         bench.set("geometry_flags.append", u64::from(number > 0));
-        bench.wait_for("status.ready");
-        bench.pulse("geometry_start");
-        geometry += bench.wait_for("status.geometry_done");
+        geometry += bench.run_geometry();
         let counts = ["status.mesh_error", "status.full", "results.triangles"];
         let counts = counts.map(|path| bench.read(path));
         assert_eq!(counts, [0, 0, mesh.triangle_count().into()], "{name}");
@@ -115,7 +113,7 @@ fn frames_of_objects() {
         let shading = [Shading::Flat, Shading::Smooth][usize::from(seed % 4 == 0)];
         let mut bench = match shading {
             Shading::Flat => Bench::new(seed, stalls),
-            Shading::Smooth => Bench::smooth(seed, stalls),
+            Shading::Smooth => Bench::of("smooth", seed, stalls),
         };
         for frame in 0..3 {
             bench.slot = random.random_range(0..2);
@@ -149,18 +147,12 @@ fn nothing_is_appended_to_a_cancelled_frame() {
     let setups = setups(&things, &inside(), SIZES[0]);
     draw(&mut bench, "before", &things, &setups);
     for (thing, setup) in things.iter().zip(&setups) {
-        bench.pulse("geometry_start");
-        for _ in 0..random.random_range(0..300) {
-            bench.clock();
-        }
-        bench.pulse("cancel");
+        bench.cancel_after("geometry_start", random.random_range(0..300));
         let mesh = Mesh::new_checked(&thing.mesh).unwrap();
         let expected = expected_parts(SIZES[0], &[(mesh, *setup, thing.options)]);
         bench.configure_geometry(&thing.mesh, setup, &thing.options);
         bench.set("geometry_flags.append", 1);
-        bench.wait_for("status.ready");
-        bench.pulse("geometry_start");
-        let geometry = bench.wait_for("status.geometry_done");
+        let geometry = bench.run_geometry();
         bench.draw_lists("after", &expected, geometry);
     }
 }

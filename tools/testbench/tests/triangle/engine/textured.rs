@@ -54,15 +54,16 @@ fn texture(random: &mut Pcg64Mcg) -> Source {
     }
 }
 
-/// The first textures of the table are not those of a mesh.
+/// Offset of the mesh's texture numbers, which begin at 1, in the table of textures.
 const BEFORE: u8 = 4;
 
 /// A frame of a square with textures.
 struct Shown {
     mesh: Vec<u8>,
     expected: Expected,
-    /// The triangles that need no clipping, and those that are clipped.
+    /// The triangles that need no clipping.
     whole: Vec<(Descriptor, Bounds)>,
+    /// The clipped triangles.
     clipped: Vec<(Descriptor, Bounds)>,
 }
 
@@ -138,7 +139,7 @@ fn frames_with_textures() {
     let (mut pixels, mut clocks, mut by_pass) = (0, 0, 0);
     for seed in 0..24 {
         let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
-        let mut bench = Bench::textured(seed, [0.0, 0.3, 0.7][seed as usize % 3]);
+        let mut bench = Bench::of("texture", seed, [0.0, 0.3, 0.7][seed as usize % 3]);
         for count in 0..4 {
             let repeats = [0.5, 1.0, 4.0, 30.0][random.random_range(0..4)];
             let textures: Vec<_> = (0..random.random_range(1..=2))
@@ -176,7 +177,7 @@ fn a_cancelled_frame_with_textures_leaves_a_working_engine() {
     let textures = [(); 2].map(|()| encode(&texture(&mut random)).unwrap());
     let shown = Shown::new(&textures, [0.3, -3.0, 2.0], 1.0);
     for stalls in [0.0, 0.6] {
-        let mut bench = Bench::textured(9, stalls);
+        let mut bench = Bench::of("texture", 9, stalls);
         for (port, clocks) in [
             ("geometry_start", 200),
             ("geometry_start", 90),
@@ -188,11 +189,7 @@ fn a_cancelled_frame_with_textures_leaves_a_working_engine() {
         ] {
             let name = format!("{port} cancelled after {clocks} clocks with stalls {stalls}");
             bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
-            bench.pulse(port);
-            for _ in 0..clocks {
-                bench.clock();
-            }
-            bench.pulse("cancel");
+            bench.cancel_after(port, clocks);
             bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
         }
     }

@@ -163,6 +163,9 @@ impl Bench {
                 possible()
             );
         }
-        assert_eq!(self.counts.pixels, covered, "{name}: pixels in all");
+        assert_eq!(
+            self.counts.pixels, covered,
+            "{name}: total number of pixels"
+        );
     }
 }

@@ -1,6 +1,6 @@
-# Shows on the LEDs: in the upper byte switches 15:8; in the lower byte buttons 3:0, and below them four bits of a word in DDR3.
-# The word is in the data cache: in 16 of 32 rounds a load displaces it from the cache, in the other 16 rounds it stays there.
-# A test replaces the instruction at `patch` at run time.
+# Shows on LEDs 15:8 the switches 15:8, on LEDs 7:4 the buttons 3:0, and on LEDs 3:0 four bits of a
+# word in DDR3. The word is in the data cache. In 16 of 32 rounds a load evicts it; in the other 16
+# rounds it stays in the cache. A test replaces the instruction at `patch` at run time.
     .option norelax
     li   s0, BUTTONS_IN
     li   s1, SWITCHES_IN

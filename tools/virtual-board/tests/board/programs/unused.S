@@ -1,5 +1,6 @@
-# Accesses addresses that no memory and no register has. Before the first access and after each one, stores the count of bus errors and
-# the cycle at RESULTS; finally stores a word that is not 0 behind them.
+# Accesses addresses without a memory or a register. Before the first access and after each access,
+# appends the count of bus errors and the cycle to the results at RESULTS; finally appends a word
+# that is not 0.
     .option norelax
     .option arch, +zicsr
     .macro store

@@ -47,89 +47,13 @@ const HALF_WIDTH: f64 = 640.0;
 
 /// Measures the errors of all kernels. `cycles` is the result of the console command `bench geometry`.
 pub fn measure(cycles: &Cycles) -> Vec<Row> {
-    let kernels = [
-        (
-            "matrix_10",
-            "10 fraction bits, products of 32 bits",
-            false,
-            chains(10, product_32::<10>),
-        ),
-        (
-            "matrix_16",
-            "16 fraction bits, products of 64 bits",
-            false,
-            chains(16, product_64::<16>),
-        ),
-        (
-            "matrix_20",
-            "20 fraction bits, products of 64 bits",
-            false,
-            chains(20, product_64::<20>),
-        ),
-        (
-            "matrix_24",
-            "24 fraction bits, products of 64 bits",
-            true,
-            chains(24, product_64::<24>),
-        ),
-        (
-            "matrix_32",
-            "32 fraction bits, products of 128 bits",
-            false,
-            chains(32, product_128::<32>),
-        ),
-        (
-            "normal_8",
-            "8 fraction bits, in 32 bits",
-            false,
-            normals(8, |matrix, normal| {
-                turned::<8>(&cofactors(&bits(matrix)), normal)
-            }),
-        ),
-        (
-            "normal_14_in_32",
-            "14 fraction bits, in 32 bits",
-            false,
-            normals(14, |matrix, normal| {
-                turned::<14>(&cofactors(&bits(matrix)), normal)
-            }),
-        ),
-        (
-            "normal_14_in_64",
-            "14 fraction bits, in 64 bits",
-            true,
-            normals(14, |matrix, normal| matrix.normals().apply(normal)),
-        ),
-        (
-            "reciprocal_0",
-            "table of 256 reciprocals",
-            false,
-            positions(reciprocal::<0>),
-        ),
-        (
-            "reciprocal_1",
-            "table, one Newton step",
-            false,
-            positions(reciprocal::<1>),
-        ),
-        (
-            "reciprocal_2",
-            "table, two Newton steps",
-            true,
-            positions(reciprocal::<2>),
-        ),
-    ];
-    let row = |(kernel, config, shipped, errors): (&str, &str, bool, Errors)| {
-        let family = match kernel.split_once('_') {
-            Some(("reciprocal", _)) => "projection",
-            Some((family, _)) => family,
-            None => kernel,
-        };
-        let cycles = cycles.get(kernel);
-        Row {
+    let mut rows = Vec::new();
+    let mut add = |family: &str, kernel: String, config: String, shipped, errors: Errors| {
+        let cycles = cycles.get(&kernel);
+        rows.push(Row {
             family: family.to_owned(),
-            kernel: kernel.to_owned(),
-            config: config.to_owned(),
+            kernel,
+            config,
             shipped,
             max_err: errors.max,
             rms: errors.rms(),
@@ -137,9 +61,44 @@ pub fn measure(cycles: &Cycles) -> Vec<Row> {
             cycles_min: cycles.map(|cycles| cycles.min),
             cycles_median: cycles.map(|cycles| cycles.median),
             cycles_max: cycles.map(|cycles| cycles.max),
-        }
+        });
     };
-    kernels.into_iter().map(row).collect()
+    for (bits, width, errors) in [
+        (10, 32, chains(10, product_32::<10>)),
+        (16, 64, chains(16, product_64::<16>)),
+        (20, 64, chains(20, product_64::<20>)),
+        (24, 64, chains(24, product_64::<24>)),
+        (32, 128, chains(32, product_128::<32>)),
+    ] {
+        let config = format!("{bits} fraction bits, products of {width} bits");
+        add(
+            "matrix",
+            format!("matrix_{bits}"),
+            config,
+            bits == 24,
+            errors,
+        );
+    }
+    let turned_8 = |matrix: &Matrix, normal| turned::<8>(&cofactors(&bits(matrix)), normal);
+    let turned_14 = |matrix: &Matrix, normal| turned::<14>(&cofactors(&bits(matrix)), normal);
+    let shipped = |matrix: &Matrix, normal| matrix.normals().apply(normal);
+    for (kernel, bits, width, errors) in [
+        ("normal_8", 8, 32, normals(8, turned_8)),
+        ("normal_14_in_32", 14, 32, normals(14, turned_14)),
+        ("normal_14_in_64", 14, 64, normals(14, shipped)),
+    ] {
+        let config = format!("{bits} fraction bits, in {width} bits");
+        add("normal", kernel.to_owned(), config, width == 64, errors);
+    }
+    for (steps, config, errors) in [
+        (0, "table of 256 reciprocals", positions(reciprocal::<0>)),
+        (1, "table, one Newton step", positions(reciprocal::<1>)),
+        (2, "table, two Newton steps", positions(reciprocal::<2>)),
+    ] {
+        let kernel = format!("reciprocal_{steps}");
+        add("projection", kernel, config.to_owned(), steps == 2, errors);
+    }
+    rows
 }
 
 fn bits(matrix: &Matrix) -> Rows<i32> {

@@ -21,7 +21,7 @@ pub struct Row {
     pub steps: u32,
     /// Largest error of an entry of the matrix.
     pub max_err: f64,
-    /// Relative change of the length of an axis, the largest in magnitude.
+    /// Largest relative change, by magnitude, of the length of an axis of the object.
     pub growth: f64,
 }
 

@@ -63,13 +63,8 @@ pub fn formats(thinning: u32) -> Result<Vec<Trial>> {
             let vertex = vertex.map(|x| rounded(x, bits));
             Some(camera.screen(camera.coordinates(vertex), SIZE))
         });
-        add(
-            "vertex",
-            format!("vertices: {bits} fraction bits"),
-            bits == 14,
-            bits + 2,
-            errors,
-        );
+        let config = format!("vertices: {bits} fraction bits");
+        add("vertex", config, bits == 14, bits + 2, errors);
     }
     for bits in [10, 12, 14, 16, 18, 20, 23] {
         let errors = positions(thinning, |vertex, camera| {
@@ -82,13 +77,8 @@ pub fn formats(thinning: u32) -> Result<Vec<Trial>> {
             };
             Some(camera.screen(camera.coordinates(vertex), SIZE))
         });
-        add(
-            "basis",
-            format!("camera's axes: {bits} fraction bits"),
-            bits == 23,
-            bits + 2,
-            errors,
-        );
+        let config = format!("camera's axes: {bits} fraction bits");
+        add("basis", config, bits == 23, bits + 2, errors);
     }
     let [none, one, two]: [fn(u32) -> u32; 3] = [reciprocal::<0>, reciprocal::<1>, reciprocal::<2>];
     for (bits, inverse) in [(10, none), (17, one), (24, two)] {
@@ -99,26 +89,16 @@ pub fn formats(thinning: u32) -> Result<Vec<Trial>> {
             let inverse = f64::from(inverse(mantissa)) * (-24.0 - lead).exp2();
             Some(camera.screen([x * inverse, y * inverse, 1.0], SIZE))
         });
-        add(
-            "inverse",
-            format!("reciprocal of the depth: {bits} bits"),
-            bits == 24,
-            bits,
-            errors,
-        );
+        let config = format!("reciprocal of the depth: {bits} bits");
+        add("inverse", config, bits == 24, bits, errors);
     }
     for bits in [4, 5, 6, 8, 10] {
         let errors = positions(thinning, |vertex, camera| {
             let place = camera.screen(camera.coordinates(vertex), SIZE);
             Some(place.map(|x| rounded(x, bits)))
         });
-        add(
-            "snap",
-            format!("positions: {bits} fraction bits"),
-            bits == 8,
-            bits + 12,
-            errors,
-        );
+        let config = format!("positions: {bits} fraction bits");
+        add("snap", config, bits == 8, bits + 12, errors);
     }
     let errors = positions(thinning, |vertex, camera| {
         let frame = MeshSetup::new(&camera.view().ok()?, SIZE.width, SIZE.height, 1 << 14).ok()?;
@@ -127,32 +107,17 @@ pub fn formats(thinning: u32) -> Result<Vec<Trial>> {
         let place = snap(&frame, &vertex);
         Some([place.x, place.y].map(|x| f64::from(x) / 256.0))
     });
-    add(
-        "stage",
-        "all of them, as the vertex stage computes".to_owned(),
-        true,
-        20,
-        errors,
-    );
+    let config = "all of them, as the vertex stage computes".to_owned();
+    add("stage", config, true, 20, errors);
     for bits in [6, 8, 10, 12, 14] {
         let errors = shades(thinning, |normal| normal.map(|x| rounded(x, bits)), |x| x);
-        add(
-            "normal",
-            format!("normals: {bits} fraction bits"),
-            bits == 14,
-            bits + 2,
-            errors,
-        );
+        let config = format!("normals: {bits} fraction bits");
+        add("normal", config, bits == 14, bits + 2, errors);
     }
     for bits in [5, 6, 8, 10] {
         let errors = shades(thinning, |normal| normal, |x| rounded(x, bits));
-        add(
-            "intensity",
-            format!("intensities: {bits} fraction bits"),
-            bits == 8,
-            bits + 1,
-            errors,
-        );
+        let config = format!("intensities: {bits} fraction bits");
+        add("intensity", config, bits == 8, bits + 1, errors);
     }
     Ok(trials)
 }

@@ -104,7 +104,7 @@ pub struct Row {
 /// Number of stored measurement times. This number exceeds the firmware's largest backlog of samples.
 const KNOWN: usize = 64;
 
-/// Number of status polls. At least one of so many polls finds the firmware without a backlog.
+/// Number of status polls. At least one of this many polls finds the firmware without a backlog.
 const POLLS: u32 = 24;
 
 /// Number of the chip's measurements, and the times of the last [`KNOWN`] measurements.

@@ -2,8 +2,7 @@
 //! of the engines.
 
 use anyhow::{Context, Result, ensure};
-use glint::board::Board;
-use glint::board::{Simulation, Uart};
+use glint::board::{Board, Simulation, Uart};
 use glint::console::Console;
 use glint::gesture::{image_sensor, moving_hand};
 use glint::transfer::upload;
@@ -76,13 +75,10 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
     bench.across("camera after an orbit of 12 frames", 100, |board| {
         let before = view(board)?;
         command(board, "orbit 12")?;
-        let is_back = view(board)? == before;
-        Ok(if is_back {
-            "back at its start"
-        } else {
-            "elsewhere"
-        }
-        .to_owned())
+        Ok(match view(board)? == before {
+            true => "back at its start".to_owned(),
+            false => "elsewhere".to_owned(),
+        })
     })?;
     bench.same_answers("after 2^32 cycles", &answers)?;
     bench.across("samples of a calibration", 100, |board| {
@@ -105,7 +101,10 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
         bench.board.inner().plug(resting_sensor());
         bench.run(1_000);
         bench.same_answers("after 24 h", &answers)?;
-        bench.clocks("after 24 h")?;
+        bench.clock("after 24 h", "uptime_ms", Bench::milliseconds)?;
+        bench.clock("after 24 h", "video_frames", |bench| {
+            bench.board.inner().blankings() & u64::from(u32::MAX)
+        })?;
         bench.hand()?;
     }
     bench.bar.finish_and_clear();
@@ -321,32 +320,16 @@ impl Bench {
         Ok(())
     }
 
-    /// Compares the firmware's clocks with the clock of the emulated board.
-    fn clocks(&mut self, when: &str) -> Result<()> {
-        let shown: u64 = value(&mut self.board, "info uptime_ms", "uptime_ms")?;
-        let exact = self.milliseconds();
-        let what = "uptime_ms";
-        let near = |shown: u64| {
-            if exact.abs_diff(shown) <= 1 {
-                exact
-            } else {
-                shown
-            }
+    /// Compares a clock of the firmware, printed by `info KEY`, with the clock `exact` of the emulated board.
+    fn clock(&mut self, when: &str, key: &str, exact: fn(&mut Self) -> u64) -> Result<()> {
+        let shown: u64 = value(&mut self.board, &format!("info {key}"), key)?;
+        let exact = exact(self);
+        // The clock may have advanced since the reply.
+        let measured = match exact.abs_diff(shown) {
+            0 | 1 => exact,
+            _ => shown,
         };
-        self.note(when, what, exact.to_string(), near(shown).to_string());
-        let blankings = self.board.inner().blankings() & u64::from(u32::MAX);
-        let shown: u64 = value(&mut self.board, "info video_frames", "video_frames")?;
-        let near = if blankings.abs_diff(shown) <= 1 {
-            blankings
-        } else {
-            shown
-        };
-        self.note(
-            when,
-            "video_frames",
-            blankings.to_string(),
-            near.to_string(),
-        );
+        self.note(when, key, exact.to_string(), measured.to_string());
         Ok(())
     }
 }

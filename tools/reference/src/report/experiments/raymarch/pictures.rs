@@ -14,9 +14,9 @@ use crate::raymarch::raymarched::{self, Measured, Subject};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Form {
-    /// Rays leave empty prisms.
+    /// Rays cross each empty prism in one step (docs/raymarch-exits.md).
     Exits,
-    /// Rays advance by distances.
+    /// Rays advance by the field's distance.
     Marching,
 }
 

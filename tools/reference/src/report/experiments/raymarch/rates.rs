@@ -21,8 +21,9 @@ use crate::report::soc::{self, BackToBack};
 /// other frame, which increases the mean by at most 0.3 %.
 const LEAST_CYCLES: u64 = 3_000_000;
 
-/// A verilated build of the SoC, in a folder of `target/gateware`.
+/// A verilated build of the SoC.
 pub struct Build {
+    /// Name of the build's folder in `target/gateware`.
     folder: &'static str,
     /// Number of lanes (parallel pipelines for evaluations of the field) of the build's raymarcher.
     pub lanes: u32,

@@ -38,7 +38,7 @@ pub const EXITS_GOAL: Requirements = Requirements {
     ..EXITS
 };
 
-/// Bounds of fields whose rays march. They have no goals.
+/// Bounds of fields that are drawn by marching rays. These fields have no goals.
 pub const MARCHING: Requirements = Requirements {
     iou: 0.999,
     median: 3e-4,

@@ -62,7 +62,7 @@ pub struct Row {
     pub tests: f64,
 }
 
-/// A name for the rows of a set of word lengths, and the word lengths.
+/// A set of word lengths, with the name of the varied word.
 pub type Family = (&'static str, Words);
 
 /// Word lengths far longer than the gateware's.
@@ -119,8 +119,8 @@ fn concerns(family: &str, scene: &str) -> bool {
     }
 }
 
-/// Measures the pictures of the report and of the built-in scenes at 320 × 180 with all word lengths, and the sponge, the spheres and the
-/// scenes at 1280 × 720 with the gateware's.
+/// Measures the pictures of the report and of the built-in scenes at 320 × 180 with all word lengths, and the sponge and the scenes at
+/// 1280 × 720 with the gateware's word lengths.
 ///
 /// # Errors
 /// A scene cannot be drawn.
@@ -140,7 +140,7 @@ pub fn measure() -> Result<Vec<Row>> {
         .collect())
 }
 
-/// The pictures of the report, sponges of other depths, an octahedron, and the built-in scenes of fields for one eye.
+/// The pictures of the report, sponges of other depths, an octahedron, and the built-in scenes of fields, drawn for one eye.
 pub fn subjects(size: (u32, u32)) -> Result<Vec<Subject>> {
     let mut subjects = raymarched::sponges(size);
     let aside = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);

@@ -16,13 +16,13 @@ pub struct Row {
     pub format: String,
     /// Bytes of the cache.
     pub bytes: u32,
-    /// Number of ways.
+    /// Number of ways of each set.
     pub ways: u32,
     /// Number of pixels.
     pub pixels: u64,
     /// Number of blocks of 32 bytes that are loaded.
     pub misses: u64,
-    /// Number of different blocks that are read: the misses of an unlimited cache.
+    /// Number of distinct blocks that are read, which are the misses of an unlimited cache.
     pub different: u64,
 }
 
@@ -44,7 +44,7 @@ const CACHES: [(u32, u32); 10] = [
 struct Cache {
     bytes: u32,
     ways: u32,
-    /// For each set its blocks, the most recently used first.
+    /// The blocks of each set, most recently used first.
     sets: Vec<Vec<[u32; 3]>>,
     misses: u64,
 }
@@ -59,12 +59,13 @@ impl Cache {
         }
     }
 
-    /// Reads a block: its column, its row and its level.
+    /// Reads the block with this column, row and level, and counts a miss if the cache does not have it.
     fn read(&mut self, block: [u32; 3]) {
         let [x, y, level] = block;
         let bits = self.sets.len().ilog2();
         let across = bits.div_ceil(2);
-        // Neighbours are in different sets; a level begins half a square away from the one before.
+        // Neighbouring blocks are in different sets. The sets form a square; each level is shifted against the previous level by half of
+        // the square's side.
         let (x, y) = (x + (level << (across - 1)), y + (level << (across - 1)));
         let set = x & ((1 << across) - 1) | (y & ((1 << (bits - across)) - 1)) << across;
         let set = &mut self.sets[set as usize];
@@ -96,7 +97,7 @@ pub fn measure() -> Vec<Row> {
     rows
 }
 
-/// Measures all caches in a scene, whose texels have a format.
+/// Measures all caches in a scene with texels of one format.
 fn measure_scene(scene: &Scene, has_levels: bool, name: &str, format: Format) -> Vec<Row> {
     let mut caches = CACHES.map(Cache::new);
     let mut different = std::collections::HashSet::new();

@@ -15,15 +15,15 @@ use crate::triangle::textured::{Drawn, Pixel, Scene, scenes};
 pub struct Row {
     /// Name of the filter.
     pub filter: String,
-    /// The mip level that is read.
+    /// Name of the mip level that is read.
     pub level: String,
     /// Whether Glint reads this level.
     pub shipped: bool,
-    /// Number of texels of a pixel.
+    /// Number of texels that the filter reads per pixel.
     pub texels: u32,
     /// Description of the scene.
     pub scene: String,
-    /// Number of pixels, which one triangle covers with all samples.
+    /// Number of compared pixels: those with all samples in one triangle.
     pub pixels: u64,
     /// Largest error.
     pub max_err: f64,
@@ -42,11 +42,11 @@ pub struct FormatRow {
     pub bytes: usize,
     /// RMS of the errors of the texels of the largest level.
     pub rms: f64,
-    /// Largest of these errors.
+    /// Largest error of a texel of the largest level.
     pub max_err: f64,
 }
 
-/// Names of the levels, and their differences to the chosen one; `None` for the largest level.
+/// Names of the levels, and their differences from Glint's choice; `None` for level 0, the largest.
 const LEVELS: [(&str, Option<i32>); 4] = [
     ("0", None),
     ("one finer", Some(-1)),
@@ -55,7 +55,7 @@ const LEVELS: [(&str, Option<i32>); 4] = [
 ];
 /// Samples of a pixel in each direction.
 const SAMPLES: usize = 8;
-/// Rows of a picture of which one is compared, because samples take time.
+/// Only every `ROWS`-th row of a picture is compared, because the samples take time.
 const ROWS: i32 = 7;
 
 /// Measures filters and levels in all scenes.
@@ -133,8 +133,8 @@ fn measure_scene(scene: &Scene, filter: Filter) -> Vec<Row> {
         .collect()
 }
 
-/// The average in linear light of the texels of level 0 at 8×8 places of a pixel, as sRGB; `None` if the triangle does not cover all of
-/// them.
+/// The average, in linear light and converted to sRGB, of the texels of level 0 at 8×8 places of a pixel; `None` if the triangle does
+/// not cover all of these places.
 fn average(drawn: &Drawn, row: i32, pixel: &Pixel) -> Option<[f64; 3]> {
     let texture = &drawn.textured.texture;
     let (sides, wrap) = (texture.size_log2(), texture.sampler().wrap);

@@ -24,12 +24,12 @@ pub struct Row {
     pub rms: f64,
 }
 
-/// A way to compute the positions of a row's pixels.
+/// A method of computing the positions of a row's pixels.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     /// A division at each pixel, as the model does.
     Each,
-    /// Divisions at the first pixels of runs of this length, and linear between them.
+    /// Divisions at the first pixels of runs of this length, and linear interpolation between them.
     Linear(i32),
     /// Divisions at three pixels of a group of eight, and a parabola through them.
     Parabola,
@@ -86,8 +86,8 @@ pub fn measure_scene(scene: &Scene) -> Vec<Row> {
 }
 
 impl Form {
-    /// The position of pixel `i` of a row, in texels of level 0. The ends of a run that are not covered are replaced by the outermost
-    /// covered pixels.
+    /// The position of pixel `i` of a row, in texels of level 0. If an end of a run is not covered, the outermost covered pixel replaces
+    /// it.
     fn position(self, drawn: &Drawn, row: &[Pixel], i: usize) -> [f64; 2] {
         let first = row[0].column;
         let exact = |column: i32| {
@@ -121,7 +121,7 @@ impl Form {
     }
 }
 
-/// The polynomial through points at columns; of points at the same column only the first counts.
+/// Evaluates the polynomial through the points at `column`. Of several points in one column, only the first is used.
 fn between(column: i32, points: &[(i32, [f64; 2])]) -> [f64; 2] {
     let mut used: Vec<(i32, [f64; 2])> = Vec::new();
     for point in points {
