@@ -144,7 +144,7 @@ impl Texels {
         // A linear congruential generator: any noise serves, because texels have no influence on time.
         let mut state = 1_u32;
         let mut noise = move || {
-            state = state.wrapping_mul(0x0001_9660_d).wrapping_add(0x3c6e_f35f);
+            state = state.wrapping_mul(0x0019_660d).wrapping_add(0x3c6e_f35f);
             (state >> 16) as u16
         };
         let mask = ((1_u32 << format.bits()) - 1) as u16;
