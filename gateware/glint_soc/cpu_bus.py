@@ -18,7 +18,8 @@ class CpuBus(LiteXModule):
                ◀──────────────── acknowledgement, data of reads
 
     A request reaches `bus` one clock after the CPU shows it. A write is acknowledged when it is stored here; it takes effect before
-    each later request. A burst counts its own address, so only the first of its words takes the additional clock.
+    each later request. A burst counts its own address, so only the first of its words takes the additional clock. A CPU without a data
+    cache reads words alone, as every CPU does from registers.
     """
 
     def __init__(self, data, instructions):

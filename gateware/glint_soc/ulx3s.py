@@ -75,10 +75,10 @@ class Ulx3sSoC(GlintSoC):
     # With the raymarcher, nextpnr takes twice as long, and reaches a lower clock frequency (see docs/boards.md).
     default_blocks = possible_blocks - {"raymarch"}
 
-    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, sys_clk_freq=SYS_CLK_FREQ, **options):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
-                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq, mode=CEA_640X480)
+        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial",
+                          sys_clk_freq=sys_clk_freq, mode=CEA_640X480, **options)
         self.sdrphy = GENSDRPHY(platform.request("sdram"), sys_clk_freq)
         self.add_dram(self.sdrphy, MT48LC16M16(sys_clk_freq, "1:1"))
         if "gesture" in self.blocks:

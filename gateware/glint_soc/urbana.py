@@ -96,10 +96,10 @@ def _without_write_bitslip(strobe):
 class UrbanaSoC(GlintSoC):
     """The SoC of the Urbana board."""
 
-    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, sys_clk_freq=SYS_CLK_FREQ, **options):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
-                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
+        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial",
+                          sys_clk_freq=sys_clk_freq, **options)
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=sys_clk_freq, iodelay_clk_freq=_IDELAY_CLK_FREQ, csr_cdc=_without_write_bitslip)

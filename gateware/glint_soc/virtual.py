@@ -13,7 +13,7 @@ from migen.genlib.resetsync import AsyncResetSynchronizer
 from .clock_control import ClockControl
 from .memory_model import MemoryModel
 from .rtl import add_sources
-from .soc import SYS_CLK_FREQ, GlintSoC
+from .soc import GlintSoC
 
 _io = [
     ("sys_clk", 0, Pins(1)),
@@ -97,10 +97,9 @@ class CRG(LiteXModule):
 class PinSoC(GlintSoC):
     """SoC on the pins of `Platform`, without a memory."""
 
-    def __init__(self, build_id, blocks, smooth=False, texture=False, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, **options):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth,
-                          texture=texture, geometry=geometry, depths=depths, fields=fields, sys_clk_freq=sys_clk_freq)
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", **options)
 
     def add_memory(self, phy):
         """Adds the memory behind `phy`, which is that of the Urbana, the blocks that access it, and the video pins."""
