@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from verilate.programs import GATEWARE
 
 from .blocks import FLAT, FLAT_PARTS, ROWS, SOC
+from .modules import CORES
 from .route import REFERENCE
 from .tools import ToolError
 
@@ -78,7 +79,10 @@ class Budget:
         return cls.parse(PATH.read_text())
 
     def limits(self, block):
-        """The limits of a block. A limit of this single block replaces the default limit, which is the device's for the SoC."""
+        """The limits of a block. A limit of this single block replaces the default limit, which is the device's for the SoC. Variants of
+        the soft core have none."""
+        if any(block == core.name for core in CORES):
+            return {}
         limits = (self.device if block == SOC else self.own) | self.block.get(block, {})
         return {resource: limits[resource] for resource in RESOURCES if resource in limits}
 
