@@ -106,7 +106,7 @@ enum Task {
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
         /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`,
-        /// `textures`, `timeline`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a
+        /// `textures`, `timeline`, `cpu`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a
         /// workflow of independent jobs]
         page: Option<String>,
         /// Measure samples only; write to target/report
