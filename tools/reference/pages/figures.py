@@ -104,35 +104,35 @@ def kernels(all_kernels, family):
 
 def cores(cells, frames):
     """The variants of the soft core with their firmware: cells, and the soft core's part of each scene's frame in cycles and, at the
-    variant's own clock rate, in ms, also relative to the default variant. The family "Pareto front" has
-    those that no other beats in both LUTs and time."""
+    variant's own clock rate, in ms, also relative to the default variant. The family "Pareto front" has those that no other beats in both
+    LUTs and time. A variant may have frames alone."""
     # The first rows of a variant have its own firmware.
     own = frames.drop_duplicates(["variant", "scene"])
-    cycles = own.pivot(index="variant", columns="scene", values="soft_core")
-    found = cells.set_index("variant").join(cycles, how="inner")
-    times = found[cycles.columns].div(1e3 * found.mhz, axis=0)
+    cycles, whole = (own.pivot(index="variant", columns="scene", values=part).loc[own.variant.unique()] for part in ("soft_core", "cycles"))
+    found = cells.set_index("variant").reindex(cycles.index)
     default = found.index[0]
+    times = cycles.div(1e3 * found.mhz, axis=0)
 
     def relative(figures):
         return np.exp(np.log(figures / figures.loc[default]).mean(axis=1))
 
     found["ratio"] = found.mhz / found.mhz[default]
-    found["cycles"], found["time"] = relative(found[cycles.columns]), relative(times)
+    found["cycles"], found["time"] = relative(cycles), relative(times)
     is_behind = [((found.lut <= one.lut) & (found.time <= one.time) & ((found.lut < one.lut) | (found.time < one.time))).any()
                  for one in found.itertuples()]
     found["family"] = np.where(is_behind, found.index, "Pareto front")
     found["shipped"] = found.index == default
-    whole = own.pivot(index="variant", columns="scene", values="cycles")
-    return found.join([times.add_suffix(" ms"), whole.add_suffix(" frame")]).reset_index()
+    return found.join([cycles, times.add_suffix(" ms"), whole.add_suffix(" frame")]).reset_index()
 
 
 def counterless(frames):
-    """The default variant with the firmware that reads the cycles of `timer0`, relative to its own firmware: the soft core's part of the
-    frames, on average."""
+    """The soft core's part of frames of the default variant with the firmware that reads the cycles of `timer0`, relative to its own
+    firmware: the mean, and the largest difference of a scene."""
     default = frames[frames.variant == frames.variant.iloc[0]]
     has_counter = default.features.isna()
     both = default[~has_counter].merge(default[has_counter], on="scene")
-    return np.exp(np.log(both.soft_core_x / both.soft_core_y).mean())
+    ratios = both.soft_core_x / both.soft_core_y
+    return {"mean": np.exp(np.log(ratios).mean()), "largest": (ratios - 1).abs().max()}
 
 
 def words(pictures):

@@ -43,12 +43,19 @@ class Cores(unittest.TestCase):
         self.assertEqual(found.time.round(6).tolist(), [1, 1.6, 8, 0.5, 1])
         self.assertEqual(found.index[found.shipped].tolist(), ["full"])
 
+    def test_a_variant_without_a_clock_rate_has_cycles_alone(self):
+        found = figures.cores(self.CELLS[self.CELLS.variant != "slow"], self.FRAMES).set_index("variant").loc["slow"]
+        self.assertAlmostEqual(found.cycles, 4)
+        self.assertTrue(np.isnan(found.time))
+
     def test_what_is_larger_and_slower_is_behind_the_front(self):
         found = figures.cores(self.CELLS, self.FRAMES).set_index("variant")
         self.assertEqual(found.family.tolist(), ["Pareto front"] * 4 + ["worse"])
 
     def test_the_cost_of_a_missing_counter_is_that_of_the_default_variant(self):
-        self.assertAlmostEqual(figures.counterless(self.FRAMES), 3)
+        found = figures.counterless(self.FRAMES)
+        self.assertAlmostEqual(found["mean"], 3)
+        self.assertAlmostEqual(found["largest"], 2)
 
 
 class Qualities(unittest.TestCase):
