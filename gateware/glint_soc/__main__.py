@@ -11,6 +11,7 @@ from litex.soc.integration.builder import Builder
 from . import packages, register_map
 from .raymarch import build
 from .register_map import OPTIONAL_BLOCKS
+from .soc import CPU_VARIANT, CPU_VARIANTS
 
 
 def make_soc(board, build_id, blocks=None, **options):
@@ -40,6 +41,8 @@ def main():
     parser.add_argument("--fields", help="build of the raymarcher, or a list of its features (`raymarch.build`; default: all; "
                                          "for the urbana and the ulx3s: faces)")
     parser.add_argument("--lanes", type=int, choices=[1, 2, 4], help="lanes of the raymarcher (default: those of its build)")
+    parser.add_argument("--cpu", choices=CPU_VARIANTS, default=CPU_VARIANT,
+                        help="variant of VexRiscv, of those with the firmware's instructions, rv32im (default: %(default)s)")
     parser.add_argument("--clock", type=float, metavar="MHZ",
                         help="frequency of the system clock, a multiple of 0.25 (default: the board's)")
     arguments = parser.parse_args()
@@ -59,7 +62,7 @@ def main():
         fields = build(arguments.fields or ("all" if arguments.board == "virtual" else "faces"), arguments.lanes)
     except ValueError as error:
         parser.error(error)
-    options = {name: getattr(arguments, name) for name in ("smooth", "texture", "geometry", "depths")} | {"fields": fields}
+    options = {name: getattr(arguments, name) for name in ("smooth", "texture", "geometry", "depths", "cpu")} | {"fields": fields}
     if arguments.clock:
         options["sys_clk_freq"] = arguments.clock * 1e6
     soc = make_soc(arguments.board, build_id, arguments.blocks, **options)

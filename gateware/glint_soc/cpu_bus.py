@@ -19,7 +19,7 @@ class CpuBus(LiteXModule):
 
     A request reaches `bus` one clock after the CPU issues it. A write is acknowledged when it is stored in these flip-flops, and
     takes effect before all later requests. The address of a burst is incremented here, so only the first word of a burst takes the
-    additional clock.
+    additional clock. A CPU without a data cache reads single words, as every CPU does from registers.
     """
 
     def __init__(self, data, instructions):

@@ -36,6 +36,13 @@ SYS_CLK_FREQ = 81.25e6
 CLOCK_UNIT = 250e3
 """The clock must be a multiple of this, because the firmware converts between time and cycles by a whole number of cycles per 4 µs."""
 
+CPU_VARIANTS = ("lite", "standard", "full", "imac", "linux", "linux+no-dsp", "secure")
+"""LiteX's variants of VexRiscv with the instructions of the firmware, rv32im. `minimal` does not multiply. Those with a debug port, or
+with instructions of a block beside the CPU, are the same CPUs otherwise."""
+
+CPU_VARIANT = "full"
+"""The default variant of the CPU."""
+
 _FLASH = 0x4000_0000 - FLASH_BYTES
 """Address of the window of the SPI flash. Main memory follows, so a wrong firmware length never makes the BIOS read beyond memory."""
 
@@ -44,14 +51,15 @@ _PORT_BITS = 128
 
 
 class GlintSoC(SoCCore):
-    """VexRiscv `full` with BIOS in ROM, main memory without a second cache level, and Glint's peripherals.
+    """VexRiscv with BIOS in ROM, main memory without a second cache level, and Glint's peripherals.
 
     `blocks` names the optional blocks of this build. Line engine and raymarcher draw through the triangle engine. Without the block
     `triangle`, the parts of the engine that draw triangles are left out: with `line`, the parts for lines and all registers remain; with
     `raymarch` alone, the raster pass, the band buffer and all registers. `build_id` is the checksum of the register map of the full build
     (see `register_map.build_id`). `smooth` adds smooth shading to the triangle engine, and `texture` adds textures. `geometry` is its
     geometry pass, which a build without lines may omit, and `depths` the depth memory, which a build without triangles may omit.
-    `fields` are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
+    `fields` are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes. `cpu` is the
+    variant of VexRiscv.
     """
 
     csr_map = CSR_MAP
@@ -61,10 +69,12 @@ class GlintSoC(SoCCore):
     """The default optional blocks of a build."""
 
     def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, texture=False, geometry=True, depths=True, fields=None,
-                 sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720):
+                 sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720, cpu=CPU_VARIANT):
         unknown = set(blocks) - self.possible_blocks
         if unknown:
             raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
+        if cpu not in CPU_VARIANTS:
+            raise ValueError(f"CPU variant {cpu!r}: expected a variant with rv32im, one of {', '.join(CPU_VARIANTS)}")
         if "line" in blocks and not geometry:
             raise ValueError("no geometry pass: expected a build without the block 'line', whose lines need it")
         if texture and smooth:
@@ -92,7 +102,7 @@ class GlintSoC(SoCCore):
         self.crg = crg
         SoCCore.__init__(
             self, platform, clk_freq=int(sys_clk_freq),
-            cpu_type="vexriscv", cpu_variant="full",
+            cpu_type="vexriscv", cpu_variant=cpu,
             integrated_rom_size=0x8000, integrated_sram_size=0x2000,
             csr_paging=CSR_PAGING,
             uart_name=uart_name, uart_baudrate=115200,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from verilate.programs import GATEWARE
 
 from .blocks import FLAT, FLAT_PARTS, ROWS, SOC
+from .modules import CORES
 from .route import REFERENCE
 from .tools import ToolError
 
@@ -79,7 +80,9 @@ class Budget:
 
     def limits(self, block):
         """Returns the limits of a block. A limit of the single block replaces the default limit, which is that of the device
-        for the SoC and that of `own` for other blocks."""
+        for the SoC and that of `own` for other blocks. Variants of the soft core have none."""
+        if any(block == core.name for core in CORES):
+            return {}
         limits = (self.device if block == SOC else self.own) | self.block.get(block, {})
         return {resource: limits[resource] for resource in RESOURCES if resource in limits}
 

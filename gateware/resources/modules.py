@@ -1,10 +1,15 @@
-"""The RTL modules under test, and the parameters of their builds."""
+"""The RTL modules under test, and the parameters of their builds; the variants of the soft core."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
+
+import pythondata_cpu_vexriscv
+from litex.soc.cores.cpu.vexriscv.core import CPU_VARIANTS as FILES
 
 from glint_soc import rtl
 from glint_soc.fields import FLAT_FIELDS, NAMES, has_octants
 from glint_soc.raymarch import BUILDS
+from glint_soc.soc import CPU_VARIANTS
 
 
 @dataclass(frozen=True)
@@ -26,6 +31,28 @@ class Module:
         return {self.top: {}, **self.variants}
 
 
+@dataclass(frozen=True)
+class Core:
+    """A variant of the soft core, which is measured alone, as the block `vexriscv_VARIANT`."""
+
+    variant: str
+    top = "VexRiscv"
+
+    @property
+    def name(self):
+        """The name of the block."""
+        return f"vexriscv_{self.variant}"
+
+    @property
+    def sources(self):
+        """The source file of the variant."""
+        return [Path(pythondata_cpu_vexriscv.data_location) / f"{FILES[self.variant]}.v"]
+
+    def builds(self):
+        """Returns the parameters of the only build by its name."""
+        return {self.name: {}}
+
+
 # Video timing of a small picture. A frame takes about 1/200 of the time of a 1280x720 frame, but a memory word lasts for the same
 # number of pixel clocks.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
@@ -43,7 +70,7 @@ _SIMULATED = ("skid_buffer", "flash_reader", "binner", "vertex_stage", "vertex_c
               "texture_filter", "texture_loader", "colour_window", "line_setup", "line_raster", "exit_reciprocal")
 _MEASURED = ("list_reader", "texture_shader", "field_sphere", *(f"field_{flat.name}" for flat in FLAT_FIELDS if flat.marches))
 
-MODULES = [
+RTL_MODULES = [
     *(Module(top=name) for name in _SIMULATED),
     *(Module(top=name, measured=(name,)) for name in _MEASURED),
     Module(
@@ -90,3 +117,9 @@ MODULES = [
                   "triangle_control_lines_alone": _LINES_ALONE, "triangle_control_no_geometry": _NO_GEOMETRY},
     ),
 ]
+"""The modules under test."""
+
+CORES = [Core(variant) for variant in CPU_VARIANTS]
+
+MODULES = [*RTL_MODULES, *CORES]
+"""All that can be measured as a block."""

@@ -1,6 +1,7 @@
 """Tests of the files that are generated from the descriptions, and of their generators."""
 
 import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -9,6 +10,7 @@ from migen import Cat, Signal
 
 from glint_soc import packages, pac
 from glint_soc.packed import Enumeration, Struct
+from glint_soc.virtual import VirtualSoC
 
 
 def test_up_to_date():
@@ -78,3 +80,14 @@ def test_refusals(expected, csrs, counters):
 def test_suffixes(names, suffix):
     """Checks the common last words of names."""
     assert pac.common_suffix(names) == suffix
+
+
+def test_variants_of_the_cpu():
+    """Checks that a build has the variant of the CPU that is asked for, and refuses one without the firmware's instructions."""
+    soc = VirtualSoC(0, (), cpu="lite")
+    soc.finalize()
+    sources = {Path(source).name for source, *_ in soc.platform.sources}
+    assert "VexRiscv_Lite.v" in sources
+    assert "VexRiscv_Full.v" not in sources
+    with pytest.raises(ValueError, match="CPU variant 'minimal': expected a variant with rv32im, one of lite, "):
+        VirtualSoC(0, (), cpu="minimal")

@@ -6,18 +6,18 @@ import pytest
 
 import memory_machine
 from resources import size
-from resources.modules import MODULES
+from resources.modules import RTL_MODULES
 from resources.tools import run_yosys
 from verilate import module as verilated_module
 from verilate.programs import run_verilator
 
-_BUILDS = [pytest.param(module, name, parameters, id=name) for module in MODULES for name, parameters in module.builds().items()]
+_BUILDS = [pytest.param(module, name, parameters, id=name) for module in RTL_MODULES for name, parameters in module.builds().items()]
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _no_other_models():
     """Deletes models that are no longer built, so that a test that still uses one fails here too, and not only in a fresh clone."""
-    names = {name for module in MODULES for name in module.builds() if name not in module.measured} | {"runtime", memory_machine.NAME}
+    names = {name for module in RTL_MODULES for name in module.builds() if name not in module.measured} | {"runtime", memory_machine.NAME}
     for path in verilated_module.MODELS.glob("*"):
         if path.stem not in names:
             # Several processes of the test run may delete the same model.

@@ -2,10 +2,12 @@
 
 import pytest
 
+from glint_soc.soc import CPU_VARIANTS
 from resources import scenes, tables
 from resources.__main__ import measured, page
 from resources.blocks import ALL, FLAT, FLAT_PARTS, ROWS, SOC, selection
 from resources.budget import Budget, amounts, number, with_flat_build
+from resources.modules import CORES
 from resources.route import REFERENCE
 from resources.tools import ToolError
 
@@ -64,6 +66,13 @@ def test_selection():
     assert selection(["setup", FLAT], ALL) == ["setup", "vertex_stage", "triangle_raster"]
 
 
+def test_cores():
+    """Each variant of the soft core is a block of its own file."""
+    sources = {source for core in CORES for source in core.sources if source.exists()}
+    assert len(sources) == len(CORES)
+    assert {name for core in CORES for name in core.builds()} == {f"vexriscv_{variant}" for variant in CPU_VARIANTS}
+
+
 def test_measured():
     """Checks that all blocks are measured, that results are in the order of the tables, and that a failure is raised."""
     assert [one["name"] for one in measured("size", lambda name: {}, ["soc", "d", "setup", "scanout"])] == ["scanout", "setup", "soc", "d"]
@@ -99,6 +108,8 @@ def test_flat_build():
     ("soc", [], ["soc: RAMB36: budget 2, measured 2.5"]),
     ("soc", [("ff = 65200", "ff = 1999"), ("path = 9", "path = 1")],
      ["soc: FF: budget 1,999, measured 2,000", "soc: RAMB36: budget 2, measured 2.5"]),
+    # Variants of the soft core have no limits.
+    (CORES[0].name, [("path = 9", "path = 7")], []),
 ])
 def test_excesses(name, changes, expected):
     """Checks that an amount equal to its limit is accepted, and an amount above it is reported."""

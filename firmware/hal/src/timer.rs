@@ -62,7 +62,7 @@ impl Clock {
     /// Clock cycles since reset.
     #[must_use]
     pub fn cycles(self) -> u64 {
-        // SAFETY: `new` consumed the owner of `timer0`, so only this function accesses the registers of the uptime.
+        // SAFETY: all that accesses the registers of the uptime latches the counter and then reads it.
         let timer = unsafe { Timer0::steal() };
         timer.uptime_latch().write(true);
         timer.uptime_cycles().read()

@@ -1,7 +1,11 @@
-//! Registers and instructions of the CPU (VexRiscv `full`), which are not part of the SoC's description.
+//! Registers and instructions of the CPU (VexRiscv), which are not part of the SoC's description. Features replace what some
+//! [variants](crate::variant) lack.
 
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};
+
+use crate::register::{ReadOnly, WideRegister};
+use crate::timer0::Timer0;
 
 /// The mask of enabled interrupt lines, with one [`Interrupt::bit`](crate::Interrupt::bit) per line: the CPU's CSR 0xBC0.
 #[inline]
@@ -33,22 +37,29 @@ pub fn interrupts_pending() -> u32 {
     pending
 }
 
-/// The implementation of the CPU, its register `mimpid`: [`EMULATED`](crate::EMULATED) on the emulated board.
+/// The implementation of the CPU, its register `mimpid`: [`EMULATED`](crate::EMULATED) on the emulated board; 0 with the feature
+/// `uptime`.
 #[must_use]
 pub fn implementation() -> u32 {
+    if cfg!(feature = "uptime") {
+        return 0;
+    }
     let implementation;
-    // SAFETY: reads a register that every RISC-V CPU has and that has no side effect.
+    // SAFETY: reads a register that a CPU with a cycle counter has and that has no side effect.
     unsafe { asm!("csrr {}, mimpid", out(reg) implementation, options(nomem, nostack)) };
     implementation
 }
 
 /// Empties the data cache, so that reads see memory written by other bus masters. The cache writes through, so memory already
-/// holds all data written by the CPU.
+/// holds all data written by the CPU. With the feature `uncached` there is none.
 #[inline]
 pub fn flush_data_cache() {
     compiler_fence(Ordering::SeqCst);
+    #[cfg(not(feature = "uncached"))]
     // SAFETY: the VexRiscv instruction to flush the data cache changes no memory.
-    unsafe { asm!(".word 0x500f", options(nostack)) };
+    unsafe {
+        asm!(".word 0x500f", options(nostack));
+    }
     compiler_fence(Ordering::SeqCst);
 }
 
@@ -73,9 +84,12 @@ pub fn flush_instruction_cache() {
 #[inline]
 #[must_use]
 pub fn cycles() -> u64 {
+    if cfg!(feature = "uptime") {
+        return uptime().read();
+    }
     loop {
         let (high, low, again): (u32, u32, u32);
-        // SAFETY: reads counters that the variant `full` has; no side effects.
+        // SAFETY: reads counters that a variant without `uptime` has; no side effects.
         unsafe {
             asm!(
                 "csrr {high}, mcycleh",
@@ -97,8 +111,20 @@ pub fn cycles() -> u64 {
 #[inline]
 #[must_use]
 pub fn cycles_low() -> u32 {
+    if cfg!(feature = "uptime") {
+        return uptime().read_low();
+    }
     let cycles;
-    // SAFETY: reads a counter that the variant `full` has; no side effects.
+    // SAFETY: reads a counter that a variant without `uptime` has; no side effects.
     unsafe { asm!("csrr {}, mcycle", out(reg) cycles, options(nomem, nostack)) };
     cycles
+}
+
+/// The counter of `timer0`, latched. An interrupt may latch it once more, which makes the value a later one.
+#[inline]
+fn uptime() -> WideRegister<ReadOnly> {
+    // SAFETY: all that accesses these registers latches the counter and then reads it.
+    let timer = unsafe { Timer0::steal() };
+    timer.uptime_latch().write(true);
+    timer.uptime_cycles()
 }

@@ -43,6 +43,7 @@ mod memory;
 #[cfg(not(target_os = "none"))]
 pub mod recording;
 pub mod register;
+pub mod variant;
 
 use core::cell::Cell;
 

@@ -128,6 +128,14 @@ impl<A> WideRegister<A> {
             high = again;
         }
     }
+
+    /// Reads the low word.
+    #[inline]
+    #[must_use]
+    pub fn read_low(&self) -> u32 {
+        // SAFETY: the contract of `at` covers both words.
+        unsafe { bus::read(self.address + 4) }
+    }
 }
 
 #[cfg(test)]
@@ -160,6 +168,7 @@ mod tests {
         // SAFETY: the model connected above answers at this address.
         let counter = unsafe { WideRegister::<ReadOnly>::at(0x100) };
         assert_eq!(counter.read(), 0x1_0000_0002);
+        assert_eq!(counter.read_low(), 4);
     }
 
     #[test]

@@ -102,6 +102,39 @@ def kernels(all_kernels, family):
     return members.assign(group=group, short=names[2].where(names[1] != "", members.config))
 
 
+def cores(cells, frames):
+    """The variants of the soft core with their firmware: cells, and the soft core's part of each scene's frame in cycles and, at the
+    variant's own clock rate, in ms, also relative to the default variant. The family "Pareto front" has those that no other beats in both
+    LUTs and time. A variant may have frames alone."""
+    # The first rows of a variant have its own firmware.
+    own = frames.drop_duplicates(["variant", "scene"])
+    cycles, whole = (own.pivot(index="variant", columns="scene", values=part).loc[own.variant.unique()] for part in ("soft_core", "cycles"))
+    found = cells.set_index("variant").reindex(cycles.index)
+    default = found.index[0]
+    times = cycles.div(1e3 * found.mhz, axis=0)
+
+    def relative(figures):
+        return np.exp(np.log(figures / figures.loc[default]).mean(axis=1))
+
+    found["ratio"] = found.mhz / found.mhz[default]
+    found["cycles"], found["time"] = relative(cycles), relative(times)
+    is_behind = [((found.lut <= one.lut) & (found.time <= one.time) & ((found.lut < one.lut) | (found.time < one.time))).any()
+                 for one in found.itertuples()]
+    found["family"] = np.where(is_behind, found.index, "Pareto front")
+    found["shipped"] = found.index == default
+    return found.join([cycles, times.add_suffix(" ms"), whole.add_suffix(" frame")]).reset_index()
+
+
+def counterless(frames):
+    """The soft core's part of frames of the default variant with the firmware that reads the cycles of `timer0`, relative to its own
+    firmware: the mean, and the largest difference of a scene."""
+    default = frames[frames.variant == frames.variant.iloc[0]]
+    has_counter = default.features.isna()
+    both = default[~has_counter].merge(default[has_counter], on="scene")
+    ratios = both.soft_core_x / both.soft_core_y
+    return {"mean": np.exp(np.log(ratios).mean()), "largest": (ratios - 1).abs().max()}
+
+
 def words(pictures):
     """The worst errors of each set of word lengths, by kind of field."""
     lengths = ["component", "direction", "inverse", "parameter", "outline", "along"]

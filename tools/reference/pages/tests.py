@@ -29,6 +29,35 @@ class Timeline(unittest.TestCase):
         self.assertEqual((figures.CLOCK / rates).round().tolist(), [1000, 750, 500, 800])
 
 
+class Cores(unittest.TestCase):
+    CELLS = pd.DataFrame([("full", 80.0, 3000), ("small", 100.0, 2000), ("slow", 40.0, 1000), ("large", 160.0, 4000), ("worse", 80.0, 3500)],
+                         columns=["variant", "mhz", "lut"])
+    FRAMES = pd.DataFrame([(variant, features, scene, factor * cycles) for variant, features, factor in [
+        ("full", np.nan, 1), ("small", "uptime", 2), ("slow", "uptime", 4), ("large", np.nan, 1), ("worse", np.nan, 1), ("full", "uptime", 3)]
+        for scene, cycles in [("lamp", 8000), ("room", 80000)]], columns=["variant", "features", "scene", "soft_core"]).assign(cycles=100000)
+
+    def test_times_are_at_the_variants_own_clock(self):
+        found = figures.cores(self.CELLS, self.FRAMES).set_index("variant")
+        self.assertEqual(found["lamp ms"].round(6).tolist(), [0.1, 0.16, 0.8, 0.05, 0.1])
+        self.assertEqual(found.cycles.round(6).tolist(), [1, 2, 4, 1, 1])
+        self.assertEqual(found.time.round(6).tolist(), [1, 1.6, 8, 0.5, 1])
+        self.assertEqual(found.index[found.shipped].tolist(), ["full"])
+
+    def test_a_variant_without_a_clock_rate_has_cycles_alone(self):
+        found = figures.cores(self.CELLS[self.CELLS.variant != "slow"], self.FRAMES).set_index("variant").loc["slow"]
+        self.assertAlmostEqual(found.cycles, 4)
+        self.assertTrue(np.isnan(found.time))
+
+    def test_what_is_larger_and_slower_is_behind_the_front(self):
+        found = figures.cores(self.CELLS, self.FRAMES).set_index("variant")
+        self.assertEqual(found.family.tolist(), ["Pareto front"] * 4 + ["worse"])
+
+    def test_the_cost_of_a_missing_counter_is_that_of_the_default_variant(self):
+        found = figures.counterless(self.FRAMES)
+        self.assertAlmostEqual(found["mean"], 3)
+        self.assertAlmostEqual(found["largest"], 2)
+
+
 class Qualities(unittest.TestCase):
     def test_a_better_quality_takes_more_cycles_for_smaller_errors(self):
         frames = figures.qualities(*(tables.read(tables.COMMITTED, name) for name in ("quality", "quality-cycles")))

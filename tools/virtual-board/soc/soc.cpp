@@ -204,13 +204,17 @@ struct Soc : Harness {
     // Invalidates both caches of the CPU; no line fill may be in progress (see soc_ddr_write).
     void drop_caches() {
         // The lowest bit of a tag is its valid bit.
+#ifdef CONFIG_CPU_HAS_DCACHE
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__ways_0_tags.m_storage) tag = 0;
+#endif
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__IBusCachedPlugin_cache__DOT__ways_0_tags.m_storage) tag = 0;
     }
 
     bool filling() const {
-        return top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__loader_valid ||
-               top.rootp->glint_virtual__DOT__VexRiscv__DOT__IBusCachedPlugin_cache__DOT__lineLoader_valid;
+#ifdef CONFIG_CPU_HAS_DCACHE
+        if (top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__loader_valid) return true;
+#endif
+        return top.rootp->glint_virtual__DOT__VexRiscv__DOT__IBusCachedPlugin_cache__DOT__lineLoader_valid;
     }
 };
 

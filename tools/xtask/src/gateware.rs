@@ -14,6 +14,7 @@ use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use glint_core::block::Block;
 use glint_scene_file::{Needs, SceneFile};
+use litex_pac::variant::VARIANTS;
 
 use crate::{paths, run, scenes};
 
@@ -87,6 +88,9 @@ pub struct Options {
     /// Evaluations of the field per clock: 1, 2 or 4 [default: depends on the fields]
     #[arg(long)]
     lanes: Option<String>,
+    /// Variant of the CPU, VexRiscv: docs/boards.md has what the firmware needs for each [default: full]
+    #[arg(long, value_name = "VARIANT", value_parser = PossibleValuesParser::new(VARIANTS.map(|variant| variant.name)))]
+    cpu: Option<String>,
     /// Frequency of the system clock in MHz, a multiple of 0.25 [default: the scenes' frequency, else 81.25, or 40 for the ulx3s]
     #[arg(long, value_name = "MHZ")]
     clock: Option<String>,
@@ -134,6 +138,7 @@ impl Options {
         let values = [
             ("--fields", &self.fields),
             ("--lanes", &self.lanes),
+            ("--cpu", &self.cpu),
             ("--clock", &clock),
         ];
         for (name, value) in values {
@@ -423,6 +428,17 @@ mod tests {
             let has_pins = |block: &&str| !["flash", "digits"].contains(block);
             assert!(blocks(&found).iter().all(has_pins), "{name}: {found:?}");
         }
+    }
+
+    #[test]
+    fn a_build_has_the_default_cpu_unless_another_is_named() {
+        let line = "--blocks scanout";
+        assert_eq!(arguments(Board::Urbana, line), ["--blocks", "scanout"]);
+        let found = arguments(Board::Urbana, &format!("{line} --cpu linux+no-dsp"));
+        assert_eq!(found, ["--blocks", "scanout", "--cpu", "linux+no-dsp"]);
+        let refused = Arguments::try_parse_from(["gateware", "--cpu", "minimal"]);
+        let refused = refused.err().map(|error| error.to_string());
+        assert!(refused.is_some_and(|error| error.contains("possible values: full, lite")));
     }
 
     #[test]

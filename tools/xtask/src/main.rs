@@ -47,7 +47,7 @@ enum Task {
         #[command(flatten)]
         options: gateware::Options,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["scene", "smooth", "texture", "no_depths", "fields", "lanes", "clock", "blocks"])]
+        #[arg(long, conflicts_with_all = ["scene", "smooth", "texture", "no_depths", "fields", "lanes", "cpu", "clock", "blocks"])]
         waveforms: bool,
     },
     /// Generate files from the gateware's descriptions: register access crate, register map, RTL packages, records
@@ -70,7 +70,8 @@ enum Task {
         /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all` [default: every part]
         #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',')]
         scene: Vec<String>,
-        /// Further Cargo features of the firmware, as in its Cargo.toml; `peers` lets the console command `bench` measure other crates too
+        /// Further Cargo features of the firmware, as in its Cargo.toml; `peers` lets the console command `bench` measure other crates too, `uptime`
+        /// and `uncached` are for variants of the CPU
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
@@ -105,7 +106,7 @@ enum Task {
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
         /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`,
-        /// `textures`, `timeline`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a
+        /// `textures`, `timeline`, `cpu`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a
         /// workflow of independent jobs]
         page: Option<String>,
         /// Measure samples only; write to target/report

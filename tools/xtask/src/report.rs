@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use litex_pac::variant::VARIANTS;
 
 use crate::gateware::{self, Board, Library};
 use crate::{bootstrap, firmware, paths, run};
@@ -44,7 +45,7 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 
 /// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
 /// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
-/// `textures`: the SoC with textures.
+/// `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU, and the firmware of each.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
@@ -56,6 +57,17 @@ fn build_parts(name: &str) -> Result<()> {
         "textures" => gateware::build_beside("texture", &["--texture"], Library::Quick).map(|_| ()),
         "quality" | "timeline" => {
             gateware::build_beside("smooth", &["--smooth"], Library::Quick).map(|_| ())
+        }
+        "cpu" => {
+            for variant in &VARIANTS {
+                firmware::build(Board::Virtual, variant.features)?;
+            }
+            // The virtual board has the first variant.
+            for variant in &VARIANTS[1..] {
+                let options = ["--cpu", variant.name];
+                gateware::build_beside(&format!("cpu-{}", variant.name), &options, Library::Quick)?;
+            }
+            Ok(())
         }
         _ => Ok(()),
     }
@@ -84,6 +96,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
         build_parts("raymarch")?;
         build_parts("quality")?;
         build_parts("textures")?;
+        build_parts("cpu")?;
     }
     firmware::build(Board::Virtual, &[])?;
     firmware::build(Board::Virtual, &["peers"])?;
@@ -155,6 +168,17 @@ fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
             "gateware/virtual-texture/libglint_soc.so",
             "gateware/models/raymarcher.so",
         ]);
+    }
+    let mut files: Vec<_> = files.into_iter().map(str::to_owned).collect();
+    if !quick {
+        for variant in &VARIANTS[1..] {
+            files.push(format!(
+                "gateware/virtual-cpu-{}/libglint_soc.so",
+                variant.name
+            ));
+            let firmware = [&["glint"], variant.features].concat().join("-");
+            files.push(format!("firmware/{firmware}.bin"));
+        }
     }
     let files = files.iter().map(|file| target.join(file));
     let output = Command::new("sha256sum").args(files).output()?;

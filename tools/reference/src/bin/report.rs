@@ -10,7 +10,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use glint_core::quality::Quality;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    constants, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
+    constants, cpu, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
     textures, timeline, triangle,
 };
 use glint_reference::report::provenance::{Commit, Provenance};
@@ -125,6 +125,15 @@ enum Page {
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
     },
+    /// Variants of the soft core: clock rate and cells alone, and cycles of frames on the SoC
+    Cpu {
+        /// Measure only one table: cores (clock rates and cells, which take minutes each), or frames
+        #[arg(long, value_name = "NAME", value_parser = ["cores", "frames"])]
+        study: Option<String>,
+        /// Measure only variants whose names contain TEXT
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+    },
     /// Long runs of the whole firmware on the emulated board: 1,000,000 frames, counters that wrap, a day of the sensor
     Long {
         /// Shorten the runs to a hundredth (minutes instead of hours)
@@ -168,7 +177,9 @@ impl Page {
             Self::Triangle { quick, only, .. }
             | Self::Raymarch { quick, only, .. }
             | Self::Quality { quick, only, .. } => *quick || only.is_some(),
-            Self::Timeline { only } | Self::Stiff { only, .. } => only.is_some(),
+            Self::Timeline { only } | Self::Cpu { only, .. } | Self::Stiff { only, .. } => {
+                only.is_some()
+            }
             Self::Geometry { .. } | Self::Gesture { .. } | Self::Pages => false,
         }
     }
@@ -278,6 +289,15 @@ fn main() -> Result<()> {
                 "timeline",
                 &timeline::measure(only.as_deref().unwrap_or_default())?,
             )?;
+        }
+        Page::Cpu { study, only } => {
+            let only = only.as_deref().unwrap_or_default();
+            if study.as_deref() != Some("frames") {
+                to.write_with_commit("cpu-cores", &cpu::cores(only)?)?;
+            }
+            if study.as_deref() != Some("cores") {
+                to.write("cpu", &cpu::frames(only)?)?;
+            }
         }
         Page::Long {
             quick,

@@ -30,15 +30,29 @@ pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
     Ok(SimulatedBoard::new(board))
 }
 
-/// Draws a frame of a scene with `changes` of size and quality on a newly started virtual board, and returns the frame's statistics.
+/// Draws a frame of a scene with `changes` of size and quality on a newly started virtual board, with smooth shading if the scene
+/// needs it, and returns the frame's statistics.
 ///
 /// # Errors
-/// The board is not built, the soft core draws the frame, or the frame differs from the model's.
+/// Those of [`frame_on`].
 pub fn frame(firmware: &[u8], scene: &SceneFile, changes: &Changes) -> Result<Stats> {
     let folder = match scene.needs().smooth {
         true => "virtual-smooth",
         false => "virtual",
     };
+    frame_on(folder, firmware, scene, changes)
+}
+
+/// Draws a frame as [`frame`], with the gateware of a folder in `target/gateware`.
+///
+/// # Errors
+/// The board is not built, the soft core draws the frame, or the frame differs from the model's.
+pub fn frame_on(
+    folder: &str,
+    firmware: &[u8],
+    scene: &SceneFile,
+    changes: &Changes,
+) -> Result<Stats> {
     let mut board = started(folder, firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;

@@ -1,6 +1,7 @@
 //! The measurements of the report. Each measurement returns rows of a type, and each row becomes a line of a CSV file.
 
 pub mod constants;
+pub mod cpu;
 pub mod geometry;
 pub mod gesture;
 pub mod gouraud;
