@@ -62,7 +62,8 @@ def test_commands_and_data():
             sel = yield both.sel
             injected += not sel
             pairs = [*both.commands]
-            # While the registers inject commands, their words go through the crossbar.
+            # While the registers inject commands, this project's injector outputs their write data as `words`, which the
+            # crossbar sends; LiteDRAM's drives them on `master`.
             pairs.append((_words(both.expected, "master", "wrdata"), both.injector.words if not sel
                           else _words(both.injector, "master", "wrdata")))
             if sel:

@@ -119,8 +119,8 @@ module exit_borders #(
                 middle_5[level][i] <= interval_4[i][BITS-3-2*level +: 2] == 2'd1;
         end
 
-        // The digits of the cell. In a build for more than four levels, a cell of a sponge of up to four levels counts as nine
-        // cells of 2^9 units.
+        // The digits of the cell, six in a build for more than four levels. There the number of a cell of a sponge of up to four
+        // levels, which is 2^12 units wide, is multiplied by nine: this appends two zero digits. Other cells are 2^9 units wide.
         logic [1:0]           first_1, first_2;
         logic [REST_BITS-1:0] rest_2;
 

@@ -48,8 +48,8 @@ module texture_light #(
         carry = sum[1] && low[1] || (sum[1] || low[1]) && sum[0] && low[0];
     endfunction
 
-    // A sum has the bits from the third one on: no bit of the product below 2^8 is part of the colour. Its lowest bit here is a 1 that
-    // makes the carry of the bits below.
+    // A sum has the bits from the third one on: no bit of the product below 2^8 is part of the colour. Its addends have one more
+    // bit below: a constant 1 in the first one, and `carry` of the omitted bits in the second one, so that they carry if `carry` is 1.
     logic [BITS+1:0] lowest, multiple_1, multiple_2, multiple_3;
     logic [BITS+2:0] row_0;
     logic [BITS+1:0] row_1, row_2;

@@ -1,4 +1,4 @@
-// The blocks of the cache: fills them, and reads the texels of a step.
+// Stores the blocks of the cache: writes the words of a missing block, and reads the texels of a step (texture_pkg::step_t).
 //
 //   head of the queue ─▶ addresses ─▶ two copies of four quarters ─▶ texels
 //

@@ -60,7 +60,7 @@ module raster_unit #(
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
-    // Link to a raymarcher, which sends its pixels in groups of one pixel.
+    // Link to a raymarcher, which sends each pixel as a group in which only this pixel is covered.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
     // Memory.

@@ -113,7 +113,7 @@ fn is_present(package: &str) -> bool {
             let program = "echo 'int main() { return 0; }' | clang++-19 -fprofile-generate -x c++ -o /dev/null -";
             run::succeeds(Command::new("sh").args(["-c", program]))
         }
-        // The program has no `--version` option.
+        // Only the subcommands of some releases have the option `--version`.
         "llvm-19" => run::succeeds(Command::new("llvm-profdata-19").args(["merge", "--version"])),
         "python3-tk" => run::succeeds(Command::new("python3").args(["-c", "import tkinter"])),
         "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),

@@ -127,7 +127,8 @@ fn compile(
     }
     cargo.arg("--features").arg(features.join(","));
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
-    // Generic functions of other crates are compiled in the firmware's crate, so its optimisation level applies to their benchmarks.
+    // Generic functions of other crates are compiled as a part of the crate that uses them, so this level also applies to the
+    // generic kernels of other crates that `bench` measures.
     if let Some(part) = for_speed {
         cargo.arg("--config").arg(format!("{part}.opt-level = 3"));
     }

@@ -99,8 +99,11 @@ impl Board for Endless {
     }
 }
 
+/// A conversation with a board.
+type Conversation<B> = fn(&mut Console<'_, B>) -> Result<(), ConsoleError>;
+
 /// Conversations that must end although the output of the board does not.
-fn conversations<B: Board>() -> [fn(&mut Console<'_, B>) -> Result<(), ConsoleError>; 4] {
+fn conversations<B: Board>() -> [Conversation<B>; 4] {
     [
         |console| console.greet().map(drop),
         |console| console.synchronise(),

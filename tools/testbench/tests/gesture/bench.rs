@@ -320,7 +320,7 @@ impl Bench {
         self.module.drive("snapshot_request.place", 0);
         self.pulse("snapshot_request.set");
         for (place, word) in expected.words().iter().enumerate() {
-            // The sensor's clock must run, or it counts as stopped.
+            // Keeps the sensor's clock running: without edges, the engine would take the sensor as stopped.
             self.idle(2);
             assert_eq!(
                 self.module.read("snapshot_state.word"),

@@ -24,8 +24,8 @@ impl Solid {
     /// The next bits depend on the solid:
     /// - Sponge: the ternary digits of the smallest cell, two bits each, the most significant digit first. Above the sponge the first digit
     ///   is 3.
-    /// - Repeated solid: the number of the cell modulo 64 in six bits, then two bits that are 1 for the gap above the cube.
-    /// - Other solids: two bits, 0 inside and 3 above.
+    /// - Repeated solid: the number of the cell modulo 64 in six bits, then a digit of two bits: 0 in the cube, 1 in the gap above it.
+    /// - Other solids: one digit of two bits, 0 inside and 3 above.
     ///
     /// All other bits are 0. The lowest interval, and all intervals below a solid that is not repeated, have the code 0.
     pub fn code(&self, interval: i32) -> u32 {

@@ -101,7 +101,7 @@ impl Eye {
     }
 }
 
-/// The constants of a frame of a field whose rays leave empty prisms.
+/// The frame constants of a field that is drawn with rays by exits (docs/raymarch-exits.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exits {
     /// Word lengths.

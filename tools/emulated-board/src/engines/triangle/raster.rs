@@ -278,7 +278,6 @@ impl Drawing<'_> {
                 let words = [0, 4, 8, 12].map(|at| record[at..].first_chunk().copied());
                 words.map(|word| word.map_or(0, u32::from_le_bytes))
             });
-            // The engine keeps a descriptor for the bands after its first band, so its words are read once.
             self.draw(
                 &Descriptor::from_words(words, self.layout),
                 set.descriptor_words,
@@ -315,6 +314,7 @@ impl Drawing<'_> {
                 let Some(part) = setup.in_rows(band.top..band.bottom) else {
                     return;
                 };
+                // The gateware keeps a descriptor for later bands, so its words are read in its first band only.
                 if part.bounds.top == setup.bounds.top {
                     self.counts.read += u64::from(descriptor_words);
                 }

@@ -100,7 +100,8 @@ pub fn divisions(thinning: u32) -> Vec<Trial> {
     )
 }
 
-/// Returns phases of input vectors, without the zero vector, for which a relative error is not defined.
+/// Returns phases, numbers from which `length::input` computes a vector. The phases of the zero vector are left out, because its
+/// relative error is not defined.
 fn vectors(thinning: u32) -> Box<dyn Iterator<Item = u32>> {
     Box::new(spread(SEVERAL, thinning).filter(|&phase| length::input(phase) != [0; 3]))
 }
