@@ -21,22 +21,20 @@ pub struct MeshOptions {
     pub textures: bool,
 }
 
+/// The options of [`MeshSubject::new`].
 impl Default for MeshOptions {
     fn default() -> Self {
-        Self::DEFAULT
+        Self {
+            cull: true,
+            shading: Shading::Flat,
+            clip: Clip::Guard,
+            winding: Winding::Mesh,
+            textures: true,
+        }
     }
 }
 
 impl MeshOptions {
-    /// Flat shading, culled back faces, clipping to the guard band, the mesh's own winding, and textures.
-    pub const DEFAULT: Self = Self {
-        cull: true,
-        shading: Shading::Flat,
-        clip: Clip::Guard,
-        winding: Winding::Mesh,
-        textures: true,
-    };
-
     /// A mesh with these options.
     pub const fn subject<'a>(&self, mesh: Mesh<'a>) -> MeshSubject<'a> {
         MeshSubject {

@@ -13,7 +13,6 @@ use glint_core::picture::{Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 
-use crate::options::MeshOptions;
 use crate::raymarch::FieldOptions;
 use crate::triangle::{Clip, MeshLight, Options, Placement};
 use crate::wireframe::WireframeSubject;
@@ -114,14 +113,21 @@ impl<'a> MeshSubject<'a> {
         TEXTURE.is_built && self.textures && self.mesh.has_textures()
     }
 
-    /// A mesh with [`MeshOptions::DEFAULT`].
+    /// A mesh with flat shading, culled back faces, clipping to the guard band, its own winding, and its textures.
     pub const fn new(mesh: Mesh<'a>) -> Self {
-        MeshOptions::DEFAULT.subject(mesh)
+        Self {
+            mesh,
+            cull: true,
+            shading: Shading::Flat,
+            clip: Clip::Guard,
+            winding: Winding::Mesh,
+            textures: true,
+        }
     }
 }
 
 impl<'a> Subject<'a> {
-    /// A mesh with [`MeshOptions::DEFAULT`].
+    /// A mesh with the options of [`MeshSubject::new`].
     pub const fn mesh(mesh: Mesh<'a>) -> Self {
         Self::Mesh(MeshSubject::new(mesh))
     }
