@@ -1,15 +1,17 @@
 """Tests of the limits of resources, and of the tables and pages of measurements."""
 
+import re
+
 import pytest
 
-from glint_soc.soc import CPU_VARIANTS
+from glint_soc.soc import CPU_VARIANT, CPU_VARIANTS
 from resources import scenes, tables
 from resources.__main__ import measured, page
 from resources.blocks import ALL, FLAT, FLAT_PARTS, ROWS, SOC, selection
 from resources.budget import Budget, amounts, number, with_flat_build
 from resources.modules import CORES
 from resources.route import REFERENCE
-from resources.tools import ToolError
+from resources.tools import GATEWARE, ToolError
 
 # A budget with different limits for three blocks. The block of `_size` is within the limits of `setup`, and exceeds those of
 # `band_buffer` and `soc`.
@@ -67,10 +69,12 @@ def test_selection():
 
 
 def test_cores():
-    """Each variant of the soft core is a block of its own file."""
-    sources = {source for core in CORES for source in core.sources if source.exists()}
-    assert len(sources) == len(CORES)
-    assert {name for core in CORES for name in core.builds()} == {f"vexriscv_{variant}" for variant in CPU_VARIANTS}
+    """Checks that each variant of the soft core has a file of its own, and that firmware and gateware name the same variants, with the
+    default one first in the firmware's list."""
+    assert len({source for core in CORES for source in core.sources if source.exists()}) == len(CORES)
+    names = re.findall(r'Variant::new\("([^"]+)"', (GATEWARE.parent / "firmware/litex-pac/src/variant.rs").read_text())
+    assert sorted(names) == sorted(CPU_VARIANTS)
+    assert names[0] == CPU_VARIANT
 
 
 def test_measured():

@@ -9,7 +9,7 @@
 
 module texture_fetch #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned STEPS        = 64
+    parameter int unsigned STEPS        = texture_pkg::STEPS
 ) (
     input  wire                     clk,
     input  wire                     rst,

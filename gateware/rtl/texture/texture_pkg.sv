@@ -61,6 +61,8 @@ package texture_pkg;
     // Clocks in texture_filter from a step to its light, and to its colours.
     localparam int unsigned LIGHT  = 6;
     localparam int unsigned FILTER = 9;
+    // Most steps that wait for their texels in the sampler's queue.
+    localparam int unsigned STEPS  = 64;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

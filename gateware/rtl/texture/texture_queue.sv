@@ -12,7 +12,7 @@
 `default_nettype none
 
 module texture_queue #(
-    parameter int unsigned STEPS = 64
+    parameter int unsigned STEPS = texture_pkg::STEPS
 ) (
     input  wire                  clk,
     input  wire                  rst,

@@ -22,7 +22,7 @@ module texture_shader #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned GROUP_BITS   = 8,
     parameter int unsigned FLIGHT       = 5,
-    // Most groups inside, a power of two. A quad takes some 62 clocks, and a group is one or two quads.
+    // Most groups inside, a power of two. Each has one or two quads, and a quad takes some 60 clocks if no block is missing.
     parameter int unsigned GROUPS       = 64
 ) (
     input  wire                    clk,
