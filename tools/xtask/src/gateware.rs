@@ -88,7 +88,7 @@ pub struct Options {
     /// Evaluations of the field per clock: 1, 2 or 4 [default: depends on the fields]
     #[arg(long)]
     lanes: Option<String>,
-    /// Variant of the CPU, VexRiscv: docs/boards.md has what the firmware needs for each [default: full]
+    /// Variant of the CPU, VexRiscv; docs/boards.md states the firmware for each [default: full]
     #[arg(long, value_name = "VARIANT", value_parser = PossibleValuesParser::new(VARIANTS.map(|variant| variant.name)))]
     cpu: Option<String>,
     /// Frequency of the system clock in MHz, a multiple of 0.25 [default: the scenes' frequency, else 81.25, or 40 for the ulx3s]

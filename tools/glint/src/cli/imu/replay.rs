@@ -239,13 +239,13 @@ impl ReplayArguments {
         let log = self.log.display();
         if counts.stale > 0 {
             warn(format_args!(
-                "{log}: ignored samples: {}, whose time stamps are not later than the previous time stamp, or do not fit the next time stamps",
+                "{log}: ignored samples: {}, with time stamps that are not later than the previous one, or do not fit the next ones",
                 counts.stale
             ));
         }
         if counts.gaps > 0 {
             warn(format_args!(
-                "{log}: gaps: {}, where the time stamps restart or skip more than half a second; the attitude did not change",
+                "{log}: gaps: {}, each a restart of the time stamps or a step of more than half a second; the attitude is kept across each gap",
                 counts.gaps
             ));
         }
