@@ -59,7 +59,8 @@ pub struct Hint {
 }
 
 impl Hint {
-    /// The hint for a frame of which less than one in 64 triangles is drawn, although the triangles are not too small for its pixels.
+    /// Returns the hint if fewer than one in 64 triangles of the frame are drawn. A mesh with more than one triangle for four pixels of the
+    /// picture gets no hint: most of its triangles cover no pixel.
     fn of(drawn: &Drawn, scene: &Scene) -> Option<Self> {
         let mesh = drawn.stats.mesh.as_ref()?;
         let culls = scene.options.cull && scene.options.winding == Winding::Mesh;

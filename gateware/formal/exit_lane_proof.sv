@@ -17,9 +17,9 @@ module exit_lane_proof (
     input wire [2:0] in_limit,
     input wire       out_ready
 );
-    // PLACES: capacity of the lane's FIFO of ends. WITHIN: upper bound on the clocks from the entry of a ray until its end is taken, while
-    // the consumer is ready: two rounds of 23 clocks, then the wait in the FIFO behind the end of the other ray. A ray without an
-    // evaluation takes one round.
+    // PLACES: capacity of the lane's FIFO of results (`out_end`). WITHIN: upper bound on the clocks from the entry of a ray until its
+    // result is taken, while the consumer is ready: two rounds of 23 clocks, then the wait in the FIFO behind the result of the other
+    // ray in the lane. A ray without an evaluation takes one round.
     localparam int unsigned PLACES = 2, WITHIN = 50, ROUND = 23;
 
     logic rst = 1'b1;

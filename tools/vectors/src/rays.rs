@@ -5,7 +5,7 @@ use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_model::raymarch::exits::{Exits, Words};
 
-/// The largest component of a direction.
+/// The largest value that a component of a direction can have, just below 1, in units of 2^−27.
 pub const ONE: i32 = (1 << 27) - 1;
 
 /// A frame in which all rays start at `eye`, in units of 2^−12 field units, and have one direction, in units of 2^−27. The near plane is at

@@ -25,7 +25,7 @@ pub struct RayEnd {
     /// Number of evaluations of the field: with several spheres, a step of a marching ray takes one for each sphere. Includes those of
     /// the shadow ray.
     pub evaluations: u32,
-    /// Whether a face is in the shadow of the first light.
+    /// Whether the hit point is shadowed from the first light; only a hit on a face can be.
     pub shadow: bool,
     /// Height of the direction: its component along z, divided by its largest component; u0.8, rounded down, 0 for a ray that points down.
     /// The colour of the sky depends on it.

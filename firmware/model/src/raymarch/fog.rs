@@ -24,7 +24,7 @@ impl FieldOptions {
 
 impl Palette {
     /// Adds fog to the palette: its transmittance is e^(−density·z) at depth z along the camera's forward axis, in world units. An entry
-    /// of the table `fog` is the share of hidden colour at the middle of the entry's depth range, in 255ths, within 0.51 of the exact
+    /// of the table `fog` is the fog factor (1 − transmittance) at the middle of the entry's depth range, in 255ths, within 0.51 of the exact
     /// value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {

@@ -36,8 +36,8 @@ impl GestureCommand {
 struct SensorArguments {
     #[command(flatten)]
     board: BoardChoice,
-    /// Pictures that the virtual image sensor shows in turn: a folder of PNG files of 320x240
-    /// pixels [default: a synthetic moving hand].
+    /// Pictures that the virtual image sensor sends in turn, as if it had taken them: a folder of
+    /// PNG files of 320x240 pixels [default: a synthetic moving hand].
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
     /// Fault of the virtual image sensor to simulate.

@@ -54,8 +54,8 @@ pub(super) const fn squared(x: i64, cut: u32) -> i64 {
     first * (2 * x - first)
 }
 
-/// Returns a lower bound of 4·√(x·2^shift), in [2^18, 2^19) and at most a relative 2^−18 too small, and the shift: the even number that
-/// brings x, at least 1, to [2^32, 2^34).
+/// Returns a lower bound of 4·√(x·2^shift), in [2^18, 2^19), with a relative error of at most 2^−18, and the shift: the even number for
+/// which x·2^shift is in [2^32, 2^34). x must be at least 1.
 pub(super) fn normalised(x: i64) -> (u32, i32) {
     let shift = 32 - (x.ilog2() as i32 & !1);
     (normalised_root(shifted(x, shift, 34) as u64), shift)
