@@ -30,9 +30,8 @@ _BUILD = GATEWARE.parent / "target" / "gateware" / "formal"
 _PROGRAMS = Path(sys.executable).parent
 _ABC = Path(find_spec(YOSYS).origin).parent / "yosys-abc"
 
-_AT_A_TIME = 2
-
-
+# Number of proofs that run at a time: one on each core.
+_AT_A_TIME = len(os.sched_getaffinity(0))
 
 # Engines of bounded model checking. For most proofs the solver on bits needs a third of the time of the solver on words. Only the solver
 # on words reports the failed properties and supports cover statements. Its option `--stbv` represents the state as bit vectors, the only
@@ -70,7 +69,7 @@ class Proof:
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
-# The longest proofs come first: two run at a time, and a long proof should not run alone at the end. An additional clock can double the
+# The longest proofs come first: several run at a time, and a long proof should not run alone at the end. An additional clock can double the
 # run time, so the depth of ring_lane, line_raster, band_flush, band_extents, smooth_shader and walker is the smallest that detects all of
 # their mutations.
 PROOFS = [
@@ -175,7 +174,7 @@ def check(proof, mode, engine, folder, sources=None, only=None):
 
 
 def prove(proofs):
-    """Runs proofs, two at a time, and returns the number of failed proofs. First checks that each mutation fits the sources."""
+    """Runs proofs, one on each core, and returns the number of failed proofs. First checks that each mutation fits the sources."""
     for proof in proofs:
         for mutation in mutations.MUTATIONS[proof.name]:
             _mutated(proof, mutation)

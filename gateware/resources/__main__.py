@@ -3,6 +3,7 @@
 import argparse
 import json
 import logging
+import os
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -18,7 +19,7 @@ from .tools import ToolError
 
 DOCS = GATEWARE.parent / "docs"
 
-_AT_A_TIME = 2
+_AT_A_TIME = len(os.sched_getaffinity(0))
 """Number of parallel measurements; each needs one core and about 1 GB of memory."""
 
 

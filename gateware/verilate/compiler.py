@@ -71,7 +71,7 @@ def compile_all(name, sources, folder, options):
 
     # Compiles the largest file first, because it takes longest.
     queue = sorted(sources, key=lambda source: -source.stat().st_size)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         list(pool.map(compile_one, queue))
 
 

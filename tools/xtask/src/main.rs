@@ -5,6 +5,7 @@
 #[cfg(test)]
 mod architecture;
 mod bootstrap;
+mod cores;
 mod demo;
 #[cfg(test)]
 mod documents;

@@ -3,13 +3,15 @@
 use std::collections::VecDeque;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, IsTerminal, Write};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use rustix::param::clock_ticks_per_second;
+use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
 
 use crate::paths;
 
@@ -61,7 +63,7 @@ pub fn python(arguments: &[&str]) -> Command {
 }
 
 /// Runs `command` as the step `name`: shows its latest line of output while it runs, writes all output to `target/log`, and
-/// prints one line with the run time at the end.
+/// prints one line with the run time and the processor time at the end.
 ///
 /// # Errors
 /// The program cannot be started, or fails. The end of a failed program's output is printed.
@@ -105,17 +107,34 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
         tail.push_back(line);
         raw.clear();
     }
+    let busy = processor_seconds(&child);
     let status = child.wait()?;
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     if status.success() {
-        print_progress(&format!("  ok   {seconds:6.1} s  {name}"));
+        let busy = busy.map_or(String::new(), |busy| format!(" {busy:7.1} s CPU"));
+        print_progress(&format!("  ok   {seconds:6.1} s{busy}  {name}"));
         return Ok(());
     }
     // One write, because another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
     print_progress(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!("{name} failed ({status}); see {}", log_path.display())
+}
+
+/// Waits until a child process has ended. Returns the processor time of the process and of those that it has waited for, in seconds: steps
+/// run side by side, so the time that passes says little about one of them. `None` if the system does not tell.
+fn processor_seconds(child: &Child) -> Option<f64> {
+    /// Position of the first of the four times, behind the name of the program, which may contain spaces (proc_pid_stat(5)).
+    const FIRST_TIME: usize = 11;
+    let ended = WaitIdOptions::EXITED | WaitIdOptions::NOWAIT;
+    // The system keeps the counters until `Child::wait`.
+    waitid(WaitId::Pid(Pid::from_child(child)), ended).ok()?;
+    let counters = fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
+    let fields = counters.rsplit_once(')')?.1.split_whitespace();
+    let times = fields.skip(FIRST_TIME).take(4).map(str::parse::<u64>);
+    let ticks: u64 = times.sum::<Result<_, _>>().ok()?;
+    Some(ticks as f64 / clock_ticks_per_second() as f64)
 }
 
 /// Runs `command` on this terminal, for programs with their own progress.

@@ -1,21 +1,18 @@
-//! The Rust tests: builds the test programs, and runs three of them at a time.
+//! The Rust tests: builds the test programs, and runs them on the threads that ask for it.
 //!
-//! `cargo test` runs the programs one after another, and long programs end with a single test on one core. Three programs at a time keep
-//! both cores of a small machine busy.
+//! `cargo test` runs the programs one after another, and long programs end with a single test on one core. Here each thread takes the
+//! next program when it has finished one.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, MutexGuard};
-use std::thread;
+use std::vec::IntoIter;
 
 use anyhow::{Result, bail};
 use serde::Deserialize;
 
 use crate::{paths, run};
-
-/// Number of programs that run at a time.
-const AT_A_TIME: usize = 3;
 
 /// Cargo options that compile the references with little optimisation. Full optimisation, as for the report, takes more time than
 /// the tests save by it.
@@ -77,8 +74,11 @@ struct Profile {
     test: bool,
 }
 
-/// All test programs of a build.
-pub struct Programs(Vec<Program>);
+/// All test programs of a build, and the results of those that have run.
+pub struct Programs {
+    waiting: Mutex<IntoIter<Program>>,
+    results: Mutex<Results>,
+}
 
 impl Programs {
     /// Builds the test programs of `selection`, arguments of `cargo test`; of the whole workspace if it is empty.
@@ -100,32 +100,30 @@ impl Programs {
             |line| programs.extend(test_program(line)),
         )?;
         programs.sort_by_key(Program::rank);
-        Ok(Self(programs))
+        Ok(Self {
+            waiting: Mutex::new(programs.into_iter()),
+            results: Mutex::default(),
+        })
     }
 
-    /// Runs the programs with `environment`. Returns the number of passed tests. The output of failed tests is printed again at the
-    /// end.
+    /// Runs programs with `environment` until none is waiting. Several threads may do so at the same time.
+    pub fn run(&self, environment: &[(&str, &OsStr)]) {
+        // A separate function, because in `while let` the lock's guard would live until the program ends.
+        let next = || lock(&self.waiting).next();
+        while let Some(program) = next() {
+            let mut command = Command::new(&program.path);
+            command.current_dir(&program.package);
+            run_tests(&program.name(), command, environment, &self.results);
+        }
+    }
+
+    /// Prints the output of failed tests again. Returns the number of passed tests.
     ///
     /// # Errors
-    /// A test fails; the error names the programs.
-    pub fn run(self, environment: &[(&str, &OsStr)]) -> Result<u32> {
-        let waiting = Mutex::new(self.0.into_iter());
-        let results = Mutex::new(Results::default());
-        // A separate function, because in `while let` the lock's guard would live until the program ends.
-        let next = || lock(&waiting).next();
-        thread::scope(|scope| {
-            for _ in 0..AT_A_TIME {
-                scope.spawn(|| {
-                    while let Some(program) = next() {
-                        let mut command = Command::new(&program.path);
-                        command.current_dir(&program.package);
-                        run_tests(&program.name(), command, environment, &results);
-                    }
-                });
-            }
-        });
-        let results = results.into_inner().expect("tests do not panic");
-        for line in results.output {
+    /// A test has failed; the error names the programs.
+    pub fn results(&self) -> Result<u32> {
+        let results = lock(&self.results);
+        for line in &results.output {
             println!("    {line}");
         }
         if !results.failed.is_empty() {

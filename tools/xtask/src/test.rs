@@ -1,20 +1,21 @@
 //! `cargo xtask test`: sets up the machine, then runs every check.
 
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, MutexGuard, mpsc};
+use std::sync::{Arc, Mutex, MutexGuard, mpsc};
 use std::thread;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use rustix::thread::CpuSet;
 
 use crate::gateware::{self, Board, Library};
 use crate::rust_tests::{self, Programs};
-use crate::{bootstrap, firmware, modules, resources, run, scenes, walk, web};
+use crate::{bootstrap, cores, firmware, modules, resources, run, scenes, walk, web};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
-/// The Python packages and the gateware's builds and checks run in parallel with cargo's, because most of them use one core. The
-/// Rust tests wait for the gateware tests, which build the verilated models that the Rust tests use.
+/// The gateware's builds and checks run on one half of the cores, and cargo's on the other. The Rust tests need both, and run on each half
+/// when its other work has ended.
 ///
 /// # Errors
 /// A build or a check fails; the error names the checks.
@@ -23,13 +24,14 @@ pub fn test() -> Result<()> {
     bootstrap::programs()?;
 
     let results = CheckResults::default();
-    let (gateware_is_built, gateware_builds) = mpsc::channel();
-    let (models_are_built, models) = mpsc::channel();
-    thread::scope(|scope| -> Result<()> {
-        scope.spawn(|| {
-            let built = bootstrap::python_environment()
-                .and_then(|()| gateware::build(Board::Virtual))
-                .and_then(|()| gateware::build(Board::Urbana));
+    let [gateware_cores, cargo_cores] = cores::halves()?;
+    let tests = thread::scope(|scope| -> Result<Arc<Programs>> {
+        let (gateware_is_built, gateware_builds) = mpsc::channel();
+        let (models_are_built, models) = mpsc::channel();
+        let (tests_are_built, built_tests) = mpsc::channel();
+        let results = &results;
+        scope.spawn(move || {
+            let built = build_gateware(&gateware_cores);
             let is_built = built.is_ok();
             // Errors of sending are ignored: the receiver is dropped only if another build has failed.
             let _ = gateware_is_built.send(built);
@@ -43,7 +45,14 @@ pub fn test() -> Result<()> {
             let _ = models_are_built.send(());
             results.add(gateware_check("proofs", &["gateware/formal/run.py"]));
             results.add(resources::check());
+            // If a build of cargo's has failed, its thread has dropped the sender.
+            let Ok(tests): Result<Arc<Programs>, _> = built_tests.recv() else {
+                return;
+            };
+            results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)));
+            tests.run(&[]);
         });
+        cores::keep_to(&cargo_cores)?;
         firmware::build(Board::Virtual, &[])?;
         web::build(None)?;
         results.add(scenes::generate(true));
@@ -56,18 +65,27 @@ pub fn test() -> Result<()> {
         results.add(firmware::check_peers().map(|_| ()));
         let documentation = ["doc", "--no-deps", "--document-private-items"];
         results.add(linted("rustdoc", &documentation));
-        let tests = Programs::build(&[])?;
+        let tests = Arc::new(Programs::build(&[])?);
         gateware_builds.recv().expect("the builds do not panic")?;
-        scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned))));
+        let _ = tests_are_built.send(Arc::clone(&tests));
         models.recv().expect("the gateware's checks do not panic");
-        results.add_tests(tests.run(&[]));
+        tests.run(&[]);
         results.add_tests(rust_tests::run_examples());
-        Ok(())
+        Ok(tests)
     })?;
+    results.add_tests(tests.results());
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;
     println!("{minutes:.1} minutes");
     results.finish()
+}
+
+/// Sets up Python and builds the gateware that tests use, on `cores`; they stay those of this thread.
+fn build_gateware(cores: &CpuSet) -> Result<()> {
+    cores::keep_to(cores)?;
+    bootstrap::python_environment()?;
+    gateware::build(Board::Virtual)?;
+    gateware::build(Board::Urbana)
 }
 
 /// Sets up, and runs the firmware's and `glint`'s tests on a virtual board with a system clock of `megahertz` MHz. The standard
@@ -80,7 +98,15 @@ pub fn test_at_clock(megahertz: &str) -> Result<()> {
     let folder = gateware::build_beside(megahertz, &["--clock", megahertz], Library::Profiled)?;
     firmware::build(Board::Virtual, &[])?;
     let tests = Programs::build(&["-p", "virtual-board", "-p", "glint", "--test", "board"])?;
-    let passed = tests.run(&[("GLINT_VIRTUAL_BOARD", folder.as_os_str())])?;
+    let environment = [("GLINT_VIRTUAL_BOARD", folder.as_os_str())];
+    thread::scope(|scope| -> Result<()> {
+        for half in cores::halves()? {
+            let (tests, environment) = (&tests, &environment);
+            scope.spawn(move || cores::keep_to(&half).map(|()| tests.run(environment)));
+        }
+        Ok(())
+    })?;
+    let passed = tests.results()?;
     println!("{passed} passed at {megahertz} MHz");
     Ok(())
 }
