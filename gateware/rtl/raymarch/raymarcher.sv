@@ -118,7 +118,7 @@ module raymarcher #(
     // Increment of each counter in this clock, 0 when no frame is drawn.
     output raymarch_registers_pkg::events_t events
 );
-    localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
+    localparam int unsigned EARLY_LOG2 = $clog2(EARLY);
     // Whether the build has rays by exits, octahedra, marching rays, and light on spheres.
     localparam bit          LEAVES     = FIELDS != 0 || LATTICE;
     localparam bit          OCTAHEDRON = (FIELDS & fields_pkg::OCTANTS) != 0;
@@ -139,16 +139,16 @@ module raymarcher #(
     logic reset;
     assign reset = rst || restart;
 
-    // The number of the current band (`band`), its parity (`odd`), the number of its pixels that have not been taken (`left`), and the
-    // number of rays of the next band that have entered the lanes (`early`).
-    logic                  odd, is_early, may_enter;
+    // The number of the current band (`band`), its parity (`odd`), and the number of its pixels that have not been taken (`left`).
+    // `early` is the number of rays of the next band that have entered the lanes. It is below 0 while as many rays of the current band have
+    // not entered. It decides from registers alone whether the next ray may enter; the ray itself comes from LUT memory.
+    logic                  odd, may_enter;
     logic [5:0]            band;
     logic [14:0]           left;
-    logic [EARLY_BITS-1:0] early;
-    logic                  ray_moves, group_moves;
+    logic [15:0]           early, change;
+    logic                  ray_moves, group_moves, unused_carry;
 
     logic                  generating, ray_valid, ray_ready, by_exits;
-    logic                  ray_odd;
     exit_pkg::ray_t        ray;
 
     // Numbers of the last column, of the last line of a band and of the last row of the frame, counted from 0.
@@ -179,19 +179,17 @@ module raymarcher #(
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
-    assign ray_odd     = ray.place[raymarch_pkg::PLACE_BITS-1];
-    assign is_early    = ray_odd != odd;
-    assign may_enter   = !is_early || early != EARLY_BITS'(EARLY);
+    assign may_enter   = early[15] || !early[EARLY_LOG2];
     assign ray_moves   = ray_valid && ray_ready;
     assign group_moves = group_valid && group_ready;
     assign band_done   = busy && left == '0;
+    assign change      = start || band_next ? -(16'(band_rays)) : '0;
 
     always_ff @(posedge clk) begin
-        if (ray_moves && is_early) early <= early + 1'b1;
+        {early, unused_carry} <= {start ? 16'd0 : early, 1'b1} + {change, ray_moves};
         if (group_moves) left <= left - 1'b1;
         if (band_next) begin
             odd   <= !odd;
-            early <= '0;
             left  <= band_rays;
             band  <= band + 1'b1;
             if (band == last_band) busy <= 1'b0;
@@ -199,14 +197,10 @@ module raymarcher #(
         if (start) begin
             busy  <= 1'b1;
             odd   <= 1'b0;
-            early <= '0;
             left  <= band_rays;
             band  <= '0;
         end
-        if (reset) begin
-            busy  <= 1'b0;
-            early <= '0;
-        end
+        if (reset) busy <= 1'b0;
     end
 
     // Sends a ray to the first lane that can accept a ray.
@@ -460,7 +454,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = &{1'b0, generating, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, short_direction, landed, found, ring_end, places,
+    wire _unused = &{1'b0, generating, unused_carry, sum_distances, sum_there, sum_away, exit_taken, ring_taken, ray, short_direction, landed, found, ring_end, places,
                      last_cone, cone_write, cone_address, cone_value, exits, rule, levels, halves, borders, origins, bounds, solid, tuning, sphere_write, sphere_number, sphere};
 endmodule
 
