@@ -128,7 +128,7 @@ class Raymarcher(LiteXModule):
                                                            "`solid` is built."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
-            CSRField("enable", offset=0, description="Draws the field in every raster pass, after the triangles."),
+            CSRField("enable", offset=0, description="Draws the field in every raster pass, before the triangles."),
             CSRField("stereo", size=2, offset=1, values=[
                 ("0", "mono", "one eye"), ("1", "red_blue", "left eye red, right eye blue, green is the smaller of both"),
                 ("2", "red_cyan", "left eye red, right eye green and blue")],

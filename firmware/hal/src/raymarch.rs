@@ -159,7 +159,7 @@ impl Raymarcher {
         self.capabilities
     }
 
-    /// Enables the field in every following raster pass, which draws the field after the triangles. The constants must have been
+    /// Enables the field in every following raster pass, which draws the field before the triangles. The constants must have been
     /// computed for the picture size of these passes, and the tables and spheres must belong to the field.
     pub fn set_field(&mut self, field: &Field) {
         let registers = &self.registers;

@@ -6005,7 +6005,7 @@ pub mod raymarch {
     }
 
     impl Control {
-        /// `enable`, bit 0: Draws the field in every raster pass, after the triangles.
+        /// `enable`, bit 0: Draws the field in every raster pass, before the triangles.
         #[inline]
         #[must_use]
         pub const fn enable(self) -> bool {

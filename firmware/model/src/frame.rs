@@ -110,6 +110,17 @@ impl Frame<'_> {
             stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
             return Ok(stats);
         }
+        // A field covers every pixel. Meshes are drawn over it, so that what they mix with the picture may be in front of it.
+        let field = constants.field();
+        if let Some(FieldConstants { setup, palette }) = field {
+            buffer.depth.fill(0);
+            let mut show = |x, _, _: &RayEnd| {
+                if x % PIXELS_PER_CALL == 0 {
+                    progress();
+                }
+            };
+            stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
+        }
         if constants.mesh().is_some() {
             let mut part = |number| self.part(constants, number);
             let mut show = |triangle: &DrawnTriangle| {
@@ -117,18 +128,8 @@ impl Frame<'_> {
                     progress();
                 }
             };
-            let clear = self.clear.0;
+            let clear = field.is_none().then_some(self.clear.0);
             stats.mesh = Some(draw_parts(&mut part, clear, buffer, scratch, &mut show)?);
-        } else {
-            buffer.depth.fill(0);
-        }
-        if let Some(FieldConstants { setup, palette }) = constants.field() {
-            let mut show = |x, _, _: &RayEnd| {
-                if x % PIXELS_PER_CALL == 0 {
-                    progress();
-                }
-            };
-            stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
         }
         Ok(stats)
     }

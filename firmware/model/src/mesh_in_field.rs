@@ -12,7 +12,8 @@ use crate::triangle::MeshSetup;
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth codes for both.
 /// `options` must have one eye.
 ///
-/// [`trace_frame`](crate::trace_frame) draws the mesh first, then [`render_field`](crate::raymarch::render_field) draws the field over it.
+/// [`render_field`](crate::raymarch::render_field) draws the field first, then [`draw_parts`](crate::triangle::draw_parts) draws the mesh
+/// over it.
 ///
 /// # Errors
 /// The errors of [`MeshSetup::new`] and [`FieldSetup::new`].

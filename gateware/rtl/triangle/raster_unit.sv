@@ -12,9 +12,10 @@
 // next start must wait until the unit is `ready` and read_port is idle.
 //
 // With FIELDS, a raymarcher outside of this unit draws a distance field into each frame with `field_source.enable`.
-// `field_sink.start` begins the field. After the triangles of a band have been drawn, `open` admits the field's pixels of this band
-// until the raymarcher raises `done`, and `next` makes the raymarcher continue with the next band. `compose` selects how the
-// luminances of two eyes become colours, see band_flush.
+// `field_sink.start` begins the field. In each band `open` admits the field's pixels until the raymarcher raises `done`; then the
+// triangles and lines of the band are drawn, so that they may be mixed with the field. At the end of the band `next` makes the raymarcher
+// continue with the next band, whose first rays it has computed in the meantime. `compose` selects how the luminances of two eyes become
+// colours, see band_flush.
 //
 // With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
@@ -85,7 +86,7 @@ module raster_unit #(
     // `flags.size` must not change during a frame, nor in the clock before `start`.
     always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
-    typedef enum logic [2:0] {IDLE, DRAW, FIELD, HAND_OVER, FLUSH} state_t;
+    typedef enum logic [2:0] {IDLE, FIELD, DRAW, HAND_OVER, FLUSH} state_t;
     state_t state;
 
     logic [5:0]              band;
@@ -123,16 +124,16 @@ module raster_unit #(
                 first_row       <= '0;
                 base            <= parameters.frame[4 +: ADDRESS_BITS];
                 band_depth_base <= parameters.depth[4 +: ADDRESS_BITS];
-                if (start) state <= DRAW;
+                if (start) state <= has_field ? FIELD : DRAW;
             end
-            DRAW: if (drawn) state <= has_field ? FIELD : HAND_OVER;
-            FIELD: if (field_source.done) state <= HAND_OVER;
+            FIELD: if (field_source.done) state <= DRAW;
+            DRAW: if (drawn) state <= HAND_OVER;
             HAND_OVER: if (band_ready) begin
                 band            <= band + 1'b1;
                 first_row       <= first_row + 10'(rows);
                 base            <= base + ADDRESS_BITS'(words);
                 band_depth_base <= band_depth_base + (ADDRESS_BITS'(words) << 1);
-                state           <= band == last_band ? FLUSH : DRAW;
+                state           <= band == last_band ? FLUSH : has_field ? FIELD : DRAW;
             end
             default: if (in_memory) begin
                 done  <= 1'b1;
@@ -160,7 +161,7 @@ module raster_unit #(
     logic   from_line, line_valid, line_ready;
     pixel_t line_pixel;
 
-    // Each band is drawn in two steps: first its triangles (`drawn_*`) and lines, then the pixels of the field (`field_source`).
+    // Each band is drawn in two steps: first the pixels of the field (`field_source`), then its triangles (`drawn_*`) and lines.
     logic            group_valid, group_ready;
     logic            drawn_valid, drawn_ready;
     logic [10:0]     drawn_row;

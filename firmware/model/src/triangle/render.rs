@@ -136,7 +136,7 @@ pub fn trace_frame(
         options: *options,
     };
     let mut part = |number| (number == 0).then_some(part);
-    draw_parts(&mut part, options.clear, target, scratch, &mut show)
+    draw_parts(&mut part, Some(options.clear), target, scratch, &mut show)
 }
 
 /// A mesh of a frame: its frame constants and options.
@@ -150,15 +150,15 @@ pub struct PreparedMesh<'a> {
     pub options: Options<'a>,
 }
 
-/// Draws the parts of a frame (see [`set_up_parts`]) on the background colour `clear`. Calls `show` with each triangle
-/// before it is drawn.
+/// Draws the parts of a frame (see [`set_up_parts`]) on the background colour `clear`, or, with `None`, over the picture in the frame
+/// buffer. Calls `show` with each triangle before it is drawn.
 ///
 /// # Errors
 /// As [`set_up_parts`], or the size of a part differs from the frame buffer's. If no triangle has been drawn yet, the frame buffer is
 /// unchanged.
 pub fn draw_parts<'a>(
     part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
-    clear: u16,
+    mut clear: Option<u16>,
     target: &mut FrameBuffer,
     scratch: &mut [Projected],
     show: &mut dyn FnMut(&DrawnTriangle),
@@ -167,11 +167,9 @@ pub fn draw_parts<'a>(
     let size = (target.width, target.height);
     let mut pixels = Stats::default();
     let mut tested = 0;
-    let mut is_clear = false;
     let mut draw = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
-        if !is_clear {
+        if let Some(clear) = clear.take() {
             target.clear(clear);
-            is_clear = true;
         }
         show(triangle);
         let coverage = match textured {
@@ -183,7 +181,7 @@ pub fn draw_parts<'a>(
         pixels.pixels_drawn += u64::from(coverage.drawn);
     };
     let stats = set_up_parts(part, size, scratch, &mut draw)?;
-    if !is_clear {
+    if let Some(clear) = clear {
         target.clear(clear);
     }
     Ok(Stats {

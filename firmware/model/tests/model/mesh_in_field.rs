@@ -4,14 +4,15 @@ use glint_core::camera::View;
 use glint_core::field::{Field, Menger};
 use glint_core::mesh::Mesh;
 use glint_model::raymarch::{FieldOptions, render_field};
-use glint_model::{Options, Projected, RenderError, mesh_in_field, trace_frame};
+use glint_model::triangle::{PreparedMesh, draw_parts};
+use glint_model::{Options, Projected, RenderError, mesh_in_field};
 use glint_vectors::{Camera, Model, Picture, Random};
 
 use crate::{cube, mesh_of};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// Draws three pictures with the same constants: the mesh, the field, and the field over the mesh.
+/// Draws three pictures with the same constants: the mesh, the field, and the mesh over the field.
 fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     let field = Field::parse(field).unwrap();
     let options = FieldOptions::default();
@@ -21,13 +22,19 @@ fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     let mut scratch = vec![Projected::Behind; mesh.vertex_count() as usize];
     let mut draw = |picture: &mut Picture, with_mesh: bool, with_field: bool| {
         let mut target = picture.target();
-        if with_mesh {
-            let options = Options::default();
-            trace_frame(mesh, frame, &mut target, &mut scratch, &options, |_| {}).unwrap();
-        }
         if with_field {
             let palette = options.palette_for(&setup);
             render_field(&setup, &palette, &mut target, &mut |_, _, _| {}).unwrap();
+        }
+        if with_mesh {
+            let part = PreparedMesh {
+                mesh: *mesh,
+                frame,
+                options: Options::default(),
+            };
+            let clear = (!with_field).then_some(part.options.clear);
+            let mut part = |number| (number == 0).then_some(part);
+            draw_parts(&mut part, clear, &mut target, &mut scratch, &mut |_| {}).unwrap();
         }
     };
     let mut pictures = [0; 3].map(|_| Picture::blank(SIZE));
@@ -87,9 +94,13 @@ fn what_is_nearer_is_seen() {
         let [mesh, field, both] = draw(&mesh, "box:1,1,1", &view);
         for i in 0..both.depth.len() {
             let (a, b) = (mesh.depth[i], field.depth[i]);
-            // At equal depth codes the field is shown, because it is drawn later. If both codes are 0, this is the
-            // background of the field.
-            let (which, expected) = if b >= a { (1, &field) } else { (0, &mesh) };
+            // At equal depth codes the mesh is shown, because it is drawn later. Where the mesh has no pixel, its code is 0: if both
+            // codes are 0, this is the background of the field.
+            let (which, expected) = if b > a || a == 0 {
+                (1, &field)
+            } else {
+                (0, &mesh)
+            };
             assert_eq!(both.colour[i], expected.colour[i], "pixel {i}");
             seen[if a.max(b) == 0 { 2 } else { which }] += 1;
         }

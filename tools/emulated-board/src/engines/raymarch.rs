@@ -40,8 +40,6 @@ pub struct Field {
     pub cycles: u64,
     /// Number of pixels of all eyes.
     pub pixels: u32,
-    /// Number of these pixels that passed the depth test.
-    pub drawn: u32,
 }
 
 /// The raymarcher, which the triangle engine starts.
@@ -76,15 +74,14 @@ impl Raymarcher {
         self.control.enable() && self.error() == Error::None
     }
 
-    /// Draws the field into a picture that already contains the triangles of the frame, starting at
-    /// the cycle `now`.
+    /// Draws the field into a picture, before the triangles of the frame, starting at the cycle `now`.
     pub(crate) fn draw(&mut self, size: Size, target: &mut FrameBuffer, now: u64) -> Field {
         let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
         let solid = Solid::from_bits(self.parameters.word(offset::SOLID));
         let cones = self.cones.of(solid);
         let is_stereo = setup.stereo.is_some();
         let palette = palette(&self.parameters, &self.spheres, &self.tables, is_stereo);
-        let (stats, hidden) = rows::render(&Tracer::new(&setup, cones), &palette, target);
+        let stats = rows::render(&Tracer::new(&setup, cones), &palette, target);
         let eyes = 1 + u32::from(is_stereo);
         let lanes = if setup.exits().is_some() { LANES } else { 1 };
         let work = (stats.evaluations / lanes).max(stats.rays.into());
@@ -106,11 +103,7 @@ impl Raymarcher {
             growth: std::array::from_fn(|_| values.next().map_or(0, |(_, value)| value)),
         });
         let pixels = eyes * size.pixel_count() as u32;
-        Field {
-            cycles,
-            pixels,
-            drawn: pixels - hidden,
-        }
+        Field { cycles, pixels }
     }
 
     /// Cancels the field of a cancelled frame.

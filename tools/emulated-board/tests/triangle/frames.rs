@@ -35,7 +35,7 @@ fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
     let mut part = |number: usize| parts.get(number).copied();
     picture.stats = draw_parts(
         &mut part,
-        CLEAR,
+        Some(CLEAR),
         &mut picture.target(),
         &mut scratch,
         &mut |_| {},

@@ -121,14 +121,18 @@ impl RasterUnit {
         let is_whole = flags.whole() || flags.depth() || !self.known[slot];
         let table = parameters.word(offset::TEXTURES) / WORD;
         let mut drawing = self.begin(size, clear, layout, table);
+        let has_field = raymarcher.draws();
+        if has_field {
+            drawing.draw_field(raymarcher, now);
+        }
         for band in 0..size.bands() {
             for set in sets.iter().flatten() {
                 drawing.draw_list(set, band, list_shift, ram);
             }
             drawing.end_band(band, is_whole);
         }
-        if raymarcher.draws() {
-            drawing.draw_field(raymarcher, now);
+        if has_field {
+            drawing.cover();
         }
         let Drawing {
             counts,
@@ -357,16 +361,21 @@ impl Drawing<'_> {
         self.counts.drawn += u64::from(drawn);
     }
 
-    /// Draws the field; the gateware draws it band by band, after the triangles of the band.
+    /// Draws the field; the gateware draws it band by band, before the triangles of the band.
     fn draw_field(&mut self, raymarcher: &mut Raymarcher, now: u64) {
         let field = raymarcher.draw(self.size, &mut self.target, now);
-        let last = self.size.width() as i32 / GROUP - 1;
-        let lines = self.extents.iter_mut().take(self.size.height() as usize);
-        lines.for_each(|extent| *extent = [0, last]);
         self.time.add_field(field.cycles);
         self.counts.groups += u64::from(field.pixels);
         self.counts.covered += u64::from(field.pixels);
-        self.counts.drawn += u64::from(field.drawn);
+        self.counts.drawn += u64::from(field.pixels);
+    }
+
+    /// Extends all lines to their whole width, which a field covers. Their flush does not take longer than the rays of a band, so this
+    /// comes after the estimates of all bands.
+    fn cover(&mut self) {
+        let last = self.size.width() as i32 / GROUP - 1;
+        let lines = self.extents.iter_mut().take(self.size.height() as usize);
+        lines.for_each(|extent| *extent = [0, last]);
     }
 
     fn end_band(&mut self, band: u32, is_whole: bool) {

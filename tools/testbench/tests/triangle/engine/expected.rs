@@ -93,7 +93,7 @@ pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'stat
     let (_, frame, options) = parts[0];
     let stats = draw_parts(
         &mut part,
-        options.clear,
+        Some(options.clear),
         &mut target,
         &mut scratch,
         &mut show,
