@@ -262,6 +262,20 @@ MUTATIONS = {
         _pipe("!stored_written[lane] ||", "", "drawn_as_given"),
         _pipe("hold <= hold >> 1;", "hold <= hold;", "taken_in_time"),
     ],
+    "band_pipe with blended pixels": [
+        _pipe("hold <= 3'b111;", "hold <= 3'b011;", "drawn_as_given"),
+        # Fault: a blended pixel writes its depth, or the depth of a new pixel is not 0.
+        _pipe("blended[3] ? compared.mask & ~stored_written", "blended[3] ? compared.mask", "drawn_as_given"),
+        _pipe(".zero(blended[2])", ".zero(1'b0)", "drawn_as_given"),
+        _pipe("write_lanes  = blended[3] ? compared.mask : asks[3] ? '0 : passing;", "write_lanes  = blended[3] ? compared.mask : passing;",
+              "drawn_as_given"),
+        _pipe("write_lanes  = blended[3] ? compared.mask :", "write_lanes  = blended[3] ? passing :", "drawn_as_given"),
+        # Fault: the answer ignores the depth, or belongs to another group.
+        _pipe("answer_lanes <= passing;", "answer_lanes <= compared.mask;", "drawn_as_given"),
+        _pipe("answer_valid <= asks[3] &&", "answer_valid <= asks[2] &&", "drawn_as_given"),
+        _pipe("if (!held) {asks[0]", "{asks[0]", "drawn_as_given"),
+        _pipe("hold <= hold >> 1;", "hold <= hold;", "taken_in_time"),
+    ],
     "cull": [
         _cull("room && !again;", "room && !again && out_ready;", "taken_in_time"),
         _cull("again   = first_valid && tall && !second;", "again   = first_valid && tall;", "leaves_in_time"),

@@ -103,6 +103,7 @@ PROOFS = [
     Proof("cdc_fifo", "cdc_fifo_proof", 40, ("any_level",), has_clocks=True, engine=_WORDS),
     Proof("camera_capture", "camera_capture_proof", 32, has_clocks=True),
     Proof("band_pipe", "band_pipe_proof", 14),
+    Proof("band_pipe with blended pixels", "band_pipe_proof", 14, parameters={"BLEND": 1}),
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
 ]
@@ -167,8 +168,9 @@ def check(proof, mode, engine, folder, sources=None, only=None):
             cwd=folder.parent, PATH=os.pathsep.join(map(str, (FORMAL / "solver", _PROGRAMS, os.environ["PATH"]))))
         return "PASS", []
     except ToolError as error:
-        found = re.findall(r"failed assertion \w+\.(\S+) at", str(error))
-        found += re.findall(r"unreached cover statement \w+\.(\S+) at", str(error))
+        # The name of a module with parameters has other characters, too, but no point.
+        found = re.findall(r"failed assertion [^.\n]+\.(\S+) at", str(error))
+        found += re.findall(r"unreached cover statement [^.\n]+\.(\S+) at", str(error))
         verdict = (folder / "status").read_text().split()[0] if (folder / "status").exists() else "ERROR"
         return verdict, found or [str(error)]
 

@@ -110,7 +110,7 @@ impl Frame<'_> {
             stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
             return Ok(stats);
         }
-        // A field covers every pixel. Meshes are drawn over it, so that what they mix with the picture may be in front of it.
+        // A field covers every pixel. Meshes are drawn over it, so that what they blend with the picture may be in front of it.
         let field = constants.field();
         if let Some(FieldConstants { setup, palette }) = field {
             buffer.depth.fill(0);

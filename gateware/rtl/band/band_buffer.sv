@@ -24,6 +24,12 @@
 // every pixel must then be drawn for both eyes. Without DEPTHS there is no depth memory: each stored depth counts as 0, so every lane of
 // the mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
+// With BLEND, pixels can be blended with the stored colours: after a group that asks for the lanes that pass the depth test, come groups of one
+// blended pixel each (band_pipe). From the answer until the last of these groups, `behind` is the colour of the lane `behind_lane` of this row
+// in the clock before; of a pixel not yet written it is `band_clear`, which must be constant while groups are blended. After the
+// answer `group_ready` stays high until the last blended pixel, because their lanes are not in the pipe. `group_row` must hold from the group
+// that asks until then.
+//
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
 // 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups accepted up to and including the first clock
 // of `band_valid` belong to the band. After this clock no group is accepted until the item has moved. The item moves when the last group is
@@ -50,7 +56,8 @@
 module band_buffer #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter bit          STEREO       = 1'b0,
-    parameter bit          DEPTHS       = 1'b1
+    parameter bit          DEPTHS       = 1'b1,
+    parameter bit          BLEND        = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -67,6 +74,13 @@ module band_buffer #(
     input  wire  [1:0]              group_halves,
     input  wire  [8*18-1:0]         group_codes,
     input  wire  [8*16-1:0]         group_colours,
+    // Blended pixels.
+    input  wire                     group_asks,
+    input  wire                     group_blended,
+    output logic                    answer_valid,
+    output logic [7:0]              answer_lanes,
+    input  wire  [2:0]              behind_lane,
+    output logic [15:0]             behind,
     // Bands.
     input  wire                     band_valid,
     output logic                    band_ready,
@@ -96,7 +110,7 @@ module band_buffer #(
     // State of band_pipe, which draws, and its signals to and from the memories.
     logic                open, empty, held;
     logic [ROW_BITS-1:0] draw_read_row, draw_write_row;
-    logic [7:0]          draw_lanes, drawn_written;
+    logic [7:0]          draw_lanes, draw_depths, drawn_written;
     logic [1:0]          draw_halves;
     logic [8*18-1:0]     draw_codes, stored_codes;
     logic [8*16-1:0]     draw_colours;
@@ -121,12 +135,13 @@ module band_buffer #(
         if (rst) drawn <= 1'b0;
     end
 
-    band_pipe #(.ROW_BITS(ROW_BITS)) pipe (
+    band_pipe #(.ROW_BITS(ROW_BITS), .BLEND(BLEND)) pipe (
         .clk, .rst, .open,
         .group_valid, .group_ready, .group_row, .group_mask, .group_halves(STEREO ? group_halves : 2'b11), .group_codes, .group_colours,
+        .group_asks, .group_blended, .answer_valid, .answer_lanes,
         .read_row(draw_read_row), .stored(stored_codes), .stored_written(drawn_written),
-        .write_row(draw_write_row), .write_lanes(draw_lanes), .write_halves(draw_halves), .write_codes(draw_codes), .write_colours(draw_colours),
-        .empty, .held
+        .write_row(draw_write_row), .write_lanes(draw_lanes), .write_depths(draw_depths), .write_halves(draw_halves),
+        .write_codes(draw_codes), .write_colours(draw_colours), .empty, .held
     );
 
     logic                span_valid, span_ready, spans_busy;
@@ -134,7 +149,7 @@ module band_buffer #(
 
     band_extents #(.ROW_BITS(ROW_BITS)) extents (
         .clk, .rst, .sweep(clearing), .drawn,
-        .group_valid(group_valid && group_ready && group_mask != '0), .group_line, .group_column,
+        .group_valid(group_valid && group_ready && group_mask != '0 && !(BLEND && group_asks)), .group_line, .group_column,
         .start(swap), .lines(band_lines), .stride(band_stride), .first_line(band_first_line), .slot(band_slot),
         .whole(band_whole || band_with_depth), .busy(spans_busy), .span_valid, .span_ready, .span_first, .span_last
     );
@@ -200,13 +215,29 @@ module band_buffer #(
             .read_row(flush_reads_depth ? flush_row : draw_read_row),
             .read_data(stored_codes),
             .write_row(draw_write_row),
-            .write_lanes(draw_lanes & {8{draw_halves[0]}}),
+            .write_lanes(draw_depths & {8{draw_halves[0]}}),
             .write_halves(1'b1),
             .write_data(draw_codes)
         );
     end else begin : without_depths
         assign stored_codes = '0;
-        wire _unused = &{1'b0, draw_codes};
+        wire _unused = &{1'b0, draw_codes, draw_depths};
+    end
+
+    if (BLEND) begin : blend
+        // The pixels of both banks.
+        logic [15:0]      written;
+        logic [16*16-1:0] colours;
+        logic [3:0]       place;
+
+        assign written = {bank_written[1], bank_written[0]};
+        assign colours = {bank_colours[1], bank_colours[0]};
+        assign place   = {drawn, behind_lane};
+
+        always_ff @(posedge clk) behind <= written[place] ? colours[{place, 4'd0} +: 16] : band_clear;
+    end else begin : plain
+        assign behind = '0;
+        wire _unused = &{1'b0, behind_lane};
     end
 
     // Without STEREO both halves of a colour are always written.
@@ -222,7 +253,8 @@ module band_buffer #(
     logic       group_taken, was_held, waited, waited_for_flush;
 
     always_ff @(posedge clk) begin
-        group_taken      <= group_valid && group_ready;
+        // Blended pixels have been counted with the group that asked.
+        group_taken      <= group_valid && group_ready && !(BLEND && group_blended);
         covered_mask     <= group_mask;
         drawn_mask       <= draw_lanes;
         was_held         <= held;

@@ -12,13 +12,19 @@
 // of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as
 // neighbouring triangles do along their common edge, pass without a stall, because each lane is a separate memory.
 //
+// With BLEND a pixel can be blended with the stored colour of its place, in three steps. First comes a group with `group_asks`: it has a depth
+// test, but writes nothing. 4 clocks after its `read_row`, `answer_lanes` (valid with `answer_valid`) has the lanes that pass. Then come the
+// blended pixels, groups with `group_blended`, whose lanes are written without a depth test. A blended pixel keeps its stored depth code; the code
+// of a pixel not yet written becomes 0. No other groups come in between, so the blended pixels, each in a lane of its own, are not held.
+//
 // The input is a valid/ready stream; `group_ready` comes from registers and from `open`, which admits groups. `empty` is high when no group
 // is in the pipeline; a read of a row then returns the pixels of all accepted groups.
 
 `default_nettype none
 
 module band_pipe #(
-    parameter int unsigned ROW_BITS = 11
+    parameter int unsigned ROW_BITS = 11,
+    parameter bit          BLEND    = 1'b0
 ) (
     input  wire                 clk,
     input  wire                 rst,
@@ -31,12 +37,18 @@ module band_pipe #(
     input  wire  [1:0]          group_halves,
     input  wire  [8*18-1:0]     group_codes,
     input  wire  [8*16-1:0]     group_colours,
+    input  wire                 group_asks,
+    input  wire                 group_blended,
+    output logic                answer_valid,
+    output logic [7:0]          answer_lanes,
     // Memory ports. The depth codes `stored` and the written bits `stored_written` belong to the `read_row` of 3 clocks ago.
     output logic [ROW_BITS-1:0] read_row,
     input  wire  [8*18-1:0]     stored,
     input  wire  [7:0]          stored_written,
     output logic [ROW_BITS-1:0] write_row,
     output logic [7:0]          write_lanes,
+    // Those of `write_lanes` whose depth codes are written.
+    output logic [7:0]          write_depths,
     output logic [1:0]          write_halves,
     output logic [8*18-1:0]     write_codes,
     output logic [8*16-1:0]     write_colours,
@@ -111,12 +123,45 @@ module band_pipe #(
         end
     end
 
-    wide_delay #(.WIDTH($bits(pixels)), .CLOCKS(3)) pixels_wait (.clk, .zero(1'b0), .in(pixels), .out(comparing));
+    // Lanes that pass the depth test.
+    logic [7:0] passing;
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
-        assign write_lanes[lane] = compared.mask[lane]
+        assign passing[lane] = compared.mask[lane]
             && (comparing.halves != '1 || !stored_written[lane] || comparing.codes[18*lane +: 18] >= stored[18*lane +: 18]);
     end
+
+    if (BLEND) begin : blend
+        // Whether the group in each stage asks, and whether it is a blended pixel.
+        logic [3:0] asks, blended;
+
+        always_ff @(posedge clk) begin
+            if (!held) {asks[0], blended[0]} <= {group_asks, group_blended};
+            asks[3:1]    <= asks[2:0];
+            blended[3:1]   <= blended[2:0];
+            answer_valid <= asks[3] && compared.mask != '0 && !rst;
+            answer_lanes <= passing;
+        end
+
+        // The code of a blended pixel becomes 0 in the output register of its delay.
+        wide_delay #(.WIDTH($bits(pixels.codes)), .CLOCKS(3)) codes_wait (.clk, .zero(blended[2]), .in(pixels.codes), .out(comparing.codes));
+        wide_delay #(.WIDTH($bits(pixels) - $bits(pixels.codes)), .CLOCKS(3)) pixels_wait (
+            .clk, .zero(1'b0), .in({pixels.halves, pixels.colours}), .out({comparing.halves, comparing.colours})
+        );
+
+        assign write_lanes  = blended[3] ? compared.mask : asks[3] ? '0 : passing;
+        assign write_depths = blended[3] ? compared.mask & ~stored_written : asks[3] ? '0 : passing;
+    end else begin : plain
+        wide_delay #(.WIDTH($bits(pixels)), .CLOCKS(3)) pixels_wait (.clk, .zero(1'b0), .in(pixels), .out(comparing));
+
+        assign write_lanes  = passing;
+        assign write_depths = passing;
+
+        assign {answer_valid, answer_lanes} = '0;
+
+        wire _unused = &{1'b0, group_asks, group_blended};
+    end
+
     assign write_row     = compared.row;
     assign write_halves  = comparing.halves;
     assign write_codes   = comparing.codes;

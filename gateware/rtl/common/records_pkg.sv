@@ -35,7 +35,8 @@ package records_pkg;
 
     // Header of a texture.
     typedef struct packed {
-        logic [4:0][15:0] reserved_176;
+        logic [8:0][7:0] reserved_184;
+        logic [7:0] blend;
         logic [15:0] key;
         logic [7:0] cut_out;
         logic [7:0] filter;

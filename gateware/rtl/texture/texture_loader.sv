@@ -152,6 +152,7 @@ module texture_loader #(
             sampler.bilinear <= header.filter[0];
             sampler.cut_out  <= header.cut_out[0];
             sampler.key      <= header.key;
+            sampler.blend    <= header.blend[3:0];
         end
         if (state == TAKE_FIRST) begin
             sampler.format     <= one_of_three(header.format[1:0]);
@@ -200,7 +201,7 @@ module texture_loader #(
         end
     end
 
-    wire _unused = &{1'b0, unused_carry, header.magic, header.length, header.checksum, header.reserved_176};
+    wire _unused = &{1'b0, unused_carry, header.magic, header.length, header.checksum, header.reserved_184};
 endmodule
 
 `default_nettype wire

@@ -12,6 +12,7 @@ package texture_pkg;
         logic            bilinear;
         logic            cut_out;
         logic [15:0]     key;        // value of a transparent texel, if `cut_out`
+        logic [3:0]      blend;      // 0 opaque; 1 to 7 eighths over the colours behind; from 8 on, the sum
     } sampler_t;
 
     // Position of a pixel on an axis.

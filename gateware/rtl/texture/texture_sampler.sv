@@ -176,7 +176,7 @@ module texture_sampler #(
     // A pair of a bilinear texture is in lanes 0 and 1, or 2 and 3.
     assign out_opaque = sampler.bilinear ? {opaque, opaque} : {seconds_opaque[1], opaque[1], seconds_opaque[0], opaque[0]};
 
-    wire _unused = &{1'b0, sampler.last_level};
+    wire _unused = &{1'b0, sampler.last_level, sampler.blend};
 endmodule
 
 `default_nettype wire

@@ -15,6 +15,9 @@
 // FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group without an opaque pixel is dropped. Output: a
 // valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) forgets the texels and the texture of
 // earlier frames. `table_base` is the address of the table of the textures' addresses, in words of 16 bytes.
+//
+// A group of a texture that is blended with the picture leaves in parts, as band_buffer takes them: first all of it with `out_asks`, then, with
+// `out_blended`, a group of one pixel for each pixel that passes the depth test, from texture_blend.
 
 `default_nettype none
 
@@ -49,7 +52,14 @@ module texture_shader #(
     input  wire                    out_ready,
     output logic [GROUP_BITS-1:0]  out_group,
     output logic [7:0]             out_opaque, // lanes that no transparent texel hides
-    output logic [7:0][15:0]       out_colours
+    output logic [7:0][15:0]       out_colours,
+    // Blended pixels.
+    output logic                   out_asks,
+    output logic                   out_blended,
+    input  wire                    answer_valid,
+    input  wire  [7:0]             answer_lanes,
+    output logic [2:0]             behind_lane,
+    input  wire  [15:0]            behind
 );
     // Groups that wait for their colours.
     logic             is_textured, group_valid, group_textured, group_gone, colours_valid, groups_room, waiting_idle, waiting_room;
@@ -64,10 +74,28 @@ module texture_shader #(
         .out_valid(group_valid), .out_ready(group_gone), .out_data({group_textured, group_colour, out_group})
     );
 
-    assign out_valid   = group_valid && (!group_textured || colours_valid && opaque != '0);
-    assign group_gone  = !group_textured ? out_ready : colours_valid && (out_ready || opaque == '0);
-    assign out_opaque  = group_textured ? opaque : '1;
-    assign out_colours = group_textured ? colours : {8{group_colour}};
+    // Whether the first group is blended, and the state of its blending.
+    logic [3:0]  blend;
+    logic        is_blended, is_shown, asks, blended_valid, blended_gone;
+    logic [7:0]  blended_lane;
+    logic [15:0] blended_colour;
+
+    assign is_blended = group_textured && blend != '0;
+    assign is_shown = group_valid && (!group_textured || colours_valid && opaque != '0);
+
+    texture_blend texture_blend (
+        .clk, .rst, .in_valid(is_shown && is_blended), .in_blend(blend), .in_colours(colours), .gone(blended_gone), .asks, .taken(out_ready),
+        .answer_valid, .answer_lanes, .lane(behind_lane), .behind,
+        .pixel_valid(blended_valid), .pixel_mask(blended_lane), .pixel_colour(blended_colour)
+    );
+
+    assign out_valid   = is_blended ? asks || blended_valid : is_shown;
+    assign group_gone  = !group_textured ? out_ready : colours_valid && (opaque == '0 || (is_blended ? blended_gone : out_ready));
+    assign out_asks    = is_blended && !blended_valid;
+    assign out_blended   = blended_valid;
+    assign out_opaque  = blended_valid ? blended_lane : group_textured ? opaque : '1;
+    // A blended pixel shares the selection of a group's own colour.
+    assign out_colours = group_textured && !blended_valid ? colours : {8{blended_valid ? blended_colour : group_colour}};
 
     // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than there may be inside.
     localparam int unsigned WAITING_BITS = 8 + $bits(in_depth) + $bits(in_texture);
@@ -200,6 +228,13 @@ module texture_shader #(
         .out_colours(lit_colours)
     );
 
+    // The blend of the texture comes along with the pixels, because the next texture may be loaded while they are in the filter.
+    logic [3:0] finished_blend;
+
+    delay #(.WIDTH(4), .CLOCKS(texture_pkg::FILTER + 1)) blend_delay (
+        .clk, .enable(1'b1), .in(sampler.blend), .out(finished_blend)
+    );
+
     // Collects the pixels of a group.
     logic             finished, colours_room;
     logic [7:0]       found, found_before;
@@ -222,9 +257,9 @@ module texture_shader #(
     end
 
     // This FIFO only holds colours of groups that are in the FIFO of groups, so it is never full.
-    fifo #(.WIDTH(8 + 8 * 16), .DEPTH(GROUPS)) finished_colours (
-        .clk, .rst, .in_valid(finished), .in_ready(colours_room), .in_data({found, collected}),
-        .out_valid(colours_valid), .out_ready(group_gone && group_textured), .out_data({opaque, colours})
+    fifo #(.WIDTH(4 + 8 + 8 * 16), .DEPTH(GROUPS)) finished_colours (
+        .clk, .rst, .in_valid(finished), .in_ready(colours_room), .in_data({finished_blend, found, collected}),
+        .out_valid(colours_valid), .out_ready(group_gone && group_textured), .out_data({blend, opaque, colours})
     );
 
     wire _unused = &{1'b0, waiting_idle, light_room, light_valid, colours_room};

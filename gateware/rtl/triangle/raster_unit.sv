@@ -13,7 +13,7 @@
 //
 // With FIELDS, a raymarcher outside of this unit draws a distance field into each frame with `field_source.enable`.
 // `field_sink.start` begins the field. In each band `open` admits the field's pixels until the raymarcher raises `done`; then the
-// triangles and lines of the band are drawn, so that they may be mixed with the field. At the end of the band `next` makes the raymarcher
+// triangles and lines of the band are drawn, so that they may be blended with the field. At the end of the band `next` makes the raymarcher
 // continue with the next band, whose first rays it has computed in the meantime. `compose` selects how the luminances of two eyes become
 // colours, see band_flush.
 //
@@ -21,7 +21,8 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
-// With TEXTURE, triangles may have textures; `parameters.textures` is the address of their table (docs/textures.md, "Textures of a frame").
+// With TEXTURE, triangles may have textures, which may be blended with what is drawn before them. `parameters.textures` is the address of the
+// table of the textures (docs/textures.md, "Textures of a frame").
 //
 // Without TRIANGLES, triangle_raster is not built, and a descriptor that is no piece of a line counts as damaged. With neither TRIANGLES
 // nor LINES, list_reader is not built either: frames have fields only, `flags.first` and `flags.second` must be low, and the unit reads no
@@ -177,6 +178,11 @@ module raster_unit #(
     logic [7:0]      group_mask;
     logic [8*18-1:0] group_codes;
     logic [8*16-1:0] group_colours;
+    // Blended pixels, of triangles alone.
+    logic            drawn_asks, drawn_blended, group_asks, group_blended, answer_valid;
+    logic [7:0]      answer_lanes;
+    logic [2:0]      behind_lane;
+    logic [15:0]     behind;
 
     triangle_registers_pkg::events_t walk_events, band_events;
 
@@ -236,16 +242,19 @@ module raster_unit #(
                 .ask_valid(ask_valid[3]), .ask_ready(ask_ready[3]), .ask_addr(ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS]),
                 .data_valid(data_valid[3]), .data_ready(data_ready[3]), .data(data[3*128 +: 128]),
                 .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
-                .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
+                .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours),
+                .group_asks(drawn_asks), .group_blended(drawn_blended), .answer_valid, .answer_lanes, .behind_lane, .behind
             );
         end else begin : lines_alone
             assign triangle_ready = 1'b1;
             assign raster_idle    = 1'b1;
             assign walk_events    = '0;
             assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
+            assign {drawn_asks, drawn_blended, behind_lane} = '0;
 
             assign {ask_valid[3], ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS], data_ready[3]} = '0;
 
+            wire _unused_answer = &{1'b0, answer_valid, answer_lanes, behind};
             wire _unused = &{1'b0, triangle_valid, descriptor, planes, drawn_ready, ask_ready[3], data_valid[3], data[3*128 +: 128]};
         end
 
@@ -292,7 +301,8 @@ module raster_unit #(
         assign walk_events = '0;
         assign {ask_valid, ask_addr, data_ready} = '0;
         assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
-        wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready, line_ready};
+        assign {drawn_asks, drawn_blended, behind_lane} = '0;
+        wire _unused = &{1'b0, answer_valid, answer_lanes, behind, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
     // Whether groups come from the raymarcher in this clock; with neither TRIANGLES nor LINES all groups come from the raymarcher.
@@ -321,6 +331,8 @@ module raster_unit #(
         group_mask       = of_pixels ? pixel.mask : drawn_mask;
         group_codes      = of_pixels ? {8{pixel.code}} : drawn_codes;
         group_colours    = of_pixels ? {8{pixel.colour}} : drawn_colours;
+        group_asks       = drawn_asks && !of_pixels;
+        group_blended      = drawn_blended && !of_pixels;
     end
 
     logic                    word_valid, word_ready, odd_bank;
@@ -328,9 +340,10 @@ module raster_unit #(
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
-    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS)) band_buffer (
+    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS), .BLEND(TRIANGLES && TEXTURE)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
+        .group_asks, .group_blended, .answer_valid, .answer_lanes, .behind_lane, .behind,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
         .band_first_line(first_row), .band_slot(flags.slot), .band_whole(all_words),
         .band_with_depth(flags.depth), .band_clear(parameters.clear), .band_compose(has_field ? field_source.compose : 2'd0),

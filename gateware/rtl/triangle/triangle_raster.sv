@@ -15,6 +15,8 @@
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
 // 0. Each group that a triangle covers is sent once, or not at all if its texels are transparent; triangles keep their order.
 //
+// With TEXTURE, groups may be blended with the picture: see band_buffer.
+//
 // Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stalls while
 // the FIFO cannot hold all groups in the lanes. Latency 21 clocks from a descriptor to its first group. Throughput: the walker tests one
 // group per clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row of the band, and `triangle_odd`, the parity of the
@@ -62,7 +64,14 @@ module triangle_raster #(
     output logic [7:0]                     group_column,
     output logic [7:0]                     group_mask,
     output logic [8*18-1:0]                group_codes,
-    output logic [8*16-1:0]                group_colours
+    output logic [8*16-1:0]                group_colours,
+    // Blended pixels.
+    output logic                           group_asks,
+    output logic                           group_blended,
+    input  wire                            answer_valid,
+    input  wire  [7:0]                     answer_lanes,
+    output logic [2:0]                     behind_lane,
+    input  wire  [15:0]                    behind
 );
     logic                   walker_idle, lanes_idle, fifo_idle, waits;
     logic [1:0]             holds;
@@ -143,12 +152,14 @@ module triangle_raster #(
             .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_colour(found_colour),
             .in_texture(walked_planes), .in_depth(found_depth),
             .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_opaque(group_opaque), .out_colours(group_colours)
+            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_opaque(group_opaque), .out_colours(group_colours),
+            .out_asks(group_asks), .out_blended(group_blended), .answer_valid, .answer_lanes, .behind_lane, .behind
         );
     end else begin : plain
         assign {ask_valid, ask_addr, data_ready} = '0;
+        assign {group_asks, group_blended, behind_lane} = '0;
 
-        wire _unused = &{1'b0, forget, texture_table, ask_ready, data_valid, data, walked_late.depth_step_y};
+        wire _unused = &{1'b0, answer_valid, answer_lanes, behind, forget, texture_table, ask_ready, data_valid, data, walked_late.depth_step_y};
     end
 
     if (SMOOTH) begin : light

@@ -116,24 +116,45 @@ pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
 /// # Panics
 /// If the textures are too large for a mesh.
 pub fn textured_square(textures: &[Vec<u8>], repeats: f64) -> Vec<u8> {
+    squares(&[(0.0, [1, textures.len() as u8])], textures, repeats)
+}
+
+/// A square as of [`textured_square`] for each texture, in their order from the lowest, `gap` world units apart.
+///
+/// # Panics
+/// If the textures are too large for a mesh, or a square is above 2 world units.
+pub fn textured_layers(textures: &[Vec<u8>], repeats: f64, gap: f64) -> Vec<u8> {
+    let numbers = 1..=textures.len() as u8;
+    let layers: Vec<_> = numbers
+        .map(|number| (gap * f64::from(number - 1), [number; 2]))
+        .collect();
+    squares(&layers, textures, repeats)
+}
+
+/// Squares at heights, each with the numbers of the textures of its halves.
+fn squares(layers: &[(f64, [u8; 2])], textures: &[Vec<u8>], repeats: f64) -> Vec<u8> {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let up = [0, 0, 1 << 14];
-    let vertices = corners.map(|[x, y]: [f64; 2]| Vertex {
-        position: [x * 16_383.0, y * 16_383.0, 0.0].map(|c| c as i16),
-        normal: up,
-        colour: Rgb565::WHITE,
-    });
-    let elements = corners.map(|corner| {
-        let [s, t] = corner.map(|c| (c * repeats * 65_536.0) as i32);
-        TextureCoordinates { s, t }.to_bytes()
-    });
-    let halves = [([0, 1, 2], 1), ([0, 2, 3], textures.len() as u8)];
-    let triangles = halves.map(|(indices, texture)| IndexedTriangle {
-        indices,
-        colour: Rgb565::WHITE,
-        normal: up,
-        texture,
-    });
+    let (mut vertices, mut elements, mut triangles) = (vec![], vec![], vec![]);
+    for &(height, numbers) in layers {
+        let first = vertices.len() as u32;
+        vertices.extend(corners.map(|[x, y]: [f64; 2]| Vertex {
+            position: [x, y, height].map(|c| (c * 16_383.0) as i16),
+            normal: up,
+            colour: Rgb565::WHITE,
+        }));
+        elements.extend(corners.map(|corner| {
+            let [s, t] = corner.map(|c| (c * repeats * 65_536.0) as i32);
+            TextureCoordinates { s, t }.to_bytes()
+        }));
+        let halves = [[0, 1, 2], [0, 2, 3]].into_iter().zip(numbers);
+        triangles.extend(halves.map(|(indices, texture)| IndexedTriangle {
+            indices: indices.map(|index| first + index),
+            colour: Rgb565::WHITE,
+            normal: up,
+            texture,
+        }));
+    }
     let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
     mesh::encode_with(&vertices, &triangles, &attributes, textures).unwrap()
 }

@@ -2,6 +2,7 @@
 //!
 //! [`Texture::new_checked`] checks the bytes of a texture once, and returns a view whose accessors do not fail.
 
+mod blend;
 mod draw;
 #[cfg(feature = "alloc")]
 mod encode;
@@ -14,6 +15,7 @@ use crate::deviation::{self, Deviation, Expected};
 pub use crate::records::TextureHeader;
 use crate::records::WORD;
 use crate::wire::crc_32_without;
+pub use blend::{Blend, Eighths};
 pub use draw::draw;
 #[cfg(feature = "alloc")]
 pub use encode::{Source, encode};
@@ -132,6 +134,7 @@ pub struct Texture<'a> {
     levels: u32,
     sampler: Sampler,
     key: Option<u16>,
+    blend: Blend,
 }
 
 impl<'a> Texture<'a> {
@@ -188,6 +191,7 @@ impl<'a> Texture<'a> {
             AtMost("(key)", largest),
             header.key.into(),
         )?;
+        let blend = one_of(TextureHeader::BLEND, "(blend)", header.blend, &Blend::ALL)?;
         let reserved = record.get(TextureHeader::RESERVED).unwrap_or_default();
         let reserved = reserved.iter().copied().find(|&byte| byte != 0);
         let reserved = u32::from(reserved.unwrap_or(0));
@@ -199,6 +203,7 @@ impl<'a> Texture<'a> {
             levels,
             sampler,
             key: cut_out.then_some(header.key),
+            blend,
         };
         let length = texture.level_start(levels);
         expect(
@@ -223,6 +228,11 @@ impl<'a> Texture<'a> {
     /// The sampling rules.
     pub const fn sampler(&self) -> Sampler {
         self.sampler
+    }
+
+    /// How the texture is blended with the picture behind it.
+    pub const fn blend(&self) -> Blend {
+        self.blend
     }
 
     /// Base-2 logarithms of width and height.

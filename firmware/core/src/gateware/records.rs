@@ -309,6 +309,8 @@ pub struct TextureHeader {
     pub cut_out: u8,
     /// Value of a transparent texel: a colour or an index.
     pub key: u16,
+    /// 0 opaque; 1 to 7 eighths of the texture's colour over what is behind it; 8 the sum of both.
+    pub blend: u8,
 }
 
 impl TextureHeader {
@@ -336,8 +338,10 @@ impl TextureHeader {
     pub const CUT_OUT: Range<usize> = 19..20;
     /// Byte range of the field `key`.
     pub const KEY: Range<usize> = 20..22;
+    /// Byte range of the field `blend`.
+    pub const BLEND: Range<usize> = 22..23;
     /// Byte range of the field `reserved`.
-    pub const RESERVED: Range<usize> = 22..32;
+    pub const RESERVED: Range<usize> = 23..32;
 
     /// Returns the record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
@@ -353,6 +357,7 @@ impl TextureHeader {
             filter: u8::from_le_bytes(field(bytes, 18)),
             cut_out: u8::from_le_bytes(field(bytes, 19)),
             key: u16::from_le_bytes(field(bytes, 20)),
+            blend: u8::from_le_bytes(field(bytes, 22)),
         }
     }
 
@@ -373,7 +378,8 @@ impl TextureHeader {
         let b18 = self.filter;
         let b19 = self.cut_out;
         let [b20, b21] = self.key.to_le_bytes();
-        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
+        let b22 = self.blend;
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, b22, 0, 0, 0, 0, 0, 0, 0, 0, 0]
     }
 }
 

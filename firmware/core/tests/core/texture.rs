@@ -3,7 +3,7 @@
 use glint_core::colour::Rgb565;
 use glint_core::records::TextureHeader;
 use glint_core::texture::{
-    BLOCK_BYTES, Filter, Format, Sampler, Source, Texture, Wrap, checksum, encode,
+    BLOCK_BYTES, Blend, Eighths, Filter, Format, Sampler, Source, Texture, Wrap, checksum, encode,
 };
 
 /// A source whose texels differ, as far as the format has enough values.
@@ -17,6 +17,7 @@ fn source(format: Format, size_log2: [u8; 2], levels: u8) -> Source {
             filter: Filter::Bilinear,
         },
         key: Some(3),
+        blend: Blend::Additive,
         palette: (0..format.colours() as u16)
             .map(|i| Rgb565(i * 257))
             .collect(),
@@ -39,6 +40,7 @@ fn texels_are_read_as_they_were_encoded() {
             let bytes = encode(&source).unwrap();
             let texture = Texture::new_checked(&bytes).unwrap();
             assert_eq!(texture.sampler(), source.sampler);
+            assert_eq!(texture.blend(), source.blend);
             assert_eq!(texture.levels(), u32::from(levels));
             assert_eq!(texture.size_log2(), size_log2.map(u32::from));
             for (level, texels) in (0..).zip(&source.levels) {
@@ -119,7 +121,8 @@ fn rubbish_is_refused_with_its_place() {
         (18, 2, 18, "at most 1 (filter), found 2"),
         (19, 2, 19, "at most 1 (cut-out), found 2"),
         (20, 16, 20, "at most 15 (key), found 16"),
-        (31, 9, 22, "0 (reserved), found 9"),
+        (22, 9, 22, "at most 8 (blend), found 9"),
+        (31, 9, 23, "0 (reserved), found 9"),
     ] {
         let mut bytes = good.clone();
         bytes[at] = byte;
@@ -158,4 +161,79 @@ fn sizes_that_no_texture_has_are_not_encoded() {
     let bytes = encode(&short).unwrap();
     let texture = Texture::new_checked(&bytes).unwrap();
     assert_eq!([0, 1].map(|x| texture.value(0, [x, 0])), [0xE, 0]);
+}
+
+#[test]
+fn numbers_of_blends() {
+    for (number, blend) in (0..).zip(Blend::ALL) {
+        assert_eq!(blend.number(), number);
+        let expected = match number {
+            0 => Blend::Opaque,
+            8 => Blend::Additive,
+            _ => Blend::Share(Eighths::new(number).unwrap()),
+        };
+        assert_eq!(blend, expected);
+    }
+    assert!(
+        [0, 8, 255]
+            .into_iter()
+            .all(|number| Eighths::new(number).is_none())
+    );
+}
+
+/// Compares the blend of each channel with exact arithmetic, for all pairs of values.
+#[test]
+fn each_channel_is_blended_to_nearest() {
+    for (number, blend) in (0_u8..).zip(Blend::ALL) {
+        for source in 0..64_u16 {
+            for behind in 0..64_u16 {
+                // Red and blue have five bits.
+                let grey = |value: u16| Rgb565((value >> 1) << 11 | value << 5 | value >> 1);
+                let found = blend.over(grey(source), grey(behind)).channels();
+                let exact = |source: u16, behind: u16, most: u16| match number {
+                    0 => source,
+                    8 => (source + behind).min(most),
+                    _ => {
+                        let share = f64::from(number) / 8.0;
+                        let blended = f64::from(source) * share + f64::from(behind) * (1.0 - share);
+                        (blended + 0.5).floor() as u16
+                    }
+                };
+                let narrow = exact(source >> 1, behind >> 1, 31);
+                let expected = [narrow, exact(source, behind, 63), narrow];
+                assert_eq!(
+                    found.map(u16::from),
+                    expected,
+                    "{number}: {source} {behind}"
+                );
+            }
+        }
+    }
+}
+
+/// Draws 255 layers of each share over each colour. Each layer is at most half a step from the exact blend, and a layer multiplies the
+/// error of the layers below by 1 − share, so the sum of all errors is at most half a step divided by the share. The colour stops changing
+/// as soon as a layer would change it by less than half a step.
+#[test]
+fn many_layers_stay_near_the_exact_colour() {
+    for eighths in 1..=7_u8 {
+        let blend = Blend::Share(Eighths::new(eighths).unwrap());
+        let share = f64::from(eighths) / 8.0;
+        let (mut largest, mut last) = (0.0_f64, 0.0_f64);
+        for source in 0..64_u16 {
+            for behind in 0..64_u16 {
+                let (mut found, mut exact) = (Rgb565(behind << 5), f64::from(behind));
+                for _ in 0..255 {
+                    found = blend.over(Rgb565(source << 5), found);
+                    exact += (f64::from(source) - exact) * share;
+                    largest = largest.max((f64::from(found.channels()[1]) - exact).abs());
+                }
+                last = last.max((f64::from(found.channels()[1]) - f64::from(source)).abs());
+            }
+        }
+        println!("{eighths}/8: at most {largest} steps from exact, {last} at the end");
+        assert!(largest <= 0.5 / share, "{eighths}: {largest}");
+        // The last layers change nothing: a share of the difference is at most half a step.
+        assert!(last <= 0.5 / share, "{eighths}: {last}");
+    }
 }

@@ -7,6 +7,7 @@
 use core::ops::{Add, BitOr, Sub};
 
 use glint_core::colour::Rgb565;
+use glint_core::texture::Blend;
 
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::descriptor::GROUP;
@@ -91,6 +92,11 @@ trait Brush {
     fn go_down(&mut self);
     /// The colour of the pixel; `depth` is its depth accumulator plus half a code. `None` for a transparent pixel.
     fn colour(&self, depth: u32) -> Option<Rgb565>;
+    /// Writes a pixel that passed the depth test, with its `colour` and depth `code`.
+    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
+        *stored = code;
+        *pixel = colour.0;
+    }
 }
 
 /// Flat shading: every pixel has the triangle's colour.
@@ -124,6 +130,9 @@ impl<B: Brush> Brush for Grouped<'_, B> {
     }
     fn colour(&self, depth: u32) -> Option<Rgb565> {
         self.brush.colour(depth)
+    }
+    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
+        self.brush.write(colour, code, pixel, stored);
     }
 }
 
@@ -254,6 +263,16 @@ impl Brush for Textures<'_> {
         let places = self.places.map(|place| place.value);
         self.textured.colour(depth, places, self.level, light)
     }
+    /// A blended pixel keeps the depth of what is behind it.
+    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
+        match self.textured.texture.blend() {
+            Blend::Opaque => {
+                *stored = code;
+                *pixel = colour.0;
+            }
+            blend => *pixel = blend.over(colour, Rgb565(*pixel)).0,
+        }
+    }
 }
 
 /// The number type of an edge function E' (docs/formats/triangle.md, "Triangle setup"): `i32` for a narrow setup, else `i64`.
@@ -339,8 +358,7 @@ fn fill(
         if code >= *stored
             && let Some(colour) = brush.colour(depth)
         {
-            *stored = code;
-            *pixel = colour.0;
+            brush.write(colour, code, pixel, stored);
             drawn += 1;
         }
         depth = depth.wrapping_add(step);

@@ -4,11 +4,11 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
+use glint_core::texture::{Blend, Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::setup::Plane;
 use glint_model::triangle::textured::{Textured, flat_light, lit, sample};
 use glint_model::{Frame, MeshSubject, Subject};
-use glint_vectors::meshes::textured_square;
+use glint_vectors::meshes::{textured_layers, textured_square};
 use glint_vectors::triangles::{SIZE, random_triangle, set_up};
 use glint_vectors::{Camera, Picture, Random};
 
@@ -222,6 +222,56 @@ fn cut_out_texels_leave_colour_and_depth() {
     }
     let [green, clear] = counts;
     assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
+}
+
+/// A blended pixel has the blend of both colours, and the depth of what is behind it.
+#[test]
+fn blended_texels_keep_the_depth_behind_them() {
+    const RED: u16 = 0xB800;
+    const GREEN: u16 = 0x0620;
+    let draw = |layers: &[(u16, Blend)]| {
+        let textures: Vec<_> = layers
+            .iter()
+            .map(|&(colour, blend)| {
+                let texture = encode(&Source {
+                    size_log2: [3, 3],
+                    blend,
+                    levels: vec![vec![colour; 64]],
+                    ..Source::default()
+                });
+                texture.unwrap()
+            })
+            .collect();
+        let bytes = textured_layers(&textures, 1.0, 0.0);
+        let camera = Camera::looking([0.0, -3.0, 2.5], [0.0; 3], 0.7, 0.1);
+        let mesh = Mesh::new_checked(&bytes).unwrap();
+        Picture::of_frame(&frame(mesh, &camera, Shading::Flat))
+    };
+    let [below, above] = [RED, GREEN].map(|colour| draw(&[(colour, Blend::Opaque)]));
+    assert_eq!(below.depth, above.depth);
+    for &blend in &Blend::ALL[1..] {
+        let alone = draw(&[(GREEN, blend)]);
+        assert!(alone.depth.iter().all(|&code| code == 0));
+        let both = draw(&[(RED, Blend::Opaque), (GREEN, blend)]);
+        assert_eq!(both.depth, below.depth);
+        let mut blended = 0;
+        for (i, &code) in below.depth.iter().enumerate() {
+            let over = |behind| match code {
+                0 => behind,
+                _ => blend.over(Rgb565(above.colour[i]), Rgb565(behind)).0,
+            };
+            assert_eq!(alone.colour[i], over(0x001F), "{blend:?} {i}");
+            assert_eq!(both.colour[i], over(below.colour[i]), "{blend:?} {i}");
+            blended += u32::from(code != 0);
+        }
+        assert!(blended > 10_000, "{blended}");
+        // Behind an opaque layer nothing is blended; at equal depths the later layer is drawn.
+        let hidden = draw(&[(GREEN, blend), (RED, Blend::Opaque)]);
+        assert_eq!(
+            (hidden.colour, hidden.depth),
+            (below.colour.clone(), below.depth.clone())
+        );
+    }
 }
 
 /// Full light does not change a colour, and no light gives black; bilinear filtering of equal texels gives their colour.

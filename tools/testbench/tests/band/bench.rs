@@ -3,7 +3,7 @@
 use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
 
-use crate::pixels::{Band, Group, Left, PICTURE_LINES, Pixels, ROWS_OF_A_BANK, WORDS, Word};
+use crate::pixels::{Band, Group, Kind, Left, PICTURE_LINES, Pixels, ROWS_OF_A_BANK, WORDS, Word};
 
 pub struct Bench {
     pub module: Module,
@@ -20,6 +20,10 @@ pub struct Bench {
     pub flushed: Port,
     /// Whether `band_valid` was high in the previous clock: then no group may be taken.
     pub closed: bool,
+    answer: [Port; 2],
+    /// The lanes that pass the depth test of each group that asked and has a pixel, and those that the module answered.
+    pub asked: Vec<u8>,
+    pub answered: Vec<u8>,
     pub drawn: Pixels,
     pub left: Left,
     /// The band of the last started flush.
@@ -41,7 +45,8 @@ impl Bench {
                 &module,
                 "group",
                 &[
-                    "row", "line", "column", "mask", "halves", "codes", "colours",
+                    "row", "line", "column", "mask", "halves", "codes", "colours", "asks",
+                    "blended",
                 ],
                 Stalls::new(seed, group_stalls),
             ),
@@ -76,6 +81,9 @@ impl Bench {
             clearing: module.port("clearing"),
             flushed: module.port("flushed"),
             closed: false,
+            answer: ["answer_valid", "answer_lanes"].map(|name| module.port(name)),
+            asked: Vec::new(),
+            answered: Vec::new(),
             drawn: Pixels::clear(),
             left: [(); 2].map(|()| vec![None; PICTURE_LINES]),
             flushed_last: None,
@@ -115,6 +123,8 @@ impl Bench {
             Bits::from(u64::from(group.halves)),
             Bits::pack(18, group.codes),
             Bits::pack(16, group.colours),
+            Bits::from(u64::from(group.kind == Kind::Asks)),
+            Bits::from(u64::from(group.kind == Kind::Blended)),
         ]);
         self.groups.push_back(group);
     }
@@ -164,7 +174,14 @@ impl Bench {
                 !self.closed,
                 "cycle {cycle}: a group was taken after its band's end"
             );
-            self.drawn.draw(&group);
+            let passing = self.drawn.draw(&group);
+            if group.kind == Kind::Asks && group.mask != 0 {
+                self.asked.push(passing);
+            }
+        }
+        let [valid, lanes] = self.answer;
+        if module.is_high(valid) {
+            self.answered.push(module.value(lanes) as u8);
         }
         self.closed = module.is_high(self.band_valid);
         if self.band_source.len() < self.bands.len() {
@@ -213,6 +230,7 @@ impl Bench {
             assert_eq!(found, expected, "word {index} (address, data)");
         }
         assert_eq!(self.written.len(), self.expected.len(), "words");
+        assert_eq!(self.answered, self.asked, "answers");
         self.written.clear();
         self.expected.clear();
     }

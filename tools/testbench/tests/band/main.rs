@@ -8,11 +8,12 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use crate::bench::Bench;
-use crate::pixels::{Band, Group, LANES, PICTURE_LINES};
+use crate::pixels::{Band, Group, Kind, LANES, PICTURE_LINES};
 
 /// Makes a random group in one of `rows` rows, mostly with one of a few depth codes, for frequent overlaps and ties.
 fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     Group {
+        kind: Kind::Plain,
         row: random.random_range(0..rows),
         mask: if random.random_ratio(1, 10) {
             0
@@ -49,6 +50,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
 /// Makes a group with all eight pixels drawn.
 fn full_group(row: usize, code: u32) -> Group {
     Group {
+        kind: Kind::Plain,
         row,
         mask: 0xff,
         halves: 3,
@@ -95,6 +97,75 @@ fn random_groups_in_many_bands_with_stalls() {
         }
         bench.finish();
     }
+}
+
+/// Groups that ask, and blended pixels, in a random order with other groups. Blended pixels are not counted.
+#[test]
+fn random_blended_pixels_with_stalls() {
+    for (seed, stalls) in [(31, 0.0), (32, 0.3), (33, 0.8)] {
+        let mut random = Pcg64Mcg::new(u128::from(seed));
+        let mut bench = Bench::of("band_buffer_blend", seed, stalls, 0.2);
+        let shape @ [lines, stride] = [random.random_range(1..8), random.random_range(1..4)];
+        bench.stride = stride;
+        let mut counted = 0;
+        for _ in 0..60 {
+            let groups: Vec<_> = (0..random.random_range(0..150))
+                .map(|_| Group {
+                    kind: [Kind::Plain, Kind::Asks, Kind::Blended][random.random_range(0..3)],
+                    ..random_group(&mut random, lines * stride)
+                })
+                .collect();
+            let is_counted = |group: &&Group| group.kind != Kind::Blended;
+            counted += groups.iter().filter(is_counted).count() as u64;
+            let band = random_band(&mut random, shape);
+            bench.draw(groups, band);
+        }
+        bench.finish();
+        assert_eq!(bench.counter("groups"), counted);
+        assert!(bench.answered.len() > 500);
+    }
+}
+
+/// The colour behind a pixel is the stored one, or the clear colour of a pixel not yet written.
+#[test]
+fn colours_behind_blended_pixels() {
+    let mut random = Pcg64Mcg::new(34);
+    let mut bench = Bench::of("band_buffer_blend", 34, 0.0, 0.0);
+    bench.stride = 5;
+    for _ in 0..3 {
+        for _ in 0..40 {
+            bench.push_group(random_group(&mut random, 20));
+        }
+        bench.run_until(1000, |bench| bench.groups.is_empty());
+        (0..8).for_each(|_| bench.clock());
+        let clear: u16 = random.random();
+        for row in 0..20 {
+            for lane in 0..LANES {
+                let module = &mut bench.module;
+                module.drive("band_clear", clear);
+                module.drive("group_row", row as u32);
+                module.drive("behind_lane", lane as u32);
+                (0..6).for_each(|_| module.clock());
+                module.settle();
+                let expected = bench.drawn.0[row][lane].map_or(clear, |(_, colour)| colour);
+                assert_eq!(bench.module.read("behind"), u64::from(expected));
+            }
+        }
+        bench.push_band(plain_band([4, 5]));
+        bench.finish();
+    }
+}
+
+#[test]
+fn an_answer_takes_five_clocks() {
+    let mut bench = Bench::of("band_buffer_blend", 35, 0.0, 0.0);
+    bench.push_group(Group {
+        kind: Kind::Asks,
+        ..full_group(3, 1)
+    });
+    bench.run_until(100, |bench| bench.groups.is_empty());
+    let clocks = bench.run_until(100, |bench| !bench.answered.is_empty());
+    assert_eq!(clocks, 5);
 }
 
 /// Draws bands in random sequence. A band that composes two eyes has groups for one eye each, in any order; any other band has groups for
@@ -245,6 +316,7 @@ fn a_group_waits_for_the_lanes_it_shares() {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
         let groups = [full_group(7, 3)].into_iter().chain(others).chain([Group {
+            kind: Kind::Plain,
             halves: 3,
             mask: 0x81,
             codes: [3, 9, 9, 9, 9, 9, 9, 2],

@@ -9,8 +9,20 @@ pub const ROWS_OF_A_BANK: u64 = 2048;
 pub const WORDS: usize = 16;
 pub const PICTURE_LINES: usize = 720;
 
+/// What a group does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Writes the lanes that pass the depth test.
+    Plain,
+    /// Only asks for the lanes that pass the depth test.
+    Asks,
+    /// Writes the colours of all lanes of the mask; they keep their depths.
+    Blended,
+}
+
 #[derive(Clone, Debug)]
 pub struct Group {
+    pub kind: Kind,
     pub row: usize,
     pub mask: u8,
     /// Eyes for which the group is drawn: 1 left, 2 right, 3 both.
@@ -54,20 +66,25 @@ impl Pixels {
         Self(vec![[None; LANES]; ROWS_OF_A_BANK as usize])
     }
 
-    pub fn draw(&mut self, group: &Group) {
+    /// Draws a group. Returns the lanes that pass the depth test.
+    pub fn draw(&mut self, group: &Group) -> u8 {
+        let mut passing = 0;
         for lane in (0..LANES).filter(|lane| group.mask >> lane & 1 == 1) {
             let pixel = &mut self.0[group.row][lane];
             let (code, colour) = (group.codes[lane], group.colours[lane]);
-            if group.halves != 3 {
-                let (before, seen) = pixel.unwrap_or_default();
-                *pixel = Some(match group.halves {
-                    1 => (code, seen & 0xff00 | colour & 0x00ff),
-                    _ => (before, seen & 0x00ff | colour & 0xff00),
-                });
-            } else if group.codes[lane] >= pixel.map_or(0, |(code, _)| code) {
-                *pixel = Some((group.codes[lane], group.colours[lane]));
+            let before = pixel.map_or(0, |(code, _)| code);
+            passing |= u8::from(code >= before) << lane;
+            let seen = pixel.map_or(0, |(_, colour)| colour);
+            match (group.kind, group.halves) {
+                (Kind::Asks, _) => {}
+                (Kind::Blended, _) => *pixel = Some((before, colour)),
+                (Kind::Plain, 1) => *pixel = Some((code, seen & 0xff00 | colour & 0x00ff)),
+                (Kind::Plain, 2) => *pixel = Some((before, seen & 0x00ff | colour & 0xff00)),
+                (Kind::Plain, _) if code >= before => *pixel = Some((code, colour)),
+                (Kind::Plain, _) => {}
             }
         }
+        passing
     }
 
     /// Returns the expected words of the flush of a band, in order, and updates `left`.

@@ -5,7 +5,9 @@ use std::collections::VecDeque;
 
 use glint_core::colour::Rgb565;
 use glint_core::records::WORD;
-use glint_core::texture::{Filter, Format, Sampler, Source, Texture, TextureHeader, Wrap, encode};
+use glint_core::texture::{
+    Blend, Filter, Format, Sampler, Source, Texture, TextureHeader, Wrap, encode,
+};
 use glint_testbench::{Memory, Module, Port, Record, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -176,6 +178,7 @@ impl Bench {
         assert_eq!(found("bilinear"), source.sampler.filter as u64, "{text}");
         assert_eq!(found("cut_out"), u64::from(source.key.is_some()), "{text}");
         assert_eq!(found("key"), u64::from(source.key.unwrap_or(0)), "{text}");
+        assert_eq!(found("blend"), u64::from(source.blend.number()), "{text}");
         let colours = source.format.colours();
         for (index, &colour) in loaded.palette.iter().enumerate() {
             let expected = source.palette.get(index).filter(|_| index < colours);
@@ -217,6 +220,7 @@ fn source(random: &mut Pcg64Mcg, format: Format, size_log2: [u8; 2], has_levels:
         key: random
             .random_bool(0.5)
             .then(|| random.random_range(0..=largest) as u16),
+        blend: Blend::ALL[random.random_range(0..=8)],
         palette: (0..format.colours())
             .map(|_| Rgb565(random.random()))
             .collect(),

@@ -53,6 +53,7 @@ fn texture(
             .map(|_| Rgb565(random.random()))
             .collect(),
         levels,
+        ..Source::default()
     };
     encode(&source).expect("a texture of a valid size")
 }

@@ -22,6 +22,7 @@ pub fn draw(
         levels: 1 + u32::from(width_log2.max(height_log2)),
         sampler: Default::default(),
         key: None,
+        blend: Default::default(),
     };
     let length = layout.level_start(layout.levels);
     let memory = memory.get_mut(..length)?;

@@ -3,7 +3,8 @@
 use alloc::vec::Vec;
 
 use super::{
-    BLOCK_BYTES, Format, MAGIC, SIDES_LOG2, Sampler, Texture, TextureHeader, checksum, texel_bit,
+    BLOCK_BYTES, Blend, Format, MAGIC, SIDES_LOG2, Sampler, Texture, TextureHeader, checksum,
+    texel_bit,
 };
 use crate::colour::Rgb565;
 use crate::deviation::Deviation;
@@ -19,6 +20,8 @@ pub struct Source {
     pub sampler: Sampler,
     /// The value of a transparent texel.
     pub key: Option<u16>,
+    /// How the texture is blended with the picture behind it.
+    pub blend: Blend,
     /// The colours of a palette. Missing colours are black, further ones are left out.
     pub palette: Vec<Rgb565>,
     /// The values of the texels of each mip level, row after row. Missing texels are 0.
@@ -42,6 +45,7 @@ pub fn encode(source: &Source) -> Result<Vec<u8>, Deviation> {
         filter: filter as u8,
         cut_out: source.key.is_some().into(),
         key: source.key.unwrap_or(0),
+        blend: source.blend.number(),
         ..TextureHeader::default()
     };
     let mut body = Vec::new();

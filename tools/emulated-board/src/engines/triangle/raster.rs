@@ -1,7 +1,7 @@
 //! The raster pass: draws the descriptors of the band lists in memory into a frame in memory.
 
 use glint_core::picture::Size;
-use glint_core::texture::{Filter, Texture};
+use glint_core::texture::{Blend, Filter, Texture};
 use glint_model::FrameBuffer;
 use glint_model::line::band_bounds;
 use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, Layout, list_word};
@@ -334,6 +334,9 @@ impl Drawing<'_> {
                 colours = match textured {
                     // With smooth shading, the engine draws one pixel per cycle.
                     _ if part.light.is_some() => coverage.covered,
+                    Some(textured) if textured.texture.blend() != Blend::Opaque => {
+                        coverage.drawn + BLENDED_GROUP * groups
+                    }
                     Some(textured) => {
                         coverage.covered / quad_pixels(textured.texture.sampler().filter)
                     }
@@ -392,6 +395,9 @@ impl Drawing<'_> {
         self.time.end_band(self.size, words);
     }
 }
+
+/// Number of cycles of a group that is blended with the picture, in addition to a cycle for each of its drawn pixels.
+const BLENDED_GROUP: u32 = 8;
 
 /// Number of textured pixels that the engine draws per cycle.
 const fn quad_pixels(filter: Filter) -> u32 {

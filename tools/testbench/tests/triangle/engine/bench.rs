@@ -97,7 +97,7 @@ impl Bench {
     pub fn of(variant: &str, seed: u32, stalls: f64) -> Self {
         let layout = match variant {
             "smooth" => Layout::SMOOTH,
-            "texture" => Layout::TEXTURED,
+            "texture" | "texture_fields" => Layout::TEXTURED,
             _ => Layout::FLAT,
         };
         Self::with_module(&format!("triangle_engine_{variant}"), layout, seed, stalls)
@@ -390,8 +390,7 @@ impl Bench {
         self.set("raster.textures", bytes(TEXTURES));
     }
 
-    /// Draws only the second set, from triangles whose texture numbers begin at 5, and compares the
-    /// frame with the expected frame. Returns the number of clocks.
+    /// Draws a frame as of [`start_set`](Self::start_set), and compares it with the expected frame. Returns the number of clocks.
     pub fn draw_set(
         &mut self,
         name: &str,
@@ -399,6 +398,17 @@ impl Bench {
         triangles: &[(Descriptor, Bounds)],
         textures: &[Vec<u8>],
     ) -> u64 {
+        self.start_set(expected, triangles, textures);
+        self.finish(name, expected)
+    }
+
+    /// Starts a frame of the second set alone, of triangles whose texture numbers begin at 5.
+    pub fn start_set(
+        &mut self,
+        expected: &Expected,
+        triangles: &[(Descriptor, Bounds)],
+        textures: &[Vec<u8>],
+    ) {
         self.configure_raster(expected);
         write_set(&mut self.memory, expected.size.0, triangles, self.layout);
         let places = (0..).map(|number| TEXTURE + TEXTURE_WORDS * number);
@@ -410,7 +420,6 @@ impl Bench {
         self.set_sets(None, triangles.len());
         self.wait_for("status.ready");
         self.pulse("raster_start");
-        self.finish(name, expected)
     }
 
     /// The indices of the exceptions listed by geometry passes.

@@ -1,5 +1,5 @@
-//! Tests of the triangle engine's build without triangles, which draws only a raymarcher's pixels. The model replaces the
-//! raymarcher, and sends the pixels of each band in a random order.
+//! Tests of frames with a field, above all of the triangle engine's build without triangles, which draws only a raymarcher's pixels. The
+//! model replaces the raymarcher, and sends the pixels of each band in a random order.
 
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
@@ -8,7 +8,7 @@ use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_model::triangle::descriptor::band_rows;
-use glint_model::{FieldSubject, Frame, Subject};
+use glint_model::{FieldConstants, FieldSubject, Frame, Subject};
 use glint_testbench::raymarch::{Pixel, RayPlace, pixel};
 use glint_vectors::{Camera, Picture as Drawn};
 use rand::RngExt;
@@ -45,26 +45,11 @@ impl Picture {
         let image = Drawn::of_frame(&frame);
         let constants = frame.constants().unwrap();
         let field = constants.field().unwrap();
-        let setup = &field.setup;
-        let tracer = setup.tracer();
         let eyes = if tint.is_some() { 2 } else { 1 };
-        let lines = band_rows(setup.width);
-        let mut bands = vec![vec![]; (setup.height / lines) as usize];
-        for (y, x) in (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (y, x))) {
-            for eye in 0..eyes {
-                let place = RayPlace {
-                    odd: y / lines % 2 == 1,
-                    line: y % lines,
-                    column: x,
-                    eye,
-                };
-                let pixel = pixel(setup, &field.palette, place, &tracer.trace(eye, x, y));
-                bands[(y / lines) as usize].push(pixel);
-            }
-        }
+        let bands = bands(field, eyes);
         Self {
             expected: picture(
-                (setup.width, setup.height),
+                (field.setup.width, field.setup.height),
                 &view,
                 image.colour,
                 image.depth,
@@ -73,6 +58,27 @@ impl Picture {
             bands,
         }
     }
+}
+
+/// The pixels of each band of a field, for one eye or two.
+pub fn bands(field: &FieldConstants, eyes: usize) -> Vec<Vec<Pixel>> {
+    let setup = &field.setup;
+    let tracer = setup.tracer();
+    let lines = band_rows(setup.width);
+    let mut bands = vec![vec![]; (setup.height / lines) as usize];
+    for (y, x) in (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (y, x))) {
+        for eye in 0..eyes {
+            let place = RayPlace {
+                odd: y / lines % 2 == 1,
+                line: y % lines,
+                column: x,
+                eye,
+            };
+            let pixel = pixel(setup, &field.palette, place, &tracer.trace(eye, x, y));
+            bands[(y / lines) as usize].push(pixel);
+        }
+    }
+    bands
 }
 
 fn start(bench: &mut Bench, picture: &Picture) {
@@ -113,16 +119,21 @@ fn send(bench: &mut Bench, random: &mut Pcg64Mcg, eyes: bool, pixels: &[Pixel]) 
 /// Draws a picture and compares it with the model's.
 fn draw(bench: &mut Bench, random: &mut Pcg64Mcg, name: &str, picture: &mut Picture) {
     start(bench, picture);
-    for pixels in &mut picture.bands {
+    send_bands(bench, random, picture.compose > 0, &mut picture.bands);
+    bench.finish(name, &picture.expected);
+}
+
+/// Sends the pixels of all bands of a frame.
+pub fn send_bands(bench: &mut Bench, random: &mut Pcg64Mcg, eyes: bool, bands: &mut [Vec<Pixel>]) {
+    for pixels in bands {
         bench.wait_for("field_sink.open");
         pixels.shuffle(random);
-        send(bench, random, picture.compose > 0, pixels);
+        send(bench, random, eyes, pixels);
         bench.set("field_source.done", 1);
         bench.wait_for("field_sink.next");
         bench.clock();
         bench.set("field_source.done", 0);
     }
-    bench.finish(name, &picture.expected);
 }
 
 #[test]

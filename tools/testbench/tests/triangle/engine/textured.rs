@@ -1,24 +1,29 @@
 //! Frames of meshes with textures, whose descriptors come from the model.
 
+use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Shading};
+use glint_core::field::Field;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_core::texture::{Filter, Format, Sampler, Source, Texture, Wrap, encode};
+use glint_core::quality::Quality;
+use glint_core::texture::{Blend, Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::setup::{Bounds, Setup};
 use glint_model::triangle::textured::Textured;
 use glint_model::{
-    DrawnTriangle, Frame, FrameConstants, MeshLight, MeshSubject, Options, Projected, Stats,
-    Subject,
+    DrawnTriangle, FieldSubject, Frame, FrameConstants, MeshLight, MeshSubject, Options, Projected,
+    Stats, Subject,
 };
-use glint_vectors::meshes::textured_square;
+use glint_testbench::raymarch::Pixel;
+use glint_vectors::meshes::{textured_layers, textured_square};
 use glint_vectors::{Camera, Picture};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use super::bench::Bench;
 use super::expected::Expected;
+use super::fields::{bands, send_bands};
 
 /// A texture of random texels with all mip levels.
 fn texture(random: &mut Pcg64Mcg) -> Source {
@@ -50,6 +55,11 @@ fn texture(random: &mut Pcg64Mcg) -> Source {
         key: random
             .random_bool(0.5)
             .then(|| random.random_range(0..=most)),
+        blend: if random.random_bool(0.4) {
+            Blend::Opaque
+        } else {
+            Blend::ALL[random.random_range(1..=8)]
+        },
         levels,
     }
 }
@@ -57,7 +67,7 @@ fn texture(random: &mut Pcg64Mcg) -> Source {
 /// Offset of the mesh's texture numbers, which begin at 1, in the table of textures.
 const BEFORE: u8 = 4;
 
-/// A frame of a square with textures.
+/// A frame of a mesh with textures.
 struct Shown {
     mesh: Vec<u8>,
     expected: Expected,
@@ -65,18 +75,27 @@ struct Shown {
     whole: Vec<(Descriptor, Bounds)>,
     /// The clipped triangles.
     clipped: Vec<(Descriptor, Bounds)>,
+    /// The pixels of each band of the field around it.
+    bands: Vec<Vec<Pixel>>,
 }
 
 impl Shown {
-    fn new(textures: &[Vec<u8>], eye: [f64; 3], repeats: f64) -> Self {
-        let bytes = textured_square(textures, repeats);
+    fn new(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
+        Self::in_field(bytes, eye, None)
+    }
+
+    fn in_field(bytes: Vec<u8>, eye: [f64; 3], field: Option<&FieldSubject>) -> Self {
         let mesh = Mesh::new_checked(&bytes).unwrap();
+        let subject = MeshSubject {
+            shading: Shading::Flat,
+            ..MeshSubject::new(mesh)
+        };
         let camera = Camera::looking(eye, [0.1, 0.5, 0.0], 0.8, 0.02);
         let frame = Frame {
-            subject: Subject::Mesh(MeshSubject {
-                shading: Shading::Flat,
-                ..MeshSubject::new(mesh)
-            }),
+            subject: match field {
+                None => Subject::Mesh(subject),
+                Some(&field) => Subject::MeshInField(subject, field),
+            },
             view: camera.rounded(),
             size: Size::W320,
             clear: Rgb565(0x001F),
@@ -109,7 +128,8 @@ impl Shown {
         frame
             .set_up_meshes(&constants, &mut scratch, &mut put)
             .unwrap();
-        let light: &MeshLight = Box::leak(Box::new(*constants.light().unwrap()));
+        let light = constants.light();
+        let light = light.map(|&light| -> &MeshLight { Box::leak(Box::new(light)) });
         let picture = Picture::of_frame(&frame);
         let expected = Expected {
             size: (320, 180),
@@ -117,7 +137,7 @@ impl Shown {
             options: Options {
                 clear: frame.clear.0,
                 cull: true,
-                light: Some(light),
+                light,
                 ..Options::default()
             },
             colour: picture.colour,
@@ -125,11 +145,13 @@ impl Shown {
             clipped: vec![],
             stats: Stats::default(),
         };
+        let bands = constants.field().map(|field| bands(field, 1));
         Self {
             mesh: bytes,
             expected,
             whole,
             clipped,
+            bands: bands.unwrap_or_default(),
         }
     }
 }
@@ -142,9 +164,17 @@ fn frames_with_textures() {
         let mut bench = Bench::of("texture", seed, [0.0, 0.3, 0.7][seed as usize % 3]);
         for count in 0..4 {
             let repeats = [0.5, 1.0, 4.0, 30.0][random.random_range(0..4)];
-            let textures: Vec<_> = (0..random.random_range(1..=2))
+            let layers = random.random_bool(0.5);
+            let textures: Vec<_> = (0..random.random_range(1..=if layers { 4 } else { 2 }))
                 .map(|_| encode(&texture(&mut random)).unwrap())
                 .collect();
+            let mesh = if layers {
+                // Without a gap all depths are equal, apart from rounding.
+                let gap = [0.0, 0.1, 0.4][random.random_range(0..3)];
+                textured_layers(&textures, repeats, gap)
+            } else {
+                textured_square(&textures, repeats)
+            };
             // From afar no triangle is clipped.
             let distance = if random.random_bool(0.5) { 1.0 } else { 3.0 };
             let eye = [
@@ -152,7 +182,7 @@ fn frames_with_textures() {
                 distance * random.random_range(-2.0..-0.3),
                 distance * random.random_range(0.05..1.5),
             ];
-            let shown = Shown::new(&textures, eye, repeats);
+            let shown = Shown::new(mesh, eye);
             let expected = &shown.expected;
             pixels += expected.depth.iter().filter(|&&code| code != 0).count();
             let name = format!("frame {count} of seed {seed}");
@@ -170,12 +200,42 @@ fn frames_with_textures() {
     assert!(pixels > 500_000 && by_pass > 40, "{pixels}, {by_pass}");
 }
 
+/// Meshes are drawn over the field around them, and blended with it.
+#[test]
+fn frames_with_textures_in_a_field() {
+    for (seed, stalls, text) in [(1, 0.0, "menger:2"), (2, 0.4, "box:0.3,1,0.3")] {
+        let mut random = Pcg64Mcg::new(seed);
+        let mut bench = Bench::of("texture_fields", seed as u32, stalls);
+        for count in 0..2 {
+            let textures: Vec<_> = (0..3)
+                .map(|_| encode(&texture(&mut random)).unwrap())
+                .collect();
+            let mesh = textured_layers(&textures, 1.0, 0.3);
+            let field = FieldSubject {
+                field: &Field::parse(text).unwrap(),
+                appearance: &Appearance::default(),
+                quality: Quality::default(),
+            };
+            // From afar no triangle is clipped, so the second set has them all.
+            let eye = [0.4, random.random_range(-4.0..-3.0), 2.0];
+            let mut shown = Shown::in_field(mesh, eye, Some(&field));
+            let name = format!("frame {count} in {text}");
+            let triangles = [shown.whole, shown.clipped].concat();
+            bench.set("field_source.enable", 1);
+            bench.set("field_source.compose", 0);
+            bench.start_set(&shown.expected, &triangles, &textures);
+            send_bands(&mut bench, &mut random, false, &mut shown.bands);
+            bench.finish(&name, &shown.expected);
+        }
+    }
+}
+
 /// A cancelled frame does not change the next frame, whether its coordinates, its textures or its texels are being read.
 #[test]
 fn a_cancelled_frame_with_textures_leaves_a_working_engine() {
     let mut random = Pcg64Mcg::new(5);
     let textures = [(); 2].map(|()| encode(&texture(&mut random)).unwrap());
-    let shown = Shown::new(&textures, [0.3, -3.0, 2.0], 1.0);
+    let shown = Shown::new(textured_square(&textures, 1.0), [0.3, -3.0, 2.0]);
     for stalls in [0.0, 0.6] {
         let mut bench = Bench::of("texture", 9, stalls);
         for (port, clocks) in [

@@ -1,0 +1,103 @@
+// Blends the pixels of a group with the colours behind them, which the band buffer stores (docs/formats/texture.md, "Blending").
+//
+//   group ─▶ asks the band buffer ─▶ answer: lanes that pass ─▶ one lane per clock ─▶ source, behind ─▶ blend ─▶ pixel
+//
+// `in_valid` is high while the group is there, from its first clock until `gone`; its payload holds. The group goes to the band buffer once,
+// with `asks`, and moves when `taken`. Its answer names the lanes that pass the depth test. Then each of these pixels is blended, and is on the
+// outputs `pixel_*` for one clock, in which the band buffer takes it. `lane` selects the colour `behind`, which arrives a clock later.
+// `gone` is high in the clock of the last pixel, or, without a pixel, two clocks after the answer. Throughput: a group of n pixels that pass
+// takes n + 8 clocks, from its first clock to that of the next group; one without a pixel that passes takes 9.
+
+`default_nettype none
+
+module texture_blend (
+    input  wire              clk,
+    input  wire              rst,
+    input  wire              in_valid,
+    // 1 to 7 eighths of the group's colours; from 8 on, the sum of both colours.
+    input  wire  [3:0]       in_blend,
+    input  wire  [7:0][15:0] in_colours,
+    output logic             gone,
+    output logic             asks,
+    input  wire              taken,
+    input  wire              answer_valid,
+    input  wire  [7:0]       answer_lanes,
+    output logic [2:0]       lane,
+    input  wire  [15:0]      behind,
+    output logic             pixel_valid,
+    output logic [7:0]       pixel_mask,
+    output logic [15:0]      pixel_colour
+);
+    typedef enum logic [1:0] {ASK, ANSWER, PICK, END} state_t;
+    state_t state;
+
+    // Lanes that are still to be picked, the lowest of them, and whether there is no other.
+    logic [7:0] left, lowest;
+    logic       is_last;
+
+    assign asks    = in_valid && state == ASK;
+    assign lowest  = left & (~left + 1'b1);
+    assign is_last = left == lowest;
+
+    always_comb begin
+        lane[0] = |(lowest & 8'b1010_1010);
+        lane[1] = |(lowest & 8'b1100_1100);
+        lane[2] = |(lowest & 8'b1111_0000);
+    end
+
+    // The picked pixel.
+    logic        picked_valid, picked_last;
+    logic [7:0]  picked;
+    logic [15:0] source;
+
+    always_ff @(posedge clk) begin
+        case (state)
+            ASK:     if (asks && taken) state <= ANSWER;
+            ANSWER:  if (answer_valid) state <= PICK;
+            PICK:    if (is_last) state <= END;
+            default: if (gone) state <= ASK;
+        endcase
+
+        left         <= state == ANSWER ? answer_lanes : left ^ lowest;
+        picked_valid <= state == PICK && left != '0;
+        picked_last  <= state == PICK && is_last;
+        picked       <= lowest;
+        source       <= in_colours[lane];
+        pixel_valid  <= picked_valid;
+        pixel_mask   <= picked;
+        gone         <= picked_last;
+
+        if (rst) begin
+            state        <= ASK;
+            picked_valid <= 1'b0;
+            picked_last  <= 1'b0;
+            pixel_valid  <= 1'b0;
+            gone         <= 1'b0;
+        end
+    end
+
+    // Blue, green and red. The eighths are the sum of the share's bits, each of which selects one of the two colours, and of one more eighth of
+    // the colour behind.
+    for (genvar channel = 0; channel < 3; channel++) begin : channels
+        localparam int unsigned LOW  = channel == 0 ? 0 : channel == 1 ? 5 : 11;
+        localparam int unsigned BITS = channel == 1 ? 6 : 5;
+
+        logic [BITS-1:0] over, under, blended;
+        logic [BITS:0]   ones;
+        logic [BITS+2:0] sum;
+
+        assign over  = source[LOW +: BITS];
+        assign under = behind[LOW +: BITS];
+        assign ones  = {1'b0, under} + {1'b0, in_blend[0] || in_blend[3] ? over : under};
+        assign sum   = {2'b0, ones} + {2'b0, in_blend[1] ? over : under, 1'b0} + {1'b0, in_blend[2] ? over : under, 2'b0}
+                     + (BITS+3)'(4);
+
+        always_ff @(posedge clk) blended <= in_blend[3] ? ones[BITS-1:0] | {BITS{ones[BITS]}} : sum[BITS+2:3];
+
+        assign pixel_colour[LOW +: BITS] = blended;
+
+        wire _unused = &{1'b0, sum[2:0]};
+    end
+endmodule
+
+`default_nettype wire
