@@ -25,8 +25,8 @@ pub use textures::{TextureOptions, TextureReport};
 pub struct Options {
     /// Keeps the coordinates. Otherwise the mesh is scaled to the 1×1×1 box about the origin.
     pub keep_scale: bool,
-    /// Keeps the triangles in the order of the file. Otherwise they are reordered if this reduces the number of vertices that the engine
-    /// fetches.
+    /// Keeps the triangles in the order of the file. Otherwise those that are blended with the picture behind them come last, in the order of
+    /// the file, and the others are reordered if this reduces the number of vertices that the engine fetches.
     pub keep_order: bool,
     /// Reverses faces with the wrong winding.
     pub fix_winding: bool,
@@ -83,7 +83,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     let polygons = &*prepared(polygons, options, unusual)?;
     let placing = Placing::of(polygons, options.keep_scale)?;
     let rounded = Rounded::of(polygons, &placing)?;
-    let (triangles, degenerate, crossing) = flat_triangles(polygons, &rounded);
+    let (mut triangles, degenerate, crossing) = flat_triangles(polygons, &rounded);
     if triangles.is_empty() {
         return Err(FormatError::whole(
             "a triangle with an area at a resolution of 2^-14",
@@ -91,11 +91,21 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         ));
     }
     let textures = Textures::of(polygons, &options.textures);
+    triangles.retain(|triangle| !textures.hides(&polygons.faces[triangle.face]));
+    if triangles.is_empty() {
+        let found = "only faces that are less than a sixteenth opaque";
+        return Err(FormatError::whole("a visible face", found));
+    }
     let Indexed {
         vertices,
         coordinates,
-        triangles: indexed,
+        triangles: mut indexed,
     } = index(polygons, &rounded, &triangles, &textures);
+    // Triangles are blended with those before them, in the order of the file.
+    let is_blended = |triangle: &IndexedTriangle| textures.is_blended(triangle.texture);
+    if !options.keep_order {
+        indexed.sort_by_key(is_blended);
+    }
     let extra = Extra {
         coordinates: &coordinates,
         textures: &textures.encoded,
@@ -105,7 +115,8 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     let ordered = if options.keep_order {
         None
     } else {
-        let ordered = order::for_cache(vertices.len(), &indexed);
+        let (opaque, blended) = indexed.split_at(indexed.partition_point(|one| !is_blended(one)));
+        let ordered = [&order::for_cache(vertices.len(), opaque)[..], blended].concat();
         let encoded = Encoded::new(&vertices, &ordered, &extra)?;
         (encoded.fetches < fetches_before).then_some(encoded)
     };

@@ -95,6 +95,8 @@ pub struct Texture {
     pub sampler: Sampler,
     /// Opacity, 0 to 1, below which texels are transparent; `None` for an opaque texture.
     pub cutoff: Option<f32>,
+    /// Opacity of the surfaces, 0 to 255, if they are blended with the picture behind them; the opacity of the texels multiplies it.
+    pub opacity: Option<u8>,
 }
 
 /// The content of a texture.
@@ -104,6 +106,8 @@ pub enum Content {
     Picture(Arc<Vec<u8>>),
     /// A checked texture in a board's memory layout. Its header states wrap modes and filter.
     Board(Vec<u8>),
+    /// White everywhere, for surfaces without a picture that are blended with the picture behind them. It needs no texture coordinates.
+    White,
 }
 
 impl Content {
@@ -111,6 +115,7 @@ impl Content {
         match self {
             Self::Picture(bytes) => bytes.len(),
             Self::Board(bytes) => bytes.len(),
+            Self::White => 0,
         }
     }
 }
@@ -255,6 +260,24 @@ impl Polygons {
         }
         self.textures.push(texture);
         Ok(self.textures.len() as u8)
+    }
+
+    /// Returns the number of a white texture of this opacity, 0 to 255, and adds the texture if it is new.
+    ///
+    /// # Errors
+    /// As for [`add_texture`](Self::add_texture).
+    pub fn white(&mut self, opacity: u8) -> Result<u8, FormatError> {
+        let texture = Texture {
+            name: format!("of opacity {:.2}", f64::from(opacity) / 255.0),
+            content: Content::White,
+            sampler: Sampler::default(),
+            cutoff: None,
+            opacity: Some(opacity),
+        };
+        match self.textures.iter().position(|known| *known == texture) {
+            Some(index) => Ok(index as u8 + 1),
+            None => self.add_texture(texture),
+        }
     }
 
     /// Adds a polygon. The indices of its corners may refer to points added later. A polygon of fewer than three corners is skipped with

@@ -2,12 +2,12 @@
 
 use crate::error::PictureError;
 use crate::levels::{Level, Texel, colour};
-use crate::options::{MAX_SIDE, MIN_SIDE, Options, format_name};
+use crate::options::{MAX_SIDE, MIN_SIDE, Options, blend_name, format_name};
 use crate::palette::{Nearest, palette};
 use crate::picture::Picture;
 use crate::sheet::largest_level;
 use glint_core::colour::Rgb565;
-use glint_core::texture::{Format, Sampler, Source, Texture, TextureHeader, encode};
+use glint_core::texture::{Blend, Format, Sampler, Source, Texture, TextureHeader, encode};
 use serde::Serialize;
 use std::fmt;
 
@@ -26,6 +26,8 @@ pub struct Report {
     pub levels: usize,
     /// Whether the texture has transparent texels.
     pub cut_out: bool,
+    /// How it is blended with the picture behind it: a number of eighths, `add`, or `none`.
+    pub blend: &'static str,
     /// Length of the texture in bytes.
     pub bytes: usize,
     /// Root mean square of the differences between the picture, after resizing, and the opaque texels of the largest level, over the
@@ -44,6 +46,9 @@ impl fmt::Display for Report {
         write!(f, "{width}×{height}, {}", self.format)?;
         if self.cut_out {
             write!(f, ", cut-out")?;
+        }
+        if self.blend != blend_name(Blend::Opaque) {
+            write!(f, ", blend {}", self.blend)?;
         }
         let plural = if self.levels == 1 { "" } else { "s" };
         write!(f, ", {} level{plural}, {} bytes", self.levels, self.bytes)?;
@@ -126,6 +131,7 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
         size_log2,
         sampler: options.sampler,
         key,
+        blend: options.blend,
         palette,
         levels: values,
     };
@@ -140,6 +146,7 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
         colours: source.palette.len(),
         levels: source.levels.len(),
         cut_out,
+        blend: blend_name(options.blend),
         bytes: bytes.len(),
         error_rms,
         error_max,
@@ -148,8 +155,8 @@ pub fn convert(picture: &Picture, options: &Options) -> Result<(Vec<u8>, Report)
     Ok((bytes, report))
 }
 
-/// Converts a texture again from its largest level; `format: None` keeps its format. A texture that
-/// already satisfies the options is kept unchanged with all its levels.
+/// Converts a texture again from its largest level; `None` keeps its format or its blend. A texture that already satisfies the options is
+/// kept unchanged with all its levels.
 ///
 /// # Errors
 /// As for [`convert`].
@@ -158,11 +165,18 @@ pub fn again(
     format: Option<Format>,
     largest_side: u32,
     sampler: Sampler,
+    blend: Option<Blend>,
 ) -> Result<(Vec<u8>, Report), PictureError> {
     let format = format.unwrap_or(texture.format());
+    let blend = blend.unwrap_or(texture.blend());
     let sides = texture.size_log2().map(|side| 1 << side);
     let is_small = sides.iter().all(|&side: &u32| side <= largest_side);
-    if format == texture.format() && is_small && sampler == texture.sampler() {
+    let is_same = [
+        format == texture.format(),
+        sampler == texture.sampler(),
+        blend == texture.blend(),
+    ];
+    if is_small && is_same == [true; 3] {
         return Ok((texture.bytes().to_vec(), kept(texture)));
     }
     let options = Options {
@@ -171,6 +185,7 @@ pub fn again(
         sampler,
         // Half-way between the opacities 0 of transparent and 1 of opaque texels.
         cutoff: Some(0.5),
+        blend,
     };
     convert(&largest_level(texture), &options)
 }
@@ -186,6 +201,7 @@ fn kept(texture: &Texture) -> Report {
         colours: texture.format().colours(),
         levels: texture.levels() as usize,
         cut_out: header.is_some_and(|header| header.cut_out != 0),
+        blend: blend_name(texture.blend()),
         bytes: texture.bytes().len(),
         error_rms: 0.0,
         error_max: 0.0,

@@ -1,6 +1,6 @@
 //! Options of a conversion, and their names on command lines.
 
-use glint_core::texture::{Filter, Format, SIDES_LOG2, Sampler, Wrap};
+use glint_core::texture::{Blend, Filter, Format, SIDES_LOG2, Sampler, Wrap};
 
 /// Largest side of a texture in texels.
 pub const MAX_SIDE: u32 = 1 << *SIDES_LOG2.end();
@@ -20,6 +20,8 @@ pub struct Options {
     /// Opacity, 0 to 1, below which texels are transparent. With `None` the texture is opaque, and
     /// the picture's opacity has no effect.
     pub cutoff: Option<f32>,
+    /// How the texture is blended with the picture behind it.
+    pub blend: Blend,
 }
 
 impl Default for Options {
@@ -29,6 +31,7 @@ impl Default for Options {
             largest_side: MAX_SIDE,
             sampler: Sampler::default(),
             cutoff: None,
+            blend: Blend::Opaque,
         }
     }
 }
@@ -57,4 +60,10 @@ pub const fn filter_name(filter: Filter) -> &'static str {
         Filter::Nearest => "nearest",
         Filter::Bilinear => "bilinear",
     }
+}
+
+/// The command-line name of a blend: its number of eighths, `add` or `none`.
+pub const fn blend_name(blend: Blend) -> &'static str {
+    const NAMES: [&str; Blend::ALL.len()] = ["none", "1", "2", "3", "4", "5", "6", "7", "add"];
+    NAMES[blend.number() as usize]
 }

@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use glint::convert::{TextureOptions, TextureReport};
 use glint::error::{FormatError, InputError};
 use glint::formats::read_file;
-use glint_core::texture::{self, Filter, Format, MAGIC, Sampler, Wrap, checksum};
+use glint_core::texture::{self, Blend, Filter, Format, MAGIC, Sampler, Wrap, checksum};
 use glint_texture::convert::{self, Report};
 use glint_texture::error::PictureError;
-use glint_texture::options::{MAX_SIDE, MIN_SIDE, Options, filter_name, wrap_name};
+use glint_texture::options::{MAX_SIDE, MIN_SIDE, Options, blend_name, filter_name, wrap_name};
 use glint_texture::picture::Picture;
 use glint_texture::sheet::sheet;
 use std::path::{Path, PathBuf};
@@ -30,6 +30,10 @@ pub struct TexelArguments {
     /// from the file, otherwise bilinear].
     #[arg(long, value_name = "nearest|bilinear", value_parser = named(Filter::ALL, filter_name))]
     filter: Option<Filter>,
+    /// Blend the texture with the picture behind it: a number of eighths of its opacity, or `add` for the sum of both colours [default: from
+    /// the file, otherwise none].
+    #[arg(long, value_name = "1..7|add|none", value_parser = named(Blend::ALL, blend_name))]
+    blend: Option<Blend>,
 }
 
 impl TexelArguments {
@@ -40,6 +44,7 @@ impl TexelArguments {
             format: self.palette,
             largest_side: self.texture_size.unwrap_or(MAX_SIDE),
             filter: self.filter,
+            blend: self.blend,
         }
     }
 
@@ -53,6 +58,7 @@ impl TexelArguments {
             (self.palette.is_some(), "--palette"),
             (self.texture_size.is_some(), "--texture-size"),
             (self.filter.is_some(), "--filter"),
+            (self.blend.is_some(), "--blend"),
         ];
         match given.iter().find(|(is_given, _)| *is_given) {
             Some((_, option)) => Err(bad_value(option, expected, instead)),
@@ -65,7 +71,7 @@ impl TexelArguments {
 #[derive(Args)]
 pub struct MeshTextureArguments {
     /// Leave textures out: faces keep the colours of their materials.
-    #[arg(long, conflicts_with_all = ["palette", "texture_size", "filter"])]
+    #[arg(long, conflicts_with_all = ["palette", "texture_size", "filter", "blend"])]
     no_textures: bool,
     #[command(flatten)]
     texels: TexelArguments,
@@ -185,6 +191,7 @@ impl TextureArguments {
             palette,
             texture_size,
             filter,
+            blend,
         } = self.texels;
         let texture_size = texture_size.unwrap_or(MAX_SIDE);
         let sampler = |of_file: Sampler| Sampler {
@@ -198,7 +205,7 @@ impl TextureArguments {
         if file.starts_with(&MAGIC) {
             let texture = checked(file)?;
             let sampler = sampler(texture.sampler());
-            let again = convert::again(&texture, palette, texture_size, sampler);
+            let again = convert::again(&texture, palette, texture_size, sampler, blend);
             return again.map_err(of_picture);
         }
         let picture = Picture::decode(file).map_err(of_picture)?;
@@ -210,6 +217,7 @@ impl TextureArguments {
                 ..Sampler::default()
             }),
             cutoff: Some(self.cutoff),
+            blend: blend.unwrap_or_default(),
         };
         convert::convert(&picture, &options).map_err(of_picture)
     }

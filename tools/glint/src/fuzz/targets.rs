@@ -185,7 +185,7 @@ fn run_texture(input: &[u8]) -> bool {
         let Ok(texture) = Texture::new_checked(input) else {
             return false;
         };
-        again(&texture, Some(format), 16, texture.sampler())
+        again(&texture, Some(format), 16, texture.sampler(), None)
     } else {
         let options = glint_texture::options::Options {
             format,

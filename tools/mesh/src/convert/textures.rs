@@ -3,7 +3,7 @@
 use crate::error::MAX_REMARKS;
 use crate::polygons::{Content, Corner, Face, Polygons, Texture};
 use glint_core::mesh::MAX_BYTES;
-use glint_core::texture::{self, Filter, Format, Sampler, Wrap};
+use glint_core::texture::{self, Blend, Filter, Format, Sampler, Wrap};
 use glint_texture::convert::{Report, again, convert};
 use glint_texture::error::PictureError;
 use glint_texture::options::{MAX_SIDE, MIN_SIDE, Options};
@@ -34,6 +34,8 @@ pub struct TextureOptions {
     pub largest_side: u32,
     /// The filter; `None` keeps the filter that the file states.
     pub filter: Option<Filter>,
+    /// How the textures are blended with the picture behind them; `None` keeps what the file states.
+    pub blend: Option<Blend>,
 }
 
 impl Default for TextureOptions {
@@ -43,6 +45,7 @@ impl Default for TextureOptions {
             format: None,
             largest_side: MAX_SIDE,
             filter: None,
+            blend: None,
         }
     }
 }
@@ -63,6 +66,10 @@ pub struct Textures {
     /// For each texture of the file, the number of its converted texture, counted from 1; 0 for
     /// none.
     numbers: Vec<u8>,
+    /// For each texture of the file, whether its faces are invisible.
+    hidden: Vec<bool>,
+    /// For each converted texture, whether it is blended with the picture behind it.
+    blended: Vec<bool>,
     /// For each face, the whole repeats of the texture that are subtracted from its coordinates;
     /// empty without textures.
     bases: Vec<[f64; 2]>,
@@ -109,6 +116,13 @@ impl Textures {
             let half = smaller.largest_side.next_power_of_two() / 2;
             smaller.largest_side = half.max(MIN_SIDE);
         }
+        let faces = polygons.faces.iter();
+        let hidden = faces.filter(|face| textures.hides(face)).count();
+        if hidden > 0 {
+            textures.remark(format!(
+                "{hidden} faces are less than a sixteenth opaque: they are left out"
+            ));
+        }
         if smaller.largest_side < options.largest_side {
             textures.remark(format!(
                 "textures have at most {} texels a side, so that they fit a mesh of {MAX_BYTES} bytes",
@@ -131,6 +145,8 @@ impl Textures {
         options: &TextureOptions,
     ) -> bool {
         self.numbers = vec![0; polygons.textures.len()];
+        self.hidden = vec![false; polygons.textures.len()];
+        self.blended.clear();
         self.encoded.clear();
         self.reports.clear();
         let mut remarks = Vec::new();
@@ -139,16 +155,20 @@ impl Textures {
         let used = polygons.textures.iter().zip(is_used).enumerate();
         for (i, (texture, _)) in used.filter(|(_, (_, is_used))| **is_used) {
             match encode(texture, options, &mut last) {
-                Ok((encoded, report)) => {
+                Ok(None) => self.hidden[i] = true,
+                Ok(Some((encoded, report))) => {
                     bytes += encoded.len();
                     if bytes > room {
                         return false;
                     }
+                    let is_blended = texture::Texture::new_checked(&encoded)
+                        .is_ok_and(|texture| texture.blend() != Blend::Opaque);
                     self.encoded.push(encoded);
                     self.reports.push(TextureReport {
                         name: texture.name.clone(),
                         report,
                     });
+                    self.blended.push(is_blended);
                     self.numbers[i] = self.encoded.len() as u8;
                 }
                 Err(error) => remarks.push(format!(
@@ -159,6 +179,17 @@ impl Textures {
         }
         remarks.into_iter().for_each(|remark| self.remark(remark));
         true
+    }
+
+    /// Whether a face is left out, because it is invisible.
+    pub fn hides(&self, face: &Face) -> bool {
+        place(face).is_some_and(|i| self.hidden.get(i).is_some_and(|&is_hidden| is_hidden))
+    }
+
+    /// Whether the converted texture with this number, counted from 1, is blended with the picture behind it; `false` for 0.
+    pub fn is_blended(&self, number: u8) -> bool {
+        let index = usize::from(number).checked_sub(1);
+        index.is_some_and(|i| self.blended.get(i).is_some_and(|&is_blended| is_blended))
     }
 
     /// The number of a face's converted texture, counted from 1; 0 for none.
@@ -211,23 +242,75 @@ fn place(face: &Face) -> Option<usize> {
     usize::from(face.texture).checked_sub(1)
 }
 
+/// Whether a face has the texture coordinates that its texture needs.
 fn has_coordinates(polygons: &Polygons, face: &Face) -> bool {
     let mut corners = polygons.corners_of(face).iter();
-    corners.all(|corner| corner.coordinates != Corner::NO_COORDINATES)
+    corners.all(|corner| corner.coordinates != Corner::NO_COORDINATES) || is_white(polygons, face)
 }
 
-/// Converts a texture. `last` caches the last decoded picture, because several textures can share a
+fn is_white(polygons: &Polygons, face: &Face) -> bool {
+    let texture = place(face).and_then(|i| polygons.textures.get(i));
+    texture.is_some_and(|texture| texture.content == Content::White)
+}
+
+/// Opacity below which texels of a blended texture are transparent: less than half of an eighth.
+const INVISIBLE: f32 = 1.0 / 16.0;
+
+/// How surfaces of this opacity, with a picture, are blended with the picture behind them: with the average opacity of the texels whose
+/// opacity is at least the cutoff, to the nearest eighth. `None` if they are invisible.
+fn share(opacity: u8, picture: &Picture, cutoff: f32) -> Option<Blend> {
+    let least = (cutoff * 255.0).ceil() as u8;
+    let opacities = picture.texels.iter().map(|texel| texel[3]);
+    let (mut sum, mut count) = (0_u64, 0_u64);
+    for opacity in opacities.filter(|&opacity| opacity >= least) {
+        sum += u64::from(opacity);
+        count += 1;
+    }
+    // In units of 1/255²; a picture has at most 2^26 texels.
+    let mean = u64::from(opacity) * sum / count.max(1);
+    match (mean * 16 + 255 * 255) / (2 * 255 * 255) {
+        0 => None,
+        8.. => Some(Blend::Opaque),
+        eighths => Blend::ALL.get(eighths as usize).copied(),
+    }
+}
+
+/// Converts a texture; `None` if its faces are invisible. `last` caches the last decoded picture, because several textures can share a
 /// picture.
 fn encode(
     texture: &Texture,
     options: &TextureOptions,
     last: &mut Option<(Arc<Vec<u8>>, Picture)>,
-) -> Result<(Vec<u8>, Report), PictureError> {
+) -> Result<Option<(Vec<u8>, Report)>, PictureError> {
     let sampler = Sampler {
         filter: options.filter.unwrap_or(texture.sampler.filter),
         ..texture.sampler
     };
+    let converted = |picture: &Picture| {
+        let (cutoff, of_file) = match texture.opacity {
+            None => (texture.cutoff, Some(Blend::Opaque)),
+            Some(opacity) => {
+                let cutoff = texture.cutoff.unwrap_or(INVISIBLE);
+                (Some(cutoff), share(opacity, picture, cutoff))
+            }
+        };
+        let Some(of_file) = of_file else {
+            return Ok(None);
+        };
+        let options = Options {
+            format: options.format.unwrap_or_default(),
+            largest_side: options.largest_side,
+            sampler,
+            cutoff,
+            blend: options.blend.unwrap_or(of_file),
+        };
+        convert(picture, &options).map(Some)
+    };
     match &texture.content {
+        Content::White => converted(&Picture {
+            size: [MIN_SIDE; 2],
+            texels: vec![[255; 4]; (MIN_SIDE * MIN_SIDE) as usize],
+        }),
         Content::Picture(file) => {
             if !matches!(last, Some((known, _)) if Arc::ptr_eq(known, file)) {
                 *last = Some((file.clone(), Picture::decode(file)?));
@@ -235,18 +318,13 @@ fn encode(
             let Some((_, picture)) = last else {
                 return Err(PictureError::new("a picture", "none"));
             };
-            let options = Options {
-                format: options.format.unwrap_or_default(),
-                largest_side: options.largest_side,
-                sampler,
-                cutoff: texture.cutoff,
-            };
-            convert(picture, &options)
+            converted(picture)
         }
         Content::Board(bytes) => {
             let board = texture::Texture::new_checked(bytes);
             let board = board.map_err(|error| PictureError::new("a texture", error.to_string()))?;
-            again(&board, options.format, options.largest_side, sampler)
+            let side = options.largest_side;
+            again(&board, options.format, side, sampler, options.blend).map(Some)
         }
     }
 }
@@ -263,7 +341,7 @@ fn bases(polygons: &Polygons, textures: &Textures) -> Vec<[f64; 2]> {
         .faces
         .iter()
         .map(|face| {
-            if textures.number(polygons, face) == 0 {
+            if textures.number(polygons, face) == 0 || is_white(polygons, face) {
                 return None;
             }
             let mut first = None;
@@ -362,6 +440,7 @@ mod tests {
                 ..Sampler::default()
             },
             cutoff: Some(0.5),
+            opacity: None,
         }
     }
 
@@ -420,6 +499,77 @@ mod tests {
         assert_eq!((report.textures.len(), stated.report.size), (1, [8; 2]));
         assert_eq!(stated.name, "'a.png'");
         assert_eq!(report.bytes, bytes.len());
+    }
+
+    #[test]
+    fn opacities_become_eighths() {
+        let picture = |opacity: u8| Picture {
+            size: [8, 8],
+            texels: vec![[9, 9, 9, opacity]; 64],
+        };
+        for (material, texel, expected) in [
+            (255, 255, Some(Blend::Opaque)),
+            (255, 128, Some(Blend::ALL[4])),
+            (128, 128, Some(Blend::ALL[2])),
+            (240, 255, Some(Blend::Opaque)),
+            (239, 255, Some(Blend::ALL[7])),
+            (16, 255, Some(Blend::ALL[1])),
+            (15, 255, None),
+            (255, 15, None),
+            (0, 255, None),
+        ] {
+            assert_eq!(
+                share(material, &picture(texel), INVISIBLE),
+                expected,
+                "{material} {texel}"
+            );
+        }
+        // Transparent texels do not count.
+        let mut half = picture(255);
+        half.texels[..32].fill([0; 4]);
+        assert_eq!(share(64, &half, INVISIBLE), Some(Blend::ALL[2]));
+    }
+
+    #[test]
+    fn blended_faces_come_last_and_invisible_ones_are_left_out() {
+        let mut polygons = square(UNIT, texture(&png(255), Wrap::Repeat));
+        let numbers = [128, 3, 255].map(|opacity| polygons.white(opacity).unwrap());
+        assert_eq!(polygons.white(3).unwrap(), numbers[1]);
+        let corners: Vec<Corner> = polygons.corners[..3].to_vec();
+        for number in numbers {
+            for _ in 0..2 {
+                let corners = corners.clone().into_iter().map(|corner| Corner {
+                    coordinates: Corner::NO_COORDINATES,
+                    ..corner
+                });
+                let corners: Vec<_> = corners.collect();
+                polygons.add_face(&corners, None, Location::Whole).unwrap();
+                polygons.faces.last_mut().unwrap().texture = number;
+            }
+        }
+        polygons.faces.reverse();
+        let (bytes, report) = convert(&polygons, Options::default()).unwrap();
+        let mesh = glm::check(&bytes).unwrap();
+        let blends: Vec<_> = mesh.textures().map(|texture| texture.blend()).collect();
+        assert_eq!(blends, [Blend::Opaque, Blend::ALL[4], Blend::Opaque]);
+        let triangles = mesh
+            .chunks()
+            .flat_map(|chunk| chunk.triangles().collect::<Vec<_>>());
+        let textures: Vec<_> = triangles.map(|triangle| triangle.texture).collect();
+        assert_eq!(textures.len(), 6);
+        assert_eq!(textures[4..], [2, 2]);
+        let remark = "2 faces are less than a sixteenth opaque: they are left out";
+        assert_eq!(report.remarks, [remark]);
+        let reported: Vec<_> = report.textures.iter().map(|one| one.report.blend).collect();
+        assert_eq!(reported, ["none", "4", "none"]);
+        let mut added = Options::default();
+        added.textures.blend = Some(Blend::Additive);
+        let (bytes, _) = convert(&polygons, added).unwrap();
+        let mesh = glm::check(&bytes).unwrap();
+        assert!(
+            mesh.textures()
+                .all(|texture| texture.blend() == Blend::Additive)
+        );
     }
 
     #[test]

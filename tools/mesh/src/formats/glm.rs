@@ -21,6 +21,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
             content: Content::Board(texture.bytes().to_vec()),
             sampler: texture.sampler(),
             cutoff: None,
+            opacity: None,
         })?;
     }
     let coordinates = mesh.attribute(Attribute::TextureCoordinates);

@@ -12,6 +12,18 @@ pub struct Material {
     pub colour: Option<Rgb8>,
     /// The texture of the diffuse colour (`map_Kd`).
     pub texture: Option<Map>,
+    /// Opacity, 0 to 255: `d`, and by `Tr`, which has no effect beside `d`.
+    opacities: [Option<u8>; 2],
+}
+
+impl Material {
+    /// Opacity, 0 to 254; `None` for an opaque material.
+    pub fn opacity(&self) -> Option<u8> {
+        let [dissolve, by_transparency] = self.opacities;
+        dissolve
+            .or(by_transparency)
+            .filter(|&opacity| opacity < 255)
+    }
 }
 
 /// The texture of a material.
@@ -28,9 +40,8 @@ pub struct Map {
 pub struct Ignored {
     /// Texture options that affect colours, other than `-clamp`.
     pub has_options: bool,
-    /// Transparency: an opacity `d` below 1, a transparency `Tr` above 0, or a texture for either
-    /// property.
-    pub is_transparent: bool,
+    /// A texture of opacities.
+    pub has_opacities: bool,
     /// Emitted light (`Ke`).
     pub has_light: bool,
 }
@@ -81,15 +92,22 @@ pub fn parse(
                     materials.entry(name.clone()).or_default().texture = map;
                 }
             }
-            Some(b"map_d" | b"map_Tr") => ignored.is_transparent = true,
-            Some(b"d") => {
+            Some(b"map_d" | b"map_Tr") => ignored.has_opacities = true,
+            Some(keyword @ (b"d" | b"Tr")) => {
                 // The word `-halo` may precede the number.
-                let opacity = words.last().and_then(any_number);
-                ignored.is_transparent |= opacity.is_some_and(|opacity| opacity < 1.0);
-            }
-            Some(b"Tr") => {
-                let transparency = words.next().and_then(any_number);
-                ignored.is_transparent |= transparency.is_some_and(|value| value > 0.0);
+                let number = words.last().and_then(any_number);
+                let number = number.filter(|number| !number.is_nan());
+                if let (Some(number), Some(name)) = (number, &name) {
+                    let by_transparency = keyword == b"Tr";
+                    let opacity = if by_transparency {
+                        1.0 - number
+                    } else {
+                        number
+                    };
+                    let opacity = (opacity.clamp(0.0, 1.0) * 255.0).round() as u8;
+                    let material = materials.entry(name.clone()).or_default();
+                    material.opacities[usize::from(by_transparency)] = Some(opacity);
+                }
             }
             Some(b"Ke") => {
                 ignored.has_light |= words.filter_map(any_number).any(|light| light > 0.0);
@@ -200,17 +218,32 @@ mod tests {
     fn ignored_properties() {
         for (text, expected) in [
             ("map_Kd -bm 2 x.png", [true, false, false]),
-            ("d 0.5", [false, true, false]),
-            ("d -halo 0.5", [false, true, false]),
-            ("Tr 0.2", [false, true, false]),
             ("map_d x.png", [false, true, false]),
             ("Ke 0 0.1 0", [false, false, true]),
             ("d 1\nTr 0\nKe 0 0 0\nKs 1 1 1\nd x\nTr\nKe", [false; 3]),
         ] {
             let text = format!("newmtl x\n{text}\n");
             let found = parse(text.as_bytes(), &mut HashMap::new()).unwrap();
-            let found = [found.has_options, found.is_transparent, found.has_light];
+            let found = [found.has_options, found.has_opacities, found.has_light];
             assert_eq!(found, expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn opacities() {
+        for (text, expected) in [
+            ("d 0.5", Some(128)),
+            ("d -halo 0.5", Some(128)),
+            ("Tr 0.2", Some(204)),
+            ("Tr 1\nd 0.2", Some(51)),
+            ("d 1\nTr 1", None),
+            ("d -3", Some(0)),
+            ("d 2\nd x\nTr\nd nan", None),
+        ] {
+            let mut materials = HashMap::new();
+            let text = format!("d 0.1\nnewmtl x\nKd 1 1 1\n{text}\n");
+            parse(text.as_bytes(), &mut materials).unwrap();
+            assert_eq!(materials[&b"x"[..]].opacity(), expected, "{text}");
         }
     }
 }

@@ -131,8 +131,10 @@ struct Reader {
     colour: Option<Rgb8>,
     /// Number of the current texture; 0 for none.
     texture: u8,
-    /// The numbers of the textures that were requested; 0 for a texture that cannot be read.
-    textures: HashMap<Map, u8>,
+    /// Whether the current texture needs texture coordinates.
+    has_picture: bool,
+    /// The numbers of the textures that were requested, by their maps and opacities; 0 for a texture that cannot be read.
+    textures: HashMap<(Map, Option<u8>), u8>,
     /// The image files that were requested.
     pictures: HashMap<Vec<u8>, Option<Arc<Vec<u8>>>>,
     corners: Vec<Corner>,
@@ -256,24 +258,36 @@ impl Reader {
     /// Selects the material of the next faces.
     fn material(&mut self, name: &[u8], files: &mut Materials) -> Result<(), FormatError> {
         let material = self.materials.get(name).cloned().unwrap_or_default();
+        let opacity = material.opacity();
         self.colour = material.colour;
         self.texture = match material.texture {
             None => 0,
-            Some(map) => self.texture(map, files)?,
+            Some(map) => self.texture(map, opacity, files)?,
         };
+        self.has_picture = self.texture != 0;
         // Some programs write black as the diffuse colour of a material with a texture, although
         // the texture is meant to be shown unchanged.
         if self.texture != 0 && self.colour == Some(Rgb8([0; 3])) {
             self.colour = None;
         }
+        if let (0, Some(opacity)) = (self.texture, opacity) {
+            self.texture = self.polygons.white(opacity)?;
+        }
         Ok(())
     }
 
     /// The number of a texture. Returns 0 and adds a remark if its file cannot be read.
-    fn texture(&mut self, map: Map, files: &mut Materials) -> Result<u8, FormatError> {
-        if let Some(&number) = self.textures.get(&map) {
+    fn texture(
+        &mut self,
+        map: Map,
+        opacity: Option<u8>,
+        files: &mut Materials,
+    ) -> Result<u8, FormatError> {
+        let key = (map, opacity);
+        if let Some(&number) = self.textures.get(&key) {
             return Ok(number);
         }
+        let map = &key.0;
         let picture = self.pictures.entry(map.file.clone()).or_insert_with(|| {
             let name = std::str::from_utf8(&map.file).ok()?;
             let file = files(name).or_else(|| {
@@ -299,6 +313,7 @@ impl Reader {
                         filter: Filter::Bilinear,
                     },
                     cutoff: Some(CUTOFF),
+                    opacity,
                 })?
             }
             None => {
@@ -309,7 +324,7 @@ impl Reader {
                 0
             }
         };
-        self.textures.insert(map, number);
+        self.textures.insert(key, number);
         Ok(number)
     }
 
@@ -336,13 +351,13 @@ impl Reader {
                 None | Some(b"") => Corner::NO_COORDINATES,
                 Some(part) => {
                     integer(part).ok_or_else(|| expected("a texture index"))?;
-                    // Without a texture the coordinates have no effect, so their range is not
+                    // Without a picture the coordinates have no effect, so their range is not
                     // checked.
-                    if self.texture == 0 {
-                        Corner::NO_COORDINATES
-                    } else {
+                    if self.has_picture {
                         index(part, self.polygons.coordinates.len())
                             .unwrap_or(Corner::NO_COORDINATES - 1)
+                    } else {
+                        Corner::NO_COORDINATES
                     }
                 }
             };
@@ -409,7 +424,7 @@ impl Reader {
     fn remark_ignored(&mut self, ignored: Ignored) {
         let Ignored {
             has_options,
-            is_transparent,
+            has_opacities,
             has_light,
         } = ignored;
         for (is_ignored, remark) in [
@@ -417,10 +432,7 @@ impl Reader {
                 has_options,
                 "options of textures other than -clamp are ignored (map_Kd)",
             ),
-            (
-                is_transparent,
-                "transparency is ignored: surfaces are opaque",
-            ),
+            (has_opacities, "textures of opacities are ignored (map_d)"),
             (has_light, "emitted light is ignored (Ke)"),
         ] {
             if is_ignored {
@@ -570,18 +582,34 @@ mod tests {
         assert_eq!(polygons.faces[1].colour, None);
         assert!(polygons.remarks.is_empty());
         let text = format!("mtllib b\n{SQUARE}f 1 2 3\n");
-        let mtl = b"newmtl b\nmap_Kd -s 2 b.png\nd 0.5\nKe 1 1 1\n";
+        let mtl = b"newmtl b\nmap_Kd -s 2 b.png\nmap_d b.png\nKe 1 1 1\n";
         let polygons = parse(text.as_bytes(), &mut |_| Some(mtl.to_vec()));
         assert_eq!(
             polygons.unwrap().remarks,
             [
                 "options of textures other than -clamp are ignored (map_Kd)",
-                "transparency is ignored: surfaces are opaque",
+                "textures of opacities are ignored (map_d)",
                 "emitted light is ignored (Ke)",
             ]
         );
         let polygons = read(&format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
         assert_eq!(polygons.remarks.len(), 1);
+    }
+
+    #[test]
+    fn opacities_of_materials() {
+        let mtl = b"newmtl a\nKd 1 0 0\nd 0.5\nnewmtl b\nmap_Kd b.png\nTr 0.8\nnewmtl c\nd 1\n";
+        let text = format!(
+            "mtllib m\n{SQUARE}vt 0 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1/1 2/1 3/1\nusemtl c\nf 1 2 3\nusemtl a\nf 1/7 2 3\n"
+        );
+        let polygons = parse(text.as_bytes(), &mut |_| Some(mtl.to_vec())).unwrap();
+        let textures = polygons.faces.iter().map(|face| face.texture);
+        assert_eq!(textures.collect::<Vec<_>>(), [1, 2, 0, 1]);
+        let opacities = polygons.textures.iter().map(|texture| texture.opacity);
+        assert_eq!(opacities.collect::<Vec<_>>(), [Some(128), Some(51)]);
+        assert_eq!(polygons.textures[0].content, Content::White);
+        assert_eq!(polygons.faces[0].colour, Some(Rgb8([255, 0, 0])));
+        assert!(polygons.remarks.is_empty(), "{:?}", polygons.remarks);
     }
 
     const TEXTURED: &str = "vt 0 0\nvt 1 0.25 9\nvt 2\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 2/2 3/-1\n\

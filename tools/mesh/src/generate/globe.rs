@@ -75,6 +75,7 @@ pub fn globe() -> Result<Polygons, FormatError> {
             filter: Filter::Bilinear,
         },
         cutoff: None,
+        opacity: None,
     })?;
     let at = |sector: u32, band: u32| corners[(band * (SECTORS + 1) + sector) as usize];
     for band in 0..BANDS {

@@ -68,6 +68,7 @@ fn add_picture(
             ..Sampler::default()
         },
         cutoff: Some(0.5),
+        opacity: None,
     })
 }
 

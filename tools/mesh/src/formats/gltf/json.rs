@@ -332,6 +332,19 @@ pub struct Material {
     pub pbr_metallic_roughness: MetallicRoughness,
 }
 
+impl Material {
+    /// The texture of the base colour, and the factor of its colours and opacity.
+    pub fn base(&self) -> (Option<&TextureUse>, [f32; 4]) {
+        match &self.extensions.specular_glossiness {
+            Some(diffuse) => (diffuse.diffuse_texture.as_ref(), diffuse.diffuse_factor),
+            None => {
+                let base = &self.pbr_metallic_roughness;
+                (base.base_color_texture.as_ref(), base.base_color_factor)
+            }
+        }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct MetallicRoughness {

@@ -13,6 +13,9 @@ const CUTOFF: f32 = 0.5;
 /// End of the remark on a texture that cannot be used.
 const INSTEAD: &str = "its surfaces keep their base colours";
 
+/// Picture, wrap modes and filter, bits of the cutoff, and opacity of a texture.
+type Key = (Index, [u8; 3], Option<u32>, Option<u8>);
+
 /// Reads the textures of materials, and each picture only once.
 pub struct Materials<'a> {
     root: &'a Root,
@@ -20,8 +23,8 @@ pub struct Materials<'a> {
     beside: Beside<'a>,
     /// The pictures that were requested; `None` for a picture that cannot be read.
     pictures: HashMap<Index, Option<Arc<Vec<u8>>>>,
-    /// The numbers of the textures by picture, wrap modes and filter, and bits of the cutoff.
-    numbers: HashMap<(Index, [u8; 3], Option<u32>), u8>,
+    /// The numbers of the textures.
+    numbers: HashMap<Key, u8>,
 }
 
 /// The use of a texture by a material.
@@ -74,11 +77,7 @@ impl<'a> Materials<'a> {
         material: &Material,
         polygons: &mut Polygons,
     ) -> Result<Option<Use>, FormatError> {
-        let base = &material.pbr_metallic_roughness;
-        let (used, [.., opacity]) = match &material.extensions.specular_glossiness {
-            Some(diffuse) => (&diffuse.diffuse_texture, diffuse.diffuse_factor),
-            None => (&base.base_color_texture, base.base_color_factor),
-        };
+        let (used, [.., opacity]) = material.base();
         let Some(used) = used else {
             return Ok(None);
         };
@@ -100,6 +99,7 @@ impl<'a> Materials<'a> {
         let sampler = texture.sampler;
         let sampler = sampler.and_then(|index| self.root.samplers.get(index as usize));
         let sampler = sampler_of(sampler);
+        let blended = blended_opacity(material);
         let cutoff = (material.alpha_mode.as_deref() == Some("MASK")).then(|| {
             // The opacity of the material multiplies the opacity of the texels.
             let cutoff = material.alpha_cutoff.unwrap_or(CUTOFF);
@@ -117,6 +117,7 @@ impl<'a> Materials<'a> {
             source,
             [wrap_s as u8, wrap_t as u8, filter as u8],
             cutoff.map(f32::to_bits),
+            blended,
         );
         let number = match self.numbers.get(&key) {
             Some(&number) => number,
@@ -128,6 +129,7 @@ impl<'a> Materials<'a> {
                         content: Content::Picture(picture),
                         sampler,
                         cutoff,
+                        opacity: blended,
                     })?,
                 };
                 self.numbers.insert(key, number);
@@ -181,6 +183,13 @@ impl<'a> Materials<'a> {
             _ => format!("image {index}"),
         }
     }
+}
+
+/// Opacity of a material that is blended with the picture behind it, 0 to 255.
+pub fn blended_opacity(material: &Material) -> Option<u8> {
+    let (_, [.., opacity]) = material.base();
+    // The conversion to an integer saturates.
+    (material.alpha_mode.as_deref() == Some("BLEND")).then_some((opacity * 255.0).round() as u8)
 }
 
 /// Converts a sampler of OpenGL constants; an unknown constant counts as missing. The default

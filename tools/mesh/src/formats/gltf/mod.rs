@@ -14,7 +14,7 @@ use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use buffers::{Beside, Buffers, Values};
 use json::{Dimensions, Index, Instancing, Material, Mode, Node, Primitive, Root, item};
-use materials::Materials;
+use materials::{Materials, blended_opacity};
 use serde::Deserialize;
 
 /// Maximum number of bytes of JSON outside of strings. It bounds the memory for parsed JSON: three
@@ -375,6 +375,13 @@ impl Reader<'_> {
             (None, _) => None,
         };
 
+        let number = match &texture {
+            Some(used) => used.texture,
+            None => match material.and_then(blended_opacity) {
+                Some(opacity) if opacity < 255 => polygons.white(opacity)?,
+                _ => 0,
+            },
+        };
         let base = base_colour(polygons, material, colours.is_some());
         let first_point = polygons.points.len() as u32;
         let first_normal = polygons.normals.len() as u32;
@@ -435,7 +442,7 @@ impl Reader<'_> {
             polygons.add_face(&face, colour, Location::Whole)?;
         }
         for face in &mut polygons.faces[first_face..] {
-            face.texture = texture.as_ref().map_or(0, |used| used.texture);
+            face.texture = number;
             face.double_sided = material.is_some_and(|material| material.double_sided);
         }
         Ok(())
@@ -473,17 +480,10 @@ fn base_colour(
     let Some(material) = material else {
         return has_colours.then_some([1.0; 3]);
     };
-    let factor = match &material.extensions.specular_glossiness {
-        Some(diffuse) => diffuse.diffuse_factor,
-        None => material.pbr_metallic_roughness.base_color_factor,
-    };
-    if material.alpha_mode.as_deref() == Some("BLEND") {
-        polygons.remark("transparency is ignored: surfaces are opaque");
-    }
     if material.emissive_factor != [0.0; 3] {
         polygons.remark("emitted light is ignored (emissiveFactor)");
     }
-    let [red, green, blue, _] = factor;
+    let (_, [red, green, blue, _]) = material.base();
     Some([red, green, blue].map(f64::from))
 }
 

@@ -148,7 +148,6 @@ fn what_is_ignored_is_remarked() {
             "points and lines are ignored",
             "skins are ignored: meshes have their rest pose",
             "expected the file of an image in the folder of the glTF, found 'x.png': its surfaces keep their base colours",
-            "transparency is ignored: surfaces are opaque",
             "emitted light is ignored (emissiveFactor)",
         ]
     );
@@ -362,7 +361,7 @@ fn pictures(polygons: &Polygons) -> Vec<&[u8]> {
     textures
         .map(|texture| match &texture.content {
             Content::Picture(bytes) => &bytes[..],
-            Content::Board(_) => panic!("a file has pictures"),
+            Content::Board(_) | Content::White => panic!("a file has pictures"),
         })
         .collect()
 }
@@ -462,6 +461,43 @@ fn cut_out_by_the_mask() {
     let opacity = |opacity: f32| format!("\"baseColorFactor\": [1, 1, 1, {opacity}], ");
     assert_eq!(cutoff(mask, &opacity(0.5)), Some(1.0));
     assert_eq!(cutoff(mask, &opacity(0.0)), Some(f32::INFINITY));
+}
+
+#[test]
+fn opacities_of_blended_materials() {
+    let read = |members: &str, opacity: &str| {
+        let factor = "\"pbrMetallicRoughness\": {";
+        let opacity = format!("\"baseColorFactor\": [1, 1, 1, {opacity}], ");
+        let material = material(members, "").replace(factor, &format!("{factor}{opacity}"));
+        Textured::new(&material, A_B).read()
+    };
+    let blended = "\"alphaMode\": \"BLEND\", ";
+    assert_eq!(read(blended, "0.5").textures[0].opacity, Some(128));
+    assert_eq!(read(blended, "1").textures[0].opacity, Some(255));
+    assert_eq!(read(blended, "-3").textures[0].opacity, Some(0));
+    assert_eq!(read("", "0.5").textures[0].opacity, None);
+    // Without a picture.
+    let text = TWO_MESHES.replacen(
+        "\"pbrMetallicRoughness\": {",
+        "\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {",
+        1,
+    );
+    let start = text.find("\"baseColorFactor\": [").unwrap();
+    let end = start + text[start..].find(']').unwrap();
+    let text = [
+        &text[..start],
+        "\"baseColorFactor\": [1, 0, 0, 0.25",
+        &text[end..],
+    ]
+    .concat();
+    let polygons = self::read(&text).unwrap();
+    assert_eq!(polygons.textures.len(), 1);
+    let texture = &polygons.textures[0];
+    assert_eq!(
+        (&texture.content, texture.opacity),
+        (&Content::White, Some(64))
+    );
+    assert!(polygons.faces.iter().any(|face| face.texture == 1));
 }
 
 #[test]
