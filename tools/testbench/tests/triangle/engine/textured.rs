@@ -230,6 +230,31 @@ fn frames_with_textures_in_a_field() {
     }
 }
 
+/// Blended groups take the number of clocks that docs/textures.md states, and that the emulated board assumes.
+#[test]
+fn a_blended_group_takes_8_clocks_and_one_for_each_pixel() {
+    for blend in [Blend::ALL[4], Blend::Additive] {
+        let texture = encode(&Source {
+            size_log2: [3, 3],
+            blend,
+            levels: vec![vec![0x8410; 64]],
+            ..Source::default()
+        });
+        let mesh = textured_layers(&[texture.unwrap()], 1.0, 0.0);
+        let shown = Shown::new(mesh, [0.0, -1.2, 1.0]);
+        let mut bench = Bench::of("texture", 3, 0.0);
+        // The next band waits for depths.
+        bench.with_depth = false;
+        let name = format!("{blend:?}");
+        let [_, clocks] = bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
+        let [groups, pixels] = ["groups", "pixels_drawn"].map(|counter| bench.count(counter));
+        let stated = 8 * groups + pixels;
+        println!("{pixels} pixels in {groups} groups: {clocks} clocks, {stated} stated");
+        assert!(pixels > 5_000, "{pixels}");
+        assert!(clocks.abs_diff(stated) < stated / 20, "{clocks}, {stated}");
+    }
+}
+
 /// A cancelled frame does not change the next frame, whether its coordinates, its textures or its texels are being read.
 #[test]
 fn a_cancelled_frame_with_textures_leaves_a_working_engine() {
