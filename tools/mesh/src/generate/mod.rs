@@ -1,4 +1,4 @@
-//! Generated models: closed surfaces, counter-clockwise seen from outside, z up. The room and the fence are open.
+//! Generated models: closed surfaces, counter-clockwise seen from outside, z up. Room, fence and window are open.
 
 mod builder;
 mod cube;
@@ -15,7 +15,7 @@ use crate::error::FormatError;
 use crate::polygons::Polygons;
 
 /// Names of the generators, for messages and help.
-pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe, room, fence (these three with textures), \
+pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe, room, fence, window (these four with textures), \
     scan:N (frequency, 1 to 64) or sponge:N (0 to 4)";
 
 /// Whether a name is the name of a generator, not of a file.
@@ -31,6 +31,7 @@ pub fn is_name(name: &str) -> bool {
             | "globe"
             | "room"
             | "fence"
+            | "window"
             | "sponge"
             | "scan"
     )
@@ -60,6 +61,7 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         ("globe", None) => globe::globe(),
         ("room", None) => room::room(),
         ("fence", None) => room::fence(),
+        ("window", None) => room::window(),
         ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
         ("scan", Some(frequency @ 1..=64)) => scan::scan(frequency),
         _ => Err(refuse()),
@@ -156,17 +158,17 @@ mod tests {
         }
     }
 
-    /// Room and fence are open and textured; the textures of the fence have transparent texels.
+    /// Room, fence and window are open and textured; the textures of fence and window have transparent texels.
     #[test]
     fn props_have_textures() {
-        for (name, triangles, textures) in [("room", 8, 2), ("fence", 4, 1)] {
+        for (name, triangles, textures) in [("room", 8, 2), ("fence", 4, 1), ("window", 20, 2)] {
             let polygons = named(name).unwrap();
             let (bytes, report) = convert::convert(&polygons, Options::default()).unwrap();
             let counts = (report.triangles, report.degenerate);
             assert_eq!(counts, (triangles, 0), "{name}");
             assert_eq!(report.textures.len(), textures, "{name}");
             let cut_out = report.textures.iter().any(|texture| texture.report.cut_out);
-            assert_eq!(cut_out, name == "fence");
+            assert_eq!(cut_out, name != "room");
             assert!(report.remarks.is_empty(), "{:?}", report.remarks);
             let mesh = glm::check(&bytes).unwrap();
             let mut all = mesh.chunks().flat_map(|chunk| chunk.triangles());

@@ -1,4 +1,4 @@
-//! A room that is seen from inside, and a fence with transparent gaps, with generated textures.
+//! A room that is seen from inside, a fence with transparent gaps, and a window of glass, with generated textures.
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Content, Corner, Polygons, Rgb8, Texture, Vector};
@@ -12,12 +12,17 @@ const HALF: f64 = 2.0;
 const HEIGHT: f64 = 2.0;
 /// Width and height of each picture in texels.
 const SIDE: u32 = 64;
+/// Width of a window's frame, and half of the width of the bars between its panes, in texels.
+const FRAME: u32 = 4;
+const BAR: u32 = 2;
+/// Opacity of glass, three eighths.
+const GLASS: u8 = 96;
 
 /// A floor of tiles and three walls of bricks, without a ceiling; the side at −y is open.
 pub fn room() -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
-    let tiles = add_picture(&mut polygons, "tiles", tile)?;
-    let bricks = add_picture(&mut polygons, "bricks", brick)?;
+    let tiles = add_picture(&mut polygons, "tiles", None, tile)?;
+    let bricks = add_picture(&mut polygons, "bricks", None, brick)?;
     // The corners run counter-clockwise as seen from inside, from the lower left corner.
     let wall = |[left, right]: [[f64; 2]; 2]| {
         let at = |[x, y]: [f64; 2], z| [x, y, z];
@@ -42,7 +47,7 @@ pub fn room() -> Result<Polygons, FormatError> {
 /// A fence along the x axis, seen from both sides, whose gaps are transparent texels.
 pub fn fence() -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
-    let pickets = add_picture(&mut polygons, "pickets", picket)?;
+    let pickets = add_picture(&mut polygons, "pickets", None, picket)?;
     let at = |x: f64, z: f64| [x, 0.0, z];
     for half in [HALF, -HALF] {
         let corners = [at(-half, 0.0), at(half, 0.0), at(half, 1.0), at(-half, 1.0)];
@@ -51,10 +56,40 @@ pub fn fence() -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Adds a picture as a repeating texture. `texel` computes the colour at column and row.
+/// A window along the x axis, seen from both sides: four panes of tinted glass in a wooden frame.
+pub fn window() -> Result<Polygons, FormatError> {
+    /// Ends of the panes across and upwards, in texels of the frame's picture.
+    const PANES: [[u32; 2]; 2] = [[FRAME, SIDE / 2 - BAR], [SIDE / 2 + BAR, SIDE - FRAME]];
+    let mut polygons = Polygons::default();
+    let wood = add_picture(&mut polygons, "wood", None, wood)?;
+    let glass = add_picture(&mut polygons, "glass", Some(GLASS), pane)?;
+    let place = |texel: u32| f64::from(texel) * 2.0 / f64::from(SIDE);
+    for side in [1.0, -1.0] {
+        let mut add = |[left, right]: [u32; 2], [low, high]: [u32; 2], texture| {
+            let at = |x, z| [side * (place(x) - 1.0), 0.0, place(z)];
+            let corners = [
+                at(left, low),
+                at(right, low),
+                at(right, high),
+                at(left, high),
+            ];
+            rectangle(&mut polygons, corners, [1.0, 1.0], texture)
+        };
+        add([0, SIDE], [0, SIDE], wood)?;
+        for across in PANES {
+            for up in PANES {
+                add(across, up, glass)?;
+            }
+        }
+    }
+    Ok(polygons)
+}
+
+/// Adds a picture as a repeating texture, with an opacity if it is blended. `texel` computes the colour at column and row.
 fn add_picture(
     polygons: &mut Polygons,
     name: &str,
+    opacity: Option<u8>,
     texel: impl Fn(u32, u32) -> [u8; 4],
 ) -> Result<u8, FormatError> {
     let picture = Picture::drawn([SIDE; 2], texel).png();
@@ -68,7 +103,7 @@ fn add_picture(
             ..Sampler::default()
         },
         cutoff: Some(0.5),
-        opacity: None,
+        opacity,
     })
 }
 
@@ -138,6 +173,27 @@ fn picket(x: u32, y: u32) -> [u8; 4] {
     }
     // Gaps have the colour of the pickets, so that averages at the edges show no rim.
     [236, 230, 214, 0]
+}
+
+/// Texture of a window's frame, with transparent texels in the place of the panes.
+fn wood(x: u32, y: u32) -> [u8; 4] {
+    let is_bar = |place: u32| {
+        !(FRAME..SIDE - FRAME).contains(&place) || (SIDE / 2 - BAR..SIDE / 2 + BAR).contains(&place)
+    };
+    let colour = [148, 98, 56];
+    if is_bar(x) || is_bar(y) {
+        return shaded(colour, noise(x / 8, y) % 28);
+    }
+    let [r, g, b] = colour;
+    [r, g, b, 0]
+}
+
+/// Texture of a pane: blue glass with two diagonal gleams.
+fn pane(x: u32, y: u32) -> [u8; 4] {
+    match (x + y) % SIDE {
+        20..26 | 29..31 => [226, 240, 248, 255],
+        _ => [122, 176, 206, 255],
+    }
 }
 
 /// The colour, opaque, with `darker` subtracted from each channel.
