@@ -12,8 +12,8 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::fixed::U8_28;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::picture::{Backend, Size};
-use glint_core::texture::{self, Filter, Sampler, Source};
-use glint_vectors::meshes::textured_square;
+use glint_core::texture::{self, Blend, Filter, Sampler, Source};
+use glint_vectors::meshes::textured_layers;
 use std::path::Path;
 use std::process::Command;
 
@@ -56,17 +56,22 @@ fn smooth_shading_is_the_models_on_every_backend() {
 /// Otherwise the soft core draws them, and `stats` has a note.
 #[test]
 fn textures_are_the_models_on_every_backend() {
-    let texture = texture::encode(&Source {
-        size_log2: [4, 4],
-        sampler: Sampler {
-            filter: Filter::Bilinear,
-            ..Sampler::default()
-        },
-        key: Some(0),
-        levels: vec![(0..256).map(|i| i * 0x101).collect()],
-        ..Source::default()
+    // A window in front of a picture.
+    let textures = [Blend::Opaque, Blend::ALL[3]].map(|blend| {
+        let texture = texture::encode(&Source {
+            size_log2: [4, 4],
+            sampler: Sampler {
+                filter: Filter::Bilinear,
+                ..Sampler::default()
+            },
+            key: Some(0),
+            blend,
+            levels: vec![(0..256).map(|i| i * 0x101).collect()],
+            ..Source::default()
+        });
+        texture.unwrap()
     });
-    let mesh = textured_square(&[texture.unwrap()], 0.5);
+    let mesh = textured_layers(&textures, 0.5, 0.1);
     const NO_TEXTURES: &str = "fallback triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast, expected a build by `cargo xtask gateware --texture`";
     const SMOOTH: &str = "fallback triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`";
     for (has_textures, shading, textures, by, fallback) in [
