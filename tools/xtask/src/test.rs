@@ -24,7 +24,7 @@ pub fn test() -> Result<()> {
     bootstrap::programs()?;
 
     let results = CheckResults::default();
-    let [gateware_cores, cargo_cores] = cores::halves()?;
+    let [gateware_cores, cargo_cores] = cores::halves();
     let tests = thread::scope(|scope| -> Result<Arc<Programs>> {
         let (gateware_is_built, gateware_builds) = mpsc::channel();
         let (models_are_built, models) = mpsc::channel();
@@ -52,7 +52,7 @@ pub fn test() -> Result<()> {
             results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)));
             tests.run(&[]);
         });
-        cores::keep_to(&cargo_cores)?;
+        cores::keep_to(&cargo_cores);
         firmware::build(Board::Virtual, &[])?;
         web::build(None)?;
         results.add(scenes::generate(true));
@@ -82,7 +82,7 @@ pub fn test() -> Result<()> {
 
 /// Sets up Python and builds the gateware that tests use, on `cores`; they stay those of this thread.
 fn build_gateware(cores: &CpuSet) -> Result<()> {
-    cores::keep_to(cores)?;
+    cores::keep_to(cores);
     bootstrap::python_environment()?;
     gateware::build(Board::Virtual)?;
     gateware::build(Board::Urbana)
@@ -99,13 +99,15 @@ pub fn test_at_clock(megahertz: &str) -> Result<()> {
     firmware::build(Board::Virtual, &[])?;
     let tests = Programs::build(&["-p", "virtual-board", "-p", "glint", "--test", "board"])?;
     let environment = [("GLINT_VIRTUAL_BOARD", folder.as_os_str())];
-    thread::scope(|scope| -> Result<()> {
-        for half in cores::halves()? {
+    thread::scope(|scope| {
+        for half in cores::halves() {
             let (tests, environment) = (&tests, &environment);
-            scope.spawn(move || cores::keep_to(&half).map(|()| tests.run(environment)));
+            scope.spawn(move || {
+                cores::keep_to(&half);
+                tests.run(environment);
+            });
         }
-        Ok(())
-    })?;
+    });
     let passed = tests.results()?;
     println!("{passed} passed at {megahertz} MHz");
     Ok(())
