@@ -120,7 +120,7 @@ impl Textures {
         let hidden = faces.filter(|face| textures.hides(face)).count();
         if hidden > 0 {
             textures.remark(format!(
-                "{hidden} faces are less than a sixteenth opaque: they are left out"
+                "{hidden} faces are less than a sixteenth opaque: they are left out; `--blend` shows them"
             ));
         }
         if smaller.largest_side < options.largest_side {
@@ -287,14 +287,14 @@ fn encode(
         ..texture.sampler
     };
     let converted = |picture: &Picture| {
-        let (cutoff, of_file) = match texture.opacity {
+        let (cutoff, blend) = match texture.opacity {
             None => (texture.cutoff, Some(Blend::Opaque)),
             Some(opacity) => {
                 let cutoff = texture.cutoff.unwrap_or(INVISIBLE);
                 (Some(cutoff), share(opacity, picture, cutoff))
             }
         };
-        let Some(of_file) = of_file else {
+        let Some(blend) = options.blend.or(blend) else {
             return Ok(None);
         };
         let options = Options {
@@ -302,7 +302,7 @@ fn encode(
             largest_side: options.largest_side,
             sampler,
             cutoff,
-            blend: options.blend.unwrap_or(of_file),
+            blend,
         };
         convert(picture, &options).map(Some)
     };
@@ -558,18 +558,18 @@ mod tests {
         let textures: Vec<_> = triangles.map(|triangle| triangle.texture).collect();
         assert_eq!(textures.len(), 6);
         assert_eq!(textures[4..], [2, 2]);
-        let remark = "2 faces are less than a sixteenth opaque: they are left out";
+        let remark =
+            "2 faces are less than a sixteenth opaque: they are left out; `--blend` shows them";
         assert_eq!(report.remarks, [remark]);
         let reported: Vec<_> = report.textures.iter().map(|one| one.report.blend).collect();
         assert_eq!(reported, ["none", "4", "none"]);
         let mut added = Options::default();
         added.textures.blend = Some(Blend::Additive);
+        // Also of faces that would be invisible.
         let (bytes, _) = convert(&polygons, added).unwrap();
         let mesh = glm::check(&bytes).unwrap();
-        assert!(
-            mesh.textures()
-                .all(|texture| texture.blend() == Blend::Additive)
-        );
+        let blends: Vec<_> = mesh.textures().map(|texture| texture.blend()).collect();
+        assert_eq!(blends, [Blend::Additive; 4]);
     }
 
     #[test]
