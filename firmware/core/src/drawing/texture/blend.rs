@@ -14,24 +14,9 @@ pub enum Blend {
     Additive,
 }
 
-/// A number of eighths, 1 to 7.
+/// A number of eighths, 1 to 7; [`Blend::ALL`] has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Eighths(u8);
-
-impl Eighths {
-    /// `None` for a number outside of 1 to 7.
-    pub const fn new(eighths: u8) -> Option<Self> {
-        match eighths {
-            1..=7 => Some(Self(eighths)),
-            _ => None,
-        }
-    }
-
-    /// The number.
-    pub const fn get(self) -> u8 {
-        self.0
-    }
-}
 
 impl Blend {
     /// All rules, by their numbers in the header.
