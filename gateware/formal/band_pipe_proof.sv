@@ -101,7 +101,7 @@ module band_pipe_proof #(
     logic waits, checks, expects, answered;
 
     assign asks     = BLEND && group_asks && !waits;
-    assign blended    = BLEND && group_blended && !asks;
+    assign blended  = BLEND && group_blended && !asks;
     assign answered = waits && (!checks || answer_lanes[lane] == expects);
 
     // `was_empty` is `empty` in the previous clock. Writes reach the model of the memory one clock late, so the model is compared with the
@@ -114,7 +114,7 @@ module band_pipe_proof #(
         refused   <= open && group_valid && !group_ready ? refused + 1'b1 : '0;
         if (hits && !asks && (passes || blended)) begin
             drawn <= 1'b1;
-            if (!blended)      nearest <= given;
+            if (!blended)    nearest <= given;
             else if (!drawn) nearest <= '0;
             nearest_tag <= group_tag;
         end

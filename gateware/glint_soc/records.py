@@ -118,7 +118,7 @@ TEXTURE = Record("TextureHeader", "Header of a texture.", (
     Field("filter", 8, "0: the nearest texel; 1: bilinear"),
     Field("cut_out", 8, "1: texels with the value of `key` are transparent"),
     Field("key", 16, "value of a transparent texel: a colour or an index"),
-    Field("blend", 8, "0 opaque; 1 to 7 eighths of the texture's colour over what is behind it; 8 the sum of both"),
+    Field("blend", 8, "0 opaque; 1 to 7 opacity in eighths; 8 added to the picture behind it"),
     _reserved(8, count=9),
 ), rtl="texture_header_t")
 

@@ -41,6 +41,7 @@ module raymarcher #(
     parameter bit          HIGHLIGHT = 1'b1,
     parameter bit          CONE      = 1'b1,
     parameter bit          SHADOW    = 1'b1,
+    // A power of two.
     parameter int unsigned EARLY   = BLEND ? 1024 : 512
 ) (
     input  wire                       clk,

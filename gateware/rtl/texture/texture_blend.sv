@@ -2,11 +2,11 @@
 //
 //   group ─▶ asks the band buffer ─▶ answer: lanes that pass ─▶ one lane per clock ─▶ source, behind ─▶ blend ─▶ pixel
 //
-// `in_valid` is high while the group is there, from its first clock until `gone`; its payload holds. The group goes to the band buffer once,
-// with `asks`, and moves when `taken`. Its answer names the lanes that pass the depth test. Then each of these pixels is blended, and is on the
-// outputs `pixel_*` for one clock, in which the band buffer takes it. `lane` selects the colour `behind`, which arrives a clock later.
-// `gone` is high in the clock of the last pixel, or, without a pixel, two clocks after the answer. Throughput: a group of n pixels that pass
-// takes n + 8 clocks, from its first clock to that of the next group; one without a pixel that passes takes 9.
+// `in_valid` is high while the group is there, from its first clock until `gone`; its payload holds. The group goes to the band buffer
+// once, with `asks`, and moves when `taken`. The answer names the lanes that pass the depth test. Then each of these pixels is blended,
+// and is on the outputs `pixel_*` for one clock, in which the band buffer takes it. `lane` selects the colour `behind`, which arrives a
+// clock later. `gone` is high in the clock of the last pixel, or, without a pixel, two clocks after the answer. Throughput: a group of n
+// pixels that pass takes n + 8 clocks, from its first clock to that of the next group; one without a pixel that passes takes 9.
 
 `default_nettype none
 
@@ -76,7 +76,7 @@ module texture_blend (
         end
     end
 
-    // Blue, green and red. The eighths are the sum of the share's bits, each of which selects one of the two colours, and of one more eighth of
+    // Blue, green and red. Each bit of the share selects one of the two colours; the eighths are the sum of these, and of one more eighth of
     // the colour behind.
     for (genvar channel = 0; channel < 3; channel++) begin : channels
         localparam int unsigned LOW  = channel == 0 ? 0 : channel == 1 ? 5 : 11;

@@ -16,8 +16,8 @@
 // valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) forgets the texels and the texture of
 // earlier frames. `table_base` is the address of the table of the textures' addresses, in words of 16 bytes.
 //
-// A group of a texture that is blended with the picture leaves in parts, as band_buffer takes them: first all of it with `out_asks`, then, with
-// `out_blended`, a group of one pixel for each pixel that passes the depth test, from texture_blend.
+// A group of a blended texture leaves in parts, as band_buffer takes them: first all of it with `out_asks`, then, with `out_blended`, a
+// group of one pixel for each pixel that passes the depth test, from texture_blend.
 
 `default_nettype none
 
@@ -81,7 +81,7 @@ module texture_shader #(
     logic [15:0] blended_colour;
 
     assign is_blended = group_textured && blend != '0;
-    assign is_shown = group_valid && (!group_textured || colours_valid && opaque != '0);
+    assign is_shown   = group_valid && (!group_textured || colours_valid && opaque != '0);
 
     texture_blend texture_blend (
         .clk, .rst, .in_valid(is_shown && is_blended), .in_blend(blend), .in_colours(colours), .gone(blended_gone), .asks, .taken(out_ready),
@@ -92,7 +92,7 @@ module texture_shader #(
     assign out_valid   = is_blended ? asks || blended_valid : is_shown;
     assign group_gone  = !group_textured ? out_ready : colours_valid && (opaque == '0 || (is_blended ? blended_gone : out_ready));
     assign out_asks    = is_blended && !blended_valid;
-    assign out_blended   = blended_valid;
+    assign out_blended = blended_valid;
     assign out_opaque  = blended_valid ? blended_lane : group_textured ? opaque : '1;
     // A blended pixel shares the selection of a group's own colour.
     assign out_colours = group_textured && !blended_valid ? colours : {8{blended_valid ? blended_colour : group_colour}};

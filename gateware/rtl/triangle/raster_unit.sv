@@ -21,8 +21,8 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
-// With TEXTURE, triangles may have textures, which may be blended with what is drawn before them. `parameters.textures` is the address of the
-// table of the textures (docs/textures.md, "Textures of a frame").
+// With TEXTURE, triangles may have textures, opaque or blended with the picture drawn so far. `parameters.textures` is the address of
+// their table (docs/textures.md, "Textures of a frame").
 //
 // Without TRIANGLES, triangle_raster is not built, and a descriptor that is no piece of a line counts as damaged. With neither TRIANGLES
 // nor LINES, list_reader is not built either: frames have fields only, `flags.first` and `flags.second` must be low, and the unit reads no

@@ -25,8 +25,8 @@ pub use textures::{TextureOptions, TextureReport};
 pub struct Options {
     /// Keeps the coordinates. Otherwise the mesh is scaled to the 1×1×1 box about the origin.
     pub keep_scale: bool,
-    /// Keeps the triangles in the order of the file. Otherwise those that are blended with the picture behind them come last, in the order of
-    /// the file, and the others are reordered if this reduces the number of vertices that the engine fetches.
+    /// Keeps the triangles in the order of the file. Otherwise those with blended textures come last, in the order of the file, and the
+    /// others are reordered if this reduces the number of vertices that the engine fetches.
     pub keep_order: bool,
     /// Reverses faces with the wrong winding.
     pub fix_winding: bool,

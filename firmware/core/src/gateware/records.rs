@@ -309,7 +309,7 @@ pub struct TextureHeader {
     pub cut_out: u8,
     /// Value of a transparent texel: a colour or an index.
     pub key: u16,
-    /// 0 opaque; 1 to 7 eighths of the texture's colour over what is behind it; 8 the sum of both.
+    /// 0 opaque; 1 to 7 opacity in eighths; 8 added to the picture behind it.
     pub blend: u8,
 }
 

@@ -263,7 +263,7 @@ impl Brush for Textures<'_> {
         let places = self.places.map(|place| place.value);
         self.textured.colour(depth, places, self.level, light)
     }
-    /// A blended pixel keeps the depth of what is behind it.
+    /// The depth behind a blended pixel stays.
     fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
         match self.textured.texture.blend() {
             Blend::Opaque => {

@@ -224,7 +224,7 @@ fn cut_out_texels_leave_colour_and_depth() {
     assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
 }
 
-/// A blended pixel has the blend of both colours, and the depth of what is behind it.
+/// Blending changes the colour of a pixel, and leaves its depth.
 #[test]
 fn blended_texels_keep_the_depth_behind_them() {
     const RED: u16 = 0xB800;

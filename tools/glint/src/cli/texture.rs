@@ -30,8 +30,8 @@ pub struct TexelArguments {
     /// from the file, otherwise bilinear].
     #[arg(long, value_name = "nearest|bilinear", value_parser = named(Filter::ALL, filter_name))]
     filter: Option<Filter>,
-    /// Blend the texture with the picture behind it: a number of eighths of its opacity, or `add` for the sum of both colours [default: from
-    /// the file, otherwise none].
+    /// Opacity of textures in eighths, over the picture behind them; `add` adds their colours to it,
+    /// and `none` makes them opaque [default: from the file, otherwise none].
     #[arg(long, value_name = "1..7|add|none", value_parser = named(Blend::ALL, blend_name))]
     blend: Option<Blend>,
 }
