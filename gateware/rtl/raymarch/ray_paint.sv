@@ -187,16 +187,8 @@ module ray_paint #(
     // In clock 18 the colour is in the format of the frame buffer: RGB565, or with `stereo` two luminances.
     logic [15:0] colour_18, colour_29;
 
-    // Rounds a channel to nearest, and saturates it.
-    function automatic logic [4:0] five(input logic [5:0] channel);
-        five = channel[5:1] == '1 ? '1 : channel[5:1] + 5'(channel[0]);
-    endfunction
-    function automatic logic [5:0] six(input logic [6:0] channel);
-        six = channel[6:1] == '1 ? '1 : channel[6:1] + 6'(channel[0]);
-    endfunction
-
     always_ff @(posedge clk) begin
-        colour_18 <= stereo ? {faded_17[1], faded_17[1]} : {five(faded_17[0][7:2]), six(faded_17[1][7:1]), five(faded_17[2][7:2])};
+        colour_18 <= stereo ? {faded_17[1], faded_17[1]} : colour_pkg::rgb565(faded_17);
     end
 
     delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable(1'b1), .in(colour_18), .out(colour_29));

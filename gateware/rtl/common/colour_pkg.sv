@@ -1,0 +1,42 @@
+// Conversion of colours to the format of the frame buffer.
+
+`default_nettype none
+
+package colour_pkg;
+    /* verilator lint_off UNUSEDSIGNAL */
+    // Converts {blue, green, red} to RGB565: rounds each channel to nearest, and saturates it.
+    function automatic logic [15:0] rgb565(input logic [2:0][7:0] colour);
+        logic [4:0] red, blue;
+        logic [5:0] green;
+        red    = colour[0][7:3] == '1 ? '1 : colour[0][7:3] + 5'(colour[0][2]);
+        green  = colour[1][7:2] == '1 ? '1 : colour[1][7:2] + 6'(colour[1][1]);
+        blue   = colour[2][7:3] == '1 ? '1 : colour[2][7:3] + 5'(colour[2][2]);
+        rgb565 = {red, green, blue};
+    endfunction
+
+    // Converts {blue, green, red}, with 248 for full red and blue and 252 for full green, to RGB565 for the pixel in column x and line y of a
+    // pattern of 4x4 pixels: adds a threshold below one step to each channel, and rounds down. The next step of a channel is the same in all
+    // pixels, so only the choice between the steps is made for each pixel.
+    function automatic logic [15:0] dithered(input logic [2:0][7:0] colour, input logic [1:0] x, input logic [1:0] y);
+        logic [2:0] threshold;
+        logic [4:0] red, blue;
+        logic [5:0] green;
+        case ({y, x})
+            4'd0, 4'd10:  threshold = 3'd0;
+            4'd2, 4'd8:   threshold = 3'd1;
+            4'd5, 4'd15:  threshold = 3'd2;
+            4'd7, 4'd13:  threshold = 3'd3;
+            4'd1, 4'd11:  threshold = 3'd4;
+            4'd3, 4'd9:   threshold = 3'd5;
+            4'd4, 4'd14:  threshold = 3'd6;
+            default:      threshold = 3'd7;
+        endcase
+        red      = colour[0][2:0] > ~threshold ? colour[0][7:3] + 1'b1 : colour[0][7:3];
+        green    = colour[1][1:0] > ~threshold[2:1] ? colour[1][7:2] + 1'b1 : colour[1][7:2];
+        blue     = colour[2][2:0] > ~threshold ? colour[2][7:3] + 1'b1 : colour[2][7:3];
+        dithered = {red, green, blue};
+    endfunction
+    /* verilator lint_on UNUSEDSIGNAL */
+endpackage
+
+`default_nettype wire
