@@ -4,7 +4,7 @@ use core::mem;
 
 use glint_core::deviation::Deviation;
 use glint_core::mesh::Mesh;
-use glint_core::shape::{MAX_BYTES, Shape};
+use glint_core::shape::Shape;
 use glint_scene::CUBE;
 
 use crate::cube;
@@ -62,10 +62,10 @@ impl Shapes {
         let place = self.shapes.get_mut(shape as usize)?;
         if place.is_none() {
             let memory = mem::take(&mut self.memory);
-            let (bytes, rest) = memory.split_at_mut_checked(MAX_BYTES)?;
+            let length = shape.write(memory)?;
+            let (bytes, rest) = memory.split_at_mut_checked(length)?;
             self.memory = rest;
-            let length = shape.write(bytes)?;
-            *place = Mesh::new_checked(bytes.get(..length)?).ok();
+            *place = Mesh::new_checked(bytes).ok();
         }
         *place
     }

@@ -16,7 +16,7 @@ pub use crate::records::TextureHeader;
 use crate::records::WORD;
 use crate::wire::crc_32_without;
 pub use blend::{Blend, Eighths};
-pub use draw::draw;
+pub use draw::{Picture, draw};
 #[cfg(feature = "alloc")]
 pub use encode::{Source, encode};
 

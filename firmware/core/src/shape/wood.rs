@@ -1,13 +1,19 @@
 //! The texture of the crate: pictures of two of its sides, next to each other.
 
 use crate::colour::Rgb565;
+use crate::texture::{Blend, Picture};
 
 /// Base-2 logarithm of the width and height of a side in texels.
 const SIDE_LOG2: u8 = 6;
 /// Width and height of a side in texels.
 const SIDE: u32 = 1 << SIDE_LOG2;
-/// Base-2 logarithms of the width and height of the texture.
-pub const SIZE_LOG2: [u8; 2] = [SIDE_LOG2 + 1, SIDE_LOG2];
+/// The texture: the left half is the side with a brace, the right half the side with a star.
+pub const PICTURE: Picture = Picture {
+    size_log2: [SIDE_LOG2 + 1, SIDE_LOG2],
+    is_cut_out: false,
+    blend: Blend::Opaque,
+    texel,
+};
 
 /// Width of a board of the frame in texels.
 const FRAME: u32 = 10;
@@ -51,11 +57,9 @@ const COLOURS: [Rgb565; 16] = [
     Rgb565::from_rgb888([0xFF, 0xF4, 0xA8]),
 ];
 
-/// The colour of a texel. The left half of the texture is the side with a brace, the right half the side
-/// with a star.
-pub fn texel([x, y]: [u32; 2]) -> Rgb565 {
-    let colour = COLOURS.get(place(x, y));
-    colour.copied().unwrap_or_default()
+/// The colour of a texel.
+fn texel([x, y]: [u32; 2]) -> Option<Rgb565> {
+    COLOURS.get(place(x, y)).copied()
 }
 
 /// Index of a texel's colour in `COLOURS`.

@@ -3,6 +3,7 @@
 use glint_core::mesh::{Attribute, Mesh, Rgb565};
 use glint_core::records::TextureCoordinates;
 use glint_core::shape::{MAX_BYTES, Shape};
+use glint_core::texture::Blend;
 
 fn bytes(shape: Shape) -> Vec<u8> {
     let mut memory = vec![0xA5; MAX_BYTES];
@@ -19,6 +20,7 @@ fn shapes_are_meshes() {
         (Shape::Cylinder, 640, 1024),
         (Shape::Polygons, 18, 6),
         (Shape::Crate, 24, 12),
+        (Shape::Atrium, 544, 270),
     ] {
         let bytes = bytes(shape);
         let mesh = Mesh::new_checked(&bytes).expect("a mesh");
@@ -107,10 +109,42 @@ fn the_crate_has_a_texture() {
     }
 }
 
+/// The textures of the atrium are opaque, cut out, and blended. Blended faces come last, and texels of all levels of the cut-out are
+/// transparent and opaque.
+#[test]
+fn the_atrium_has_textures() {
+    let bytes = bytes(Shape::Atrium);
+    let mesh = Mesh::new_checked(&bytes).expect("a mesh");
+    let textures: Vec<_> = mesh.textures().collect();
+    let blended: Vec<_> = (1..)
+        .zip(&textures)
+        .filter(|(_, texture)| texture.blend() != Blend::Opaque)
+        .map(|(number, _)| number)
+        .collect();
+    assert_eq!((textures.len(), &blended[..]), (6, &[6_u8][..]));
+    let chunk = mesh.chunks().next().expect("a chunk");
+    let used: Vec<_> = chunk.triangles().map(|triangle| triangle.texture).collect();
+    let first = used.iter().position(|number| blended.contains(number));
+    let first = first.expect("glass");
+    assert!(used[first..].iter().all(|number| blended.contains(number)));
+    assert!((1..=6).all(|number| used.contains(&number)));
+    for (number, texture) in textures.iter().enumerate() {
+        for level in 0..4 {
+            let [width, height] = texture.level_log2(level).map(|side| 1 << side);
+            let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+            let opaque = places.filter(|&place| texture.colour(level, place).is_some());
+            let share = opaque.count() as f64 / f64::from(width * height);
+            // The leaves cover less than half of their picture, with about the same share in smaller levels.
+            let expected = if number == 3 { 0.2..0.45 } else { 1.0..1.1 };
+            assert!(expected.contains(&share), "{number} {level}: {share}");
+        }
+    }
+}
+
 #[test]
 fn short_memory_is_refused() {
     for length in [0, 47, 48, 1000, 20_000] {
-        for shape in [Shape::Sphere, Shape::Crate] {
+        for shape in [Shape::Sphere, Shape::Crate, Shape::Atrium] {
             assert_eq!(shape.write(&mut vec![0; length]), None, "{length}");
         }
     }

@@ -49,7 +49,7 @@ fn meshes_have_names_and_share_the_memory() {
     let list =
         |console: &mut Console<SimulatedBoard<EmulatedBoard>>| console.command("models").unwrap();
     let all = [
-        "built-in cube sphere torus cylinder polygons crate".to_owned(),
+        "built-in cube sphere torus cylinder polygons crate atrium".to_owned(),
         format!("mesh a vertices 24 triangles 12 bytes {}", a.len()),
         format!("mesh b vertices 12 triangles 20 bytes {}", b.len()),
         format!("mesh c vertices 42 triangles 80 bytes {}", c.len()),
