@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Generate a model: cube, icosphere:N, torus-knot, gear, teapot, globe, room, fence, window, scan:N or sponge:N.
+/// Generate a model: cube, icosphere:N, torus-knot, gear, teapot, globe, hall, fence, window, scan:N or sponge:N.
 #[derive(Args)]
 pub struct ModelArguments {
     /// Name of the generator.

@@ -1,11 +1,11 @@
-//! Generated models: closed surfaces, counter-clockwise seen from outside, z up. Room, fence and window are open.
+//! Generated models: closed surfaces, counter-clockwise seen from outside, z up. Hall, fence and window are open.
 
 mod builder;
 mod cube;
 mod gear;
 mod globe;
+mod hall;
 mod icosphere;
-mod room;
 mod scan;
 mod sponge;
 mod teapot;
@@ -15,7 +15,7 @@ use crate::error::FormatError;
 use crate::polygons::Polygons;
 
 /// Names of the generators, for messages and help.
-pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe, room, fence, window (these four with textures), \
+pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, globe, hall, fence, window (these four with textures), \
     scan:N (frequency, 1 to 64) or sponge:N (0 to 4)";
 
 /// Whether a name is the name of a generator, not of a file.
@@ -29,7 +29,7 @@ pub fn is_name(name: &str) -> bool {
             | "gear"
             | "teapot"
             | "globe"
-            | "room"
+            | "hall"
             | "fence"
             | "window"
             | "sponge"
@@ -59,9 +59,9 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         ("gear", None) => gear::gear(),
         ("teapot", None) => teapot::teapot(),
         ("globe", None) => globe::globe(),
-        ("room", None) => room::room(),
-        ("fence", None) => room::fence(),
-        ("window", None) => room::window(),
+        ("hall", None) => hall::hall(),
+        ("fence", None) => hall::fence(),
+        ("window", None) => hall::window(),
         ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
         ("scan", Some(frequency @ 1..=64)) => scan::scan(frequency),
         _ => Err(refuse()),
@@ -158,17 +158,17 @@ mod tests {
         }
     }
 
-    /// Room, fence and window are open and textured; the textures of fence and window have transparent texels.
+    /// Hall, fence and window are open and textured; the textures of fence and window have transparent texels.
     #[test]
     fn props_have_textures() {
-        for (name, triangles, textures) in [("room", 8, 2), ("fence", 4, 1), ("window", 20, 2)] {
+        for (name, triangles, textures) in [("hall", 8, 2), ("fence", 4, 1), ("window", 20, 2)] {
             let polygons = named(name).unwrap();
             let (bytes, report) = convert::convert(&polygons, Options::default()).unwrap();
             let counts = (report.triangles, report.degenerate);
             assert_eq!(counts, (triangles, 0), "{name}");
             assert_eq!(report.textures.len(), textures, "{name}");
             let cut_out = report.textures.iter().any(|texture| texture.report.cut_out);
-            assert_eq!(cut_out, name != "room");
+            assert_eq!(cut_out, name != "hall");
             assert!(report.remarks.is_empty(), "{:?}", report.remarks);
             let mesh = glm::check(&bytes).unwrap();
             let mut all = mesh.chunks().flat_map(|chunk| chunk.triangles());

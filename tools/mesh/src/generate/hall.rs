@@ -1,4 +1,4 @@
-//! A room that is seen from inside, a fence with transparent gaps, and a window of glass, with generated textures.
+//! A hall that is seen from inside, a fence with transparent gaps, and a window of glass, with generated textures.
 
 use crate::error::{FormatError, Location};
 use crate::polygons::{Content, Corner, Polygons, Rgb8, Texture, Vector};
@@ -6,9 +6,9 @@ use glint_core::texture::{Filter, Sampler};
 use glint_texture::picture::Picture;
 use std::sync::Arc;
 
-/// Half of the width and of the depth of the room.
+/// Half of the width and of the depth of the hall.
 const HALF: f64 = 2.0;
-/// Height of the room's walls.
+/// Height of the hall's walls.
 const HEIGHT: f64 = 2.0;
 /// Width and height of each picture in texels.
 const SIDE: u32 = 64;
@@ -19,7 +19,7 @@ const BAR: u32 = 2;
 const GLASS: u8 = 96;
 
 /// A floor of tiles and three walls of bricks, without a ceiling; the side at −y is open.
-pub fn room() -> Result<Polygons, FormatError> {
+pub fn hall() -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     let tiles = add_picture(&mut polygons, "tiles", None, tile)?;
     let bricks = add_picture(&mut polygons, "bricks", None, brick)?;
