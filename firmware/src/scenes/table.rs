@@ -6,7 +6,7 @@ use glint_core::feature;
 use super::built_in::BuiltIn;
 
 /// The built-in scenes, in the order of their names.
-pub static SCENES: [BuiltIn; 10] = [
+pub static SCENES: [BuiltIn; 11] = [
     // Unbounded repeated cubes in fog
     BuiltIn::picture(
         "cubes",
@@ -91,6 +91,26 @@ stereo 0.03,1.6,red-cyan
 material ivory
 field menger:3
 imu look
+",
+    ),
+    // A sponge in a room with plants, windows and a screen of glass
+    BuiltIn::picture(
+        "room",
+        &[feature::CPU, feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::TEXTURE, feature::VIEW],
+        "\
+quality balanced
+lookat 3.4 -4.9 1.5 -3.58 4.84 -1.97
+fov 58
+material gold
+light 0.82,-0.62,2,fff0d8
+ambient 585c6c
+shadow on
+background sky
+occlusion on
+textures on
+scene atrium
+mesh on
+field menger:3
 ",
     ),
     // SimpleGPU: six polygons, clipped to the view volume, without light

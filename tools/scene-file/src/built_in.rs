@@ -20,6 +20,7 @@ built_in!(
     "mesh-in-field",
     "objects",
     "poor-mans-vr",
+    "room",
     "simplegpu",
     "spheres",
     "wireframe",

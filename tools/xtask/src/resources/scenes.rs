@@ -99,12 +99,12 @@ fn stack(scene: &SceneFile, image: &Image) -> Result<u64> {
     bytes.with_context(|| format!("the stack of {name}: expected a number of bytes, got {last:?}"))
 }
 
-/// Draws a scene's frame on the virtual board with all blocks. This board has no smooth shading, so a scene with smooth shading is drawn
-/// by its own build. Returns the statistics of the frame and its number of pixels.
+/// Draws a scene's frame on the virtual board with all blocks. This board has no smooth shading and no textures, so a scene with either is
+/// drawn by its own build. Returns the statistics of the frame and its number of pixels.
 fn frame(scene: &SceneFile) -> Result<Value> {
     let name = scene.name();
     let needs = scene.needs();
-    let board = if needs.smooth {
+    let board = if needs.smooth || needs.texture {
         gateware::build_beside(name, &words(&needs.options()), Library::Quick)?
     } else {
         Board::Virtual.folder()
