@@ -6,7 +6,7 @@ use glint_core::feature;
 use super::built_in::BuiltIn;
 
 /// The built-in scenes, in the order of their names.
-pub static SCENES: [BuiltIn; 11] = [
+pub static SCENES: [BuiltIn; 12] = [
     // Unbounded repeated cubes in fog
     BuiltIn::picture(
         "cubes",
@@ -34,6 +34,22 @@ field cubes:2,0.4
 quality fast
 camera 2.5 40 65
 scene torus
+gesture on
+",
+    ),
+    // HoloForge: a crate with a texture that a hand turns
+    BuiltIn::picture(
+        "holoforge-textured",
+        &[feature::CPU, feature::GESTURE, feature::LIGHT, feature::MESH, feature::TEXTURE, feature::VIEW],
+        "\
+quality fast
+camera 2.5 40 65
+fov 52
+light 2,1,3,fff0d8
+ambient 6c7080
+background sky
+textures on
+scene crate
 gesture on
 ",
     ),

@@ -16,6 +16,7 @@ built_in!(
     "cubes",
     "demo",
     "holoforge",
+    "holoforge-textured",
     "menger",
     "mesh-in-field",
     "objects",
