@@ -2,8 +2,9 @@
 // has any of four rows in any spans (ranges of rows), and four words may be requested at a time. Back-pressure and restarts occur at any
 // time.
 //
-// Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. The expected words are therefore the
-// colours of the rows in the spans, in order, each once, and both halves of each row's depths, after its colours. After the flush these
+// Row r of the bank holds r in every colour and r + 1 in every depth, and all its pixels but the rightmost are drawn. The expected words
+// are therefore the colours of the rows in the spans, in order, each once, and both halves of each row's depths, after its colours. The
+// rightmost pixel has the clear colour, or, in a flush with a sky, the number of its word. After the flush these
 // rows must be clear, and the other rows must not be clear. The model of the bank has the latencies of band_bank; a cleared row loses its
 // pixels.
 
@@ -19,6 +20,8 @@ module band_flush_proof (
     input wire       in_pieces,
     input wire       lingers,
     input wire       with_depth,
+    input wire       with_sky,
+    input wire       sky_valid,
     input wire       restart,
     input wire       out_ready
 );
@@ -41,8 +44,12 @@ module band_flush_proof (
     logic             span_valid, span_ready, spans_busy;
     logic [1:0]       span_first, span_last;
 
-    band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .WORDS(4)) dut (
-        .clk, .rst, .start, .base, .depth_base, .with_depth, .compose('0), .clear_colour(BACKGROUND), .restart,
+    logic             sky_ready;
+    logic [2:0]       sky_number;
+
+    band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .WORDS(4), .SKY(1)) dut (
+        .clk, .rst, .start, .base, .depth_base, .with_depth, .compose('0), .clear_colour(BACKGROUND), .with_sky, .restart,
+        .sky_valid, .sky_ready, .sky_line(2'd0), .sky_colour({5'(sky_number), 3'd0, 16'd0}),
         .idle, .sweeping, .reads_depth(), .waits(),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row, .colours, .codes, .written, .clears, .clear_row,
@@ -60,7 +67,7 @@ module band_flush_proof (
 
     assign colours = {8{14'b0, read_row}};
     assign codes   = {8{depth_of(read_row)}};
-    assign written = {8{read_drawn}};
+    assign written = {1'b0, {7{read_drawn}}};
 
     always_ff @(posedge clk) begin
         from_row      <= row;
@@ -128,8 +135,15 @@ module band_flush_proof (
     // which are equal.
     assign is_depth   = out_data[31:16] != out_data[15:0];
 
+    // The number of colour words of the flush that have been output.
+    logic [2:0]   word_number;
+    logic         flush_sky;
     logic [127:0] expected;
-    assign expected      = is_depth ? {4{14'b0, depth_of(depth_row)}} : {8{14'b0, colour_row}};
+    always_comb begin
+        expected = is_depth ? {4{14'b0, depth_of(depth_row)}} : {8{14'b0, colour_row}};
+        if (!is_depth)  expected[127:112] = flush_sky ? 16'(word_number) : BACKGROUND;
+        else if (half)  expected[127:96]  = '0;
+    end
     assign expected_addr = is_depth ? flush_depth_base + {3'b0, depth_row, half} : flush_base + 6'(colour_row);
 
     logic [3:0] without_word, without_end, sweep_clocks;
@@ -147,6 +161,7 @@ module band_flush_proof (
             flush_depth_base <= depth_base;
             flush_depth      <= with_depth;
             flush_rows       <= rows;
+            flush_sky        <= with_sky;
             colour_rows      <= rows;
             depth_rows       <= with_depth ? rows : '0;
             half             <= 1'b0;
@@ -155,7 +170,9 @@ module band_flush_proof (
             if (restart) dropped <= 1'b1;
         end
 
-        without_word <= idle || sweeping || moves || !out_ready || spans_busy && !span_valid ? '0 : without_word + 1'b1;
+        sky_number  <= start ? '0 : sky_number + 3'(sky_ready);
+        word_number <= start ? '0 : word_number + 3'(moves && !is_depth);
+        without_word <= idle || sweeping || moves || !out_ready || spans_busy && !span_valid || flush_sky && !sky_valid ? '0 : without_word + 1'b1;
         without_end  <= idle || sweeping || dropped || spans_busy || !none_left ? '0 : without_end + 1'b1;
         sweep_clocks <= !sweeping || restart ? '0 : sweep_clocks + 1'b1;
 
@@ -192,6 +209,7 @@ module band_flush_proof (
 
         words_in_order:    assert (!out_valid || out_data == expected);
         in_their_places:   assert (!out_valid || out_addr == expected_addr);
+        sky_in_time:       assert (!sky_ready || sky_valid && flush_sky);
         none_made_up:      assert (!out_valid || (is_depth ? depth_rows : colour_rows) != '0);
         colour_first:      assert (!out_valid || !is_depth || !colour_rows[depth_row]);
         all_taken:         assert (!idle || !out_valid);

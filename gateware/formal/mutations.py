@@ -132,10 +132,14 @@ MUTATIONS = {
         # Fault: a span begins where the previous span ended instead of at its own first row.
         _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
         # Fault: the flush admits more words than fit the FIFO.
-        _flush("in_span && places != '0;", "in_span;", "words_in_order"),
+        _flush("in_span && places != '0 && (", "in_span && (", "words_in_order"),
         # Fault: the flush clears a row before it reads the row's depth.
         _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
+        # Fault: the flush takes a colour of the sky for each word of depths, too.
+        _flush("assign sky_ready   = issue && takes_sky && part == COLOUR;", "assign sky_ready = issue && takes_sky;", "sky_in_time"),
+        _flush("takes_sky ? sky_colour : clear_colours}", "sky_colour}", "words_in_order"),
+        _flush("|| sky_valid);", "|| 1'b1);", "sky_in_time"),
         _flush("&& row == last_row;", "&& row == '1;", "none_made_up"),
         _flush("if (part_ends)               row <= first_row;", "if (part_ends) row <= row;", "none_left_out"),
         _flush("COLOUR:     if (part_ends && depth_too)", "COLOUR: if (depth_too)", "colour_first"),

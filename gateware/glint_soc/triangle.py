@@ -48,15 +48,15 @@ class TriangleEngine(LiteXModule):
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
     `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures (they
-    exclude each other), `fields` adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine
+    exclude each other), `has_sky` adds the sky behind triangles, `fields` adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine
     draws only lines and fields, and does not use the port of the vertices; with neither triangles nor lines it uses only the last two
     writers. The registers are the same. A build without `triangles` may also omit `depths`, the memory for the depths of a band. Without
     `has_geometry`, for builds without lines, the engine draws triangles from the firmware's lists, and does not use the ports of mesh,
     vertices, descriptors and lists.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, fields=False, lines=False,
-                 has_geometry=True, depths=True):
+    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, has_sky=False, fields=False,
+                 lines=False, has_geometry=True, depths=True):
         has_geometry = has_geometry and (triangles or lines)
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
@@ -82,6 +82,7 @@ class TriangleEngine(LiteXModule):
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
             CSRField("textures", offset=14, reset=int(texture), description="Textures: descriptors are "
                      f"{TEXTURE_BYTES} bytes longer."),
+            CSRField("sky", offset=15, reset=int(has_sky), description="The sky behind triangles."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
@@ -169,9 +170,13 @@ class TriangleEngine(LiteXModule):
             CSRField("slot", offset=6, description="Number of the frame buffer: the engine remembers the extents of the last frame in each "
                      "slot."),
             CSRField("whole", offset=7, description="Write the whole frame buffer. Required for the first frame in a frame buffer, "
-                     "after a cancelled frame, after a change of size or `clear`, and after writes by the CPU."),
-        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures` must hold "
-            "while it runs.")
+                     "after a cancelled frame, after a change of size, `clear` or `sky`, and after writes by the CPU."),
+            CSRField("sky", offset=8, description="Draw the sky in place of `clear`, in a frame without a field. Implies `whole`. No effect "
+                     "without `sky` in `caps`."),
+            CSRField("sky_first", offset=9, description="With `sky`: draw the sky before the triangles of each band, as textures that are "
+                     "blended with it require, instead of during the flush, which takes no time. No effect without `textures` in `caps`."),
+        ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those "
+            "from `sky_above` on, must hold while it runs.")
         self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
         self._depth = Parameter(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
         self._clear = Parameter(16, name="clear", description="Background colour, RGB565.")
@@ -233,6 +238,18 @@ class TriangleEngine(LiteXModule):
         self._colour = Parameter(16, name="colour", description="Colour instead of those of the mesh, with `recolour` in "
                                  "`geometry`, RGB565.")
 
+        # More parameters of the raster pass.
+        sky = {
+            "above": Parameter(32, name="sky_above", description="Height of the sky, s8.23, two's complement, for the first eight pixels of "
+                               "the line above the picture."),
+            "across": Parameter(32, name="sky_across", description="Change of the height over eight pixels."),
+            "down": Parameter(32, name="sky_down", description="Change of the height from a line to the next."),
+            **{name: Parameter(24, name=f"sky_{name}", description=f"Colour of the sky at the {name}: red in bits 0 to 7, green in bits 8 "
+                               "to 15, blue in bits 16 to 23.") for name in ("zenith", "horizon", "nadir")},
+        }
+        for name, register in sky.items():
+            setattr(self, f"_sky_{name}", register)
+
         recovering = Signal()
         self.clock_control = ClockControl(
             recovering | self._control.fields.cancel | self._status.fields.geometry_busy | self._status.fields.raster_busy)
@@ -242,7 +259,8 @@ class TriangleEngine(LiteXModule):
              self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient,
              self._colour, *([self._coordinates, self._first_texture] if texture else [])],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()),
-             *([self._textures] if texture else [])])
+             *([self._textures] if texture else []),
+             *(sky.values() if has_sky else [])])
         # A raymarcher copies its parameters when the raster pass is requested; the pass waits until engine and
         # raymarcher have copied their parameters.
         self.raster_load, self.field_loading = Signal(), Signal()
@@ -285,7 +303,8 @@ class TriangleEngine(LiteXModule):
             "row_light": [register.storage for register in light],
         })
         raster_flags = Struct("raster_flags_t", "Flags of a raster pass.", {
-            name: getattr(self._raster.fields, name) for name in ("size", "first", "second", "depth", "slot", "whole")})
+            name: getattr(self._raster.fields, name) for name in (
+                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first")})
         raster = Struct("raster_t", "Parameters of the raster pass. Memory regions are given by byte addresses.", {
             "frame": self._frame.storage,
             "depth": self._depth.storage,
@@ -294,6 +313,8 @@ class TriangleEngine(LiteXModule):
             **{name: [register.storage for register in registers] for name, registers in sets.items()},
             "textures": self._textures.storage,
         })
+        sky = Struct("sky_t", "The sky: heights, s8.23, and colours, {blue, green, red} (docs/formats/triangle.md, \"Sky\").", {
+            name: register.storage for name, register in sky.items()})
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
             name: register.status[:_COUNT_BITS] if name in counts else register.status for name, register in results.items()})
@@ -310,7 +331,7 @@ class TriangleEngine(LiteXModule):
             ("descriptors", "lists", "frame_even", "frame_odd"), writers, strict=True)}
         self.package = Package(
             "triangle", {"ADDRESS_BITS": _ADDRESS_BITS, "COUNT_BITS": _COUNT_BITS}, [ERRORS],
-            [geometry_flags, geometry, view, raster_flags, raster, results, status, self.counters.events, field_source, field_sink,
+            [geometry_flags, geometry, view, raster_flags, raster, sky, results, status, self.counters.events, field_source, field_sink,
              *read_ports["mesh"].values(), *write_ports["lists"].values()])
 
         geometry_kept, raster_kept = geometry_flags.signals(), raster_flags.signals()
@@ -358,6 +379,7 @@ class TriangleEngine(LiteXModule):
             p_TRIANGLES       = int(triangles),
             p_SMOOTH          = int(smooth),
             p_TEXTURE         = int(texture),
+            p_SKY             = int(has_sky),
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
             p_GEOMETRY        = int(has_geometry),
@@ -373,6 +395,7 @@ class TriangleEngine(LiteXModule):
             o_results         = results.value,
             i_raster_flags    = raster_kept.value,
             i_raster          = raster.value,
+            i_sky             = sky.value,
             i_field_source    = field_source.value,
             o_field_sink      = field_sink.value,
             o_events          = self.counters.events.value,

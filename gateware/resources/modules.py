@@ -67,7 +67,7 @@ _NO_GEOMETRY = {"GEOMETRY": 0}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES)), "SHADOW": 1}
 
 _SIMULATED = ("skid_buffer", "flash_reader", "binner", "vertex_stage", "vertex_cache", "reciprocal", "texture_sampler", "texture_place",
-              "texture_filter", "texture_loader", "colour_window", "line_setup", "line_raster", "exit_reciprocal")
+              "texture_filter", "texture_loader", "band_sky", "colour_window", "line_setup", "line_raster", "exit_reciprocal")
 _MEASURED = ("list_reader", "texture_shader", "field_sphere", *(f"field_{flat.name}" for flat in FLAT_FIELDS if flat.marches))
 
 RTL_MODULES = [
@@ -80,13 +80,13 @@ RTL_MODULES = [
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}, "fifo_block": {"BLOCK": 1}}),
     # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is 2^15 clocks, 0.4 ms.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
-    Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}, "band_buffer_blend": {"BLEND": 1}}),
+    Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}, "band_buffer_blend": {"BLEND": 1}, "band_buffer_sky": {"SKY": 1}}),
     Module(top="setup", variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_texture": {"TEXTURE": 1}, "triangle_engine_fields": {"FIELDS": 1},
-                     "triangle_engine_texture_fields": {"TEXTURE": 1, "FIELDS": 1},
+                     "triangle_engine_texture_fields": {"TEXTURE": 1, "SKY": 1, "FIELDS": 1},
                      "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_no_depths": _NO_DEPTHS,
                      "triangle_engine_lines": _LINES, "triangle_engine_lines_alone": _LINES_ALONE | {"DEPTHS": 0},
                      "triangle_engine_no_geometry": _NO_GEOMETRY,

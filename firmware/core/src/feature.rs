@@ -57,6 +57,8 @@ features! {
     OBJECT = "object";
     /// Textures of meshes.
     TEXTURE = "texture";
+    /// A sky behind meshes.
+    SKY = "sky";
     /// Edges of a mesh.
     EDGES = "edges";
     /// Programs of the wireframe simulator and their upload, and board buttons as its keys.

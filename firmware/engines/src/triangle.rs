@@ -7,7 +7,7 @@ use glint_hal::triangle::{
     self, DepthScale, GeometryStart, Lists, Prepared, Textures, TriangleEngine,
 };
 use glint_model::triangle::descriptor::Layout;
-use glint_model::{MeshLight, MeshSetup, Shading};
+use glint_model::{MeshLight, MeshSetup, Shading, Sky};
 
 /// A geometry pass of a mesh.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +65,28 @@ impl MeshPass<'_> {
             textures: self.textures,
             lists: self.lists,
         })
+    }
+}
+
+/// The sky of a raster pass; `is_first` if textures are blended with it.
+#[must_use]
+pub const fn sky(sky: &Sky, is_first: bool) -> triangle::Sky {
+    let &Sky {
+        above,
+        across,
+        down,
+        zenith,
+        horizon,
+        nadir,
+    } = sky;
+    triangle::Sky {
+        above,
+        across,
+        down,
+        zenith,
+        horizon,
+        nadir,
+        is_first,
     }
 }
 

@@ -159,10 +159,32 @@ pub struct Raster {
     pub depth: Option<u32>,
     /// Colour of pixels without a triangle, RGB565.
     pub clear: u16,
+    /// The sky, which replaces `clear`, in a pass without a field; only for gateware that [draws it](TriangleEngine::draws_sky).
+    pub sky: Option<Sky>,
     /// The capacity of a band list is 4 << `list_shift` entries; the next geometry pass must have an equal [`Lists::list_shift`].
     pub list_shift: u8,
     /// Input of the pass.
     pub input: Input,
+}
+
+/// The sky behind the triangles of a raster pass: heights, s8.23, and colours.
+#[derive(Clone, Copy, Debug)]
+pub struct Sky {
+    /// Height of the first eight pixels in the line above the picture.
+    pub above: i32,
+    /// Change of the height over eight pixels.
+    pub across: i32,
+    /// Change of the height from a line to the next.
+    pub down: i32,
+    /// Colour at the zenith: red, green, blue.
+    pub zenith: [u8; 3],
+    /// Colour at the horizon.
+    pub horizon: [u8; 3],
+    /// Colour at the nadir.
+    pub nadir: [u8; 3],
+    /// Whether the sky is drawn before the triangles of each band, so that textures can be blended with it, instead of during the flush,
+    /// which takes no time.
+    pub is_first: bool,
 }
 
 /// Input of a raster pass.
@@ -242,6 +264,12 @@ impl TriangleEngine {
     #[must_use]
     pub fn draws_textures(&self) -> bool {
         self.registers.caps().read().textures()
+    }
+
+    /// Whether this gateware draws the sky behind triangles.
+    #[must_use]
+    pub fn draws_sky(&self) -> bool {
+        self.registers.caps().read().sky()
     }
 
     /// Whether this gateware supports smooth shading, which makes descriptors longer.
@@ -367,6 +395,9 @@ impl TriangleEngine {
         if let Some(table) = pass.input.textures {
             registers.textures().write(table);
         }
+        if let Some(sky) = &pass.sky {
+            self.write_sky(sky);
+        }
         compiler_fence(Ordering::SeqCst);
         registers.raster().write(
             RasterStart::default()
@@ -376,8 +407,21 @@ impl TriangleEngine {
                 .with_second(second.is_some())
                 .with_depth(pass.depth.is_some())
                 .with_slot(pass.slot)
-                .with_whole(pass.whole),
+                .with_whole(pass.whole)
+                .with_sky(pass.sky.is_some())
+                .with_sky_first(pass.sky.is_some_and(|sky| sky.is_first)),
         );
+    }
+
+    fn write_sky(&self, sky: &Sky) {
+        let registers = &self.registers;
+        registers.sky_above().write(sky.above as u32);
+        registers.sky_across().write(sky.across as u32);
+        registers.sky_down().write(sky.down as u32);
+        let packed = |[red, green, blue]: [u8; 3]| u32::from_le_bytes([red, green, blue, 0]);
+        registers.sky_zenith().write(packed(sky.zenith));
+        registers.sky_horizon().write(packed(sky.horizon));
+        registers.sky_nadir().write(packed(sky.nadir));
     }
 
     /// Result of the last geometry pass.

@@ -2,7 +2,7 @@
 // fails if this file differs from the generator's output.
 
 /// CRC-32 of the SoC's pinned register map. A SoC with another value in `identity.build_id` has other registers.
-pub const BUILD_ID: u32 = 0x9057_fdd2;
+pub const BUILD_ID: u32 = 0xb8f0_a1dd;
 
 /// The interrupts. Their numbers are the bits in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3215,7 +3215,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5000) }
         }
 
-        /// `caps`, 15 bits: Capabilities of this build.
+        /// `caps`, 16 bits: Capabilities of this build.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3503,7 +3503,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5090) }
         }
 
-        /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures` must hold while it runs. Reads as 0.
+        /// `raster`, 10 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -3822,6 +3822,54 @@ pub mod triangle {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_5130) }
         }
+
+        /// `sky_above`, 32 bits: Height of the sky, s8.23, two's complement, for the first eight pixels of the line above the picture. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn sky_above(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5134) }
+        }
+
+        /// `sky_across`, 32 bits: Change of the height over eight pixels. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn sky_across(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5138) }
+        }
+
+        /// `sky_down`, 32 bits: Change of the height from a line to the next. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn sky_down(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_513c) }
+        }
+
+        /// `sky_zenith`, 24 bits: Colour of the sky at the zenith: red in bits 0 to 7, green in bits 8 to 15, blue in bits 16 to 23. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn sky_zenith(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5140) }
+        }
+
+        /// `sky_horizon`, 24 bits: Colour of the sky at the horizon: red in bits 0 to 7, green in bits 8 to 15, blue in bits 16 to 23. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn sky_horizon(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5144) }
+        }
+
+        /// `sky_nadir`, 24 bits: Colour of the sky at the nadir: red in bits 0 to 7, green in bits 8 to 15, blue in bits 16 to 23. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn sky_nadir(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5148) }
+        }
     }
 
     /// Offset of each register from the first register, in bytes. A register of two words has its high word at this offset.
@@ -3980,6 +4028,18 @@ pub mod triangle {
         pub const AMBIENT: u32 = 0x12c;
         /// `colour`.
         pub const COLOUR: u32 = 0x130;
+        /// `sky_above`.
+        pub const SKY_ABOVE: u32 = 0x134;
+        /// `sky_across`.
+        pub const SKY_ACROSS: u32 = 0x138;
+        /// `sky_down`.
+        pub const SKY_DOWN: u32 = 0x13c;
+        /// `sky_zenith`.
+        pub const SKY_ZENITH: u32 = 0x140;
+        /// `sky_horizon`.
+        pub const SKY_HORIZON: u32 = 0x144;
+        /// `sky_nadir`.
+        pub const SKY_NADIR: u32 = 0x148;
     }
 
     /// A value of `caps`.
@@ -4107,6 +4167,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_textures(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
+        }
+
+        /// `sky`, bit 15: The sky behind triangles.
+        #[inline]
+        #[must_use]
+        pub const fn sky(self) -> bool {
+            (self.0 >> 15) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `sky`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sky(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
         }
     }
 
@@ -4643,7 +4717,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
         }
 
-        /// `whole`, bit 7: Write the whole frame buffer. Required for the first frame in a frame buffer, after a cancelled frame, after a change of size or `clear`, and after writes by the CPU.
+        /// `whole`, bit 7: Write the whole frame buffer. Required for the first frame in a frame buffer, after a cancelled frame, after a change of size, `clear` or `sky`, and after writes by the CPU.
         #[inline]
         #[must_use]
         pub const fn whole(self) -> bool {
@@ -4655,6 +4729,34 @@ pub mod triangle {
         #[must_use]
         pub const fn with_whole(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
+        }
+
+        /// `sky`, bit 8: Draw the sky in place of `clear`, in a frame without a field. Implies `whole`. No effect without `sky` in `caps`.
+        #[inline]
+        #[must_use]
+        pub const fn sky(self) -> bool {
+            (self.0 >> 8) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `sky`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sky(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 8) | (value as u32 & 0x1) << 8)
+        }
+
+        /// `sky_first`, bit 9: With `sky`: draw the sky before the triangles of each band, as textures that are blended with it require, instead of during the flush, which takes no time. No effect without `textures` in `caps`.
+        #[inline]
+        #[must_use]
+        pub const fn sky_first(self) -> bool {
+            (self.0 >> 9) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `sky_first`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sky_first(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
         }
     }
 

@@ -121,6 +121,9 @@ impl Frame<'_> {
             };
             stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
         }
+        if let Some(sky) = constants.sky() {
+            sky.fill(buffer, progress)?;
+        }
         if constants.mesh().is_some() {
             let mut part = |number| self.part(constants, number);
             let mut show = |triangle: &DrawnTriangle| {
@@ -128,7 +131,8 @@ impl Frame<'_> {
                     progress();
                 }
             };
-            let clear = field.is_none().then_some(self.clear.0);
+            let is_clear = field.is_none() && constants.sky().is_none();
+            let clear = is_clear.then_some(self.clear.0);
             stats.mesh = Some(draw_parts(&mut part, clear, buffer, scratch, &mut show)?);
         }
         Ok(stats)

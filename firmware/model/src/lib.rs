@@ -24,6 +24,7 @@ pub mod mesh_in_field;
 mod options;
 pub mod raymarch;
 pub mod selftest;
+mod sky;
 mod stereo;
 pub mod triangle;
 pub mod wireframe;
@@ -36,6 +37,7 @@ pub use frame::{
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
 pub use options::MeshOptions;
+pub use sky::Sky;
 pub use stereo::Eyes;
 pub use triangle::{
     Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Placement, Projected, ScreenVertex, Stats,

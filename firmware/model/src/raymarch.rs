@@ -25,6 +25,7 @@ pub use glint_core::stereo::{Stereo, Tint};
 pub use lights::{Light, Lights, Shine};
 pub use marching::{MARCH_FRACTION, Marching};
 pub use options::{FieldOptions, Tuning};
+pub(crate) use paint::mixed;
 pub use paint::paint;
 pub use palette::Palette;
 pub use ray::{Ray, RayResult};

@@ -5,7 +5,7 @@ use core::mem;
 use glint_core::feature::TEXTURE;
 use glint_core::mesh::{Attribute, Mesh};
 use glint_core::picture::Size;
-use glint_core::texture::Texture;
+use glint_core::texture::{Blend, Texture};
 use glint_hal::triangle::{Lists, Set, Textures};
 use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{Layout, ListCounts, list_shift};
@@ -161,6 +161,8 @@ pub struct TextureTable {
     addresses: &'static mut [u32],
     /// Number of the last texture.
     count: usize,
+    /// Whether a texture is blended with the picture behind it.
+    blends: bool,
 }
 
 impl TextureTable {
@@ -171,12 +173,13 @@ impl TextureTable {
         Self {
             addresses,
             count: 0,
+            blends: false,
         }
     }
 
     /// Removes the textures of the previous frame.
     pub const fn clear(&mut self) {
-        self.count = 0;
+        (self.count, self.blends) = (0, false);
     }
 
     /// Adds the textures of a mesh to the table if they are new, and returns them for the geometry pass;
@@ -211,7 +214,13 @@ impl TextureTable {
         let next = self.count + 1;
         *self.addresses.get_mut(next)? = address;
         self.count = next;
+        self.blends |= texture.blend() != Blend::Opaque;
         u8::try_from(next).ok()
+    }
+
+    /// Whether a texture of the frame is blended with the picture behind it.
+    pub const fn blends(&self) -> bool {
+        TEXTURE.is_built && self.blends
     }
 
     /// The address of the table for the engine; `None` without textures.

@@ -17,6 +17,8 @@ pub enum Fallback {
     NoSmoothShading,
     /// This gateware is built without textures.
     NoTextures,
+    /// This gateware is built without the sky behind meshes.
+    NoSky,
     /// The triangle engine draws textures under flat light only.
     SmoothTextures,
     /// The frame has more textures than the triangle engine can number.
@@ -42,6 +44,7 @@ impl Fallback {
         match self {
             Self::NoSmoothShading => Some("--smooth"),
             Self::NoTextures => Some("--texture"),
+            Self::NoSky => Some("without --no-sky"),
             Self::Field(_) => Some("--fields all"),
             Self::NoRaymarcher => Some("--blocks scanout triangle raymarch"),
             Self::NoLineEngine => Some("--blocks scanout triangle line"),
@@ -108,6 +111,7 @@ impl fmt::Display for Fallback {
             Self::NoTextures => f.write_str(
                 "triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast",
             )?,
+            Self::NoSky => f.write_str("triangle engine: this gateware has no sky behind meshes")?,
             Self::SmoothTextures => f.write_str(
                 "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
             )?,

@@ -8,7 +8,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, WIREFRAME};
 use glint_core::picture::Size;
 use glint_engines::raymarch::{ray_counts, set_field, tables};
-use glint_engines::triangle::{layout, size_code};
+use glint_engines::triangle::{layout, size_code, sky as sky_of};
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{Counters, EngineError, Error, Input, Prepared, Raster, TriangleEngine};
@@ -59,6 +59,7 @@ pub struct GatewareRenderer {
     raymarcher: Option<Raymarcher>,
     draws_triangles: bool,
     draws_lines: bool,
+    draws_sky: bool,
     /// Layout of the descriptors of this gateware.
     layout: Layout,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
@@ -70,7 +71,7 @@ pub struct GatewareRenderer {
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
     /// Size and background of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the
-    /// buffer since.
+    /// buffer since, or if the background was a sky.
     drawn: [Option<(Size, Rgb565)>; 2],
     stage: Stage,
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
@@ -109,6 +110,7 @@ impl GatewareRenderer {
         Some(Self {
             draws_triangles: engine.draws_triangles(),
             draws_lines: engine.draws_lines(),
+            draws_sky: engine.draws_sky(),
             layout,
             engine,
             raymarcher,
@@ -290,7 +292,7 @@ impl GatewareRenderer {
     ) -> Result<(), Fallback> {
         self.stage = next.map_err(|error| self.cancel(output, error))?;
         if self.stage == Stage::Raster {
-            self.start_raster(frame, output, self.input(0));
+            self.start_raster(frame, output, 0);
         } else {
             self.pass_start = cpu::cycles_low();
         }
@@ -347,10 +349,14 @@ impl GatewareRenderer {
         let field = self.raymarcher_counters(frame);
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
+        let sky_pixels = match self.constants[place].sky() {
+            Some(_) if self.buffers[place].textures.blends() => frame.size.pixel_count() as u32,
+            Some(_) | None => 0,
+        };
         let mesh = self.constants[place].mesh().map(|_| Stats {
             pixels_tested: None,
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
-            pixels_drawn: counters.pixels_drawn.into(),
+            pixels_drawn: counters.pixels_drawn.wrapping_sub(sky_pixels).into(),
             ..self.buffers[place].stats
         });
         let wireframe = matches!(frame.subject, Subject::Wireframe(_)).then(|| WireframeStats {
@@ -440,7 +446,11 @@ impl GatewareRenderer {
                 return Err(Fallback::Orthographic);
             }
         }
-        Ok(self.constants[place].update(frame)?)
+        self.constants[place].update(frame)?;
+        if self.constants[place].sky().is_some() && !self.draws_sky {
+            return Err(Fallback::NoSky);
+        }
+        Ok(())
     }
 
     /// Writes the raymarcher's registers for the field of `self.constants[place]`, or turns the raymarcher off if there is no field. With
@@ -463,19 +473,27 @@ impl GatewareRenderer {
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(tables(&field.palette)))
     }
 
-    fn start_raster(&mut self, frame: &Frame, output: &mut Output, input: Input) {
+    /// Starts the raster pass of the lists in `self.buffers[place]`.
+    fn start_raster(&mut self, frame: &Frame, output: &mut Output, place: usize) {
+        let buffers = &self.buffers[place];
         let slot = self.slot(output.colour);
         let drawn = &mut self.drawn[usize::from(slot)];
-        let this = Some((frame.size, frame.clear));
+        let sky = self.constants[place].sky();
+        let this = Some((frame.size, frame.clear)).filter(|_| sky.is_none());
         let pass = Raster {
             size: size_code(frame.size),
             frame: address(output.colour),
             slot,
+            // A pass with a sky always writes every pixel.
             whole: *drawn != this,
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
-            list_shift: self.buffers[0].list_shift(frame.size),
-            input,
+            sky: sky.map(|constants| sky_of(constants, buffers.textures.blends())),
+            list_shift: buffers.list_shift(frame.size),
+            input: Input {
+                sets: buffers.sets,
+                textures: buffers.textures.address(),
+            },
         };
         *drawn = this;
         // SAFETY: the lists belong to this renderer and stay until the end of the pass; the caller lends the memory of
@@ -499,15 +517,6 @@ impl GatewareRenderer {
         self.stage = Stage::Idle;
         self.invalidate(output.colour);
         error
-    }
-
-    /// The lists and textures in `self.buffers[place]`.
-    fn input(&self, place: usize) -> Input {
-        let buffers = &self.buffers[place];
-        Input {
-            sets: buffers.sets,
-            textures: buffers.textures.address(),
-        }
     }
 
     fn slot(&self, colour: &[u16]) -> bool {

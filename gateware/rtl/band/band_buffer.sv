@@ -40,6 +40,9 @@
 // the words drawn now is written to memory. With `whole` all words are written to memory. `whole` is required if the lines in the frame
 // buffer have changed since the last flush to this slot, or if the clear colour or the stride differs from that flush.
 //
+// With SKY, a band with `band_sky` has, in place of the clear colour, a colour of the stream `sky_*` for each of its words, in the order of
+// the words. It must be `whole`.
+//
 // `with_depth` is for debugging: the depths of the whole band are also written to memory, as 32-bit words from `depth_base` on, and
 // `whole` is implied. The next band is drawn only after this flush, which writes three words per row.
 //
@@ -57,7 +60,8 @@ module band_buffer #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter bit          STEREO       = 1'b0,
     parameter bit          DEPTHS       = 1'b1,
-    parameter bit          BLEND        = 1'b0
+    parameter bit          BLEND        = 1'b0,
+    parameter bit          SKY          = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -94,6 +98,12 @@ module band_buffer #(
     input  wire                     band_with_depth,
     input  wire  [15:0]             band_clear,
     input  wire  [1:0]              band_compose,
+    input  wire                     band_sky,
+    // Colours of the sky, one for each row of a band with `band_sky`.
+    input  wire                     sky_valid,
+    output logic                    sky_ready,
+    input  wire  [1:0]              sky_line,
+    input  wire  [23:0]             sky_colour,
     // Words for memory.
     output logic                    word_valid,
     input  wire                     word_ready,
@@ -154,14 +164,14 @@ module band_buffer #(
         .whole(band_whole || band_with_depth), .busy(spans_busy), .span_valid, .span_ready, .span_first, .span_last
     );
 
-    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS), .STEREO(STEREO)) flush (
+    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS), .STEREO(STEREO), .SKY(SKY)) flush (
         .clk, .rst,
         .start(swap), .base(band_base), .depth_base(band_depth_base), .with_depth(band_with_depth),
-        .clear_colour(band_clear), .compose(band_compose), .restart, .idle(flush_idle), .sweeping(clearing),
+        .clear_colour(band_clear), .with_sky(band_sky), .compose(band_compose), .restart, .idle(flush_idle), .sweeping(clearing),
         .reads_depth(flush_reads_depth), .waits(flush_waits),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),
-        .clears(flush_clears), .clear_row(flush_clear_row),
+        .clears(flush_clears), .clear_row(flush_clear_row), .sky_valid, .sky_ready, .sky_line, .sky_colour,
         .out_valid(word_valid), .out_ready(word_ready), .out_addr(word_addr), .out_data(word_data)
     );
 

@@ -5,7 +5,7 @@
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour for pixels that are not
-// written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left
+// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*`, dithered (band_sky). With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left
 // luminance becomes red, the right luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the
 // right luminance green and blue. The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read
 // again after its colours: the depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses
@@ -30,7 +30,8 @@ module band_flush #(
     // Depth of the word FIFO, a power of two: the largest number of words that are requested and not yet taken. If words are taken at
     // once, an entry is free again 6 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
-    parameter bit          STEREO       = 1'b0
+    parameter bit          STEREO       = 1'b0,
+    parameter bit          SKY          = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -40,6 +41,7 @@ module band_flush #(
     input  wire  [ADDRESS_BITS-1:0] depth_base,
     input  wire                     with_depth,
     input  wire  [15:0]             clear_colour,
+    input  wire                     with_sky,
     input  wire  [1:0]              compose,
     input  wire                     restart,
     output logic                    idle,
@@ -60,6 +62,11 @@ module band_flush #(
     input  wire  [7:0]              written,
     output logic                    clears,
     output logic [ROW_BITS-1:0]     clear_row,
+    // Colours of the sky, one for each row.
+    input  wire                     sky_valid,
+    output logic                    sky_ready,
+    input  wire  [1:0]              sky_line,
+    input  wire  [23:0]             sky_colour,
     // Words.
     output logic                    out_valid,
     input  wire                     out_ready,
@@ -74,9 +81,9 @@ module band_flush #(
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
     state_t                state;
     part_t                 part, last_part;
-    logic                  depth_too, in_span, issue, part_ends, span_ends;
+    logic                  depth_too, in_span, issue, part_ends, span_ends, takes_sky;
     logic [ROW_BITS-1:0]   first_row, last_row;
-    logic [15:0]           background;
+    logic [15:0]           clear;
     logic [1:0]            composing;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
     // Number of words that may still be requested: the number of FIFO entries that are not reserved.
@@ -86,7 +93,8 @@ module band_flush #(
     assign sweeping    = state == SWEEP;
     assign reads_depth = state == FLUSH && depth_too;
     assign waits       = state == FLUSH && in_span && places == '0;
-    assign issue       = state == FLUSH && in_span && places != '0;
+    assign issue       = state == FLUSH && in_span && places != '0 && (!takes_sky || part != COLOUR || sky_valid);
+    assign sky_ready   = issue && takes_sky && part == COLOUR;
     assign last_part   = depth_too ? DEPTH_RIGHT : COLOUR;
     assign part_ends   = part != DEPTH_LEFT && row == last_row;
     assign span_ends   = issue && part_ends && part == last_part;
@@ -129,7 +137,8 @@ module band_flush #(
                 colour_base      <= base;
                 depth_words_base <= depth_base;
                 depth_too        <= with_depth;
-                background       <= clear_colour;
+                clear            <= clear_colour;
+                takes_sky        <= SKY && with_sky;
                 composing        <= compose;
             end
         endcase
@@ -171,7 +180,26 @@ module band_flush #(
     end
 
     logic         word_valid, word_ready, taken;
-    logic [127:0] word, colour_word, depth_left_word, depth_right_word;
+    logic [127:0] word, colour_word, depth_left_word, depth_right_word, backgrounds;
+
+    if (SKY) begin : sky
+        // The clear colour in the format of the sky, which no threshold changes.
+        logic [23:0] clear_colours, seen_colour;
+        logic [1:0]  seen_line;
+
+        assign clear_colours = {clear[4:0], 3'd0, clear[10:5], 2'd0, clear[15:11], 3'd0};
+
+        delay #(.WIDTH(26), .CLOCKS(3)) waits (
+            .clk, .enable(1'b1), .in({sky_line, takes_sky ? sky_colour : clear_colours}), .out({seen_line, seen_colour})
+        );
+
+        for (genvar lane = 0; lane < 8; lane++) begin : lanes
+            assign backgrounds[16*lane +: 16] = colour_pkg::dithered(seen_colour, 2'(lane), seen_line);
+        end
+    end else begin : plain_clear
+        assign backgrounds = {8{clear}};
+        wire _unused = &{1'b0, sky_line, sky_colour};
+    end
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
         logic [15:0] seen;
@@ -185,7 +213,7 @@ module band_flush #(
             assign seen = colours[16*lane +: 16];
         end
 
-        assign colour_word[16*lane +: 16] = written[lane] ? seen : background;
+        assign colour_word[16*lane +: 16] = written[lane] ? seen : backgrounds[16*lane +: 16];
     end
     for (genvar lane = 0; lane < 4; lane++) begin : depth_lanes
         assign depth_left_word[32*lane +: 32]  = {14'b0, codes[18*lane +: 18] & {18{written[lane]}}};

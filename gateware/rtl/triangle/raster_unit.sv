@@ -21,6 +21,9 @@
 // the lists: when a piece follows a triangle, or a triangle follows a piece, the next item waits about 30 clocks until the last group of
 // the previous items is taken.
 //
+// With SKY, `flags.sky` draws the sky (band_sky) behind the triangles, in a frame without a field. Each band takes the sky's colours while
+// it is flushed, or, with `flags.sky_first` (TEXTURE only), as groups before its triangles, which textures that are blended need.
+//
 // With TEXTURE, triangles may have textures, opaque or blended with the picture drawn so far. `parameters.textures` is the address of
 // their table (docs/textures.md, "Textures of a frame").
 //
@@ -44,6 +47,7 @@ module raster_unit #(
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          TEXTURE      = 1'b0,
+    parameter  bit          SKY          = 1'b0,
     parameter  bit          FIELDS       = 1'b0,
     parameter  bit          LINES        = 1'b0,
     parameter  bit          DEPTHS       = 1'b1,
@@ -62,6 +66,7 @@ module raster_unit #(
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
+    input  wire triangle_registers_pkg::sky_t sky,
     // Link to a raymarcher, which sends each pixel as a group in which only this pixel is covered.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
@@ -87,13 +92,14 @@ module raster_unit #(
     // `flags.size` must not change during a frame, nor in the clock before `start`.
     always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
-    typedef enum logic [2:0] {IDLE, FIELD, DRAW, HAND_OVER, FLUSH} state_t;
+    typedef enum logic [2:0] {IDLE, FIELD, SKY_FIRST, DRAW, HAND_OVER, FLUSH} state_t;
     state_t state;
 
     logic [5:0]              band;
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
-    logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
+    logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field, has_sky, sky_first, sky_drawn;
+    state_t                  first_state;
 
     // For each slot, whether its frame buffer holds a complete frame. The bit of a slot is 0 while the slot is drawn.
     logic [1:0] known;
@@ -101,7 +107,7 @@ module raster_unit #(
 
     always_ff @(posedge clk) begin
         if (state == IDLE) begin
-            all_words <= flags.whole || !known[flags.slot];
+            all_words <= flags.whole || has_sky || !known[flags.slot];
             if (start) known[flags.slot] <= 1'b0;
         end
         if (state == FLUSH && in_memory) known[flags.slot] <= 1'b1;
@@ -113,6 +119,9 @@ module raster_unit #(
     assign begins = state == IDLE && start;
 
     assign has_field        = FIELDS && field_source.enable;
+    assign has_sky          = SKY && flags.sky && !has_field;
+    assign sky_first        = TEXTURE && has_sky && flags.sky_first;
+    assign first_state      = has_field ? FIELD : sky_first ? SKY_FIRST : DRAW;
     assign field_sink.start = begins && has_field;
     assign field_sink.open  = state == FIELD;
     assign field_sink.next  = state == HAND_OVER && band_ready && has_field;
@@ -125,16 +134,17 @@ module raster_unit #(
                 first_row       <= '0;
                 base            <= parameters.frame[4 +: ADDRESS_BITS];
                 band_depth_base <= parameters.depth[4 +: ADDRESS_BITS];
-                if (start) state <= has_field ? FIELD : DRAW;
+                if (start) state <= first_state;
             end
             FIELD: if (field_source.done) state <= DRAW;
+            SKY_FIRST: if (sky_drawn) state <= DRAW;
             DRAW: if (drawn) state <= HAND_OVER;
             HAND_OVER: if (band_ready) begin
                 band            <= band + 1'b1;
                 first_row       <= first_row + 10'(rows);
                 base            <= base + ADDRESS_BITS'(words);
                 band_depth_base <= band_depth_base + (ADDRESS_BITS'(words) << 1);
-                state           <= band == last_band ? FLUSH : has_field ? FIELD : DRAW;
+                state           <= band == last_band ? FLUSH : first_state;
             end
             default: if (in_memory) begin
                 done  <= 1'b1;
@@ -305,6 +315,50 @@ module raster_unit #(
         wire _unused = &{1'b0, answer_valid, answer_lanes, behind, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
+    // The colours of the sky, and its groups.
+    logic            sky_valid, sky_flushed;
+    logic [1:0]      sky_line;
+    logic [23:0]     sky_colour;
+    logic [8*16-1:0] sky_colours;
+    pixel_t          sky_group;
+
+    if (SKY) begin : with_sky
+        logic sky_group_taken;
+
+        band_sky band_sky (
+            .clk, .rst, .start(begins), .stride, .sky,
+            .out_valid(sky_valid), .out_ready(sky_flushed || sky_group_taken), .out_line(sky_line), .out_colour(sky_colour)
+        );
+
+        assign sky_group_taken = state == SKY_FIRST && sky_valid && group_ready;
+
+        if (TEXTURE) begin : first
+            assign sky_drawn = sky_group_taken && sky_group.row == words - 11'd1;
+            assign sky_group.halves = 2'b11;
+            assign sky_group.mask   = '1;
+            assign sky_group.code   = '0;
+            assign sky_group.colour = '0;
+
+            for (genvar lane = 0; lane < 8; lane++) begin : lanes
+                assign sky_colours[16*lane +: 16] = colour_pkg::dithered(sky_colour, 2'(lane), sky_line);
+            end
+
+            always_ff @(posedge clk) begin
+                if (sky_group_taken) begin
+                    sky_group.row    <= sky_group.row + 1'b1;
+                    sky_group.column <= sky_group.column == stride - 8'd1 ? '0 : sky_group.column + 1'b1;
+                    sky_group.line   <= sky_group.line + 6'(sky_group.column == stride - 8'd1);
+                end
+                if (state != SKY_FIRST) {sky_group.row, sky_group.column, sky_group.line} <= '0;
+            end
+        end else begin : flushed_alone
+            assign {sky_drawn, sky_colours, sky_group} = '0;
+        end
+    end else begin : without_sky
+        assign {sky_valid, sky_line, sky_colour, sky_drawn, sky_colours, sky_group} = '0;
+        wire _unused = &{1'b0, sky, sky_flushed};
+    end
+
     // Whether groups come from the raymarcher in this clock; with neither TRIANGLES nor LINES all groups come from the raymarcher.
     logic from_field;
 
@@ -313,26 +367,30 @@ module raster_unit #(
     logic   of_pixels;
     pixel_t pixel;
 
-    assign of_pixels = from_field || from_line || !TRIANGLES;
+    assign of_pixels = from_field || from_line || state == SKY_FIRST || !TRIANGLES;
 
     always_comb begin
         pixel = line_pixel;
         if (from_field) pixel = {field_source.halves, field_source.row, field_source.line, field_source.column, field_source.mask,
                                  field_source.code, field_source.colour};
 
+        if (state == SKY_FIRST) pixel = sky_group;
+
         drawn_ready      = group_ready && !of_pixels;
-        line_ready       = group_ready && from_line && !from_field;
+        line_ready       = group_ready && from_line && !from_field && state != SKY_FIRST;
         field_sink.ready = group_ready && FIELDS && field_sink.open;
-        group_valid      = from_field ? field_source.valid && field_sink.open : from_line ? line_valid : drawn_valid;
+        group_valid      = from_field ? field_source.valid && field_sink.open : state == SKY_FIRST ? sky_valid
+                         : from_line ? line_valid : drawn_valid;
         group_halves     = of_pixels ? pixel.halves : 2'b11;
         group_row        = of_pixels ? pixel.row : drawn_row;
         group_line       = of_pixels ? pixel.line : drawn_line;
         group_column     = of_pixels ? pixel.column : drawn_column;
         group_mask       = of_pixels ? pixel.mask : drawn_mask;
         group_codes      = of_pixels ? {8{pixel.code}} : drawn_codes;
-        group_colours    = of_pixels ? {8{pixel.colour}} : drawn_colours;
+        group_colours    = state == SKY_FIRST ? sky_colours : of_pixels ? {8{pixel.colour}} : drawn_colours;
         group_asks       = drawn_asks && !of_pixels;
-        group_blended      = drawn_blended && !of_pixels;
+        // Groups of the sky are written as blended pixels are: without a depth.
+        group_blended    = of_pixels ? state == SKY_FIRST : drawn_blended;
     end
 
     logic                    word_valid, word_ready, odd_bank;
@@ -340,13 +398,14 @@ module raster_unit #(
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
-    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS), .BLEND(TRIANGLES && TEXTURE)) band_buffer (
+    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS), .BLEND(TRIANGLES && TEXTURE), .SKY(SKY)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
         .group_asks, .group_blended, .answer_valid, .answer_lanes, .behind_lane, .behind,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
         .band_first_line(first_row), .band_slot(flags.slot), .band_whole(all_words),
         .band_with_depth(flags.depth), .band_clear(parameters.clear), .band_compose(has_field ? field_source.compose : 2'd0),
+        .band_sky(has_sky && !sky_first), .sky_valid, .sky_ready(sky_flushed), .sky_line, .sky_colour,
         .word_valid, .word_ready, .word_addr, .word_data,
         .events(band_events)
     );

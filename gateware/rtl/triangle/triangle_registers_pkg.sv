@@ -75,6 +75,8 @@ package triangle_registers_pkg;
         logic depth;
         logic slot;
         logic whole;
+        logic sky;
+        logic sky_first;
     } raster_flags_t;
 
     // Parameters of the raster pass. Memory regions are given by byte addresses.
@@ -88,6 +90,16 @@ package triangle_registers_pkg;
         logic [1:0][19:0] count;
         logic [31:0] textures;
     } raster_t;
+
+    // The sky: heights, s8.23, and colours, {blue, green, red} (docs/formats/triangle.md, "Sky").
+    typedef struct packed {
+        logic [31:0] above;
+        logic [31:0] across;
+        logic [31:0] down;
+        logic [23:0] zenith;
+        logic [23:0] horizon;
+        logic [23:0] nadir;
+    } sky_t;
 
     // Results of the geometry pass.
     typedef struct packed {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glint_core::block::Block;
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SPHERES, TEXTURE, UPLOAD};
+use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, TEXTURE, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::light::Material;
 use glint_core::picture::Backend;
@@ -56,6 +56,8 @@ pub struct Needs {
     pub smooth: bool,
     /// Textures in the triangle engine, which draws them under flat light.
     pub texture: bool,
+    /// The sky behind meshes in the triangle engine.
+    pub sky: bool,
     /// The geometry pass of the triangle engine, which lines and most meshes require.
     pub geometry: bool,
     /// The depth buffer in memory, which triangles and depth codes require.
@@ -100,13 +102,14 @@ impl SceneFile {
                 ..fields
             }
         });
+        let features = self.needed_features();
         Needs {
-            features: self.needed_features(),
             smooth: scene.options.shading == Shading::Smooth && has_triangles,
             texture: scene.options.textures
                 && scene.options.shading == Shading::Flat
                 && has_triangles
                 && self.features().contains(&TEXTURE),
+            sky: features.contains(&SKY),
             // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
@@ -115,6 +118,7 @@ impl SceneFile {
             depths: has_triangles || self.depth,
             fields,
             blocks,
+            features,
         }
     }
 
@@ -130,6 +134,13 @@ impl SceneFile {
             .all(|mesh| Shape::NAMES.contains(&mesh.as_str()))
         {
             features.insert(UPLOAD);
+        }
+        let blocks = scene.blocks();
+        if scene.appearance.mesh_sky().is_some()
+            && blocks & Block::Triangle.bit() != 0
+            && blocks & Block::Raymarch.bit() == 0
+        {
+            features.insert(SKY);
         }
         if scene.field.is_some_and(|field| field.is_round()) {
             features.insert(SPHERES);
@@ -173,6 +184,7 @@ impl Needs {
             features: &self.features | &other.features,
             smooth: self.smooth || other.smooth,
             texture: self.texture || other.texture,
+            sky: self.sky || other.sky,
             geometry: self.geometry || other.geometry,
             depths: self.depths || other.depths,
             fields: match (self.fields, other.fields) {
@@ -194,6 +206,9 @@ impl Needs {
             options.push("--texture".to_owned());
         }
         let has = |block| self.blocks.contains(&block);
+        if has(Block::Triangle) && !self.sky {
+            options.push("--no-sky".to_owned());
+        }
         if has(Block::Triangle) && !self.geometry {
             options.push("--no-geometry".to_owned());
         }

@@ -319,15 +319,16 @@ fn materials_of_meshes() {
 fn needs_follow_from_the_keys() {
     let options = |text: &str| with_camera(text).needs().options().join(" ");
     let table = r#"
-        model = "cube" → --blocks scanout triangle
+        model = "cube" → --blocks scanout triangle --no-sky
+        model = "cube"; background = "sky" → --blocks scanout triangle
         model = "cube"; backend = "cpu" → --blocks scanout
-        model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth
-        model = "cube"; edges = "over" → --blocks scanout triangle line
-        model = "cube"; steer = "gesture vga" → --blocks scanout triangle gesture
-        model = "cube"; steer = "imu look" → --blocks scanout triangle i2c
-        model = "cube"; clip = 10 → --blocks scanout triangle --no-geometry
-        model = "cube"; winding = "screen" → --blocks scanout triangle --no-geometry
-        model = "cube"; edges = "over"; clip = 10 → --blocks scanout triangle line
+        model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth --no-sky
+        model = "cube"; edges = "over" → --blocks scanout triangle line --no-sky
+        model = "cube"; steer = "gesture vga" → --blocks scanout triangle gesture --no-sky
+        model = "cube"; steer = "imu look" → --blocks scanout triangle i2c --no-sky
+        model = "cube"; clip = 10 → --blocks scanout triangle --no-sky --no-geometry
+        model = "cube"; winding = "screen" → --blocks scanout triangle --no-sky --no-geometry
+        model = "cube"; edges = "over"; clip = 10 → --blocks scanout triangle line --no-sky
         field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
         field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres,normals --lanes 1
         field = "sphere:1"; material = "jade"; highlight = "0.5,9" → --blocks scanout raymarch --no-depths --fields spheres,highlight --lanes 2
@@ -337,13 +338,13 @@ fn needs_follow_from_the_keys() {
         field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
         field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box --lanes 2
         field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2
-        model = "cube"; stereo = "0.1,4" → --blocks scanout triangle
-        model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --fields octahedron --lanes 2
+        model = "cube"; stereo = "0.1,4" → --blocks scanout triangle --no-sky
+        model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --no-sky --fields octahedron --lanes 2
         field = "lattice:2,0.5"; material = "sky" → --blocks scanout raymarch --no-depths --fields lattice --lanes 2
         field = "cone:1,2"; material = "sky" → --blocks scanout raymarch --no-depths --fields spheres,cone --lanes 2
         field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres,normals --lanes 2
         field = "smooth:0.3,box:1,1,0.2+sphere:1"; material = "sky" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
-        field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --fields menger:2 --lanes 2
+        field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --no-sky --fields menger:2 --lanes 2
     "#;
     for (text, expected) in rows(table) {
         assert_eq!(options(&text), expected, "{text}");

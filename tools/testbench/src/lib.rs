@@ -16,6 +16,7 @@ mod rasterizer;
 pub mod raymarch;
 mod raymarcher;
 mod record;
+mod sky;
 mod stream;
 
 pub use bits::Bits;
@@ -27,4 +28,5 @@ pub use module::{Module, Port};
 pub use rasterizer::Rasterizer;
 pub use raymarcher::{FrameCost, Raymarcher};
 pub use record::Record;
+pub use sky::drive_sky;
 pub use stream::{Pipe, Sink, Source, Stalls, exchange, step};

@@ -67,7 +67,7 @@ impl Board {
 pub struct Options {
     /// Build exactly what these scenes need, with the SPI flash from which a board starts: names of built-in scenes, scene files, or
     /// `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_geometry", "no_depths", "fields", "lanes"])]
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_sky", "no_geometry", "no_depths", "fields", "lanes"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
@@ -75,6 +75,9 @@ pub struct Options {
     /// Build the triangle engine with textures, which it draws under flat light
     #[arg(long, conflicts_with = "smooth")]
     texture: bool,
+    /// Leave out the sky behind meshes
+    #[arg(long)]
+    no_sky: bool,
     /// Leave out the geometry pass of the triangle engine: the soft core makes the descriptors of meshes
     #[arg(long)]
     no_geometry: bool,
@@ -116,6 +119,7 @@ impl Options {
             needs
                 .blocks
                 .extend(Block::ALL.into_iter().filter(is_further));
+            needs.sky |= is_further(&Block::Triangle);
             needs.geometry |= needs.blocks.contains(&Block::Line) || is_further(&Block::Triangle);
             needs.depths |= needs.blocks.contains(&Block::Triangle);
             arguments = needs.options();
@@ -129,6 +133,7 @@ impl Options {
         let flags = [
             ("--smooth", self.smooth),
             ("--texture", self.texture),
+            ("--no-sky", self.no_sky),
             ("--no-geometry", self.no_geometry),
             ("--no-depths", self.no_depths),
         ];

@@ -98,9 +98,9 @@ commands! {
         shadow Shadow(on: bool) or show in LIGHT: "turn the shadows of the first light in a field on or off, or show the setting"
             => key(Order::Option, "on").with(FIELD)
                 .host(switch("shadow", "on", "Shadows of the first light in a field: sponges, `boxes` and `cubes` cast shadows on their own faces. `normal` without a --light has none"));
-        background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes, which have one colour"
+        background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes"
             => key(Order::Option, "sky").with(LIT)
-                .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")
+                .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]")
                     .expects("white, sky or a colour RRGGBB"));
         fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)"
             => key(Order::Option, "0.1").with(FIELD)

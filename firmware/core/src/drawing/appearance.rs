@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use crate::colour::Rgb565;
+use crate::feature::SKY;
 use crate::fixed::U4_28;
 use crate::light::{
     Background, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
@@ -84,7 +85,18 @@ impl Appearance {
         self.background.unwrap_or(Background::White)
     }
 
-    /// The background of meshes: a single colour.
+    /// The colours of a sky behind meshes, at zenith, horizon and nadir.
+    pub fn mesh_sky(&self) -> Option<[Rgb; 3]> {
+        match self.background {
+            Some(Background::Sky) if SKY.is_built => {
+                let [zenith, horizon] = Background::Sky.colours();
+                Some([zenith, horizon, Background::GROUND])
+            }
+            Some(Background::Sky | Background::White | Background::Colour(_)) | None => None,
+        }
+    }
+
+    /// The background of meshes: a single colour, also for a firmware without a sky.
     pub fn mesh_background(&self) -> Rgb565 {
         self.background.map_or(Rgb565(0), |background| {
             let [_, horizon] = background.colours();

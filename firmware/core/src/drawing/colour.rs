@@ -18,6 +18,17 @@ impl Rgb565 {
         Self(nearest(rgb[0], 31) << 11 | nearest(rgb[1], 63) << 5 | nearest(rgb[2], 31))
     }
 
+    /// Converts a colour of 8 bits per channel for the pixel in column x and line y, with ordered dithering: over 4×4 pixels the mean of
+    /// a channel is the given one, within 1/255. A full channel stays full.
+    pub fn dithered([r, g, b]: [u8; 3], x: u32, y: u32) -> Self {
+        const THRESHOLDS: [[u8; 4]; 4] = [[0, 4, 1, 5], [6, 2, 7, 3], [1, 5, 0, 4], [7, 3, 6, 2]];
+        let threshold = THRESHOLDS[y as usize % 4][x as usize % 4];
+        // Scales a full channel to 31 or 63 steps. A sum is at most 255.
+        let five = |channel: u8| ((channel - (channel >> 5) + threshold) >> 3) as u16;
+        let green = ((g - (g >> 6) + threshold / 2) >> 2) as u16;
+        Self(five(r) << 11 | green << 5 | five(b))
+    }
+
     /// Converts the colour to red, green and blue of 8 bits each, widened by bit replication as in the video output.
     pub const fn to_rgb888(self) -> [u8; 3] {
         let [r, g, b] = self.channels();

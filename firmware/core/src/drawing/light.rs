@@ -527,13 +527,16 @@ impl Material {
 pub enum Background {
     /// White.
     White,
-    /// A sky: blue above, pale at the horizon and below it. Behind meshes it is the single colour of the horizon.
+    /// A sky: blue above, pale at the horizon and below it; behind meshes darker towards the nadir.
     Sky,
     /// One colour.
     Colour(Rgb),
 }
 
 impl Background {
+    /// Colour at the nadir of the sky behind meshes, which is the horizon's colour behind a field.
+    pub const GROUND: Rgb = [98, 96, 92];
+
     /// Text form of [`Background::White`].
     pub const WHITE: &'static str = "white";
     /// Text form of [`Background::Sky`].

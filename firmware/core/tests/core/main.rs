@@ -6,6 +6,7 @@ mod allocator;
 mod animation;
 mod calibration;
 mod camera;
+mod colour;
 mod console;
 mod cordic;
 mod field;

@@ -209,6 +209,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
         whole: false,
         depth: None,
         clear: 0xabcd,
+        sky: None,
         list_shift: 11,
         input: Input {
             sets: [Some(set(0)), None],

@@ -1,6 +1,6 @@
 //! The constants of a frame.
 
-use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT};
+use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT, SKY};
 use glint_core::light::MeshLighting;
 use glint_core::object::MAX_OBJECTS;
 
@@ -9,6 +9,7 @@ use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::mesh_in_field;
 use crate::raymarch::{FieldOptions, FieldSetup, Palette};
+use crate::sky::Sky;
 use crate::triangle::mesh_setup::Scale;
 use crate::triangle::{MeshLight, MeshSetup};
 
@@ -22,6 +23,7 @@ pub struct FrameConstants {
     mesh: Option<MeshSetup>,
     scale: Scale,
     light: Option<MeshLight>,
+    sky: Option<Sky>,
     field: Option<FieldConstants>,
 }
 
@@ -107,6 +109,15 @@ impl FrameConstants {
         self.light.as_ref()
     }
 
+    /// Returns the sky behind the meshes, if the frame has a sky.
+    pub const fn sky(&self) -> Option<&Sky> {
+        if SKY.is_built {
+            self.sky.as_ref()
+        } else {
+            None
+        }
+    }
+
     /// Returns the constants of the field, if the frame has a field.
     pub const fn field(&self) -> Option<&FieldConstants> {
         if FIELD.is_built {
@@ -133,7 +144,7 @@ impl FrameConstants {
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         let result = self.compute(frame);
         if result.is_err() {
-            (self.mesh, self.field) = (None, None);
+            (self.mesh, self.sky, self.field) = (None, None, None);
         }
         result
     }
@@ -179,6 +190,12 @@ impl FrameConstants {
             | Subject::Field(_)
             | Subject::MeshInField(..)
             | Subject::Objects(_) => self.mesh = None,
+        }
+        if SKY.is_built {
+            let colours = frame
+                .sky
+                .filter(|_| self.mesh.is_some() && self.field.is_none());
+            self.sky = colours.map(|colours| Sky::new(view, frame.size.pixels(), colours));
         }
         let lighting = frame.mesh_lighting();
         if MESH.is_built

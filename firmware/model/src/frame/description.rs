@@ -6,7 +6,7 @@ use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
 use glint_core::field::Field;
 use glint_core::framing::BoundingSphere;
-use glint_core::light::MeshLighting;
+use glint_core::light::{MeshLighting, Rgb};
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Size};
@@ -28,6 +28,8 @@ pub struct Frame<'a> {
     pub size: Size,
     /// Background: the colour of pixels without a triangle. A field covers every pixel.
     pub clear: Rgb565,
+    /// Colours of a sky at zenith, horizon and nadir, which is drawn in place of `clear` behind meshes and their edges.
+    pub sky: Option<[Rgb; 3]>,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
     /// Two eyes for a stereo picture, or `None` for one eye.
@@ -260,6 +262,7 @@ impl<'a> Frame<'a> {
             view,
             size,
             clear: Rgb565(0),
+            sky: None,
             lighting: MeshLighting::CAMERA,
             stereo: None,
         }
@@ -273,17 +276,18 @@ impl<'a> Frame<'a> {
         size: Size,
         appearance: &Appearance,
     ) -> Self {
-        let clear = match subject {
+        let (clear, sky) = match subject {
             Subject::Mesh(_) | Subject::Objects(_) | Subject::Edges(_, Edges::Over) => {
-                appearance.mesh_background()
+                (appearance.mesh_background(), appearance.mesh_sky())
             }
             Subject::Edges(_, Edges::Hidden)
             | Subject::Field(_)
             | Subject::MeshInField(..)
-            | Subject::Wireframe(_) => Rgb565(0),
+            | Subject::Wireframe(_) => (Rgb565(0), None),
         };
         Self {
             clear,
+            sky,
             lighting: appearance.mesh_lighting(),
             ..Self::new(subject, view, size)
         }

@@ -49,7 +49,7 @@ fn lit(setup: &FieldSetup, palette: &Palette, end: &RayEnd, surface: Surface) ->
 }
 
 /// Mixes two colours, rounded to nearest. `part` is the weight of `to`: 255 gives only `to`.
-fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
+pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
     core::array::from_fn(|i| {
         let [from, to] = [from[i], to[i]].map(i32::from);
         (from + (((to - from) * whole(part) + 128) >> 8)) as u8

@@ -17,6 +17,7 @@ mod projection;
 mod reciprocal;
 mod render;
 mod selftest;
+mod sky;
 mod smooth;
 mod stereo;
 mod textured;

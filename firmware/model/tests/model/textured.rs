@@ -141,6 +141,7 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
         view: camera.rounded(),
         size: Size::W640,
         clear: Rgb565(0x001F),
+        sky: None,
         lighting: MeshLighting {
             ambient: [0xFF; 3],
             light: Light::at_camera([0; 3]),

@@ -1,6 +1,6 @@
 //! Benchmark: one frame drawn repeatedly, back to back.
 
-use glint_hal::triangle::{Input, PassResult, TriangleEngine};
+use glint_hal::triangle::{PassResult, TriangleEngine};
 use glint_model::{Frame, Subject, WireframeSubject};
 use litex_pac::cpu;
 
@@ -79,7 +79,7 @@ impl GatewareRenderer {
             if frame.subject.field_part().is_some() {
                 self.set_field(now, false)?;
             }
-            self.start_raster(frame, output, self.input(now));
+            self.start_raster(frame, output, now);
             (now, next) = (next, now);
         }
         Ok(self.rendered(frame, now))
@@ -108,11 +108,12 @@ impl GatewareRenderer {
         count: u32,
     ) -> Result<Rendered, Fallback> {
         self.update_constants(frame, 0)?;
+        self.buffers[0].clear();
         let mut has_tables = false;
         self.start_measurement(frame);
         for _ in 0..count {
             self.set_field(0, has_tables)?;
-            self.start_raster(frame, output, Input::default());
+            self.start_raster(frame, output, 0);
             self.update_constants(frame, 0)?;
             has_tables = self.has_tables(0);
             self.wait(TriangleEngine::raster, output)?;
@@ -143,7 +144,7 @@ impl GatewareRenderer {
             self.start_edges(frame.size);
             self.wait(TriangleEngine::geometry, output)?;
             self.take_lines(frame, 0);
-            self.start_raster(frame, output, self.input(0));
+            self.start_raster(frame, output, 0);
             self.wait(TriangleEngine::raster, output)?;
         }
         Ok(self.rendered(frame, 0))
@@ -171,7 +172,7 @@ impl GatewareRenderer {
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
             }
-            self.start_raster(frame, output, self.input(now));
+            self.start_raster(frame, output, now);
             (now, next) = (next, now);
         }
         if count > 0 {

@@ -98,8 +98,12 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
 
 /// The appearance with the light and background of a frame's meshes.
 fn appearance(frame: &Frame) -> Appearance {
+    let background = match frame.sky {
+        Some(_) => Background::Sky,
+        None => Background::Colour(frame.clear.to_rgb888()),
+    };
     let mut appearance = Appearance {
-        background: Some(Background::Colour(frame.clear.to_rgb888())),
+        background: Some(background),
         ..Appearance::default()
     };
     if frame.lighting != MeshLighting::CAMERA {

@@ -97,6 +97,9 @@ fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
         nearness: 0.0,
     };
     let mut pixels = vec![background; SHOWN.pixel_count()];
+    if let Some(colours) = frame.sky {
+        draw_sky(&camera, colours, &mut pixels);
+    }
     if let Subject::Wireframe(subject) = &frame.subject {
         draw_lines(subject, &mut pixels)?;
         return Ok(pixels);
@@ -298,6 +301,19 @@ struct Appeared {
     sky: [Vector; 2],
     density: f64,
     is_round: bool,
+}
+
+/// Draws the sky behind meshes, whose height at a pixel is the component along z of its ray.
+fn draw_sky(camera: &Camera, colours: [Rgb; 3], pixels: &mut [Pixel]) {
+    let [zenith, horizon, nadir] = colours.map(|colour| colour.map(f64::from));
+    for (place, pixel) in pixels.iter_mut().enumerate() {
+        let [x, y] = [place as u32 % SHOWN.width(), place as u32 / SHOWN.width()];
+        let ray = camera.ray([x, y].map(f64::from), size());
+        let [_, _, height] = ray.direction;
+        let end = if height < 0.0 { nadir } else { zenith };
+        let part = height.abs().min(1.0);
+        pixel.colour = add_scaled(horizon, subtract(end, horizon), part);
+    }
 }
 
 fn draw_field(

@@ -4,11 +4,13 @@ use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
 
 use crate::pixels::{Band, Group, Kind, Left, PICTURE_LINES, Pixels, ROWS_OF_A_BANK, WORDS, Word};
+use crate::sky::scaled;
 
 pub struct Bench {
     pub module: Module,
     pub group_source: Source,
     pub band_source: Source,
+    sky_source: Source,
     pub words: Sink,
     /// Words (address and data) written to memory by the module.
     pub written: Vec<Word>,
@@ -64,8 +66,15 @@ impl Bench {
                     "with_depth",
                     "clear",
                     "compose",
+                    "sky",
                 ],
                 Stalls::new(seed + 100, group_stalls),
+            ),
+            sky_source: Source::new(
+                &module,
+                "sky",
+                &["line", "colour"],
+                Stalls::new(seed + 300, group_stalls),
             ),
             words: Sink::new(
                 &module,
@@ -136,7 +145,14 @@ impl Bench {
         let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
         let mut known: Vec<_> = self.left[band.slot].iter().map(Option::is_some).collect();
         waiting.for_each(|other| known[other.picture_lines()].fill(true));
-        band.whole |= known[band.picture_lines()].contains(&false);
+        band.whole |= known[band.picture_lines()].contains(&false) || band.sky;
+        if band.sky {
+            for row in 0..band.lines * band.stride {
+                let (colour, line) = band.sky_of(row);
+                let item = [line, scaled(colour)].map(|value| Bits::from(u64::from(value)));
+                self.sky_source.push(item.to_vec());
+            }
+        }
         self.band_source.push(vec![
             Bits::from(u64::from(band.base)),
             Bits::from(u64::from(band.depth_base)),
@@ -148,6 +164,7 @@ impl Bench {
             Bits::from(u64::from(band.with_depth)),
             Bits::from(u64::from(band.clear)),
             Bits::from(u64::from(band.compose)),
+            Bits::from(u64::from(band.sky)),
         ]);
         self.bands.push_back(band);
     }
@@ -156,11 +173,13 @@ impl Bench {
         let module = &mut self.module;
         self.group_source.drive(module);
         self.band_source.drive(module);
+        self.sky_source.drive(module);
         self.words.drive(module);
         module.settle();
         self.counters.sample(module);
         self.group_source.sample(module);
         self.band_source.sample(module);
+        self.sky_source.sample(module);
         self.words.sample(module);
         self.written
             .extend(self.words.take().into_iter().map(|item| {
@@ -254,6 +273,7 @@ impl Bench {
         self.group_source.clear();
         self.groups.clear();
         self.band_source.clear();
+        self.sky_source.clear();
         self.bands.clear();
         self.drawn = Pixels::clear();
         self.closed = false;

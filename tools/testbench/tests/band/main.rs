@@ -3,6 +3,7 @@
 
 mod bench;
 mod pixels;
+mod sky;
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -43,6 +44,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
         whole: random.random_ratio(1, 8),
         with_depth: random.random_ratio(1, 4),
         clear: random.random(),
+        sky: false,
         compose: 0,
     }
 }
@@ -71,6 +73,7 @@ fn plain_band([lines, stride]: [usize; 2]) -> Band {
         whole: true,
         with_depth: false,
         clear: 0xa55a,
+        sky: false,
         compose: 0,
     }
 }
@@ -94,6 +97,29 @@ fn random_groups_in_many_bands_with_stalls() {
                 .collect();
             let band = random_band(&mut random, shape);
             bench.draw(groups, band);
+        }
+        bench.finish();
+    }
+}
+
+/// A band with a sky takes a colour for each of its words; other bands, before and after it, have the clear colour.
+#[test]
+fn random_bands_with_a_sky_and_stalls() {
+    for (seed, [group_stalls, memory_stalls]) in (51..).zip([[0.0, 0.0], [0.4, 0.2], [0.1, 0.8]]) {
+        let mut random = Pcg64Mcg::new(u128::from(seed));
+        let mut bench = Bench::of("band_buffer_sky", seed, group_stalls, memory_stalls);
+        let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(2..6)];
+        bench.stride = stride;
+        for number in 0..60 {
+            let groups: Vec<_> = (0..random.random_range(0..40))
+                .map(|_| random_group(&mut random, lines * stride))
+                .collect();
+            let sky = random.random();
+            let band = random_band(&mut random, shape);
+            bench.draw(groups, Band { sky, ..band });
+            if number == 30 {
+                bench.restart_with_dead_memory();
+            }
         }
         bench.finish();
     }

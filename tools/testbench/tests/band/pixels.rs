@@ -1,5 +1,6 @@
 //! Model of the band buffer: pixel groups, bands, and the expected words of the flush of a band.
 
+use glint_core::colour::Rgb565;
 use glint_core::stereo::Tint;
 use std::ops::Range;
 
@@ -42,11 +43,28 @@ pub struct Band {
     pub whole: bool,
     pub with_depth: bool,
     pub clear: u16,
+    /// Whether a sky replaces the clear colour.
+    pub sky: bool,
     /// Composition of colours from the luminances of two eyes: 0 for none, 1 with the tint red and blue, 2 with the tint red and cyan.
     pub compose: u8,
 }
 
 impl Band {
+    /// The colour of the sky in a row, which differs from row to row, and the lowest bits of the number of its line.
+    pub fn sky_of(&self, row: usize) -> ([u8; 3], u32) {
+        let colour = [29, 83, 151].map(|step| (step * row + usize::from(self.clear)) as u8);
+        (colour, (row / self.stride % 4) as u32)
+    }
+
+    /// The colour of a pixel without a group: the clear colour, or that of the sky.
+    fn background(&self, row: usize, lane: usize) -> u16 {
+        let (colour, line) = self.sky_of(row);
+        match self.sky {
+            true => Rgb565::dithered(colour, lane as u32, line).0,
+            false => self.clear,
+        }
+    }
+
     /// Lines of the picture that the band covers.
     pub fn picture_lines(&self) -> Range<usize> {
         self.first_line..self.first_line + self.lines
@@ -125,7 +143,10 @@ impl Pixels {
                 _ => Tint::RedCyan.compose(left, right),
             }
         };
-        let colour = self.0[row].map(|pixel| u32::from(pixel.map_or(band.clear, seen)));
+        let pixels = self.0[row];
+        let colour: [u32; LANES] = std::array::from_fn(|lane| {
+            pixels[lane].map_or(band.background(row, lane), seen).into()
+        });
         let pairs = [0, 1, 2, 3].map(|i| colour[2 * i] | colour[2 * i + 1] << 16);
         (band.base + row as u32, pairs)
     }

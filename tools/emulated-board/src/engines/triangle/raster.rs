@@ -2,12 +2,12 @@
 
 use glint_core::picture::Size;
 use glint_core::texture::{Blend, Filter, Texture};
-use glint_model::FrameBuffer;
 use glint_model::line::band_bounds;
 use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, Layout, list_word};
 use glint_model::triangle::raster::draw_groups;
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::textured::{OfTexture, Textured};
+use glint_model::{FrameBuffer, Sky};
 use litex_pac::triangle::{Counters, Error, Raster, offset};
 
 use super::region::{COUNT_BITS, Regions, WORD, entry, list_words, picture_size, record};
@@ -118,12 +118,17 @@ impl RasterUnit {
 
         let clear = parameters.unsigned(offset::CLEAR, 16) as u16;
         let slot = usize::from(flags.slot());
-        let is_whole = flags.whole() || flags.depth() || !self.known[slot];
+        let has_field = raymarcher.draws();
+        let sky = (flags.sky() && !has_field).then(|| read_sky(parameters));
+        let is_whole = flags.whole() || flags.depth() || sky.is_some() || !self.known[slot];
         let table = parameters.word(offset::TEXTURES) / WORD;
         let mut drawing = self.begin(size, clear, layout, table);
-        let has_field = raymarcher.draws();
         if has_field {
             drawing.draw_field(raymarcher, now);
+        }
+        let sky_first = layout.is_textured && flags.sky_first() && sky.is_some();
+        if let Some(sky) = sky {
+            drawing.draw_sky(&sky, sky_first);
         }
         for band in 0..size.bands() {
             for set in sets.iter().flatten() {
@@ -131,7 +136,7 @@ impl RasterUnit {
             }
             drawing.end_band(band, is_whole);
         }
-        if has_field {
+        if has_field || sky_first {
             drawing.cover();
         }
         let Drawing {
@@ -367,14 +372,25 @@ impl Drawing<'_> {
     /// Draws the field; the gateware draws it band by band, before the triangles of the band.
     fn draw_field(&mut self, raymarcher: &mut Raymarcher, now: u64) {
         let field = raymarcher.draw(self.size, &mut self.target, now);
-        self.time.add_field(field.cycles);
+        self.time.add_background(field.cycles);
         self.counts.groups += u64::from(field.pixels);
         self.counts.covered += u64::from(field.pixels);
         self.counts.drawn += u64::from(field.pixels);
     }
 
-    /// Extends all lines to their whole width, which a field covers. Their flush does not take longer than the rays of a band, so this
-    /// comes after the estimates of all bands.
+    /// Draws the sky: with `is_first` in each band before its triangles, one group in a cycle, otherwise during the flush.
+    fn draw_sky(&mut self, sky: &Sky, is_first: bool) {
+        // The buffer has the size of the picture.
+        let _ = sky.fill(&mut self.target, &mut || {});
+        if is_first {
+            let pixels = self.size.pixel_count() as u64;
+            self.counts.drawn += pixels;
+            self.time.add_background(pixels / u64::from(GROUP as u32));
+        }
+    }
+
+    /// Extends all lines to their whole width, which a field or the sky covers. Their flush does not take longer than the rays of a band, so
+    /// this comes after the estimates of all bands.
     fn cover(&mut self) {
         let last = self.size.width() as i32 / GROUP - 1;
         let lines = self.extents.iter_mut().take(self.size.height() as usize);
@@ -404,6 +420,23 @@ const fn quad_pixels(filter: Filter) -> u32 {
     match filter {
         Filter::Nearest => 4,
         Filter::Bilinear => 2,
+    }
+}
+
+/// The sky of a raster pass.
+fn read_sky(parameters: &Parameters) -> Sky {
+    let height = |offset| parameters.word(offset) as i32;
+    let colour = |offset| {
+        let [red, green, blue, _] = parameters.word(offset).to_le_bytes();
+        [red, green, blue]
+    };
+    Sky {
+        above: height(offset::SKY_ABOVE),
+        across: height(offset::SKY_ACROSS),
+        down: height(offset::SKY_DOWN),
+        zenith: colour(offset::SKY_ZENITH),
+        horizon: colour(offset::SKY_HORIZON),
+        nadir: colour(offset::SKY_NADIR),
     }
 }
 

@@ -117,8 +117,8 @@ impl RasterTime {
         self.flush = u64::from(words.max(size.band_lines()));
     }
 
-    /// Adds the cycles of a field: the rays of a band are drawn while the previous band is flushed.
-    pub const fn add_field(&mut self, cycles: u64) {
+    /// Adds the cycles of a field, or of a sky that is drawn before the triangles: they are drawn while the previous band is flushed.
+    pub const fn add_background(&mut self, cycles: u64) {
         self.cycles += cycles;
     }
 

@@ -6,7 +6,7 @@ use glint_model::triangle::descriptor::{Descriptor, Layout, band_rows, list_word
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::vertex_cache;
 use glint_model::{MeshLight, MeshSetup, Options, Shading};
-use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort};
+use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort, drive_sky};
 
 use super::expected::{Expected, SIZES};
 
@@ -288,6 +288,10 @@ impl Bench {
         ] {
             self.set(path, value);
         }
+        self.set("raster_flags.sky", u64::from(expected.sky.is_some()));
+        if let Some(sky) = &expected.sky {
+            drive_sky(&mut self.module, sky);
+        }
         self.module.drive_all("raster.lists", LISTS.map(bytes));
         self.module
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
@@ -432,7 +436,13 @@ impl Bench {
     /// Waits for the end of the raster pass, and compares its frame with the expected frame. Returns the number of clocks.
     pub fn finish(&mut self, name: &str, expected: &Expected) -> u64 {
         let clocks = self.wait_for("status.raster_done");
-        self.left[self.slot] = Some((expected.size, expected.options.clear));
+        // After a sky the next frame is written whole.
+        let size = if expected.sky.is_some() {
+            (0, 0)
+        } else {
+            expected.size
+        };
+        self.left[self.slot] = Some((size, expected.options.clear));
         assert_eq!(self.read("status.list_error"), 0, "{name}: list_error");
         self.compare(name, expected);
         clocks

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::{PreparedMesh, draw_parts};
-use glint_model::{DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats};
+use glint_model::{DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Sky, Stats};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 pub const CLEAR: u16 = 0x1234;
@@ -15,6 +15,8 @@ pub struct Expected {
     /// Frame constants and options of the first or only mesh.
     pub frame: MeshSetup,
     pub options: Options<'static>,
+    /// The sky, which replaces the clear colour.
+    pub sky: Option<Sky>,
     pub colour: Vec<u16>,
     pub depth: Vec<u32>,
     /// Setups and colours of the clipped triangles.
@@ -103,6 +105,7 @@ pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'stat
         size,
         frame,
         options,
+        sky: None,
         colour,
         depth,
         clipped,
@@ -130,6 +133,7 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
             clear: CLEAR,
             ..Options::default()
         },
+        sky: None,
         colour,
         depth,
         clipped: vec![],

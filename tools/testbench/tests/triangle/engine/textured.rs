@@ -3,7 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
-use glint_core::light::{Light, MeshLighting};
+use glint_core::light::{Light, MeshLighting, Rgb};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
@@ -81,10 +81,16 @@ struct Shown {
 
 impl Shown {
     fn new(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
-        Self::in_field(bytes, eye, None)
+        Self::before(bytes, eye, None, None)
     }
 
-    fn in_field(bytes: Vec<u8>, eye: [f64; 3], field: Option<&FieldSubject>) -> Self {
+    /// A mesh in a field, or before a sky.
+    fn before(
+        bytes: Vec<u8>,
+        eye: [f64; 3],
+        field: Option<&FieldSubject>,
+        sky: Option<[Rgb; 3]>,
+    ) -> Self {
         let mesh = Mesh::new_checked(&bytes).unwrap();
         let subject = MeshSubject {
             shading: Shading::Flat,
@@ -99,6 +105,7 @@ impl Shown {
             view: camera.rounded(),
             size: Size::W320,
             clear: Rgb565(0x001F),
+            sky,
             lighting: MeshLighting {
                 ambient: [0x60; 3],
                 light: Light::at_camera([0xA0; 3]),
@@ -140,6 +147,7 @@ impl Shown {
                 light,
                 ..Options::default()
             },
+            sky: constants.sky().copied(),
             colour: picture.colour,
             depth: picture.depth,
             clipped: vec![],
@@ -218,7 +226,7 @@ fn frames_with_textures_in_a_field() {
             };
             // From afar no triangle is clipped, so the second set has them all.
             let eye = [0.4, random.random_range(-4.0..-3.0), 2.0];
-            let mut shown = Shown::in_field(mesh, eye, Some(&field));
+            let mut shown = Shown::before(mesh, eye, Some(&field), None);
             let name = format!("frame {count} in {text}");
             let triangles = [shown.whole, shown.clipped].concat();
             bench.set("field_source.enable", 1);
@@ -228,6 +236,44 @@ fn frames_with_textures_in_a_field() {
             bench.finish(&name, &shown.expected);
         }
     }
+}
+
+/// A sky behind meshes, some of which are blended with it: then it is drawn before them. Frames without a sky follow.
+#[test]
+fn frames_with_textures_before_a_sky() {
+    let mut firsts = [0; 2];
+    for (seed, stalls) in [(1, 0.0), (2, 0.3), (3, 0.7)] {
+        let mut random = Pcg64Mcg::new(seed);
+        let mut bench = Bench::of("texture_fields", seed as u32, stalls);
+        bench.set("field_source.enable", 0);
+        for count in 0..6 {
+            let sources: Vec<_> = (0..random.random_range(1..3))
+                .map(|_| texture(&mut random))
+                .collect();
+            let is_first = sources.iter().any(|source| source.blend != Blend::Opaque);
+            let textures: Vec<_> = sources
+                .iter()
+                .map(|source| encode(source).unwrap())
+                .collect();
+            let mesh = textured_layers(&textures, 1.0, 0.3);
+            let eye = [0.4, random.random_range(-4.0..-1.0), 1.0];
+            let sky = (count % 3 != 2).then(|| random.random());
+            if sky.is_some() {
+                firsts[usize::from(is_first)] += 1;
+            }
+            let shown = Shown::before(mesh, eye, None, sky);
+            let triangles = [shown.whole, shown.clipped].concat();
+            bench.slot = random.random_range(0..2);
+            bench.set("raster_flags.sky_first", u64::from(is_first));
+            let drawn = bench.count("pixels_drawn");
+            let name = format!("frame {count} of seed {seed}");
+            bench.draw_set(&name, &shown.expected, &triangles, &textures);
+            if sky.is_some() && is_first {
+                assert!(bench.count("pixels_drawn") - drawn >= 320 * 180);
+            }
+        }
+    }
+    assert!(firsts.iter().all(|&count| count > 2), "{firsts:?}");
 }
 
 /// Blended groups take the number of clocks that docs/textures.md states, and that the emulated board assumes.

@@ -1,0 +1,107 @@
+//! The sky behind meshes: a colour for each group of eight pixels in a line, dithered (docs/formats/triangle.md, "Sky").
+
+use glint_core::camera::{Projection, View};
+use glint_core::colour::Rgb565;
+use glint_core::field::magnitude;
+
+use crate::error::RenderError;
+use crate::frame_buffer::FrameBuffer;
+use crate::raymarch::mixed;
+
+/// Pixels of a group, which have one colour.
+const GROUP: usize = 8;
+
+/// Fraction bits of heights.
+const FRACTION: u32 = 23;
+
+/// The heights and colours of the sky in a frame.
+///
+/// The height of a place in the picture is the component along z of the direction through it whose component along the camera's forward
+/// axis n is 1. It is linear in the picture: the height of the group in column x (of groups) and line y is `above` + x·`across` +
+/// (y + 1)·`down`, each s8.23.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sky {
+    /// Height of the first group in the line above the picture.
+    pub above: i32,
+    /// Change of the height from a group to the next one in its line.
+    pub across: i32,
+    /// Change of the height from a line to the next one.
+    pub down: i32,
+    /// Colour from the height 1 on, at the zenith.
+    pub zenith: [u8; 3],
+    /// Colour at the height 0, the horizon.
+    pub horizon: [u8; 3],
+    /// Colour to the height −1, at the nadir.
+    pub nadir: [u8; 3],
+}
+
+impl Sky {
+    /// The sky for a camera, in a picture of one of the supported sizes, with the colours of zenith, horizon and nadir.
+    pub fn new(
+        view: &View,
+        [width, height]: [u32; 2],
+        [zenith, horizon, nadir]: [[u8; 3]; 3],
+    ) -> Self {
+        // An orthographic camera has one direction.
+        let half_width = match view.projection() {
+            Projection::Perspective => view.half_width().to_bits(),
+            Projection::Orthographic => 0,
+        };
+        let [u, v, n] = [view.u(), view.v(), view.n()].map(|[_, _, z]| i64::from(z.to_bits()));
+        // A fifth of the half width, because the width of a picture is 5·2^k pixels; 30 fraction bits. A product has at most 61 bits.
+        let fifth = (half_width << 2) as i64 / 5;
+        let k = (width / 5).ilog2();
+        // A group is 16/width of the half width from the next one, and a line 2/width.
+        let step = |row: i64, shift: u32| ((row * fifth + (1 << (shift - 1))) >> shift) as i32;
+        let (across, down) = (step(u, 26 + k), step(v, 29 + k));
+        let middle = (n + ((i64::from(view.shift().to_bits()) * u) >> 28)) as i32;
+        // The middle of the picture is half a step before a group, and half a line above a line.
+        let [columns, lines] = [width / 16, height / 2].map(|x| x as i32);
+        let first = middle + ((across + down) >> 1) - columns * across - lines * down;
+        Self {
+            above: first - down,
+            across,
+            down,
+            zenith,
+            horizon,
+            nadir,
+        }
+    }
+
+    /// Height of the group in a column and a line, s8.23.
+    pub fn height(&self, column: u32, line: u32) -> i32 {
+        self.above + column as i32 * self.across + (line as i32 + 1) * self.down
+    }
+
+    /// The colour of the group in a column and a line, eight bits per channel.
+    pub fn colour(&self, column: u32, line: u32) -> [u8; 3] {
+        let height = self.height(column, line);
+        let share = (magnitude(height) >> (FRACTION - 8)).min(255) as u8;
+        let end = if height < 0 { self.nadir } else { self.zenith };
+        mixed(end, self.horizon, 255 - share)
+    }
+
+    /// Fills a picture with the sky, and its depth codes with 0. Calls `progress` after each line.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a frame buffer of the wrong size.
+    pub fn fill(
+        &self,
+        target: &mut FrameBuffer,
+        progress: &mut dyn FnMut(),
+    ) -> Result<(), RenderError> {
+        target.check()?;
+        let lines = target.colour.chunks_exact_mut(target.width as usize);
+        for (y, line) in (0..).zip(lines) {
+            for (x, group) in (0..).zip(line.as_chunks_mut::<GROUP>().0) {
+                let colour = self.colour(x, y);
+                for (lane, pixel) in (0..).zip(group) {
+                    *pixel = Rgb565::dithered(colour, lane, y).0;
+                }
+            }
+            progress();
+        }
+        target.depth.fill(0);
+        Ok(())
+    }
+}
