@@ -150,12 +150,12 @@ impl SceneFile {
             clip,
             winding,
             textures,
-            shading: _,
+            shading,
         } = scene.options;
         // The soft core computes the descriptors of such meshes, or draws the whole picture.
         if scene.backend == Backend::Cpu
             || !cull
-            || textures && features.contains(&TEXTURE)
+            || textures && shading == Shading::Smooth && features.contains(&TEXTURE)
             || clip != Clip::Guard
             || winding == Winding::Screen
             || scene.view.projection() == Projection::Orthographic
