@@ -68,9 +68,11 @@ impl Sky {
         }
     }
 
-    /// Height of the group in a column and a line, s8.23.
+    /// Height of the group in a column and a line, s8.23; modulo 2^32, as in the gateware, for constants that no camera has.
     pub fn height(&self, column: u32, line: u32) -> i32 {
-        self.above + column as i32 * self.across + (line as i32 + 1) * self.down
+        let right = (column as i32).wrapping_mul(self.across);
+        let down = (line as i32 + 1).wrapping_mul(self.down);
+        self.above.wrapping_add(right).wrapping_add(down)
     }
 
     /// The colour of the group in a column and a line, eight bits per channel.

@@ -109,6 +109,7 @@ impl Bench {
             whole: true,
             depth: Some(DEPTH),
             clear: CLEAR,
+            sky: None,
             list_shift: 8,
             input: Input::default(),
         };

@@ -8,7 +8,9 @@ use glint::render::{
     self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Route, Stats, Subject, TriangleCounts,
 };
 use glint::{generate, view};
+use glint_core::appearance::Appearance;
 use glint_core::colour::Shading;
+use glint_core::light::{Background, Rgb};
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
 use glint_core::picture::Size;
@@ -79,6 +81,15 @@ pub fn counts(stats: &Stats) -> impl PartialEq + std::fmt::Debug {
     });
     let others = (stats.wireframe.clone(), stats.edges.clone());
     (mesh, stats.rays.clone(), others)
+}
+
+/// The colours of the sky behind meshes.
+pub fn sky() -> [Rgb; 3] {
+    let appearance = Appearance {
+        background: Some(Background::Sky),
+        ..Appearance::default()
+    };
+    appearance.mesh_sky().unwrap()
 }
 
 /// The subject that shows a mesh with default options.

@@ -2,7 +2,7 @@
 
 use crate::common::{
     assert_has, drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer,
-    running_board, timeless,
+    running_board, sky, timeless,
 };
 use glint::board::{Board, SimulatedBoard, Simulation};
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject};
@@ -88,7 +88,16 @@ fn textures_are_the_models_on_every_backend() {
             textures,
             ..plain(&mesh)
         });
-        let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
+        let view = view::spherical("2,30,60").unwrap();
+        // The sky behind the window is drawn first.
+        let before_sky = Frame {
+            sky: Some(sky()),
+            ..Frame::new(subject, view, Size::W320)
+        };
+        let [found, expected] = drawn_alike(&mut renderer, &before_sky, "textures before a sky");
+        let drawn = [found.stats, expected.stats].map(|stats| stats.triangles().pixels_drawn);
+        assert_eq!(drawn[0], drawn[1], "pixels drawn");
+        let frame = Frame::new(subject, view, Size::W320);
         let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "textures");
         let notes = renderer.console().command("stats").unwrap();
         assert_eq!(stats.backend.as_deref(), Some(by), "{notes:#?}");
@@ -187,7 +196,7 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     }
 }
 
-/// A coloured directional light, a light at the camera, ambient light and a background, with each
+/// A coloured directional light, a light at the camera, ambient light and a background, also a sky, with each
 /// backend. The default is tested last, because its commands must remove light and background. The
 /// board draws each frame into both frame buffers.
 #[test]
@@ -199,11 +208,12 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
         ambient: [0x20, 0x10, 0x60],
         light: Light::parse(text).unwrap(),
     });
-    let default = (MeshLighting::CAMERA, Rgb565(0));
-    for (lighting, clear) in [
-        (lights[0], Rgb565(0)),
-        (lights[1], Rgb565(0x1234)),
-        (lights[1], Rgb565(0xFEDC)),
+    let default = (MeshLighting::CAMERA, Rgb565(0), None);
+    for (lighting, clear, sky) in [
+        (lights[0], Rgb565(0), None),
+        (lights[1], Rgb565(0x1234), None),
+        (lights[1], Rgb565(0), Some(sky())),
+        (lights[1], Rgb565(0xFEDC), None),
         default,
     ] {
         for backend in [None, Some(Backend::Cpu)] {
@@ -211,10 +221,11 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
             let frame = Frame {
                 lighting,
                 clear,
+                sky,
                 ..Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320)
             };
             renderer.set_backend(backend);
-            let name = format!("{lighting:?} {clear:?}");
+            let name = format!("{lighting:?} {clear:?} {sky:?}");
             let [_, expected] = drawn_alike(&mut renderer, &frame, &name);
             for _ in 0..2 {
                 let colour = renderer.colour(frame.size).unwrap();

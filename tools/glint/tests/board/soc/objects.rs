@@ -1,5 +1,5 @@
 //! Compares frames of several objects on the whole SoC with glint-model: colours, depths and counts of triangles. The triangle
-//! engine makes a geometry pass for each object, and the firmware clips the exceptions of each object. Shading is flat, the
+//! engine makes a geometry pass for each object, and the firmware clips the exceptions of each object. Every other frame has a sky. Shading is flat, the
 //! shading of the standard gateware build.
 
 use glint::console::value;
@@ -11,7 +11,7 @@ use glint_model::Clip;
 use glint_vectors::Camera;
 
 use super::compare;
-use crate::common::{mesh, object, renderer, running_board};
+use crate::common::{mesh, object, renderer, running_board, sky};
 
 /// Placements of the objects that the gateware draws. The first object encloses the eye of the last
 /// camera, and other objects cross the near plane of this camera, so that triangles of several
@@ -63,7 +63,10 @@ fn the_soc_draws_objects() {
             object.subject.clip = clip;
         }
         let subject = Subject::Objects(&objects[..count]);
-        let frame = Frame::new(subject, views[view].rounded(), size);
+        let frame = Frame {
+            sky: (view == 1).then(sky),
+            ..Frame::new(subject, views[view].rounded(), size)
+        };
         let stats = compare(&mut renderer, &frame, true);
         let is_by_cpu = stats.engine.get("cycles_geometry").unwrap() == 0;
         let has_options = (clip, winding) != (Clip::Guard, Winding::Mesh);
