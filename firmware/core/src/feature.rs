@@ -57,7 +57,7 @@ features! {
     OBJECT = "object";
     /// Textures of meshes.
     TEXTURE = "texture";
-    /// A sky behind meshes.
+    /// A sky as background.
     SKY = "sky";
     /// Edges of a mesh.
     EDGES = "edges";

@@ -7,7 +7,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, TEXTURE, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
-use glint_core::light::Material;
+use glint_core::light::{Background, Material};
 use glint_core::picture::Backend;
 use glint_core::shape::Shape;
 use glint_model::{Clip, MeshOptions};
@@ -109,7 +109,8 @@ impl SceneFile {
                 && scene.options.shading == Shading::Flat
                 && has_triangles
                 && self.features().contains(&TEXTURE),
-            sky: features.contains(&SKY),
+            // A raymarcher draws the sky behind a field.
+            sky: has_triangles && !has_fields && features.contains(&SKY),
             // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
@@ -135,11 +136,7 @@ impl SceneFile {
         {
             features.insert(UPLOAD);
         }
-        let blocks = scene.blocks();
-        if scene.appearance.mesh_sky().is_some()
-            && blocks & Block::Triangle.bit() != 0
-            && blocks & Block::Raymarch.bit() == 0
-        {
+        if scene.appearance.background == Some(Background::Sky) {
             features.insert(SKY);
         }
         if scene.field.is_some_and(|field| field.is_round()) {

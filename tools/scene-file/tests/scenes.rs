@@ -372,7 +372,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         model = "cow.obj"; textures = true → mesh texture upload view
         model = "cow.obj"; textures = true; shading = "smooth" → cpu mesh texture upload view
         model = "torus"; background = "sky" → mesh sky view
-        model = "torus"; background = "sky"; field = "menger:1" → field mesh mesh-in-field view
+        model = "torus"; background = "sky"; field = "menger:1" → field mesh mesh-in-field sky view
         model = "cow.obj"; textures = false → mesh texture upload view
         model = "torus"; backend = "cpu" → cpu mesh view
         model = "torus"; clip = 3 → cpu mesh view

@@ -38,11 +38,12 @@ const ONLY: &str = "only-";
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
 /// One command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
-const COMMANDS: [(Feature, &str); 21] = [
+const COMMANDS: [(Feature, &str); 22] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),
     (feature::TEXTURE, "textures on"),
+    (feature::SKY, "background sky"),
     (feature::EDGES, "edges"),
     (feature::WIREFRAME, "program"),
     (feature::FIT, "fit"),

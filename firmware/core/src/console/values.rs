@@ -10,6 +10,7 @@ use super::syntax::{NameList, Parameter, Shape, WordKind};
 use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera::{self, Projection};
 use crate::choice::choices;
+use crate::feature::SKY;
 use crate::field::{self, KINDS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28, parse_i32};
 use crate::imu::Follow;
@@ -222,7 +223,10 @@ impl WordArgument for Highlight {
 /// The text form of a background.
 impl WordArgument for Background {
     type Value<'a> = Self;
-    const KIND: WordKind = WordKind::Either(Self::WHITE, &WordKind::Either(Self::SKY, &Rgb::KIND));
+    const KIND: WordKind = match SKY.is_built {
+        true => WordKind::Either(Self::WHITE, &WordKind::Either(Self::SKY, &Rgb::KIND)),
+        false => WordKind::Either(Self::WHITE, &Rgb::KIND),
+    };
 
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text)

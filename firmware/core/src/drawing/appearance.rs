@@ -3,7 +3,6 @@
 use heapless::Vec;
 
 use crate::colour::Rgb565;
-use crate::feature::SKY;
 use crate::fixed::U4_28;
 use crate::light::{
     Background, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
@@ -88,15 +87,15 @@ impl Appearance {
     /// The colours of a sky behind meshes, at zenith, horizon and nadir.
     pub fn mesh_sky(&self) -> Option<[Rgb; 3]> {
         match self.background {
-            Some(Background::Sky) if SKY.is_built => {
+            Some(Background::Sky) => {
                 let [zenith, horizon] = Background::Sky.colours();
                 Some([zenith, horizon, Background::GROUND])
             }
-            Some(Background::Sky | Background::White | Background::Colour(_)) | None => None,
+            Some(Background::White | Background::Colour(_)) | None => None,
         }
     }
 
-    /// The background of meshes: a single colour, also for a firmware without a sky.
+    /// The background of meshes: a single colour.
     pub fn mesh_background(&self) -> Rgb565 {
         self.background.map_or(Rgb565(0), |background| {
             let [_, horizon] = background.colours();
