@@ -21,7 +21,7 @@ _WHOLE = [build for build in _BUILDS if build.values[0].top not in _PARTS]
 @pytest.fixture(scope="module", autouse=True)
 def _no_other_models():
     """Deletes models that are no longer built, so that a test that still uses one fails here too, and not only in a fresh clone."""
-    names = {name for module in RTL_MODULES for name in module.builds() if name not in module.measured} | {"runtime", memory_machine.NAME}
+    names = {name for module in RTL_MODULES for name in module.builds() if name not in module.measured} | {memory_machine.NAME}
     for path in verilated_module.MODELS.glob("*"):
         if path.stem not in names:
             # Several processes of the test run may delete the same model.

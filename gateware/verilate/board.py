@@ -29,7 +29,8 @@ def build(folder, kind=PROFILED):
     bios = folder / "software" / "bios" / "bios.bin"
     sources = [verilog, "-f", verilog.with_suffix(".f")]
 
-    options = [*compiler.flags(objects, waveforms), "-O1" if kind == QUICK else "-O3"]
+    runtime, shared = compiler.runtime(waveforms)
+    options = [*compiler.flags(objects, waveforms), *shared, "-O1" if kind == QUICK else "-O3"]
     harness_options = [*options, f'-DGLINT_BIOS="{bios}"', f"-I{folder / 'software' / 'include'}", f"-I{_SOC}"]
 
     # First step: the model in C++ and its objects, which take most of the build's time.
@@ -42,7 +43,7 @@ def build(folder, kind=PROFILED):
         print("Verilator", flush=True)
         trace = ["--trace-vcd"] if waveforms else []
         compiler.verilate(TOP, sources, {}, objects, [*_VERILATE, *trace])
-        _compile_model(objects, options, harness_options, kind)
+        _compile_model(objects, options, harness_options, runtime, kind)
         stamp.write_text(inputs)
 
     # Second step: the harness around the model, and the library.
@@ -51,15 +52,14 @@ def build(folder, kind=PROFILED):
     if is_current(stamp, inputs, library):
         return
     compiler.compile_all("compile the harness", [_SOC / "soc.cpp"], objects, harness_options)
-    compiler.link(sorted(objects.glob("*.o")), objects / "library.so", library)
+    compiler.link([*sorted(objects.glob("*.o")), *runtime], objects / "library.so", library)
     stamp.write_text(inputs)
 
 
-def _compile_model(objects, options, harness_options, kind):
-    sources = compiler.model_sources(objects, kind == WAVEFORMS)
-    slow = [source for source in sources if "__Slow" in source.name]
-    hot = [source for source in sources if source not in slow]
-    compiler.compile_all("compile code that runs once", slow, objects, options)
+def _compile_model(objects, options, harness_options, runtime, kind):
+    hot, slow = compiler.model_sources(objects)
+    whole = compiler.write_whole(slow, objects / "once.cpp")
+    compiler.compile_all("compile code that runs once", [whole], objects, [*compiler.flags(objects, kind == WAVEFORMS), "-O0"])
     # With waveforms, the cost of tracing exceeds the gain of a profile; for a few frames, making the profile takes longer than it saves.
     if kind == PROFILED:
         harness = [_SOC / "soc.cpp", _SOC / "train.cpp"]
@@ -67,7 +67,7 @@ def _compile_model(objects, options, harness_options, kind):
         compiler.compile_all("compile with counters", hot, objects, [*options, "-fprofile-generate"])
         print("train", flush=True)
         program, counts, profile = (objects / name for name in ("train", "train.profraw", "train.profdata"))
-        compiler.run_linker(["-fprofile-generate", *sorted(objects.glob("*.o"))], program)
+        compiler.run_linker(["-fprofile-generate", *sorted(objects.glob("*.o")), *runtime], program)
         run([program], cwd=objects, LLVM_PROFILE_FILE=str(counts))
         run([compiler.PROFILE_MERGER, "merge", counts, "-o", profile])
         compiler.object_of(harness[1], objects).unlink()

@@ -1,5 +1,6 @@
 """Calls of Verilator and the C++ compiler, for a model and the harness around it."""
 
+import fcntl
 import json
 import os
 import threading
@@ -19,16 +20,14 @@ COMPILER, PROFILE_MERGER = "clang++-19", "llvm-profdata-19"
 """The C++ compiler, and its program that merges profiles. It compiles Verilator's code in half of g++'s time, to an equally fast
 program. With clang 14 the verilated SoC is an eighth slower."""
 
-_RUNTIME = [VERILATOR_ROOT / "include" / f"{part}.cpp" for part in ("verilated", "verilated_threads")]
-_RUNTIME_OF_WAVEFORMS = VERILATOR_ROOT / "include" / "verilated_vcd_c.cpp"
-_runtime_lock = threading.Lock()
+_INCLUDE = VERILATOR_ROOT / "include"
 
 
 def flags(folder, waveforms=False):
     """Returns the options of the compiler for the model in `folder`. Symbols are hidden, which lets the compiler inline more and makes a
     module a third faster."""
     values = {"SC": 0, "COVERAGE": 0, "TIMING": 0, "TRACE": int(waveforms), "TRACE_VCD": int(waveforms)}
-    includes = [folder, HARNESS, VERILATOR_ROOT / "include", VERILATOR_ROOT / "include" / "vltstd"]
+    includes = [folder, HARNESS, _INCLUDE, _INCLUDE / "vltstd"]
     return ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", *(f"-DVM_{key}={value}" for key, value in values.items()),
             "-DMODEL=Vmodel", '-DMODEL_HEADER="Vmodel.h"', *(f"-I{include}" for include in includes)]
 
@@ -45,9 +44,17 @@ def verilate(top, sources, parameters, folder, options):
     (folder / "description.inc").write_text(text)
 
 
-def model_sources(folder, waveforms=False):
-    """Returns the C++ files of the verilated design in `folder` and of Verilator's runtime."""
-    return [*sorted(folder.glob("Vmodel*.cpp")), *_RUNTIME, *([_RUNTIME_OF_WAVEFORMS] if waveforms else [])]
+def model_sources(folder):
+    """Returns the C++ files of the verilated design in `folder`: those that run in each cycle, and those that run once."""
+    sources = sorted(folder.glob("Vmodel*.cpp"))
+    slow = [source for source in sources if "__Slow" in source.name]
+    return [source for source in sources if source not in slow], slow
+
+
+def write_whole(parts, whole):
+    """Writes the file `whole`, which includes the files `parts`: to compile them apart takes longer."""
+    whole.write_text("".join(f'#include "{part}"\n' for part in parts))
+    return whole
 
 
 def object_of(source, folder):
@@ -61,9 +68,7 @@ def compile_all(name, sources, folder, options):
     lock = threading.Lock()
 
     def compile_one(source):
-        # Verilator puts code that runs only once into files whose names contain "slow".
-        slow = ["-O0"] if "__Slow" in source.name else []
-        run([COMPILER, *options, *slow, "-c", source, "-o", object_of(source, folder)])
+        run([COMPILER, *options, "-c", source, "-o", object_of(source, folder)])
         nonlocal done
         with lock:
             done += 1
@@ -86,14 +91,24 @@ def link(objects, built, library):
     built.rename(library)
 
 
-def runtime(folder, options):
-    """Returns the objects of Verilator's runtime in `folder`, which all models with the same options share."""
-    objects = [object_of(source, folder) for source in _RUNTIME]
-    with _runtime_lock:
-        stamp, inputs = folder / "inputs", digest(_RUNTIME, options)
-        if not is_current(stamp, inputs, *objects):
-            folder.mkdir(parents=True, exist_ok=True)
-            for source, target in zip(_RUNTIME, objects):
-                run([COMPILER, *options, f"-I{VERILATOR_ROOT}/include", f"-I{VERILATOR_ROOT}/include/vltstd", "-c", source, "-o", target])
+def runtime(waveforms=False):
+    """Compiles the parts of Verilator that all models share, once. Returns the objects of its runtime, and options of the compiler with its
+    precompiled header, which a model with optimisation needs: to parse this header takes longer than to compile a small model."""
+    folder = GATEWARE.parent / "target" / "gateware" / ("runtime-waveforms" if waveforms else "runtime")
+    sources = [_INCLUDE / f"{part}.cpp" for part in ("verilated", "verilated_threads", *(["verilated_vcd_c"] if waveforms else []))]
+    objects = [object_of(source, folder) for source in sources]
+    header = folder / "verilated.pch"
+    # Without time stamps, an equal header of another installation fits, too.
+    shared = ["-Xclang", "-fno-pch-timestamp", "-include-pch", header]
+    folder.mkdir(parents=True, exist_ok=True)
+    # Several processes of a test run may need the runtime at the same time.
+    with open(folder / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        stamp, inputs = folder / "inputs", digest([*RECIPE, *files_below(_INCLUDE)])
+        if not is_current(stamp, inputs, header, *objects):
+            options = [*flags(folder, waveforms), "-O2"]
+            run([COMPILER, *options, "-x", "c++-header", "-Xclang", "-fpch-instantiate-templates", "-Xclang", "-fno-pch-timestamp",
+                 _INCLUDE / "verilated.h", "-o", header])
+            compile_all("compile Verilator's runtime", sources, folder, [*options, *shared])
             stamp.write_text(inputs)
-    return objects
+    return objects, shared

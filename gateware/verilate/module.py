@@ -25,12 +25,9 @@ def build(top, sources, name, parameters, warnings=("-Wall",)):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     compiler.verilate(top, sources, parameters, folder, [*warnings, *_VERILATE])
-    options = [*compiler.flags(folder), _OPTIMISE]
-    # All files are compiled as one file, because each of them alone would take as long as all together.
-    parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
-    whole = folder / "whole.cpp"
-    whole.write_text("".join(f'#include "{path}"\n' for path in parts))
-    run([compiler.COMPILER, *options, "-c", whole, "-o", folder / "whole.o"])
-    runtime = compiler.runtime(MODELS / "runtime", ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", _OPTIMISE])
-    compiler.link([folder / "whole.o", *runtime], folder / "built.so", library)
+    objects, shared = compiler.runtime()
+    hot, slow = compiler.model_sources(folder)
+    whole = compiler.write_whole([*hot, *slow, compiler.HARNESS / "module.cpp"], folder / "whole.cpp")
+    run([compiler.COMPILER, *compiler.flags(folder), *shared, _OPTIMISE, "-c", whole, "-o", folder / "whole.o"])
+    compiler.link([folder / "whole.o", *objects], folder / "built.so", library)
     stamp.write_text(inputs)
