@@ -24,15 +24,15 @@ impl Bits {
         bits
     }
 
-    /// Makes a value from at most 64 bytes, lowest first; missing bytes are 0.
+    /// Makes a value from at most 64 bytes in whole words, lowest first; missing bytes are 0.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Self {
         let mut bits = Self::default();
-        for (to, from) in bits.0.iter_mut().zip(bytes.chunks(4)) {
-            let mut word = [0; 4];
-            word[..from.len()].copy_from_slice(from);
-            *to = u32::from_le_bytes(word);
+        let (words, rest) = bytes.as_chunks();
+        for (to, &from) in bits.0.iter_mut().zip(words) {
+            *to = u32::from_le_bytes(from);
         }
+        assert!(rest.is_empty());
         bits
     }
 
@@ -40,6 +40,11 @@ impl Bits {
     #[must_use]
     pub fn words(&self) -> &[u32; WORDS] {
         &self.0
+    }
+
+    /// The value as 32-bit words, lowest first, for changes.
+    pub(crate) fn words_mut(&mut self) -> &mut [u32; WORDS] {
+        &mut self.0
     }
 
     /// Whether all bits above the lowest `width` bits are 0.

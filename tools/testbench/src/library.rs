@@ -255,22 +255,43 @@ impl Instance {
         }
     }
 
-    /// Returns the value of a port after the last evaluation.
-    #[must_use]
-    pub fn bits(&self, port: usize) -> Bits {
-        Bits::from_bytes(self.bytes(port))
-    }
-
-    /// Drives an input.
+    /// Returns the field of `width` bits of a port from bit `low` up, after the last evaluation.
     ///
     /// # Panics
-    /// When there is no such input, or the value does not fit.
-    pub fn set_bits(&mut self, port: usize, value: Bits) {
-        let Slot { width, .. } = self.ports[port];
+    /// When there is no such port, or the field is not within it.
+    #[must_use]
+    pub fn bits(&self, port: usize, low: usize, width: usize) -> Bits {
+        assert!(low + width <= self.ports[port].width);
+        let mut bits = Bits::default();
+        for (i, to) in bits.words_mut()[..width.div_ceil(32)]
+            .iter_mut()
+            .enumerate()
+        {
+            let at = low + 32 * i;
+            let two =
+                u64::from(self.word(port, at / 32)) | u64::from(self.word(port, at / 32 + 1)) << 32;
+            let count = (width - 32 * i).min(32);
+            *to = (two >> (at % 32)) as u32 & (u32::MAX >> (32 - count));
+        }
+        bits
+    }
+
+    /// Drives the field of `width` bits of an input from bit `low` up.
+    ///
+    /// # Panics
+    /// When there is no such input, the field is not within it, or the value does not fit.
+    pub fn set_bits(&mut self, port: usize, low: usize, width: usize, value: Bits) {
+        assert!(low + width <= self.ports[port].width);
         self.check_input(port, value.fits(width), value);
-        let target = self.bytes_mut(port).chunks_mut(4);
-        for (bytes, word) in target.zip(value.words()) {
-            bytes.copy_from_slice(&word.to_le_bytes()[..bytes.len()]);
+        let mut done = 0;
+        while done < width {
+            let at = low + done;
+            let count = (32 - at % 32).min(width - done);
+            let mask = (u32::MAX >> (32 - count)) << (at % 32);
+            let part = (value.field(done, count) as u32) << (at % 32);
+            let word = self.word(port, at / 32) & !mask | part;
+            self.set_word(port, at / 32, word);
+            done += count;
         }
     }
 
@@ -306,6 +327,28 @@ impl Instance {
             let start: unsafe extern "C" fn(*mut c_void, *const c_char) -> c_int =
                 self.symbol("harness_waveforms")?;
             Ok(start(self.handle.as_ptr(), path.as_ptr()) != 0)
+        }
+    }
+
+    /// Returns word `index` of the bits of a port; 0 beyond the port.
+    fn word(&self, port: usize, index: usize) -> u32 {
+        match *self.bytes(port) {
+            [byte] if index == 0 => byte.into(),
+            [a, b] if index == 0 => u16::from_le_bytes([a, b]).into(),
+            ref bytes => {
+                let (words, _) = bytes.as_chunks();
+                words.get(index).map_or(0, |&word| u32::from_le_bytes(word))
+            }
+        }
+    }
+
+    /// Sets word `index` of the bits of a port.
+    fn set_word(&mut self, port: usize, index: usize, word: u32) {
+        let word = word.to_le_bytes();
+        match self.bytes_mut(port) {
+            [byte] => *byte = word[0],
+            [a, b] => [*a, *b] = [word[0], word[1]],
+            bytes => bytes.as_chunks_mut().0[index] = word,
         }
     }
 

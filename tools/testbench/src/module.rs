@@ -24,6 +24,8 @@ pub struct Module {
     instance: Instance,
     /// The port `clk`; `None` for a module whose clocks the test bench drives.
     clock: Option<Port>,
+    /// Whether the outputs are those of the current inputs after the last clock, with the clock low.
+    settled: bool,
     cycles: u64,
 }
 
@@ -62,13 +64,16 @@ impl Module {
                 panic!("{error}; run `.venv/bin/pytest gateware/tests/test_modules.py` to build it")
             });
         for port in 0..instance.description().ports.len() {
-            if !instance.port(port).output {
-                instance.set_bits(port, Bits::default());
+            let described = instance.port(port);
+            if !described.output {
+                let width = described.layout.width();
+                instance.set_bits(port, 0, width, Bits::default());
             }
         }
         Self {
             instance,
             clock: None,
+            settled: false,
             cycles: 0,
         }
     }
@@ -147,24 +152,15 @@ impl Module {
 
     /// Drives an input, or part of an input, with a value.
     pub fn set(&mut self, port: Port, value: impl Into<Bits>) {
-        let mut value = value.into();
-        let Port {
-            index, low, width, ..
-        } = port;
-        if !port.whole {
-            let name = &self.instance.port(index).name;
-            assert!(
-                value.fits(width),
-                "{value:?} does not fit the {width} bits of {name} from bit {low}"
-            );
-            value = self.instance.bits(index).with_slice(low, width, value);
-        }
-        self.instance.set_bits(index, value);
+        self.settled = false;
+        self.instance
+            .set_bits(port.index, port.low, port.width, value.into());
     }
 
     /// Drives an input, or part of an input, of at most 64 bits.
     pub fn set_value(&mut self, port: Port, value: u64) {
         if port.whole {
+            self.settled = false;
             self.instance.set_value(port.index, value);
         } else {
             self.set(port, value);
@@ -174,11 +170,7 @@ impl Module {
     /// Returns the bits of a port after the last [`settle`](Self::settle) or [`clock`](Self::clock).
     #[must_use]
     pub fn get(&self, port: Port) -> Bits {
-        let bits = self.instance.bits(port.index);
-        if port.whole {
-            return bits;
-        }
-        bits.slice(port.low, port.width)
+        self.instance.bits(port.index, port.low, port.width)
     }
 
     /// Returns the value of a port of at most 64 bits.
@@ -187,7 +179,7 @@ impl Module {
         if port.whole {
             return self.instance.value(port.index);
         }
-        self.instance.bits(port.index).field(port.low, port.width)
+        self.get(port).field(0, port.width)
     }
 
     /// Whether a one-bit port is high.
@@ -198,20 +190,24 @@ impl Module {
 
     /// Evaluates the module for its current inputs, without a clock edge.
     pub fn settle(&mut self) {
-        self.eval_with_clock(0);
+        if !self.settled {
+            self.eval_with_clock(0);
+            self.settled = true;
+        }
     }
 
-    /// Advances by one clock: the rising edge samples the current inputs, and the outputs are updated.
+    /// Advances by one clock: the rising edge samples the current inputs, and the outputs are updated. The clock falls at the next
+    /// [`settle`](Self::settle) or clock, because each evaluation takes the time of all logic between inputs and outputs.
     pub fn clock(&mut self) {
-        self.eval_with_clock(0);
+        self.settle();
         self.eval_with_clock(1);
-        self.eval_with_clock(0);
+        self.settled = false;
         self.cycles += 1;
     }
 
     fn eval_with_clock(&mut self, level: u64) {
         if let Some(clock) = self.clock {
-            self.set_value(clock, level);
+            self.instance.set_value(clock.index, level);
         }
         self.instance.eval();
     }
