@@ -5,9 +5,8 @@ import shutil
 import pytest
 
 import memory_machine
-from resources import size
 from resources.modules import RTL_MODULES
-from resources.tools import run_yosys
+from resources.tools import BUILD, run_yosys
 from verilate import module as verilated_module
 from verilate.programs import run_verilator
 
@@ -15,7 +14,7 @@ _BUILDS = [pytest.param(module, name, parameters, id=name) for module in RTL_MOD
 
 # Modules that are part of another one under test. Yosys reads them with it.
 _PARTS = {source.stem for module in RTL_MODULES for source in module.sources if source.stem != module.top}
-_WHOLE = [build for build in _BUILDS if build.values[0].top not in _PARTS]
+_WHOLE = [module for module in RTL_MODULES if module.top not in _PARTS]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -44,7 +43,12 @@ def test_model_of_the_memory():
     verilated_module.build(memory_machine.NAME, [source], memory_machine.NAME, {}, warnings=("-Wno-fatal", "-Wno-lint"))
 
 
-@pytest.mark.parametrize(("module", "name", "parameters"), _WHOLE)
-def test_read_by_yosys(module, name, parameters):
-    """Checks that Yosys can read a module, with its parts."""
-    run_yosys(f"{size.set_parameters(module.top, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
+@pytest.mark.parametrize("module", _WHOLE, ids=lambda module: module.top)
+def test_read_by_yosys(module):
+    """Checks that Yosys can read all builds of a module, with their parts. Parts that several builds have in common are checked once."""
+    values = ((name, ", ".join(f".{key}({value})" for key, value in parameters.items())) for name, parameters in module.builds().items())
+    instances = "\n".join(f"{module.top} #({parameters}) {name} ();" for name, parameters in values)
+    BUILD.mkdir(parents=True, exist_ok=True)
+    builds = BUILD / f"builds_of_{module.top}.sv"
+    builds.write_text(f"module builds;\n{instances}\nendmodule\n")
+    run_yosys("hierarchy -check -top builds; proc; check -assert", [*module.sources, builds])
