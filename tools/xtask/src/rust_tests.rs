@@ -14,11 +14,13 @@ use serde::Deserialize;
 
 use crate::{paths, run};
 
-/// Cargo options that compile the references with little optimisation. Full optimisation, as for the report, takes more time than
-/// the tests save by it.
-const QUICK_BUILD: [&str; 2] = [
+/// Cargo options that compile the references with little optimisation and in one part. Full optimisation, as for the report, takes
+/// more time than the tests save by it.
+const QUICK_BUILD: [&str; 4] = [
     "--config",
     "profile.dev.package.glint-reference.opt-level=1",
+    "--config",
+    "profile.dev.package.glint-reference.codegen-units=1",
 ];
 
 /// The longest-running programs, by package and target, longest first. These programs start first; otherwise a long program would
