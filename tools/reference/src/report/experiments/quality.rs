@@ -49,10 +49,13 @@ fn of(quality: Quality) -> Changes {
     }
 }
 
-/// The built-in scenes that have their own picture (not the lists of scenes), restricted to names that contain `only`.
+/// The built-in scenes that have their own picture in f64 (no lists of scenes, and no scenes with textures), restricted to names that
+/// contain `only`.
 pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     let scenes = NAMES.into_iter().filter_map(built_in);
-    scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
+    scenes.filter(move |scene| {
+        scene.scenes().is_empty() && !scene.needs().texture && scene.name().contains(only)
+    })
 }
 
 /// Measures the errors of the scenes whose names contain `only`, in the qualities that are `wanted`.
