@@ -1,5 +1,7 @@
 //! Camera frames as masks of the hand's colour, and the gesture engine's statistics of a frame.
 
+use std::sync::OnceLock;
+
 use glint_core::gesture::{EngineSetting, Region, Statistics};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -44,6 +46,12 @@ impl Shape {
 
     /// Area and centre of mass of the shape with radius 1, summed over a grid of squares of side 1/200.
     pub fn area_and_centre(self) -> (f64, [f64; 2]) {
+        // Every hand of a frame needs them, and the sum takes longer than the frame.
+        static SUMS: [OnceLock<(f64, [f64; 2])>; 2] = [const { OnceLock::new() }; 2];
+        *SUMS[self as usize].get_or_init(|| self.sum())
+    }
+
+    fn sum(self) -> (f64, [f64; 2]) {
         let mut sums = [0.0; 3];
         for row in -600..600 {
             for column in -600..600 {
