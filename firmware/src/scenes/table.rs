@@ -10,7 +10,7 @@ pub static SCENES: [BuiltIn; 12] = [
     // Unbounded repeated cubes in fog
     BuiltIn::picture(
         "cubes",
-        &[feature::FIELD, feature::FOG, feature::VIEW],
+        &[feature::FIELD, feature::FOG, feature::SKY, feature::VIEW],
         "\
 quality balanced
 lookat 1 -1 1 -1 1.2 -1.5
@@ -23,7 +23,7 @@ field cubes:2,0.4
     // The scenes of a board that runs alone
     BuiltIn::list(
         "demo",
-        &[feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::STEREO, feature::VIEW, feature::WIREFRAME],
+        &[feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::SKY, feature::STEREO, feature::VIEW, feature::WIREFRAME],
         &["holoforge", "wireframe", "simplegpu", "poor-mans-vr", "cubes"],
     ),
     // HoloForge: a mesh that a hand turns
@@ -40,7 +40,7 @@ gesture on
     // HoloForge: a crate with a texture that a hand turns
     BuiltIn::picture(
         "holoforge-textured",
-        &[feature::CPU, feature::GESTURE, feature::LIGHT, feature::MESH, feature::TEXTURE, feature::VIEW],
+        &[feature::GESTURE, feature::LIGHT, feature::MESH, feature::SKY, feature::TEXTURE, feature::VIEW],
         "\
 quality fast
 camera 2.5 40 65
@@ -66,7 +66,7 @@ field menger:4
     // A ring in a box
     BuiltIn::picture(
         "mesh-in-field",
-        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::VIEW],
+        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::VIEW],
         "\
 quality balanced
 camera 2 30 60
@@ -112,7 +112,7 @@ imu look
     // A sponge in a room with plants, windows and a screen of glass
     BuiltIn::picture(
         "room",
-        &[feature::CPU, feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::TEXTURE, feature::VIEW],
+        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::TEXTURE, feature::VIEW],
         "\
 quality balanced
 lookat 3.4 -4.9 1.5 -3.58 4.84 -1.97
@@ -147,7 +147,7 @@ scene polygons
     // Eight spheres of different colours
     BuiltIn::picture(
         "spheres",
-        &[feature::FIELD, feature::SPHERES, feature::VIEW],
+        &[feature::FIELD, feature::SKY, feature::SPHERES, feature::VIEW],
         "\
 quality balanced
 camera 2.6 40 62

@@ -5,12 +5,13 @@
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour for pixels that are not
-// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*`, dithered (band_sky). With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left
-// luminance becomes red, the right luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the
-// right luminance green and blue. The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read
-// again after its colours: the depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses
-// `depth_base` + 2r and `depth_base` + 2r + 1. Colour words are output in the order of their addresses, and so are depth words, so the DDR3
-// memory rarely has to open another row.
+// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*`, dithered (band_sky). With `compose` other than 0
+// (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left luminance becomes red, the right
+// luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the right luminance green and blue.
+// The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read again after its colours: the
+// depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses `depth_base` + 2r and
+// `depth_base` + 2r + 1. Colour words are output in the order of their addresses, and so are depth words, so the DDR3 memory rarely has to
+// open another row.
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one

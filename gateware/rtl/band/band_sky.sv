@@ -24,8 +24,8 @@ module band_sky (
 );
     localparam int unsigned LATENCY = 5;
 
-    // Heights of the group, and of the first group of its line. `left` is the number of groups after this one in the line; `ends` is high for
-    // the last one. Before the first line, `line` is the height of the line above the picture, and `running` is low.
+    // Heights of the group, and of the first group of its line. `left` is the number of groups after this one in the line; `ends` is high
+    // for the last one. Before the first line, `line` is the height of the line above the picture, and `running` is low.
     logic signed [31:0] height, line, next;
     logic [7:0]         left;
     logic [1:0]         number, number_5;
