@@ -92,7 +92,8 @@ pub struct GatewareRenderer {
 /// main loop takes at least 3,000 cycles, mostly to load its code, so waiting is faster for a short pass of the engine.
 const PATIENCE: u32 = 20_000;
 
-/// Clock cycles between two checks of the watchdog, 13 ms at 81.25 MHz: the interrupt of the vertical blanking wakes the CPU less often.
+/// Least number of clock cycles between two checks of the watchdog, 13 ms at 81.25 MHz. The interrupt of the vertical blanking, every 16.7
+/// ms, always leads to a check.
 const CHECK_PERIOD: u32 = 1 << 20;
 
 impl GatewareRenderer {

@@ -6,7 +6,7 @@
 //          across                                               down
 //
 // `above` is 16·first + (last − first)·across of the two upper neighbours, `below` the same of the lower ones, and the average is
-// 16·above + (below − above)·down. A factor holds the channels with room for their products between them. The sum of each channel is not
+// 16·above + (below − above)·down. A difference holds the channels side by side, with free bits between them for their products. The sum of each channel is not
 // negative, so no channel borrows from the next one, although a difference may be negative. Half of the unit of the rounding is already in
 // `above` and `below`, in bits that are free in 16·first. Without `bilinear`, which is constant while pixels are inside, the average is
 // `nearest`.

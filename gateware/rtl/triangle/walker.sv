@@ -58,7 +58,7 @@ module walker #(
     input  wire                           out_ready,
     output raster_pkg::candidate_t        out_group,
     output raster_pkg::late_t             out_late,     // a clock after `out_group`
-    // The planes at the group, 1 + LIGHT_LATER clocks after `out_late`: in the format of `in_planes`, with the accumulators in lane 0.
+    // The planes in the format of `in_planes`, with their values in lane 0 of the group, 1 + LIGHT_LATER clocks after `out_late`.
     output logic [PLANES_BITS-1:0]        out_planes
 );
     // Constants of the current triangle.

@@ -58,7 +58,7 @@ pub enum WordKind {
     Either(&'static str, &'static WordKind),
     /// The name of a command.
     Command,
-    /// A name, usually from this list of the machine, and the description of the names.
+    /// A name, usually one from this list, which the machine has. The second value describes such a name for help and errors.
     Name(NameList, &'static (dyn Display + Sync)),
     /// A name from this table, a colon and numbers. An entry has the form, with names in place of the
     /// numbers, and its description.

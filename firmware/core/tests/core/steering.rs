@@ -21,7 +21,7 @@ fn basis(view: &View) -> [[f64; 3]; 3] {
     [view.u(), view.v(), view.n()].map(|row| row.map(Q2_23::to_num))
 }
 
-/// Returns the largest difference between corresponding numbers of the eyes and bases of two cameras.
+/// Returns the largest difference between the components of the eyes and basis vectors of two cameras.
 fn apart(a: &View, b: &View) -> f64 {
     let eyes = [a, b].map(|view| view.eye().map(Q32_32::to_num::<f64>));
     let rows = [basis(a), basis(b)];

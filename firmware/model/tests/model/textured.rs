@@ -225,7 +225,7 @@ fn cut_out_texels_leave_colour_and_depth() {
     assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
 }
 
-/// Blending changes the colour of a pixel, and leaves its depth.
+/// Blending changes the colour of a pixel, but not its depth.
 #[test]
 fn blended_texels_keep_the_depth_behind_them() {
     const RED: u16 = 0xB800;

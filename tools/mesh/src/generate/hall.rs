@@ -171,7 +171,7 @@ fn picket(x: u32, y: u32) -> [u8; 4] {
     if is_rail {
         return shaded([196, 188, 170], noise(x / 8, y) % 24);
     }
-    // Gaps have the colour of the pickets, so that averages at the edges show no rim.
+    // Transparent texels have the colour of the pickets, so filtering leaves no fringe at their edges.
     [236, 230, 214, 0]
 }
 

@@ -143,7 +143,7 @@ pub(super) fn cone_hit(radius: f64, height: f64, ray: &Ray, t_min: f64) -> Optio
         }
     };
     let a = d[0] * d[0] + d[1] * d[1] - k * k * d[2] * d[2];
-    // With this zero, a ray along a line of the lateral face has its other solution at the right end of the line.
+    // With this zero, a ray along a generator of the cone has its other solution at the right end of the line.
     let a = if a == 0.0 { -0.0 } else { a };
     let b = q[0] * d[0] + q[1] * d[1] - k * k * q[2] * d[2];
     let c = q[0] * q[0] + q[1] * q[1] - k * k * q[2] * q[2];
