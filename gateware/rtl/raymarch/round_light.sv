@@ -9,7 +9,7 @@
 // - one for each light, if there are any;
 // - with HIGHLIGHT, and if `lights.highlight` is high, one for the highlight, with a power of the cosine in place of the cosine.
 //
-// With CONE, and if `lights.cone` is high, light is only computed for the lateral face of a solid cone. The centre is then the apex of the
+// With CONE, and if `lights.cone` is high, light is only computed for the lateral surface of a solid cone. The centre is then the apex of the
 // cone, `lights` contains directions that are adapted to the normals of the cone (`across` and `along` instead of those of the axes), and
 // the reciprocal of the distance below the apex replaces the reciprocal of the radius.
 //

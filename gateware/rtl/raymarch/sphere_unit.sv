@@ -41,8 +41,8 @@
 // - BASE: the plane of the solid cone's base, for an eye below this plane: the ray meets the base as a disc, and other faces behind the
 //   plane;
 // - LIMIT: the same plane, for an eye above it: the ray meets other faces before the plane;
-// - LATERAL: the lateral face: side b replaces the forward function as the divisor's addend, and the square of side b is left out;
-// - AROUND: the lateral face, for an eye above the apex that sees it all around: the root of the sum of the sides' squares is subtracted;
+// - LATERAL: the lateral surface: side b replaces the forward function as the divisor's addend, and the square of side b is left out;
+// - AROUND: the lateral surface, for an eye above the apex that sees it all around: the root of the sum of the sides' squares is subtracted;
 // - SECTION: the section of the cone by the near plane, which the ray meets at the near plane.
 // The entry with the plane precedes those of the other faces.
 //

@@ -31,6 +31,6 @@ pub struct RayEnd {
     /// The colour of the sky depends on it.
     pub height: u8,
     /// At a hit on a sphere or fillet, the vector from the sphere's centre to the hit, in field units with 12 fraction bits. It is about
-    /// as long as the radius. At a hit on the lateral face of a cone, the vector from the apex.
+    /// as long as the radius. At a hit on the lateral surface of a cone, the vector from the apex.
     pub normal: Option<[i32; 3]>,
 }

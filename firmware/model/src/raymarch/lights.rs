@@ -196,7 +196,7 @@ struct Length {
 }
 
 impl Length {
-    /// The distance from a cone's apex along its axis, times 2^−`lead`. The argument is the vector from the apex to the lateral face.
+    /// The distance from a cone's apex along its axis, times 2^−`lead`. The argument is the vector from the apex to the lateral surface.
     fn below_apex(cone: &FixedCone, [_, _, z]: [i32; 3]) -> Self {
         let below = z.saturating_neg().clamp(1, (1 << 23) - 1).cast_unsigned();
         let Inverse { mantissa, exponent } = Inverse::of(below << 3, &Words::CHOSEN);

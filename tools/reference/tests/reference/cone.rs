@@ -26,8 +26,8 @@ inside near the base; cone:0.8,1.6; 0.125 0 -0.78125; 1 0.5 -1.5; 0.0625
 on the apex, looking down; cone:1,1; 0 0 0.5; 0.5 0 -0.5; 0.03125
 on the apex, looking up; cone:1,1; 0 0 0.5; 0.5 0 1.5; 0.03125
 on the axis, close to the apex; cone:1,1; 0 0 0.5625; 0.5 0 -0.5; 0.015625
-on the lateral face, looking along it; cone:1,1; 0.5 0 0; 0 0.75 0.25; 0.03125
-on the lateral face, looking in; cone:1,1; 0.5 0 0; 0 0 0.0625; 0.03125
+on the lateral surface, looking along it; cone:1,1; 0.5 0 0; 0 0.75 0.25; 0.03125
+on the lateral surface, looking in; cone:1,1; 0.5 0 0; 0 0 0.0625; 0.03125
 on the extension of a generator, above the apex; cone:1,1; 0.5 0 1; 0 0.125 -0.25; 0.03125
 on the extension of a generator, below the base; cone:1,1; 1.5 0 -1; 0 0.125 0.25; 0.03125
 in the base, looking in; cone:1,1; 0.25 0 -0.5; 0 0.25 0.25; 0.03125

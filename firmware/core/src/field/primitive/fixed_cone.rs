@@ -6,7 +6,7 @@ use crate::vector::unit;
 
 /// A cone about the z axis with lengths in field units, which have 12 fraction bits.
 ///
-/// Its lateral face has the outward normal (cos·x/r, cos·y/r, sin) at the distance r from the axis, where tan = radius/height.
+/// Its lateral surface has the outward normal (cos·x/r, cos·y/r, sin) at the distance r from the axis, where tan = radius/height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedCone {
     /// Radius of the base, u10.12, at least 2^6 units of 2^−12.
@@ -15,7 +15,7 @@ pub struct FixedCone {
     pub half: i32,
     /// The sine and the cosine of the half angle at the apex, u0.30.
     pub angle: [i32; 2],
-    /// Factors of the normal at a point of the lateral face, times 2^−`lead`, u0.30: cos·height/radius
+    /// Factors of the normal at a point of the lateral surface, times 2^−`lead`, u0.30: cos·height/radius
     /// for x and y, sin for z. The normal is (a·x, a·y, b·d)/d with the factors a and b, for a point at
     /// the distance d below the apex.
     slopes: [i32; 2],
@@ -61,7 +61,7 @@ impl FixedCone {
     }
 
     /// Converts a direction to a vector whose scalar product with the vector from the apex to a point of
-    /// the lateral face is the cosine of the angle between the normal and `direction`, times 2^−`lead` and
+    /// the lateral surface is the cosine of the angle between the normal and `direction`, times 2^−`lead` and
     /// the distance from the apex along the axis.
     pub fn lit_from(&self, direction: [i32; 3]) -> [i32; 3] {
         let [across, along] = self.slopes.map(i64::from);
@@ -69,7 +69,7 @@ impl FixedCone {
         [across * x, across * y, -along * z].map(|product| ((product + (1 << 29)) >> 30) as i32)
     }
 
-    /// The direction of the normal at a point of the lateral face, with any length. `from_apex` is the
+    /// The direction of the normal at a point of the lateral surface, with any length. `from_apex` is the
     /// vector from the apex to the point.
     pub fn normal(&self, from_apex: [i32; 3]) -> [i32; 3] {
         let [across, along] = self.slopes.map(i64::from);
@@ -79,7 +79,7 @@ impl FixedCone {
 
     /// Returns a lower bound of the distance from a point to the cone, rounded down, and the nearest surface. The bound is the larger one of
     /// the distances to the cone without a base and to the half-space above the base. `from_axis` is the point's distance from the axis,
-    /// `number` the number of the lateral face.
+    /// `number` the number of the lateral surface.
     pub(super) fn sample(&self, from_axis: i32, z: i32, number: u8) -> FieldSample {
         let [sine, cosine] = self.angle.map(i64::from);
         let below_apex = i64::from(self.half) - i64::from(z);

@@ -45,7 +45,7 @@ pub struct FixedSpheres {
     pub count: usize,
     /// Whether the first sphere, about the origin, is periodic with 64 field units along each axis.
     pub repeated: bool,
-    /// The cone whose lateral face has the number of the last entry of `list`. This entry is a sphere around the cone.
+    /// The cone whose lateral surface has the number of the last entry of `list`. This entry is a sphere around the cone.
     pub cone: Option<FixedCone>,
 }
 
@@ -89,7 +89,7 @@ impl FixedSpheres {
         nearest
     }
 
-    /// The cone whose lateral face has this number.
+    /// The cone whose lateral surface has this number.
     pub fn cone(&self, number: u8) -> Option<&FixedCone> {
         (self.cone.as_ref()).filter(|_| usize::from(number) + 1 == self.count)
     }

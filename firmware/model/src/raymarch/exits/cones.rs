@@ -78,7 +78,7 @@ impl Cones {
 pub struct Cone {
     /// What a ray in the cone meets.
     pub kind: ConeKind,
-    /// Number of the sphere, or of the lateral face of a solid cone.
+    /// Number of the sphere, or of the lateral surface of a solid cone.
     pub number: u8,
     /// The pixels that may see the sphere.
     pub rectangle: Rectangle,
@@ -107,9 +107,9 @@ pub enum ConeKind {
     Base,
     /// The same plane for an eye above it: no ray meets the base, and the other faces are before the plane.
     Limit,
-    /// The lateral face of a solid cone.
+    /// The lateral surface of a solid cone.
     Lateral,
-    /// The lateral face, for an eye above the apex that sees it all around.
+    /// The lateral surface, for an eye above the apex that sees it all around.
     Around,
     /// The section of the near plane and of a solid cone.
     Section,

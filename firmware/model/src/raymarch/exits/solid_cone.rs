@@ -1,4 +1,4 @@
-//! The cones in which an eye sees a solid cone: the cones of its base, of its lateral face, and of its section by the near plane.
+//! The cones in which an eye sees a solid cone: the cones of its base, of its lateral surface, and of its section by the near plane.
 //!
 //! With q from the apex to the eye, k the ratio of radius to height, and the z axis as that of the solid cone, a ray meets the double cone
 //! x² + y² = k²·z² about the apex at the solutions of A·T² + 2·B·T + C = 0, where A = Dx² + Dy² − k²·Dz², B = qx·Dx + qy·Dy − k²·qz·Dz and
@@ -8,10 +8,10 @@
 //! where ρ² = f² − a²: as for spheres, the root is in the divisor. −B is the divisor's addend in place of f.
 //!
 //! An eye above the apex in the upper half sees the lower half all around, with no outline. There C is negative, and the ray meets the
-//! lower half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half does not see the lateral face. Only for an eye close to the
+//! lower half at T = −C/(B − ρ), where ρ² = f² + a². An eye in the lower half does not see the lateral surface. Only for an eye close to the
 //! surface of the upper half are ρ and B nearly equal.
 //!
-//! The base is a disc, which an eye below its plane sees in a cone, as the disc of a sphere in the near plane. The lateral face is before
+//! The base is a disc, which an eye below its plane sees in a cone, as the disc of a sphere in the near plane. The lateral surface is before
 //! the plane for an eye above the plane, and behind it for an eye below.
 //!
 //! The section by the near plane has the points x² + y² < k²·z² of the plane, again functions that are linear in a pixel's column and row.
@@ -93,7 +93,7 @@ impl Sight {
         cone.distance = distance(to_plane.halved(halvings));
     }
 
-    /// Sets the constants of the lateral face. Returns `false` for an eye that does not see it.
+    /// Sets the constants of the lateral surface. Returns `false` for an eye that does not see it.
     fn lateral(&self, shape: &FixedCone, cone: &mut Cone, middle: &Pixel) -> bool {
         let q = self.beside_surface(shape);
         let [x, y, z] = q.map(i64::from);

@@ -30,7 +30,7 @@ impl Exits {
     pub fn meet(&self, cones: &[Cones; 2], beam: &Beam) -> (Option<Met>, u32) {
         let mut best: Option<Met> = None;
         let mut tests = 0;
-        // The lateral face and the section of a solid cone are between these parameters.
+        // The lateral surface and the section of a solid cone are between these parameters.
         let mut limits = (0, i64::MAX);
         for cone in cones[beam.eye].list() {
             if !cone.rectangle.holds(beam.column, beam.row) {

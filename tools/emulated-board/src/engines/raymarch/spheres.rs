@@ -77,7 +77,7 @@ impl Spheres {
         }
     }
 
-    /// The solid cone whose lateral face has this number, if there is one.
+    /// The solid cone whose lateral surface has this number, if there is one.
     pub fn cone(&self, number: usize) -> Option<FixedCone> {
         let [.., half] = self.list[number % MAX_SPHERES].centre;
         self.has_cone()
