@@ -3,7 +3,7 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
-use glint_core::feature::{MESH, OBJECT};
+use glint_core::feature::{MESH, OBJECT, SKY};
 use glint_core::framing::FramingError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::matrix::MatrixError;
@@ -27,6 +27,8 @@ pub enum SettingError<'l> {
     FitOfOthers,
     /// No allowed camera shows the meshes completely.
     Fit(FramingError),
+    /// A sky was requested from a firmware without one.
+    NoSky,
     /// The list of lights is full.
     Lights,
     /// No mesh has this name.
@@ -77,6 +79,7 @@ impl Display for SettingError<'_> {
                 "fit: expected a mesh alone or objects; `camera 4 30 60` shows most fields",
             ),
             Self::Fit(error) => MESH.when_built(|| write!(f, "fit: {error}")),
+            Self::NoSky => write!(f, "background: {SKY}"),
             Self::Lights => write!(
                 f,
                 "light: expected at most {MAX_LIGHTS} lights, `light default` removes them"

@@ -7,10 +7,13 @@ use glint_core::appearance::Appearance;
 use glint_core::block::Block;
 use glint_core::camera::{View, ViewError};
 use glint_core::console::{ObjectAction, Setting};
-use glint_core::feature::{ANIMATE, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, STEREO, WIREFRAME};
+use glint_core::feature::{
+    ANIMATE, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, SKY, STEREO, WIREFRAME,
+};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U8_28, U32_32};
 use glint_core::framing;
+use glint_core::light::Background;
 use glint_core::matrix::{Axis, Matrix, MatrixError};
 use glint_core::mesh::{MAX_NAME, Mesh};
 use glint_core::object::{MAX_OBJECTS, Place};
@@ -322,7 +325,12 @@ impl Scene {
             Setting::Ambient { colour } => self.appearance.ambient = colour,
             Setting::Highlight { highlight } => self.appearance.highlight = highlight,
             Setting::Shadow { on } => self.appearance.shadow = on,
-            Setting::Background { background } => self.appearance.background = background,
+            Setting::Background { background } => {
+                if background == Some(Background::Sky) && !SKY.is_built {
+                    return Err(SettingError::NoSky);
+                }
+                self.appearance.background = background;
+            }
             Setting::Fog { density } => self.appearance.fog = density.unwrap_or_default(),
             Setting::Occlusion { on } => self.appearance.occlusion = on,
             Setting::Undecided { on } => self.appearance.undecided = on,

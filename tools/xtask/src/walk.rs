@@ -37,7 +37,8 @@ const ONLY: &str = "only-";
 /// The builds of `cargo xtask test`, one of each kind: for a scene, and with a single block.
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
-/// One command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked.
+/// One command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked, and
+/// without `VIEW`, `background sky` before `SKY`.
 const COMMANDS: [(Feature, &str); 22] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
@@ -290,7 +291,12 @@ impl Build {
     fn refuses_others(&self, scene: &SceneFile) -> Result<()> {
         let needs = scene.needs().features;
         for (part, command) in COMMANDS {
-            let is_reached = part != feature::SPHERES || needs.contains(&feature::FIELD);
+            let command_part = match part {
+                feature::SPHERES => feature::FIELD,
+                feature::SKY => feature::VIEW,
+                part => part,
+            };
+            let is_reached = command_part == part || needs.contains(&command_part);
             if needs.contains(&part) || !is_reached {
                 continue;
             }

@@ -10,7 +10,6 @@ use super::syntax::{NameList, Parameter, Shape, WordKind};
 use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera::{self, Projection};
 use crate::choice::choices;
-use crate::feature::SKY;
 use crate::field::{self, KINDS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28, parse_i32};
 use crate::imu::Follow;
@@ -223,10 +222,7 @@ impl WordArgument for Highlight {
 /// The text form of a background.
 impl WordArgument for Background {
     type Value<'a> = Self;
-    const KIND: WordKind = match SKY.is_built {
-        true => WordKind::Either(Self::WHITE, &WordKind::Either(Self::SKY, &Rgb::KIND)),
-        false => WordKind::Either(Self::WHITE, &Rgb::KIND),
-    };
+    const KIND: WordKind = WordKind::Either(Self::WHITE, &WordKind::Either(Self::SKY, &Rgb::KIND));
 
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text)

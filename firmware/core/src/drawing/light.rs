@@ -11,7 +11,6 @@ use heapless::Vec;
 
 use crate::camera::View;
 use crate::choice::choices;
-use crate::feature::SKY;
 use crate::field::MAX_SPHERES;
 use crate::fixed::Q32_32;
 use crate::vector::unit;
@@ -543,11 +542,11 @@ impl Background {
     /// Text form of [`Background::Sky`].
     pub const SKY: &'static str = "sky";
 
-    /// Parses `white`, `sky` (in a build with a sky) or a colour RRGGBB; `None` for any other text.
+    /// Parses `white`, `sky` or a colour RRGGBB; `None` for any other text.
     pub fn parse(text: &str) -> Option<Self> {
         match text {
             Self::WHITE => Some(Self::White),
-            Self::SKY if SKY.is_built => Some(Self::Sky),
+            Self::SKY => Some(Self::Sky),
             colour => parse_rgb(colour).map(Self::Colour),
         }
     }
