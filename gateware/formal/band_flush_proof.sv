@@ -172,7 +172,8 @@ module band_flush_proof (
 
         sky_number  <= start ? '0 : sky_number + 3'(sky_ready);
         word_number <= start ? '0 : word_number + 3'(moves && !is_depth);
-        without_word <= idle || sweeping || moves || !out_ready || spans_busy && !span_valid || flush_sky && !sky_valid ? '0 : without_word + 1'b1;
+        without_word <= idle || sweeping || moves || !out_ready || spans_busy && !span_valid || flush_sky && !sky_valid
+                        ? '0 : without_word + 1'b1;
         without_end  <= idle || sweeping || dropped || spans_busy || !none_left ? '0 : without_end + 1'b1;
         sweep_clocks <= !sweeping || restart ? '0 : sweep_clocks + 1'b1;
 

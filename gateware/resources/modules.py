@@ -80,7 +80,8 @@ RTL_MODULES = [
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}, "fifo_block": {"BLOCK": 1}}),
     # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is 2^15 clocks, 0.4 ms.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
-    Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}, "band_buffer_blend": {"BLEND": 1}, "band_buffer_sky": {"SKY": 1}}),
+    Module(top="band_buffer",
+           variants={"band_buffer_stereo": {"STEREO": 1}, "band_buffer_blend": {"BLEND": 1}, "band_buffer_sky": {"SKY": 1}}),
     Module(top="setup", variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),

@@ -71,21 +71,13 @@ impl MeshPass<'_> {
 /// The sky of a raster pass; `is_first` if textures are blended with it.
 #[must_use]
 pub const fn sky(sky: &Sky, is_first: bool) -> triangle::Sky {
-    let &Sky {
-        above,
-        across,
-        down,
-        zenith,
-        horizon,
-        nadir,
-    } = sky;
     triangle::Sky {
-        above,
-        across,
-        down,
-        zenith,
-        horizon,
-        nadir,
+        above: sky.above,
+        across: sky.across,
+        down: sky.down,
+        zenith: sky.zenith,
+        horizon: sky.horizon,
+        nadir: sky.nadir,
         is_first,
     }
 }

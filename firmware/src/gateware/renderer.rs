@@ -350,14 +350,10 @@ impl GatewareRenderer {
         let field = self.raymarcher_counters(frame);
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
-        let sky_pixels = match self.constants[place].sky() {
-            Some(_) if self.buffers[place].textures.blends() => frame.size.pixel_count() as u32,
-            Some(_) | None => 0,
-        };
         let mesh = self.constants[place].mesh().map(|_| Stats {
             pixels_tested: None,
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
-            pixels_drawn: counters.pixels_drawn.wrapping_sub(sky_pixels).into(),
+            pixels_drawn: counters.pixels_drawn.into(),
             ..self.buffers[place].stats
         });
         let wireframe = matches!(frame.subject, Subject::Wireframe(_)).then(|| WireframeStats {

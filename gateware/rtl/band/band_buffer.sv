@@ -120,7 +120,7 @@ module band_buffer #(
     // State of band_pipe, which draws, and its signals to and from the memories.
     logic                open, empty, held;
     logic [ROW_BITS-1:0] draw_read_row, draw_write_row;
-    logic [7:0]          draw_lanes, draw_depths, drawn_written;
+    logic [7:0]          draw_lanes, draw_depths, drawn_lanes, drawn_written;
     logic [1:0]          draw_halves;
     logic [8*18-1:0]     draw_codes, stored_codes;
     logic [8*16-1:0]     draw_colours;
@@ -151,7 +151,7 @@ module band_buffer #(
         .group_asks, .group_blended, .answer_valid, .answer_lanes,
         .read_row(draw_read_row), .stored(stored_codes), .stored_written(drawn_written),
         .write_row(draw_write_row), .write_lanes(draw_lanes), .write_depths(draw_depths), .write_halves(draw_halves),
-        .write_codes(draw_codes), .write_colours(draw_colours), .empty, .held
+        .write_codes(draw_codes), .write_colours(draw_colours), .drawn_lanes, .empty, .held
     );
 
     logic                span_valid, span_ready, spans_busy;
@@ -266,7 +266,7 @@ module band_buffer #(
         // Blended pixels have been counted with the group that asked.
         group_taken      <= group_valid && group_ready && !(BLEND && group_blended);
         covered_mask     <= group_mask;
-        drawn_mask       <= draw_lanes;
+        drawn_mask       <= drawn_lanes;
         was_held         <= held;
         waited           <= flush_waits;
         waited_for_flush <= closing && empty && !flush_idle;

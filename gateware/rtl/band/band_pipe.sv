@@ -53,6 +53,8 @@ module band_pipe #(
     output logic [1:0]          write_halves,
     output logic [8*18-1:0]     write_codes,
     output logic [8*16-1:0]     write_colours,
+    // Lanes that pass the depth test, of a group that writes them or asks.
+    output logic [7:0]          drawn_lanes,
     // State.
     output logic                empty,
     output logic                held
@@ -152,11 +154,13 @@ module band_pipe #(
 
         assign write_lanes  = blended[3] ? compared.mask : asks[3] ? '0 : passing;
         assign write_depths = blended[3] ? compared.mask & ~stored_written : asks[3] ? '0 : passing;
+        assign drawn_lanes  = blended[3] ? '0 : passing;
     end else begin : plain
         wide_delay #(.WIDTH($bits(pixels)), .CLOCKS(3)) pixels_wait (.clk, .zero(1'b0), .in(pixels), .out(comparing));
 
         assign write_lanes  = passing;
         assign write_depths = passing;
+        assign drawn_lanes  = passing;
 
         assign {answer_valid, answer_lanes} = '0;
 

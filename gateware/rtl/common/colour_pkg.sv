@@ -14,9 +14,9 @@ package colour_pkg;
         rgb565 = {red, green, blue};
     endfunction
 
-    // Converts {blue, green, red}, with 248 for full red and blue and 252 for full green, to RGB565 for the pixel in column x and line y of a
-    // pattern of 4x4 pixels: adds a threshold below one step to each channel, and rounds down. The next step of a channel is the same in all
-    // pixels, so only the choice between the steps is made for each pixel.
+    // Converts {blue, green, red}, with 248 for full red and blue and 252 for full green, to RGB565 for the pixel in column x and line y
+    // of a pattern of 4x4 pixels: adds a threshold below one step to each channel, and rounds down. The next step of a channel is the same
+    // in all pixels, so only the choice between the steps is made for each pixel.
     function automatic logic [15:0] dithered(input logic [2:0][7:0] colour, input logic [1:0] x, input logic [1:0] y);
         logic [2:0] threshold;
         logic [4:0] red, blue;

@@ -5,11 +5,11 @@
 //          first, last ─▶ difference ─▶ product ─▶ below ──────▶ difference ─▶ product ─▶ blue
 //          across                                               down
 //
-// `above` is 16·first + (last − first)·across of the two upper neighbours, `below` the same of the lower ones, and the average is
-// 16·above + (below − above)·down. A difference holds the channels side by side, with free bits between them for their products. The sum of each channel is not
-// negative, so no channel borrows from the next one, although a difference may be negative. Half of the unit of the rounding is already in
-// `above` and `below`, in bits that are free in 16·first. Without `bilinear`, which is constant while pixels are inside, the average is
-// `nearest`.
+// `above` is 16·first + (last − first)·across of the two upper neighbours, `below` the same of the lower ones, and the average is 16·above
+// + (below − above)·down. A difference holds the channels side by side, with free bits between them for their products. The sum of each
+// channel is not negative, so no channel borrows from the next one, although a difference may be negative. Half of the unit of the
+// rounding is already in `above` and `below`, in bits that are free in 16·first. Without `bilinear`, which is constant while pixels are
+// inside, the average is `nearest`.
 //
 // Output: eight bits of each channel, its integer part and fraction bits, to nearest. Latency 6 clocks, throughput one pixel per clock; the
 // pipeline cannot be stopped.

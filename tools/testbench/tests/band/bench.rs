@@ -25,6 +25,8 @@ pub struct Bench {
     answer: [Port; 2],
     /// The lanes that pass the depth test of each group that asked and has a pixel, and those that the module answered.
     pub asked: Vec<u8>,
+    /// Number of lanes that pass the depth test, of groups that write them or ask.
+    pub passed: u64,
     pub answered: Vec<u8>,
     pub drawn: Pixels,
     pub left: Left,
@@ -92,6 +94,7 @@ impl Bench {
             closed: false,
             answer: ["answer_valid", "answer_lanes"].map(|name| module.port(name)),
             asked: Vec::new(),
+            passed: 0,
             answered: Vec::new(),
             drawn: Pixels::clear(),
             left: [(); 2].map(|()| vec![None; PICTURE_LINES]),
@@ -194,6 +197,9 @@ impl Bench {
                 "cycle {cycle}: a group was taken after its band's end"
             );
             let passing = self.drawn.draw(&group);
+            if group.kind != Kind::Blended {
+                self.passed += u64::from(passing.count_ones());
+            }
             if group.kind == Kind::Asks && group.mask != 0 {
                 self.asked.push(passing);
             }

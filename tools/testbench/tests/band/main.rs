@@ -148,6 +148,7 @@ fn random_blended_pixels_with_stalls() {
         }
         bench.finish();
         assert_eq!(bench.counter("groups"), counted);
+        assert_eq!(bench.counter("pixels_drawn"), bench.passed);
         assert!(bench.answered.len() > 500);
     }
 }

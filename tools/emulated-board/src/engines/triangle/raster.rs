@@ -383,9 +383,8 @@ impl Drawing<'_> {
         // The buffer has the size of the picture.
         let _ = sky.fill(&mut self.target, &mut || {});
         if is_first {
-            let pixels = self.size.pixel_count() as u64;
-            self.counts.drawn += pixels;
-            self.time.add_background(pixels / u64::from(GROUP as u32));
+            let groups = self.size.pixel_count() as u64 / GROUP as u64;
+            self.time.add_background(groups);
         }
     }
 
