@@ -44,7 +44,7 @@ gesture on
         "\
 quality fast
 camera 2.5 40 65
-fov 52
+fov 58
 light 2,1,3,fff0d8
 ambient 6c7080
 background sky
