@@ -40,6 +40,7 @@ _pixels = partial(Mutation, "ray_pixels.sv")
 _start = partial(Mutation, "exit_start.sv")
 _smooth = partial(Mutation, "smooth_shader.sv")
 _steps = partial(Mutation, "texture_queue.sv")
+_fog = partial(Mutation, "group_fog.sv")
 _cpu_bus = partial(Mutation, "cpu_bus.py")
 _crossbar = partial(Mutation, "memory_crossbar.py")
 _paint = partial(Mutation, "ray_paint.sv")
@@ -291,6 +292,18 @@ MUTATIONS = {
         _cull("room && !again;", "room;", "busy_while_inside"),
         _cull("first_valid || last_valid || !queue_idle;", "first_valid || last_valid;", "busy_while_inside"),
         *_PAUSE,
+    ],
+    "group_fog": [
+        _fog("group_valid && colours_valid;", "group_valid && colours_valid && !finished;", "shown.valid_stays"),
+        _fog("out_ready(out_ready && colours_valid)", "out_ready(colours_valid)", "shown.payload_stable"),
+        _fog("in_ready = room && ends;", "in_ready = room && ends && !valid[1];", "taken_in_time"),
+        _fog("if (sends) second <= !ends;", "second <= !ends;", "in_order"),
+        _fog("out_ready(out_ready && colours_valid)", "out_ready(out_ready)", "in_order"),
+        _fog("out_ready(out_ready && group_valid)", "out_ready(out_ready || half_12)", "in_order"),
+        _fog("finished <= valid[LAST] && ends_12;", "finished <= valid[LAST];", "in_order"),
+        _fog("finished <= valid[LAST] && ends_12;", "finished <= valid[LAST] && ends_12 && in_valid;", "shown_in_time"),
+        _fog("assign out_valid = group_valid && colours_valid;", "assign out_valid = group_valid || colours_valid;", "nothing_made_up"),
+        _fog("assign idle      = !group_valid;", "assign idle      = !out_valid;", "idle_when_empty"),
     ],
     "smooth_shader": [
         _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),

@@ -85,6 +85,7 @@ PROOFS = [
     Proof("smooth_shader", "smooth_shader_proof", 19, ("any_colour",)),
     Proof("setup", "setup_proof", 22, ("plain_setup",)),
     Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
+    Proof("group_fog", "group_fog_proof", 24, ("no_shares",)),
     Proof("texture_queue", "texture_queue_proof", 18),
     Proof("walker", "walker_proof", 14, ("any_stepper",)),
     Proof("lanes", "lanes_proof", 16),

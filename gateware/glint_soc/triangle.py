@@ -48,7 +48,7 @@ class TriangleEngine(LiteXModule):
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
     `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures (they
-    exclude each other), `has_sky` adds the sky behind triangles, `fields` adds the input `field` for a raymarcher, and `lines` adds the
+    exclude each other), `has_sky` adds the sky behind triangles, `has_fog` adds fog on triangles, `fields` adds the input `field` for a raymarcher, and `lines` adds the
     line engine. Without `triangles` the engine draws only lines and fields, and does not use the port of the vertices; with neither
     triangles nor lines it uses only the last two writers. The registers are the same. A build without `triangles` may also omit `depths`,
     the memory for the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from the firmware's
@@ -56,7 +56,7 @@ class TriangleEngine(LiteXModule):
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, has_sky=False,
-                 fields=False, lines=False, has_geometry=True, depths=True):
+                 has_fog=False, fields=False, lines=False, has_geometry=True, depths=True):
         has_geometry = has_geometry and (triangles or lines)
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
@@ -83,6 +83,7 @@ class TriangleEngine(LiteXModule):
             CSRField("textures", offset=14, reset=int(texture), description="Textures: descriptors are "
                      f"{TEXTURE_BYTES} bytes longer."),
             CSRField("sky", offset=15, reset=int(has_sky), description="The sky behind triangles."),
+            CSRField("fog", offset=16, reset=int(has_fog), description="Fog on triangles."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
@@ -175,6 +176,7 @@ class TriangleEngine(LiteXModule):
                      "without `sky` in `caps`."),
             CSRField("sky_first", offset=9, description="With `sky`: draw the sky before the triangles of each band, as textures that are "
                      "blended with it require, instead of during the flush, which takes no time. No effect without `textures` in `caps`."),
+            CSRField("fog", offset=10, description="Draw triangles in fog, in perspective. No effect without `fog` in `caps`."),
         ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those "
             "from `sky_above` on, must hold while it runs.")
         self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
@@ -247,8 +249,15 @@ class TriangleEngine(LiteXModule):
             **{name: Parameter(24, name=f"sky_{name}", description=f"Colour of the sky at the {name}: red in bits 0 to 7, green in bits 8 "
                                "to 15, blue in bits 16 to 23.") for name in ("zenith", "horizon", "nadir")},
         }
-        for name, register in sky.items():
-            setattr(self, f"_sky_{name}", register)
+        fog = {
+            "offset": Parameter(13, name="fog_offset", description="The number that is subtracted from 128·log2 of a depth code, two's "
+                                "complement."),
+            "colour": Parameter(24, name="fog_colour", description="Colour of the fog: red, u5.3, in bits 0 to 7, green, u6.2, in bits 8 to "
+                                "15, blue, u5.3, in bits 16 to 23."),
+        }
+        for prefix, registers in (("sky", sky), ("fog", fog)):
+            for name, register in registers.items():
+                setattr(self, f"_{prefix}_{name}", register)
 
         recovering = Signal()
         self.clock_control = ClockControl(
@@ -260,7 +269,8 @@ class TriangleEngine(LiteXModule):
              self._colour, *([self._coordinates, self._first_texture] if texture else [])],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values()),
              *([self._textures] if texture else []),
-             *(sky.values() if has_sky else [])])
+             *(sky.values() if has_sky else []),
+             *(fog.values() if has_fog else [])])
         # A raymarcher copies its parameters when the raster pass is requested; the pass waits until engine and
         # raymarcher have copied their parameters.
         self.raster_load, self.field_loading = Signal(), Signal()
@@ -304,7 +314,7 @@ class TriangleEngine(LiteXModule):
         })
         raster_flags = Struct("raster_flags_t", "Flags of a raster pass.", {
             name: getattr(self._raster.fields, name) for name in (
-                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first")})
+                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first", "fog")})
         raster = Struct("raster_t", "Parameters of the raster pass. Memory regions are given by byte addresses.", {
             "frame": self._frame.storage,
             "depth": self._depth.storage,
@@ -315,6 +325,8 @@ class TriangleEngine(LiteXModule):
         })
         sky = Struct("sky_t", "The sky: heights, s8.23, and colours, {blue, green, red} (docs/formats/triangle.md, \"Sky\").", {
             name: register.storage for name, register in sky.items()})
+        fog = Struct("fog_t", "The fog: an offset of logarithms, s13, and a colour, {blue, green, red} (docs/formats/triangle.md, "
+                     "\"Fog\").", {name: register.storage for name, register in fog.items()})
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
             name: register.status[:_COUNT_BITS] if name in counts else register.status for name, register in results.items()})
@@ -331,7 +343,7 @@ class TriangleEngine(LiteXModule):
             ("descriptors", "lists", "frame_even", "frame_odd"), writers, strict=True)}
         self.package = Package(
             "triangle", {"ADDRESS_BITS": _ADDRESS_BITS, "COUNT_BITS": _COUNT_BITS}, [ERRORS],
-            [geometry_flags, geometry, view, raster_flags, raster, sky, results, status, self.counters.events, field_source, field_sink,
+            [geometry_flags, geometry, view, raster_flags, raster, sky, fog, results, status, self.counters.events, field_source, field_sink,
              *read_ports["mesh"].values(), *write_ports["lists"].values()])
 
         geometry_kept, raster_kept = geometry_flags.signals(), raster_flags.signals()
@@ -380,6 +392,7 @@ class TriangleEngine(LiteXModule):
             p_SMOOTH          = int(smooth),
             p_TEXTURE         = int(texture),
             p_SKY             = int(has_sky),
+            p_FOG             = int(has_fog),
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
             p_GEOMETRY        = int(has_geometry),
@@ -396,6 +409,7 @@ class TriangleEngine(LiteXModule):
             i_raster_flags    = raster_kept.value,
             i_raster          = raster.value,
             i_sky             = sky.value,
+            i_fog             = fog.value,
             i_field_source    = field_source.value,
             o_field_sink      = field_sink.value,
             o_events          = self.counters.events.value,

@@ -11,7 +11,7 @@ OWN = ("exit_lane", "setup", "triangle_raster", "band_buffer", "scanout", "verte
 
 BUILDS = ("triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "raymarcher", "triangle_engine", "raymarcher_sponge",
           "raymarcher_round", "raymarcher_faces", "ring_lane", "ring_lane_all", "exit_lane_all", "ray_generator", "ray_paint",
-          "round_light", "band_sky")
+          "round_light", "group_fog", "band_sky")
 """Builds of engines, which consist of blocks in `OWN`, and parts of them. The tables list them, but their measurement takes too
 long for `cargo xtask test`."""
 
@@ -26,7 +26,7 @@ FLAT = "flat_build"
 """Name of the row with the sum of `FLAT_PARTS`."""
 
 ROWS = ("scanout", "i2c_engine", "flash_reader", *FLAT_PARTS, FLAT, "line_setup", "line_raster", "gesture_engine", "band_buffer",
-        "band_sky", "triangle_engine", "triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "field_menger",
+        "group_fog", "band_sky", "triangle_engine", "triangle_engine_smooth", "triangle_engine_texture", "texture_shader", "field_menger",
         "field_box", "field_sphere", "exit_lane", "exit_lane_all", "ring_lane", "ring_lane_all", "ray_generator", "round_light",
         "ray_paint", "raymarcher", "raymarcher_round", "raymarcher_faces", "raymarcher_sponge", SOC)
 """The blocks in the order of their rows in the tables. Other measured modules come after them."""

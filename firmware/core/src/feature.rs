@@ -69,7 +69,7 @@ features! {
     FIELD = "field";
     /// Spheres in a field, alone and in unions.
     SPHERES = "spheres";
-    /// Fog of a field.
+    /// Fog.
     FOG = "fog";
     /// A mesh in a field.
     MESH_IN_FIELD = "mesh-in-field";

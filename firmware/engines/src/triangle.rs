@@ -7,7 +7,7 @@ use glint_hal::triangle::{
     self, DepthScale, GeometryStart, Lists, Prepared, Textures, TriangleEngine,
 };
 use glint_model::triangle::descriptor::Layout;
-use glint_model::{MeshLight, MeshSetup, Shading, Sky};
+use glint_model::{Fog, MeshLight, MeshSetup, Shading, Sky};
 
 /// A geometry pass of a mesh.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +79,15 @@ pub const fn sky(sky: &Sky, is_first: bool) -> triangle::Sky {
         horizon: sky.horizon,
         nadir: sky.nadir,
         is_first,
+    }
+}
+
+/// The fog of a raster pass.
+#[must_use]
+pub const fn fog(fog: &Fog) -> triangle::Fog {
+    triangle::Fog {
+        offset: fog.offset,
+        colour: fog.colour,
     }
 }
 

@@ -161,6 +161,8 @@ pub struct Raster {
     pub clear: u16,
     /// The sky, which replaces `clear`, in a pass without a field; only for gateware that [draws it](TriangleEngine::draws_sky).
     pub sky: Option<Sky>,
+    /// The fog on triangles; only for gateware that [has it](TriangleEngine::has_fog).
+    pub fog: Option<Fog>,
     /// The capacity of a band list is 4 << `list_shift` entries; the next geometry pass must have an equal [`Lists::list_shift`].
     pub list_shift: u8,
     /// Input of the pass.
@@ -185,6 +187,15 @@ pub struct Sky {
     /// Whether the sky is drawn before the triangles of each band, so that textures can be blended with it, instead of during the flush,
     /// which takes no time.
     pub is_first: bool,
+}
+
+/// The fog on the triangles of a raster pass (docs/formats/triangle.md, "Fog").
+#[derive(Clone, Copy, Debug)]
+pub struct Fog {
+    /// The number that is subtracted from 128·log2 of a depth code, s13.
+    pub offset: i32,
+    /// Colour: red u5.3, green u6.2, blue u5.3.
+    pub colour: [u8; 3],
 }
 
 /// Input of a raster pass.
@@ -270,6 +281,12 @@ impl TriangleEngine {
     #[must_use]
     pub fn draws_sky(&self) -> bool {
         self.registers.caps().read().sky()
+    }
+
+    /// Whether this gateware has fog on triangles.
+    #[must_use]
+    pub fn has_fog(&self) -> bool {
+        self.registers.caps().read().fog()
     }
 
     /// Whether this gateware supports smooth shading, which makes descriptors longer.
@@ -398,6 +415,10 @@ impl TriangleEngine {
         if let Some(sky) = &pass.sky {
             self.write_sky(sky);
         }
+        if let Some(fog) = &pass.fog {
+            registers.fog_offset().write(fog.offset as u16);
+            registers.fog_colour().write(packed_colour(fog.colour));
+        }
         compiler_fence(Ordering::SeqCst);
         registers.raster().write(
             RasterStart::default()
@@ -409,7 +430,8 @@ impl TriangleEngine {
                 .with_slot(pass.slot)
                 .with_whole(pass.whole)
                 .with_sky(pass.sky.is_some())
-                .with_sky_first(pass.sky.is_some_and(|sky| sky.is_first)),
+                .with_sky_first(pass.sky.is_some_and(|sky| sky.is_first))
+                .with_fog(pass.fog.is_some()),
         );
     }
 
@@ -418,10 +440,9 @@ impl TriangleEngine {
         registers.sky_above().write(sky.above as u32);
         registers.sky_across().write(sky.across as u32);
         registers.sky_down().write(sky.down as u32);
-        let packed = |[red, green, blue]: [u8; 3]| u32::from_le_bytes([red, green, blue, 0]);
-        registers.sky_zenith().write(packed(sky.zenith));
-        registers.sky_horizon().write(packed(sky.horizon));
-        registers.sky_nadir().write(packed(sky.nadir));
+        registers.sky_zenith().write(packed_colour(sky.zenith));
+        registers.sky_horizon().write(packed_colour(sky.horizon));
+        registers.sky_nadir().write(packed_colour(sky.nadir));
     }
 
     /// Result of the last geometry pass.
@@ -472,6 +493,11 @@ pub fn acknowledge() {
     registers
         .ev_pending()
         .write(EvPending::default().with_geometry(true).with_raster(true));
+}
+
+/// Register value of three channels of 8 bits each.
+fn packed_colour([red, green, blue]: [u8; 3]) -> u32 {
+    u32::from_le_bytes([red, green, blue, 0])
 }
 
 /// Register value of three channels, u1.8 each.

@@ -2,7 +2,7 @@
 // fails if this file differs from the generator's output.
 
 /// CRC-32 of the SoC's pinned register map. A SoC with another value in `identity.build_id` has other registers.
-pub const BUILD_ID: u32 = 0xb8f0_a1dd;
+pub const BUILD_ID: u32 = 0x61af_1e28;
 
 /// The interrupts. Their numbers are the bits in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3215,7 +3215,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5000) }
         }
 
-        /// `caps`, 16 bits: Capabilities of this build.
+        /// `caps`, 17 bits: Capabilities of this build.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3503,7 +3503,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5090) }
         }
 
-        /// `raster`, 10 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
+        /// `raster`, 11 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -3870,6 +3870,22 @@ pub mod triangle {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_5148) }
         }
+
+        /// `fog_offset`, 13 bits: The number that is subtracted from 128·log2 of a depth code, two's complement. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn fog_offset(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_514c) }
+        }
+
+        /// `fog_colour`, 24 bits: Colour of the fog: red, u5.3, in bits 0 to 7, green, u6.2, in bits 8 to 15, blue, u5.3, in bits 16 to 23. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn fog_colour(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5150) }
+        }
     }
 
     /// Offset of each register from the first register, in bytes. A register of two words has its high word at this offset.
@@ -4040,6 +4056,10 @@ pub mod triangle {
         pub const SKY_HORIZON: u32 = 0x144;
         /// `sky_nadir`.
         pub const SKY_NADIR: u32 = 0x148;
+        /// `fog_offset`.
+        pub const FOG_OFFSET: u32 = 0x14c;
+        /// `fog_colour`.
+        pub const FOG_COLOUR: u32 = 0x150;
     }
 
     /// A value of `caps`.
@@ -4181,6 +4201,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_sky(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
+        }
+
+        /// `fog`, bit 16: Fog on triangles.
+        #[inline]
+        #[must_use]
+        pub const fn fog(self) -> bool {
+            (self.0 >> 16) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `fog`.
+        #[inline]
+        #[must_use]
+        pub const fn with_fog(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 16) | (value as u32 & 0x1) << 16)
         }
     }
 
@@ -4757,6 +4791,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_sky_first(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
+        }
+
+        /// `fog`, bit 10: Draw triangles in fog, in perspective. No effect without `fog` in `caps`.
+        #[inline]
+        #[must_use]
+        pub const fn fog(self) -> bool {
+            (self.0 >> 10) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `fog`.
+        #[inline]
+        #[must_use]
+        pub const fn with_fog(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
         }
     }
 

@@ -76,12 +76,16 @@ impl DepthScale {
         }
     }
 
+    /// The depth of a code in orthographic projection, 37 fraction bits.
+    pub(crate) fn linear_depth(&self, code: u32) -> i64 {
+        let below = (1 << 18) - i64::from(code);
+        self.origin.unwrap_or_default() + (below << (18 + self.exponent))
+    }
+
     /// Converts a depth code to the depth along the camera's forward axis n, rounded to nearest; `None` for code 0, an empty pixel.
     pub fn distance(&self, code: u32) -> Option<Q32_32> {
-        if let (Some(origin), 1..) = (self.origin, code) {
-            let below = (1 << 18) - i64::from(code);
-            let depth = origin + (below << (18 + self.exponent));
-            return Some(Q32_32::from_bits((depth + (1 << 4)) >> 5));
+        if let (Some(_), 1..) = (self.origin, code) {
+            return Some(Q32_32::from_bits((self.linear_depth(code) + (1 << 4)) >> 5));
         }
         let code = u64::from(code);
         // The mantissa is below 2^17 and the shift at most 37, so the dividend is below 2^(17 + 37).

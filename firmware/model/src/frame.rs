@@ -133,7 +133,14 @@ impl Frame<'_> {
             };
             let is_clear = field.is_none() && constants.sky().is_none();
             let clear = is_clear.then_some(self.clear.0);
-            stats.mesh = Some(draw_parts(&mut part, clear, buffer, scratch, &mut show)?);
+            stats.mesh = Some(draw_parts(
+                &mut part,
+                clear,
+                constants.fog(),
+                buffer,
+                scratch,
+                &mut show,
+            )?);
         }
         Ok(stats)
     }

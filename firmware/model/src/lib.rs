@@ -6,7 +6,7 @@
 //! segments of a mesh's edges, and [`wireframe`] runs the programs of the wireframe simulator. [`gesture`] counts the pixels of a hand in
 //! the frames of an image sensor.
 //!
-//! The crate uses no floating point and no allocation, and 128-bit integers only for the fog's table and for the translation of an
+//! The crate uses no floating point and no allocation, and 128-bit integers only for the tables of fog and for the translation of an
 //! orthographic frame. No sum or product overflows its type, for every camera that [`glint_core::camera::View`] accepts and every mesh:
 //! comments at the functions prove this, and tests with overflow checks run the extreme cases. Intended modular arithmetic uses the
 //! `wrapping` methods.
@@ -16,6 +16,7 @@
 mod depth;
 pub mod edges;
 mod error;
+mod fog;
 mod frame;
 mod frame_buffer;
 pub mod gesture;
@@ -31,6 +32,7 @@ pub mod wireframe;
 
 pub use depth::DepthScale;
 pub use error::{Buffer, MAX_EYE, RenderError, SIZES};
+pub use fog::Fog;
 pub use frame::{
     FieldConstants, FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Object, Subject,
 };

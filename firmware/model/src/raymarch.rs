@@ -21,6 +21,7 @@ mod tracer;
 
 pub use blend::{Beside, Blend};
 pub use end::{RayEnd, State};
+pub(crate) use fog::{FULL, faded, product};
 pub use glint_core::stereo::{Stereo, Tint};
 pub use lights::{Light, Lights, Shine};
 pub use marching::{MARCH_FRACTION, Marching};

@@ -19,6 +19,10 @@ pub enum Fallback {
     NoTextures,
     /// This gateware is built without the sky behind meshes.
     NoSky,
+    /// This gateware is built without fog on meshes.
+    NoFog,
+    /// The triangle engine has fog in perspective only.
+    OrthographicFog,
     /// The triangle engine draws textures under flat light only.
     SmoothTextures,
     /// The frame has more textures than the triangle engine can number.
@@ -45,6 +49,7 @@ impl Fallback {
             Self::NoSmoothShading => Some("--smooth"),
             Self::NoTextures => Some("--texture"),
             Self::NoSky => Some("without --no-sky"),
+            Self::NoFog => Some("--fog"),
             Self::Field(_) => Some("--fields all"),
             Self::NoRaymarcher => Some("--blocks scanout triangle raymarch"),
             Self::NoLineEngine => Some("--blocks scanout triangle line"),
@@ -58,6 +63,7 @@ impl Fallback {
             | Self::TooManyTextures
             | Self::Eye
             | Self::Orthographic
+            | Self::OrthographicFog
             | Self::Descriptors(_) => None,
         }
     }
@@ -112,6 +118,10 @@ impl fmt::Display for Fallback {
                 "triangle engine: this gateware has no textures; `textures off` draws the mesh without them, fast",
             )?,
             Self::NoSky => f.write_str("triangle engine: this gateware has no sky behind meshes")?,
+            Self::NoFog => f.write_str("triangle engine: this gateware has no fog on meshes")?,
+            Self::OrthographicFog => {
+                f.write_str("triangle engine: no fog in orthographic projection")?;
+            }
             Self::SmoothTextures => f.write_str(
                 "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
             )?,

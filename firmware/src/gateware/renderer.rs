@@ -8,7 +8,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, WIREFRAME};
 use glint_core::picture::Size;
 use glint_engines::raymarch::{ray_counts, set_field, tables};
-use glint_engines::triangle::{layout, size_code, sky as sky_of};
+use glint_engines::triangle::{fog, layout, size_code, sky as sky_of};
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{Counters, EngineError, Error, Input, Prepared, Raster, TriangleEngine};
@@ -60,6 +60,7 @@ pub struct GatewareRenderer {
     draws_triangles: bool,
     draws_lines: bool,
     draws_sky: bool,
+    has_fog: bool,
     /// Layout of the descriptors of this gateware.
     layout: Layout,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
@@ -112,6 +113,7 @@ impl GatewareRenderer {
             draws_triangles: engine.draws_triangles(),
             draws_lines: engine.draws_lines(),
             draws_sky: engine.draws_sky(),
+            has_fog: engine.has_fog(),
             layout,
             engine,
             raymarcher,
@@ -447,6 +449,11 @@ impl GatewareRenderer {
         if self.constants[place].sky().is_some() && !self.draws_sky {
             return Err(Fallback::NoSky);
         }
+        match self.constants[place].fog() {
+            Some(_) if !self.has_fog => return Err(Fallback::NoFog),
+            Some(fog) if !fog.is_in_perspective() => return Err(Fallback::OrthographicFog),
+            Some(_) | None => {}
+        }
         Ok(())
     }
 
@@ -486,6 +493,7 @@ impl GatewareRenderer {
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
             sky: sky.map(|constants| sky_of(constants, buffers.textures.blends())),
+            fog: self.constants[place].fog().map(fog),
             list_shift: buffers.list_shift(frame.size),
             input: Input {
                 sets: buffers.sets,

@@ -112,7 +112,7 @@ imu look
     // A sponge in a room with plants, windows and a screen of glass
     BuiltIn::picture(
         "room",
-        &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::TEXTURE, feature::VIEW],
+        &[feature::FIELD, feature::FOG, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD, feature::SKY, feature::TEXTURE, feature::VIEW],
         "\
 quality balanced
 lookat 3.4 -4.9 1.5 -3.58 4.84 -1.97
@@ -122,6 +122,7 @@ light 0.82,-0.62,2,fff0d8
 ambient 585c6c
 shadow on
 background sky
+fog 0.06
 occlusion on
 textures on
 scene atrium

@@ -1,12 +1,12 @@
-// Blends the pixels of a group with the colours behind them, which the band buffer stores (docs/formats/texture.md, "Blending").
+// Blends the pixels of groups with the colours behind them, which the band buffer stores (docs/formats/texture.md, "Blending").
 //
 //   group ─▶ asks the band buffer ─▶ answer: lanes that pass ─▶ one lane per clock ─▶ source, behind ─▶ blend ─▶ pixel
 //
-// `in_valid` is high while the group is there, from its first clock until `gone`; its payload holds. The group goes to the band buffer
-// once, with `asks`, and moves when `taken`. The answer names the lanes that pass the depth test. Then each of these pixels is blended,
-// and is on the outputs `pixel_*` for one clock, in which the band buffer takes it. `lane` selects the colour `behind`, which arrives a
-// clock later. `gone` is high in the clock of the last pixel, or, without a pixel, two clocks after the answer. Throughput: a group of n
-// pixels that pass takes n + 8 clocks, from its first clock to that of the next group; one without a pixel that passes takes 9.
+// A group with `in_blend` 0 passes as it is. Any other group goes to the band buffer once, with `out_asks`. The answer names the lanes that
+// pass the depth test. Then each of these pixels is blended, and leaves as a group of one pixel, with `out_blended`, in a clock in which the
+// band buffer takes it. `lane` selects the colour `behind`, which arrives a clock later. The group itself is taken in the clock of the last
+// pixel, or, without a pixel, two clocks after the answer. What else belongs to a group does not pass through this module. Throughput: a
+// group of n pixels that pass takes n + 8 clocks, from its first clock to that of the next group; one without a pixel that passes takes 9.
 
 `default_nettype none
 
@@ -14,20 +14,35 @@ module texture_blend (
     input  wire              clk,
     input  wire              rst,
     input  wire              in_valid,
+    output logic             in_ready,
     // 1 to 7 eighths of the group's colours; from 8 on, the sum of both colours.
     input  wire  [3:0]       in_blend,
+    input  wire  [7:0]       in_mask,
     input  wire  [7:0][15:0] in_colours,
-    output logic             gone,
-    output logic             asks,
-    input  wire              taken,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output logic [7:0]       out_mask,
+    output logic [7:0][15:0] out_colours,
+    output logic             out_asks,
+    output logic             out_blended,
     input  wire              answer_valid,
     input  wire  [7:0]       answer_lanes,
     output logic [2:0]       lane,
-    input  wire  [15:0]      behind,
-    output logic             pixel_valid,
-    output logic [7:0]       pixel_mask,
-    output logic [15:0]      pixel_colour
+    input  wire  [15:0]      behind
 );
+    // The blended pixel, valid for one clock. `gone` is high in the clock of the last one.
+    logic        is_blended, asks, gone, pixel_valid;
+    logic [7:0]  pixel_mask;
+    logic [15:0] pixel_colour;
+
+    assign is_blended  = in_blend != '0;
+    assign out_valid   = is_blended ? asks || pixel_valid : in_valid;
+    assign in_ready    = is_blended ? gone : out_ready;
+    assign out_mask    = pixel_valid ? pixel_mask : in_mask;
+    assign out_colours = pixel_valid ? {8{pixel_colour}} : in_colours;
+    assign out_asks    = is_blended && !pixel_valid;
+    assign out_blended = pixel_valid;
+
     typedef enum logic [1:0] {ASK, ANSWER, PICK, END} state_t;
     state_t state;
 
@@ -35,7 +50,7 @@ module texture_blend (
     logic [7:0] left, lowest;
     logic       is_last;
 
-    assign asks    = in_valid && state == ASK;
+    assign asks    = in_valid && is_blended && state == ASK;
     assign lowest  = left & (~left + 1'b1);
     assign is_last = left == lowest;
 
@@ -52,7 +67,7 @@ module texture_blend (
 
     always_ff @(posedge clk) begin
         case (state)
-            ASK:     if (asks && taken) state <= ANSWER;
+            ASK:     if (asks && out_ready) state <= ANSWER;
             ANSWER:  if (answer_valid) state <= PICK;
             PICK:    if (is_last) state <= END;
             default: if (gone) state <= ASK;

@@ -15,9 +15,6 @@
 // FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group without an opaque pixel is dropped. Output: a
 // valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) forgets the texels and the texture of
 // earlier frames. `table_base` is the address of the table of the textures' addresses, in words of 16 bytes.
-//
-// A group of a blended texture leaves in parts, as band_buffer takes them: first all of it with `out_asks`, then, with `out_blended`, a
-// group of one pixel for each pixel that passes the depth test, from texture_blend.
 
 `default_nettype none
 
@@ -53,13 +50,7 @@ module texture_shader #(
     output logic [GROUP_BITS-1:0]  out_group,
     output logic [7:0]             out_opaque, // lanes that no transparent texel hides
     output logic [7:0][15:0]       out_colours,
-    // Blended pixels.
-    output logic                   out_asks,
-    output logic                   out_blended,
-    input  wire                    answer_valid,
-    input  wire  [7:0]             answer_lanes,
-    output logic [2:0]             behind_lane,
-    input  wire  [15:0]            behind
+    output logic [3:0]             out_blend   // rule by which the group is blended with the picture, see texture_blend; 0 for none
 );
     // Groups that wait for their colours.
     logic             is_textured, group_valid, group_textured, group_gone, colours_valid, groups_room, waiting_idle, waiting_room;
@@ -74,28 +65,13 @@ module texture_shader #(
         .out_valid(group_valid), .out_ready(group_gone), .out_data({group_textured, group_colour, out_group})
     );
 
-    // Whether the first group is blended, and the state of its blending.
-    logic [3:0]  blend;
-    logic        is_blended, is_shown, asks, blended_valid, blended_gone;
-    logic [7:0]  blended_lane;
-    logic [15:0] blended_colour;
+    logic [3:0] blend;
 
-    assign is_blended = group_textured && blend != '0;
-    assign is_shown   = group_valid && (!group_textured || colours_valid && opaque != '0);
-
-    texture_blend texture_blend (
-        .clk, .rst, .in_valid(is_shown && is_blended), .in_blend(blend), .in_colours(colours), .gone(blended_gone), .asks, .taken(out_ready),
-        .answer_valid, .answer_lanes, .lane(behind_lane), .behind,
-        .pixel_valid(blended_valid), .pixel_mask(blended_lane), .pixel_colour(blended_colour)
-    );
-
-    assign out_valid   = is_blended ? asks || blended_valid : is_shown;
-    assign group_gone  = !group_textured ? out_ready : colours_valid && (opaque == '0 || (is_blended ? blended_gone : out_ready));
-    assign out_asks    = is_blended && !blended_valid;
-    assign out_blended = blended_valid;
-    assign out_opaque  = blended_valid ? blended_lane : group_textured ? opaque : '1;
-    // A blended pixel shares the selection of a group's own colour.
-    assign out_colours = group_textured && !blended_valid ? colours : {8{blended_valid ? blended_colour : group_colour}};
+    assign out_valid   = group_valid && (!group_textured || colours_valid && opaque != '0);
+    assign group_gone  = !group_textured ? out_ready : colours_valid && (opaque == '0 || out_ready);
+    assign out_opaque  = group_textured ? opaque : '1;
+    assign out_colours = group_textured ? colours : {8{group_colour}};
+    assign out_blend   = group_textured ? blend : '0;
 
     // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than there may be inside.
     localparam int unsigned WAITING_BITS = 8 + $bits(in_depth) + $bits(in_texture);

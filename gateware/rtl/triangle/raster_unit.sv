@@ -24,6 +24,8 @@
 // With SKY, `flags.sky` draws the sky (band_sky) behind the triangles, in a frame without a field. Each band takes the sky's colours while
 // it is flushed, or, with `flags.sky_first` (TEXTURE only), as groups before its triangles, which textures that are blended need.
 //
+// With FOG, `flags.fog` draws triangles in fog.
+//
 // With TEXTURE, triangles may have textures, opaque or blended with the picture drawn so far. `parameters.textures` is the address of
 // their table (docs/textures.md, "Textures of a frame").
 //
@@ -48,6 +50,7 @@ module raster_unit #(
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          TEXTURE      = 1'b0,
     parameter  bit          SKY          = 1'b0,
+    parameter  bit          FOG          = 1'b0,
     parameter  bit          FIELDS       = 1'b0,
     parameter  bit          LINES        = 1'b0,
     parameter  bit          DEPTHS       = 1'b1,
@@ -67,6 +70,7 @@ module raster_unit #(
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,
     input  wire triangle_registers_pkg::sky_t sky,
+    input  wire triangle_registers_pkg::fog_t fog,
     // Link to a raymarcher, which sends each pixel as a group in which only this pixel is covered.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
@@ -245,10 +249,10 @@ module raster_unit #(
         );
 
         if (TRIANGLES) begin : triangles
-            triangle_raster #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE)) triangle_raster (
+            triangle_raster #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .FOG(FOG)) triangle_raster (
                 .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
                 .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
-                .triangle_planes(planes), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
+                .triangle_planes(planes), .has_fog(flags.fog), .fog, .first_row(first_row[1:0]), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
                 .ask_valid(ask_valid[3]), .ask_ready(ask_ready[3]), .ask_addr(ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS]),
                 .data_valid(data_valid[3]), .data_ready(data_ready[3]), .data(data[3*128 +: 128]),
                 .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
@@ -265,7 +269,7 @@ module raster_unit #(
             assign {ask_valid[3], ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS], data_ready[3]} = '0;
 
             wire _unused_answer = &{1'b0, answer_valid, answer_lanes, behind};
-            wire _unused = &{1'b0, triangle_valid, descriptor, planes, drawn_ready, ask_ready[3], data_valid[3], data[3*128 +: 128]};
+            wire _unused = &{1'b0, triangle_valid, descriptor, fog, planes, drawn_ready, ask_ready[3], data_valid[3], data[3*128 +: 128]};
         end
 
         if (LINES) begin : lines
@@ -312,7 +316,7 @@ module raster_unit #(
         assign {ask_valid, ask_addr, data_ready} = '0;
         assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
         assign {drawn_asks, drawn_blended, behind_lane} = '0;
-        wire _unused = &{1'b0, answer_valid, answer_lanes, behind, ask_ready, data_valid, data, drawn_ready, line_ready};
+        wire _unused = &{1'b0, answer_valid, answer_lanes, behind, fog, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
     // The colours of the sky, and its groups.

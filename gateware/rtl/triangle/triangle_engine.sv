@@ -19,7 +19,8 @@
 // TEXTURE builds textures: descriptors have two more words, a second client of the vertex port reads texture coordinates, and a fourth
 // client of the raster port reads textures. TEXTURE and SMOOTH exclude each other.
 //
-// SKY builds the sky behind triangles (band_sky), for frames with the flag `sky` of the raster pass.
+// SKY builds the sky behind triangles (band_sky), for frames with the flag `sky` of the raster pass; FOG builds the fog on triangles
+// (group_fog), for frames with its flag `fog`.
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //
@@ -38,6 +39,7 @@ module triangle_engine #(
     parameter bit SMOOTH    = 1'b0,
     parameter bit TEXTURE   = 1'b0,
     parameter bit SKY       = 1'b0,
+    parameter bit FOG       = 1'b0,
     parameter bit FIELDS    = 1'b0,
     parameter bit LINES     = 1'b0,
     parameter bit GEOMETRY  = TRIANGLES || LINES,
@@ -59,6 +61,7 @@ module triangle_engine #(
     input  wire triangle_registers_pkg::raster_flags_t raster_flags,
     input  wire triangle_registers_pkg::raster_t raster,
     input  wire triangle_registers_pkg::sky_t sky,
+    input  wire triangle_registers_pkg::fog_t fog,
     // Link to an optional raymarcher outside of the triangle engine, explained in raster_unit.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
@@ -175,10 +178,10 @@ module triangle_engine #(
         wire _unused = &{1'b0, ask_valid[6], ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS], data_ready[6]};
     end
 
-    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .SKY(SKY), .FIELDS(FIELDS), .LINES(LINES),
+    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .SKY(SKY), .FOG(FOG), .FIELDS(FIELDS), .LINES(LINES),
                   .DEPTHS(DEPTHS)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
-        .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster), .sky,
+        .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster), .sky, .fog,
         .field_source, .field_sink,
         .ask_valid(ask_valid[6:3]), .ask_ready(ask_ready[6:3]), .ask_addr(ask_addr[7*ADDRESS_BITS-1:3*ADDRESS_BITS]),
         .data_valid(data_valid[6:3]), .data_ready(data_ready[6:3]), .data(data[7*128-1:3*128]),

@@ -15,7 +15,8 @@
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
 // 0. Each group that a triangle covers is sent once, or not at all if its texels are transparent; triangles keep their order.
 //
-// With TEXTURE, groups may be blended with the picture: see band_buffer.
+// With FOG, `group_fog` follows, which puts the groups in fog if `has_fog` is high, and takes one clock for each half of a group with a
+// covered pixel. With TEXTURE, `texture_blend` comes last: groups may be blended with the picture, see band_buffer.
 //
 // Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stalls while
 // the FIFO cannot hold all groups in the lanes. Latency 21 clocks from a descriptor to its first group. Throughput: the walker tests one
@@ -30,6 +31,7 @@
 module triangle_raster #(
     parameter bit SMOOTH = 1'b0,
     parameter bit TEXTURE = 1'b0,
+    parameter bit FOG = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned PLANES_BITS  = triangle_pkg::planes_bits(SMOOTH, TEXTURE)
 ) (
@@ -47,6 +49,10 @@ module triangle_raster #(
     input  wire                            triangle_odd,
     input  wire records_pkg::descriptor_t triangle_descriptor,
     input  wire  [PLANES_BITS-1:0]         triangle_planes,
+    // Fog, and the number of the first row of the band that is drawn.
+    input  wire                            has_fog,
+    input  wire triangle_registers_pkg::fog_t fog,
+    input  wire  [1:0]                     first_row,
     // Textures: the address of their table, and the client of a read_port that reads them. texture_shader explains `forget`.
     input  wire                            forget,
     input  wire  [ADDRESS_BITS-1:0]        texture_table,
@@ -73,7 +79,7 @@ module triangle_raster #(
     output logic [2:0]                     behind_lane,
     input  wire  [15:0]                    behind
 );
-    logic                   walker_idle, lanes_idle, fifo_idle, waits;
+    logic                   walker_idle, lanes_idle, fifo_idle, fog_idle, waits;
     logic [1:0]             holds;
     logic                   placed_valid, placed_ready, placed_odd;
     raster_pkg::placed_t    placed;
@@ -85,7 +91,7 @@ module triangle_raster #(
     logic [PLANES_BITS-1:0] walked_planes;
 
     assign waits = placed_odd != odd;
-    assign idle  = !holds[odd] && walker_idle && lanes_idle && fifo_idle;
+    assign idle  = !holds[odd] && walker_idle && lanes_idle && fifo_idle && fog_idle;
 
     logic counts_walking, counts_empty;
 
@@ -123,7 +129,7 @@ module triangle_raster #(
         logic [7:0][17:0] codes;
     } group_t;
 
-    group_t      found, group;
+    group_t      found;
     logic [15:0] found_colour;
     logic        found_valid;
 
@@ -138,7 +144,12 @@ module triangle_raster #(
         .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour)
     );
 
-    logic [7:0] group_opaque;
+    // The groups with their colours, `blend` for the rule by which one is blended with the picture; then the same in fog.
+    logic       shaded_valid, shaded_ready, foggy_valid, foggy_ready;
+    group_t     shaded;
+    logic [7:0] opaque, foggy_mask;
+    logic [3:0] blend, foggy_blend;
+    logic [8*16-1:0] shaded_colours, foggy_colours;
 
     if (TEXTURE) begin : textured
         records_pkg::plane_t found_depth;
@@ -152,14 +163,24 @@ module triangle_raster #(
             .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_colour(found_colour),
             .in_texture(walked_planes), .in_depth(found_depth),
             .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_opaque(group_opaque), .out_colours(group_colours),
-            .out_asks(group_asks), .out_blended(group_blended), .answer_valid, .answer_lanes, .behind_lane, .behind
+            .out_valid(shaded_valid), .out_ready(shaded_ready), .out_group(shaded), .out_opaque(opaque), .out_colours(shaded_colours),
+            .out_blend(blend)
+        );
+
+        texture_blend texture_blend (
+            .clk, .rst, .in_valid(foggy_valid), .in_ready(foggy_ready), .in_blend(foggy_blend), .in_mask(foggy_mask),
+            .in_colours(foggy_colours), .out_valid(group_valid), .out_ready(group_ready), .out_mask(group_mask), .out_colours(group_colours),
+            .out_asks(group_asks), .out_blended(group_blended), .answer_valid, .answer_lanes, .lane(behind_lane), .behind
         );
     end else begin : plain
         assign {ask_valid, ask_addr, data_ready} = '0;
-        assign {group_asks, group_blended, behind_lane} = '0;
+        assign {blend, group_asks, group_blended, behind_lane} = '0;
+        assign group_valid   = foggy_valid;
+        assign foggy_ready   = group_ready;
+        assign group_mask    = foggy_mask;
+        assign group_colours = foggy_colours;
 
-        wire _unused = &{1'b0, answer_valid, answer_lanes, behind, forget, texture_table, ask_ready, data_valid, data, walked_late.depth_step_y};
+        wire _unused = &{1'b0, foggy_blend, answer_valid, answer_lanes, behind, forget, texture_table, ask_ready, data_valid, data, walked_late.depth_step_y};
     end
 
     if (SMOOTH) begin : light
@@ -176,9 +197,9 @@ module triangle_raster #(
             .in_depth(found_depth[31:0]), .in_depth_step_x(found_depth[63:32]),
             .in_light({walked_planes[192 +: 32], walked_planes[96 +: 32], walked_planes[0 +: 32]}),
             .in_light_step_x({walked_planes[224 +: 32], walked_planes[128 +: 32], walked_planes[32 +: 32]}),
-            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_colours(group_colours)
+            .out_valid(shaded_valid), .out_ready(shaded_ready), .out_group(shaded), .out_colours(shaded_colours)
         );
-        assign group_opaque = '1;
+        assign opaque = '1;
 
         wire _unused = &{1'b0, walked_planes};
     end else if (!TEXTURE) begin : flat
@@ -186,20 +207,44 @@ module triangle_raster #(
 
         pipeline_fifo #(.WIDTH(GROUP_BITS + 16), .DEPTH(16), .FLIGHT(FLIGHT), .DIRECT(1'b1)) pipeline_fifo (
             .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_data({found, found_colour}),
-            .out_valid(group_valid), .out_ready(group_ready), .out_data({group, colour})
+            .out_valid(shaded_valid), .out_ready(shaded_ready), .out_data({shaded, colour})
         );
 
-        assign group_colours = {8{colour}};
-        assign group_opaque  = '1;
+        assign shaded_colours = {8{colour}};
+        assign opaque         = '1;
 
         wire _unused = &{1'b0, walked_planes};
     end
 
-    assign group_row     = group.row;
-    assign group_line    = group.line;
-    assign group_column  = group.column;
-    assign group_mask    = group.mask & group_opaque;
-    assign group_codes   = group.codes;
+    if (FOG) begin : in_fog
+        localparam int unsigned BESIDE_BITS = 11 + 6 + 8 + (TEXTURE ? 4 : 0);
+
+        logic [BESIDE_BITS-1:0] beside;
+
+        group_fog #(.BESIDE_BITS(BESIDE_BITS)) group_fog (
+            .clk, .rst, .enable(has_fog), .fog, .first_line(first_row), .idle(fog_idle),
+            .in_valid(shaded_valid), .in_ready(shaded_ready), .in_beside(BESIDE_BITS'({blend, shaded.row, shaded.line, shaded.column})),
+            .in_line(shaded.line[1:0]), .in_mask(shaded.mask & opaque), .in_codes(shaded.codes), .in_colours(shaded_colours),
+            .in_added(TEXTURE && blend[3]),
+            .out_valid(foggy_valid), .out_ready(foggy_ready), .out_beside(beside), .out_mask(foggy_mask), .out_codes(group_codes),
+            .out_colours(foggy_colours)
+        );
+
+        assign {foggy_blend, group_row, group_line, group_column} = 29'(beside);
+    end else begin : clear
+        assign fog_idle      = 1'b1;
+        assign foggy_valid   = shaded_valid;
+        assign shaded_ready  = foggy_ready;
+        assign foggy_blend   = blend;
+        assign foggy_mask    = shaded.mask & opaque;
+        assign foggy_colours = shaded_colours;
+        assign group_row     = shaded.row;
+        assign group_line    = shaded.line;
+        assign group_column  = shaded.column;
+        assign group_codes   = shaded.codes;
+
+        wire _unused = &{1'b0, has_fog, fog, first_row};
+    end
 endmodule
 
 `default_nettype wire

@@ -77,6 +77,7 @@ package triangle_registers_pkg;
         logic whole;
         logic sky;
         logic sky_first;
+        logic fog;
     } raster_flags_t;
 
     // Parameters of the raster pass. Memory regions are given by byte addresses.
@@ -100,6 +101,12 @@ package triangle_registers_pkg;
         logic [23:0] horizon;
         logic [23:0] nadir;
     } sky_t;
+
+    // The fog: an offset of logarithms, s13, and a colour, {blue, green, red} (docs/formats/triangle.md, "Fog").
+    typedef struct packed {
+        logic [12:0] offset;
+        logic [23:0] colour;
+    } fog_t;
 
     // Results of the geometry pass.
     typedef struct packed {

@@ -110,6 +110,7 @@ impl Bench {
             depth: Some(DEPTH),
             clear: CLEAR,
             sky: None,
+            fog: None,
             list_shift: 8,
             input: Input::default(),
         };

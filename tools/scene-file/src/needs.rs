@@ -7,6 +7,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, TEXTURE, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
+use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Material};
 use glint_core::picture::Backend;
 use glint_core::shape::Shape;
@@ -58,6 +59,8 @@ pub struct Needs {
     pub texture: bool,
     /// The sky behind meshes in the triangle engine.
     pub sky: bool,
+    /// The fog on meshes in the triangle engine.
+    pub fog: bool,
     /// The geometry pass of the triangle engine, which lines and most meshes require.
     pub geometry: bool,
     /// The depth buffer in memory, which triangles and depth codes require.
@@ -111,6 +114,7 @@ impl SceneFile {
                 && self.features().contains(&TEXTURE),
             // A raymarcher draws the sky behind a field.
             sky: has_triangles && !has_fields && features.contains(&SKY),
+            fog: has_triangles && scene.appearance.fog != U4_28::ZERO,
             // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
@@ -182,6 +186,7 @@ impl Needs {
             smooth: self.smooth || other.smooth,
             texture: self.texture || other.texture,
             sky: self.sky || other.sky,
+            fog: self.fog || other.fog,
             geometry: self.geometry || other.geometry,
             depths: self.depths || other.depths,
             fields: match (self.fields, other.fields) {
@@ -205,6 +210,9 @@ impl Needs {
         let has = |block| self.blocks.contains(&block);
         if has(Block::Triangle) && !self.sky {
             options.push("--no-sky".to_owned());
+        }
+        if self.fog {
+            options.push("--fog".to_owned());
         }
         if has(Block::Triangle) && !self.geometry {
             options.push("--no-geometry".to_owned());

@@ -176,7 +176,7 @@ fn refused_files() {
             shading = "gouraud" → shading = `gouraud`: shading: flat|smooth is "gouraud" (column 9): expected flat or smooth
             cull = 2020-01-01 → cull: `2020-01-01`: expected a text, a number, true or false, such as cull = "off"
             cull = "on ü" → expected at most 640 visible ASCII
-            fog = 0.1 → line 4: fog: expected only beside field
+            occlusion = true → line 4: occlusion: expected only beside field
             light = ["camera", "1,2,3"] → expected one light on meshes
             light = [["camera"]] → light: `["camera"]`: expected
             object = "cube" → line 2: model: expected only without object, found it in line 4
@@ -234,7 +234,7 @@ fn refused_files() {
 /// key is misspelt or a line is damaged.
 #[test]
 fn all_violations_of_a_file() {
-    let text = "titel = \"a\"\nmodel = \"cube\"\ncamera = \"4,30,70\"\nlight = 3\nsize = \"640\"\nfog = 1\ndepth = 2\n\
+    let text = "titel = \"a\"\nmodel = \"cube\"\ncamera = \"4,30,70\"\nlight = 3\nsize = \"640\"\nocclusion = true\ndepth = 2\n\
                 [budget]\nluts = 3\nff = 0\n";
     let camera = r#"camera = `4,30,70`: camera: R is "4,30,70" (column 8): expected a number"#;
     let light = "light = `3`: light: 3: expected";
@@ -245,7 +245,7 @@ fn all_violations_of_a_file() {
         (3, camera, r#", such as camera = "4 30 70""#),
         (4, light, r#", such as light = "1,-2,3,fff0d8""#),
         (5, size, r#", such as size = "640 360""#),
-        (6, "fog: expected only beside field", ""),
+        (6, "occlusion: expected only beside field", ""),
         (7, "depth: `2`: expected true or false", ""),
         (9, limit, ""),
         (10, "budget.ff: `0`: expected a number above 0", ""),
@@ -321,6 +321,8 @@ fn needs_follow_from_the_keys() {
     let table = r#"
         model = "cube" → --blocks scanout triangle --no-sky
         model = "cube"; background = "sky" → --blocks scanout triangle
+        model = "cube"; fog = 0.2 → --blocks scanout triangle --no-sky --fog
+        model = "cube"; fog = "off" → --blocks scanout triangle --no-sky
         model = "cube"; backend = "cpu" → --blocks scanout
         model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth --no-sky
         model = "cube"; edges = "over" → --blocks scanout triangle line --no-sky
@@ -344,6 +346,8 @@ fn needs_follow_from_the_keys() {
         field = "cone:1,2"; material = "sky" → --blocks scanout raymarch --no-depths --fields spheres,cone --lanes 2
         field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres,normals --lanes 2
         field = "smooth:0.3,box:1,1,0.2+sphere:1"; material = "sky" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
+        field = "menger:2"; fog = 0.1 → --blocks scanout raymarch --no-depths --fields menger:2 --lanes 2
+        field = "menger:2"; model = "cube"; fog = 0.1 → --blocks scanout triangle raymarch --no-sky --fog --fields menger:2 --lanes 2
         field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --no-sky --fields menger:2 --lanes 2
     "#;
     for (text, expected) in rows(table) {
@@ -372,6 +376,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         model = "cow.obj"; textures = true → mesh texture upload view
         model = "cow.obj"; textures = true; shading = "smooth" → cpu mesh texture upload view
         model = "torus"; background = "sky" → mesh sky view
+        model = "torus"; fog = 0.1 → fog mesh view
         model = "torus"; background = "sky"; field = "menger:1" → field mesh mesh-in-field sky view
         model = "cow.obj"; textures = false → mesh texture upload view
         model = "torus"; backend = "cpu" → cpu mesh view

@@ -8,6 +8,7 @@
 
 mod bits;
 mod counters;
+mod fog;
 mod layout;
 mod library;
 mod memory;
@@ -21,6 +22,7 @@ mod stream;
 
 pub use bits::Bits;
 pub use counters::Counters;
+pub use fog::drive_fog;
 pub use layout::Layout;
 pub use library::{Instance, LoadError};
 pub use memory::{Memory, ReadPort, WritePort};

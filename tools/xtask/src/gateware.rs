@@ -67,7 +67,7 @@ impl Board {
 pub struct Options {
     /// Build exactly what these scenes need, with the SPI flash from which a board starts: names of built-in scenes, scene files, or
     /// `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_sky", "no_geometry", "no_depths", "fields", "lanes"])]
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_sky", "fog", "no_geometry", "no_depths", "fields", "lanes"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
@@ -78,6 +78,9 @@ pub struct Options {
     /// Leave out the sky behind meshes
     #[arg(long)]
     no_sky: bool,
+    /// Build the triangle engine with fog
+    #[arg(long)]
+    fog: bool,
     /// Leave out the geometry pass of the triangle engine: the soft core makes the descriptors of meshes
     #[arg(long)]
     no_geometry: bool,
@@ -134,6 +137,7 @@ impl Options {
             ("--smooth", self.smooth),
             ("--texture", self.texture),
             ("--no-sky", self.no_sky),
+            ("--fog", self.fog),
             ("--no-geometry", self.no_geometry),
             ("--no-depths", self.no_depths),
         ];

@@ -102,8 +102,8 @@ commands! {
             => key(Order::Option, "sky").with(LIT)
                 .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]")
                     .expects("white, sky or a colour RRGGBB"));
-        fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)"
-            => key(Order::Option, "0.1").with(FIELD)
+        fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog: transmittance is exp(-distance * DENSITY)"
+            => key(Order::Option, "0.1").with(LIT)
                 .host(option("fog", "DENSITY", "Fog in the background's colour: transmittance is exp(-distance * DENSITY), with the distance in world units. DENSITY is from 0 to below 16")
                     .expects("a density of at least 0 and below 16"));
         occlusion Occlusion(on: bool) or show in FIELD: "turn ambient occlusion of a field on or off, or show the setting"

@@ -1,4 +1,4 @@
-//! Appearance of distance fields, and lighting and background of meshes.
+//! Appearance of distance fields, and lighting, background and fog of meshes.
 
 use heapless::Vec;
 
@@ -9,7 +9,7 @@ use crate::light::{
 };
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
-/// normal, and the background is white. Lights, ambient light and background also apply to meshes.
+/// normal, and the background is white. Lights, ambient light, background and fog also apply to meshes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
     /// Material.

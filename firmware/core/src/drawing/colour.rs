@@ -20,12 +20,23 @@ impl Rgb565 {
 
     /// Converts a colour of 8 bits per channel for the pixel in column x and line y, with ordered dithering: over 4×4 pixels the mean of
     /// a channel is the given one, within 1/255. A full channel stays full.
-    pub fn dithered([r, g, b]: [u8; 3], x: u32, y: u32) -> Self {
+    pub fn dithered(rgb: [u8; 3], x: u32, y: u32) -> Self {
+        Self::rounded_at(Self::with_fractions(rgb), x, y)
+    }
+
+    /// Scales a colour of 8 bits per channel to channels with fraction bits: red u5.3, green u6.2, blue u5.3, whose largest values are
+    /// those of RGB565.
+    pub const fn with_fractions([r, g, b]: [u8; 3]) -> [u8; 3] {
+        [r - (r >> 5), g - (g >> 6), b - (b >> 5)]
+    }
+
+    /// Rounds channels with fraction bits, as of [`with_fractions`](Self::with_fractions), for the pixel in column x and line y, with
+    /// ordered dithering. A channel without a fraction stays as it is; one above the largest value wraps, as in the gateware.
+    pub fn rounded_at([r, g, b]: [u8; 3], x: u32, y: u32) -> Self {
         const THRESHOLDS: [[u8; 4]; 4] = [[0, 4, 1, 5], [6, 2, 7, 3], [1, 5, 0, 4], [7, 3, 6, 2]];
         let threshold = THRESHOLDS[y as usize % 4][x as usize % 4];
-        // Scales a full channel to 31 or 63 steps. A sum is at most 255.
-        let five = |channel: u8| ((channel - (channel >> 5) + threshold) >> 3) as u16;
-        let green = ((g - (g >> 6) + threshold / 2) >> 2) as u16;
+        let five = |channel: u8| (channel.wrapping_add(threshold) >> 3) as u16;
+        let green = (g.wrapping_add(threshold / 2) >> 2) as u16;
         Self(five(r) << 11 | green << 5 | five(b))
     }
 

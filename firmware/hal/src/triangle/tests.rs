@@ -210,6 +210,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
         depth: None,
         clear: 0xabcd,
         sky: None,
+        fog: None,
         list_shift: 11,
         input: Input {
             sets: [Some(set(0)), None],

@@ -1,12 +1,13 @@
 //! The constants of a frame.
 
-use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT, SKY};
+use glint_core::feature::{FIELD, FOG, MESH, MESH_IN_FIELD, OBJECT, SKY};
 use glint_core::light::MeshLighting;
 use glint_core::object::MAX_OBJECTS;
 
 use super::description::{Frame, Object, Subject};
 use crate::depth::DepthScale;
 use crate::error::RenderError;
+use crate::fog::Fog;
 use crate::mesh_in_field;
 use crate::raymarch::{FieldOptions, FieldSetup, Palette};
 use crate::sky::Sky;
@@ -24,6 +25,7 @@ pub struct FrameConstants {
     scale: Scale,
     light: Option<MeshLight>,
     sky: Option<Sky>,
+    fog: Option<Fog>,
     field: Option<FieldConstants>,
 }
 
@@ -118,6 +120,15 @@ impl FrameConstants {
         }
     }
 
+    /// Returns the fog on the meshes, if the frame has fog.
+    pub const fn fog(&self) -> Option<&Fog> {
+        if FOG.is_built {
+            self.fog.as_ref()
+        } else {
+            None
+        }
+    }
+
     /// Returns the constants of the field, if the frame has a field.
     pub const fn field(&self) -> Option<&FieldConstants> {
         if FIELD.is_built {
@@ -144,7 +155,7 @@ impl FrameConstants {
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         let result = self.compute(frame);
         if result.is_err() {
-            (self.mesh, self.sky, self.field) = (None, None, None);
+            (self.mesh, self.sky, self.fog, self.field) = (None, None, None, None);
         }
         result
     }
@@ -196,6 +207,11 @@ impl FrameConstants {
                 .sky
                 .filter(|_| self.mesh.is_some() && self.field.is_none());
             self.sky = colours.map(|colours| Sky::new(view, frame.size.pixels(), colours));
+        }
+        if FOG.is_built {
+            let (density, colour) = frame.mesh_fog();
+            let depth = self.mesh().map(|mesh| mesh.depth);
+            self.fog = depth.and_then(|depth| Fog::new(density, depth, colour));
         }
         let lighting = frame.mesh_lighting();
         if MESH.is_built

@@ -5,6 +5,7 @@ use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
 use glint_core::field::Field;
+use glint_core::fixed::U4_28;
 use glint_core::framing::BoundingSphere;
 use glint_core::light::{MeshLighting, Rgb};
 use glint_core::matrix::Matrix;
@@ -30,6 +31,9 @@ pub struct Frame<'a> {
     pub clear: Rgb565,
     /// Colours of a sky at zenith, horizon and nadir, which is drawn in place of `clear` behind meshes and their edges.
     pub sky: Option<[Rgb; 3]>,
+    /// Density of the fog on the meshes per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog. The fog of a field is
+    /// in the field's appearance.
+    pub fog: U4_28,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
     /// Two eyes for a stereo picture, or `None` for one eye.
@@ -263,6 +267,7 @@ impl<'a> Frame<'a> {
             size,
             clear: Rgb565(0),
             sky: None,
+            fog: U4_28::ZERO,
             lighting: MeshLighting::CAMERA,
             stereo: None,
         }
@@ -276,20 +281,43 @@ impl<'a> Frame<'a> {
         size: Size,
         appearance: &Appearance,
     ) -> Self {
-        let (clear, sky) = match subject {
-            Subject::Mesh(_) | Subject::Objects(_) | Subject::Edges(_, Edges::Over) => {
-                (appearance.mesh_background(), appearance.mesh_sky())
-            }
+        let (clear, sky, fog) = match subject {
+            Subject::Mesh(_) | Subject::Objects(_) | Subject::Edges(_, Edges::Over) => (
+                appearance.mesh_background(),
+                appearance.mesh_sky(),
+                appearance.fog,
+            ),
             Subject::Edges(_, Edges::Hidden)
             | Subject::Field(_)
             | Subject::MeshInField(..)
-            | Subject::Wireframe(_) => (Rgb565(0), None),
+            | Subject::Wireframe(_) => (Rgb565(0), None, U4_28::ZERO),
         };
         Self {
             clear,
             sky,
+            fog,
             lighting: appearance.mesh_lighting(),
             ..Self::new(subject, view, size)
+        }
+    }
+
+    /// The density of the fog on the meshes, and its colour, that of the background at the horizon: the frame's or, for a mesh in a field,
+    /// those of the field's appearance.
+    pub fn mesh_fog(&self) -> (U4_28, Rgb) {
+        match &self.subject {
+            Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {
+                let [_, horizon] = field.appearance.field_background().colours();
+                (field.appearance.fog, horizon)
+            }
+            Subject::Mesh(_)
+            | Subject::Edges(..)
+            | Subject::MeshInField(..)
+            | Subject::Field(_)
+            | Subject::Objects(_)
+            | Subject::Wireframe(_) => {
+                let [_, horizon, _] = self.sky.unwrap_or([self.clear.to_rgb888(); 3]);
+                (self.fog, horizon)
+            }
         }
     }
 

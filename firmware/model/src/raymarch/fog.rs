@@ -50,11 +50,11 @@ impl Palette {
 }
 
 /// The number 1 with 62 fraction bits.
-const FULL: u64 = 1 << 62;
+pub(crate) const FULL: u64 = 1 << 62;
 
 /// The product of two numbers with 62 fraction bits.
-fn product(a: u64, b: u64) -> u64 {
-    ((u128::from(a) * u128::from(b)) >> 62) as u64
+pub(crate) const fn product(a: u64, b: u64) -> u64 {
+    ((a as u128 * b as u128) >> 62) as u64
 }
 
 /// The product density·z for the depth z of one field unit times 2^e, where e is `setup.exponent`: 32 fraction bits, rounded
@@ -67,9 +67,15 @@ fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
 
 /// Computes e^−x with 62 fraction bits for an x with 32 fraction bits, as (1 − x/2^20)^(2^20). The result is below the exact value by a
 /// relative x²/2^21; for x ≥ 16 it is 0.
-fn faded(x: u64) -> u64 {
+pub(crate) const fn faded(x: u64) -> u64 {
     if x >= 16 << 32 {
         return 0;
     }
-    (0..20).fold(FULL - (x << 10), |power, _| product(power, power))
+    let mut power = FULL - (x << 10);
+    let mut squares = 0;
+    while squares < 20 {
+        power = product(power, power);
+        squares += 1;
+    }
+    power
 }

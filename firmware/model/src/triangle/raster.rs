@@ -9,6 +9,7 @@ use core::ops::{Add, BitOr, Sub};
 use glint_core::colour::Rgb565;
 use glint_core::texture::Blend;
 
+use crate::fog::Fog;
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::descriptor::GROUP;
 use crate::triangle::quotient;
@@ -34,30 +35,56 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
     }
 }
 
-/// Draws a triangle as [`draw`] does. Calls `visit` with each row that has a covered pixel, and with the first and the last group of
+/// Draws a triangle, with a texture or without one, in fog. Not generic over the source of colours, so that drawing without fog does not
+/// become larger.
+#[inline(never)]
+pub fn draw_in_fog(
+    setup: &Setup,
+    colour: Rgb565,
+    textured: Option<&Textured>,
+    fog: &Fog,
+    target: &mut FrameBuffer,
+) -> Coverage {
+    let mut draw = |brush: &mut dyn Brush| draw_with(setup, Fogged::new(brush, setup, fog), target);
+    match (textured, &setup.light) {
+        (Some(textured), _) => draw(&mut Textures::new(setup, textured)),
+        (None, Some(light)) => draw(&mut Smooth::new(setup, light)),
+        (None, None) => draw(&mut { colour }),
+    }
+}
+
+/// Draws a triangle as [`draw`] and [`draw_in_fog`] do. Calls `visit` with each row that has a covered pixel, and with the first and the last group of
 /// eight columns that contains a covered pixel; the engine's lanes process all groups between them.
 pub fn draw_groups(
     setup: &Setup,
     colour: Rgb565,
     textured: Option<&Textured>,
+    fog: Option<&Fog>,
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
 ) -> Coverage {
     match (textured, &setup.light) {
-        (Some(textured), _) => grouped(setup, Textures::new(setup, textured), target, visit),
-        (None, Some(light)) => grouped(setup, Smooth::new(setup, light), target, visit),
-        (None, None) => grouped(setup, colour, target, visit),
+        (Some(textured), _) => grouped(setup, Textures::new(setup, textured), fog, target, visit),
+        (None, Some(light)) => grouped(setup, Smooth::new(setup, light), fog, target, visit),
+        (None, None) => grouped(setup, colour, fog, target, visit),
     }
 }
 
 fn grouped(
     setup: &Setup,
     brush: impl Brush,
+    fog: Option<&Fog>,
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
 ) -> Coverage {
     let row = setup.bounds.top;
-    draw_with(setup, Grouped { brush, row, visit }, target)
+    match fog {
+        None => draw_with(setup, Grouped { brush, row, visit }, target),
+        Some(fog) => {
+            let brush = Fogged::new(brush, setup, fog);
+            draw_with(setup, Grouped { brush, row, visit }, target)
+        }
+    }
 }
 
 /// Draws a triangle with smooth shading. Not inlined, so that flat triangles do not load this code
@@ -97,6 +124,31 @@ trait Brush {
         *stored = code;
         *pixel = colour.0;
     }
+    /// Whether pixels are added to the picture, so that fog darkens them.
+    fn is_added(&self) -> bool {
+        false
+    }
+}
+
+impl<B: Brush + ?Sized> Brush for &mut B {
+    fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
+        (**self).go_to(offset, columns);
+    }
+    fn go_right(&mut self) {
+        (**self).go_right();
+    }
+    fn go_down(&mut self) {
+        (**self).go_down();
+    }
+    fn colour(&self, depth: u32) -> Option<Rgb565> {
+        (**self).colour(depth)
+    }
+    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
+        (**self).write(colour, code, pixel, stored);
+    }
+    fn is_added(&self) -> bool {
+        (**self).is_added()
+    }
 }
 
 /// Flat shading: every pixel has the triangle's colour.
@@ -133,6 +185,58 @@ impl<B: Brush> Brush for Grouped<'_, B> {
     }
     fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
         self.brush.write(colour, code, pixel, stored);
+    }
+    fn is_added(&self) -> bool {
+        self.brush.is_added()
+    }
+}
+
+/// A brush in fog.
+struct Fogged<'a, B> {
+    brush: B,
+    fog: &'a Fog,
+    /// Colour of the fog, black for pixels that are added to the picture.
+    colour: [u8; 3],
+    row: i32,
+    column: i32,
+}
+
+impl<'a, B: Brush> Fogged<'a, B> {
+    fn new(brush: B, setup: &Setup, fog: &'a Fog) -> Self {
+        let colour = if brush.is_added() { [0; 3] } else { fog.colour };
+        Self {
+            brush,
+            fog,
+            colour,
+            row: setup.bounds.top,
+            column: 0,
+        }
+    }
+}
+
+impl<B: Brush> Brush for Fogged<'_, B> {
+    fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
+        self.column = columns[0];
+        self.brush.go_to(offset, columns);
+    }
+    fn go_right(&mut self) {
+        self.column += 1;
+        self.brush.go_right();
+    }
+    fn go_down(&mut self) {
+        self.row += 1;
+        self.brush.go_down();
+    }
+    fn colour(&self, depth: u32) -> Option<Rgb565> {
+        self.brush.colour(depth)
+    }
+    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
+        let place = [self.column, self.row].map(|place| place as u32);
+        let colour = self.fog.over(self.colour, colour, code, place);
+        self.brush.write(colour, code, pixel, stored);
+    }
+    fn is_added(&self) -> bool {
+        self.brush.is_added()
     }
 }
 
@@ -272,6 +376,9 @@ impl Brush for Textures<'_> {
             }
             blend => *pixel = blend.over(colour, Rgb565(*pixel)).0,
         }
+    }
+    fn is_added(&self) -> bool {
+        self.textured.texture.blend() == Blend::Additive
     }
 }
 

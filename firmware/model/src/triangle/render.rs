@@ -2,11 +2,12 @@
 
 use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::feature::TEXTURE;
+use glint_core::feature::{FOG, TEXTURE};
 use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 use glint_core::texture::Texture;
 
 use crate::error::RenderError;
+use crate::fog::Fog;
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::classify::Path;
 use crate::triangle::clip::contains;
@@ -136,7 +137,14 @@ pub fn trace_frame(
         options: *options,
     };
     let mut part = |number| (number == 0).then_some(part);
-    draw_parts(&mut part, Some(options.clear), target, scratch, &mut show)
+    draw_parts(
+        &mut part,
+        Some(options.clear),
+        None,
+        target,
+        scratch,
+        &mut show,
+    )
 }
 
 /// A mesh of a frame: its frame constants and options.
@@ -151,7 +159,7 @@ pub struct PreparedMesh<'a> {
 }
 
 /// Draws the parts of a frame (see [`set_up_parts`]) on the background colour `clear`, or, with `None`, over the picture in the frame
-/// buffer. Calls `show` with each triangle before it is drawn.
+/// buffer; in `fog`, if there is some. Calls `show` with each triangle before it is drawn.
 ///
 /// # Errors
 /// As [`set_up_parts`], or the size of a part differs from the frame buffer's. If no triangle has been drawn yet, the frame buffer is
@@ -159,6 +167,7 @@ pub struct PreparedMesh<'a> {
 pub fn draw_parts<'a>(
     part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
     mut clear: Option<u16>,
+    fog: Option<&Fog>,
     target: &mut FrameBuffer,
     scratch: &mut [Projected],
     show: &mut dyn FnMut(&DrawnTriangle),
@@ -172,8 +181,13 @@ pub fn draw_parts<'a>(
             target.clear(clear);
         }
         show(triangle);
-        let coverage = match textured {
-            Some(textured) if TEXTURE.is_built => raster::draw_textured(setup, textured, target),
+        let coverage = match (fog, textured) {
+            (Some(fog), _) if FOG.is_built => {
+                raster::draw_in_fog(setup, triangle.colour, textured, fog, target)
+            }
+            (_, Some(textured)) if TEXTURE.is_built => {
+                raster::draw_textured(setup, textured, target)
+            }
             _ => raster::draw(setup, triangle.colour, target),
         };
         tested += u64::from(coverage.tested);

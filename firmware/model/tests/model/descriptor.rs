@@ -133,7 +133,14 @@ fn every_covered_group_is_visited() {
         let visit = &mut |row, [first, last]: [i32; 2]| {
             found.extend((first..=last).map(|group| (row, group)));
         };
-        draw_groups(&setup, Rgb565::WHITE, None, &mut picture.target(), visit);
+        draw_groups(
+            &setup,
+            Rgb565::WHITE,
+            None,
+            None,
+            &mut picture.target(),
+            visit,
+        );
         let covered = picture.coverage();
         let groups = (0..).zip(covered.chunks(8));
         let expected: Vec<(i32, i32)> = groups

@@ -6,6 +6,7 @@ mod clipping;
 mod depth;
 mod descriptor;
 mod exits;
+mod fog;
 mod frame;
 mod light;
 mod line;

@@ -34,7 +34,15 @@ fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
             };
             let clear = (!with_field).then_some(part.options.clear);
             let mut part = |number| (number == 0).then_some(part);
-            draw_parts(&mut part, clear, &mut target, &mut scratch, &mut |_| {}).unwrap();
+            draw_parts(
+                &mut part,
+                clear,
+                None,
+                &mut target,
+                &mut scratch,
+                &mut |_| {},
+            )
+            .unwrap();
         }
     };
     let mut pictures = [0; 3].map(|_| Picture::blank(SIZE));

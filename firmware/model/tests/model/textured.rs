@@ -1,6 +1,7 @@
 //! Textures on triangles against exact perspective: positions in the texture, mip levels, and the colours of whole pictures.
 
 use glint_core::colour::{Rgb565, Shading};
+use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -142,6 +143,7 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
         size: Size::W640,
         clear: Rgb565(0x001F),
         sky: None,
+        fog: U4_28::ZERO,
         lighting: MeshLighting {
             ambient: [0xFF; 3],
             light: Light::at_camera([0; 3]),

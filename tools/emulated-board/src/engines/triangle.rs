@@ -265,6 +265,7 @@ impl Device for TriangleEngine {
                 .with_gouraud(self.layout.is_smooth)
                 .with_textures(self.layout.is_textured)
                 .with_sky(true)
+                .with_fog(true)
                 .with_depths(true)
                 .with_geometry(true)
                 .with_count_bits(COUNT_BITS as u8)

@@ -36,6 +36,7 @@ fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
     picture.stats = draw_parts(
         &mut part,
         Some(CLEAR),
+        None,
         &mut picture.target(),
         &mut scratch,
         &mut |_| {},

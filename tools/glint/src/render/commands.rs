@@ -96,7 +96,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
     scene
 }
 
-/// The appearance with the light and background of a frame's meshes.
+/// The appearance with the light, background and fog of a frame's meshes.
 fn appearance(frame: &Frame) -> Appearance {
     let background = match frame.sky {
         Some(_) => Background::Sky,
@@ -104,6 +104,7 @@ fn appearance(frame: &Frame) -> Appearance {
     };
     let mut appearance = Appearance {
         background: Some(background),
+        fog: frame.fog,
         ..Appearance::default()
     };
     if frame.lighting != MeshLighting::CAMERA {

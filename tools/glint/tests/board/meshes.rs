@@ -9,7 +9,7 @@ use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Su
 use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::fixed::U8_28;
+use glint_core::fixed::{U4_28, U8_28};
 use glint_core::light::{Light, MeshLighting};
 use glint_core::picture::{Backend, Size};
 use glint_core::texture::{self, Blend, Filter, Sampler, Source};
@@ -89,9 +89,10 @@ fn textures_are_the_models_on_every_backend() {
             ..plain(&mesh)
         });
         let view = view::spherical("2,30,60").unwrap();
-        // The sky behind the window is drawn first.
+        // The sky behind the window is drawn first; the window has its own fog.
         let before_sky = Frame {
             sky: Some(sky()),
+            fog: U4_28::from_num(0.2),
             ..Frame::new(subject, view, Size::W320)
         };
         let [found, expected] = drawn_alike(&mut renderer, &before_sky, "textures before a sky");
@@ -196,7 +197,7 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     }
 }
 
-/// A coloured directional light, a light at the camera, ambient light and a background, also a sky, with each
+/// A coloured directional light, a light at the camera, ambient light and a background, also a sky, with and without fog, with each
 /// backend. The default is tested last, because its commands must remove light and background. The
 /// board draws each frame into both frame buffers.
 #[test]
@@ -222,6 +223,7 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
                 lighting,
                 clear,
                 sky,
+                fog: U4_28::from_num(if sky.is_some() { 0.3 } else { 0.0 }),
                 ..Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320)
             };
             renderer.set_backend(backend);

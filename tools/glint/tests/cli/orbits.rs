@@ -115,8 +115,8 @@ fn fields_and_scenes() {
             MODEL: expected a mesh file or a generator such as teapot, or --field or --scene in its place, found none
         orbit --scene wireframe --out b.gif
             --scene: expected a scene with a camera, found a wireframe program
-        orbit cube --fog 1 --out b.gif
-            --fog: expected a --field, found a mesh
+        orbit cube --occlusion --out b.gif
+            --occlusion: expected a --field, found a mesh
         ",
     );
     assert!(!folder.join("b.gif").exists());

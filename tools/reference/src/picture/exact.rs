@@ -112,6 +112,8 @@ fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
         ambient: share(lighting.ambient),
         lights: vec![lit(&lighting.light, &camera)],
     };
+    let (density, horizon) = frame.mesh_fog();
+    let fog = (density.to_num(), horizon.map(f64::from));
     let placed = |subject, matrix, object, colour| Placed {
         subject,
         matrix,
@@ -119,6 +121,7 @@ fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
         colour,
         camera: &camera,
         light: &light,
+        fog,
     };
     match &frame.subject {
         Subject::Mesh(subject) | Subject::MeshInField(subject, _) => {
@@ -186,6 +189,8 @@ struct Placed<'a> {
     colour: Option<Rgb565>,
     camera: &'a Camera,
     light: &'a Lit,
+    /// Density and colour of the fog.
+    fog: (f64, Vector),
 }
 
 impl Placed<'_> {
@@ -244,12 +249,14 @@ impl Placed<'_> {
                         })
                     }
                 };
+                let (density, fog) = self.fog;
+                let hidden = 1.0 - (-density / nearness).exp();
                 *pixel = Pixel {
                     seen: Seen::Triangle {
                         object: self.object,
                         index,
                     },
-                    colour,
+                    colour: add_scaled(colour, subtract(fog, colour), hidden),
                     nearness,
                 };
             }

@@ -4,6 +4,7 @@
 mod bench;
 mod expected;
 mod fields;
+mod fog;
 mod gathered;
 mod light;
 mod lines;

@@ -3,6 +3,7 @@
 
 mod control;
 mod engine;
+mod fog;
 mod lists;
 mod raster;
 mod reciprocal;

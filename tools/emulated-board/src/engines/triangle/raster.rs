@@ -7,7 +7,7 @@ use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, La
 use glint_model::triangle::raster::draw_groups;
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::textured::{OfTexture, Textured};
-use glint_model::{FrameBuffer, Sky};
+use glint_model::{Fog, FrameBuffer, Sky};
 use litex_pac::triangle::{Counters, Error, Raster, offset};
 
 use super::region::{COUNT_BITS, Regions, WORD, entry, list_words, picture_size, record};
@@ -123,6 +123,7 @@ impl RasterUnit {
         let is_whole = flags.whole() || flags.depth() || sky.is_some() || !self.known[slot];
         let table = parameters.word(offset::TEXTURES) / WORD;
         let mut drawing = self.begin(size, clear, layout, table);
+        drawing.fog = flags.fog().then(|| read_fog(parameters));
         if has_field {
             drawing.draw_field(raymarcher, now);
         }
@@ -186,6 +187,7 @@ impl RasterUnit {
             },
             layout,
             textures,
+            fog: None,
             extents: &mut self.now,
             counts: Counts::default(),
             time: RasterTime::default(),
@@ -256,6 +258,7 @@ struct Drawing<'a> {
     layout: Layout,
     /// Address of the table of textures, in 16-byte words.
     textures: u32,
+    fog: Option<Fog>,
     target: FrameBuffer<'a>,
     extents: &'a mut [Extent],
     counts: Counts,
@@ -308,6 +311,7 @@ impl Drawing<'_> {
             target,
             extents,
             textures,
+            fog,
             ..
         } = self;
         let mut groups = 0;
@@ -335,7 +339,9 @@ impl Drawing<'_> {
                     self.counts.read += 2;
                     Some(texture)
                 });
-                let coverage = draw_groups(&part, colour, textured.as_ref(), target, &mut visit);
+                let fog = fog.as_ref();
+                let coverage =
+                    draw_groups(&part, colour, textured.as_ref(), fog, target, &mut visit);
                 colours = match textured {
                     // With smooth shading, the engine draws one pixel per cycle.
                     _ if part.light.is_some() => coverage.covered,
@@ -347,6 +353,10 @@ impl Drawing<'_> {
                     }
                     None => 0,
                 };
+                if fog.is_some() {
+                    // One cycle for each half of a group; about half of the groups have only one.
+                    colours = colours.max(groups + groups / 2);
+                }
                 [coverage.covered, coverage.drawn]
             }
             Contents::Piece(piece) => {
@@ -425,10 +435,7 @@ const fn quad_pixels(filter: Filter) -> u32 {
 /// The sky of a raster pass.
 fn read_sky(parameters: &Parameters) -> Sky {
     let height = |offset| parameters.word(offset) as i32;
-    let colour = |offset| {
-        let [red, green, blue, _] = parameters.word(offset).to_le_bytes();
-        [red, green, blue]
-    };
+    let colour = |offset| colour(parameters, offset);
     Sky {
         above: height(offset::SKY_ABOVE),
         across: height(offset::SKY_ACROSS),
@@ -437,6 +444,18 @@ fn read_sky(parameters: &Parameters) -> Sky {
         horizon: colour(offset::SKY_HORIZON),
         nadir: colour(offset::SKY_NADIR),
     }
+}
+
+/// The fog of a raster pass.
+fn read_fog(parameters: &Parameters) -> Fog {
+    let offset = parameters.signed(offset::FOG_OFFSET, 13);
+    Fog::in_perspective(offset, colour(parameters, offset::FOG_COLOUR))
+}
+
+/// A colour of a raster pass.
+fn colour(parameters: &Parameters, offset: u32) -> [u8; 3] {
+    let [red, green, blue, _] = parameters.word(offset).to_le_bytes();
+    [red, green, blue]
 }
 
 /// Reads a texture through the frame's table at the address `table`, in 16-byte words. Returns

@@ -6,7 +6,9 @@ use glint_model::triangle::descriptor::{Descriptor, Layout, band_rows, list_word
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::vertex_cache;
 use glint_model::{MeshLight, MeshSetup, Options, Shading};
-use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort, drive_sky};
+use glint_testbench::{
+    Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort, drive_fog, drive_sky,
+};
 
 use super::expected::{Expected, SIZES};
 
@@ -96,7 +98,7 @@ impl Bench {
     /// the module `triangle_engine_lines`.
     pub fn of(variant: &str, seed: u32, stalls: f64) -> Self {
         let layout = match variant {
-            "smooth" => Layout::SMOOTH,
+            "smooth" | "smooth_lines" => Layout::SMOOTH,
             "texture" | "texture_fields" => Layout::TEXTURED,
             _ => Layout::FLAT,
         };
@@ -291,6 +293,10 @@ impl Bench {
         self.set("raster_flags.sky", u64::from(expected.sky.is_some()));
         if let Some(sky) = &expected.sky {
             drive_sky(&mut self.module, sky);
+        }
+        self.set("raster_flags.fog", u64::from(expected.fog.is_some()));
+        if let Some(fog) = &expected.fog {
+            drive_fog(&mut self.module, fog);
         }
         self.module.drive_all("raster.lists", LISTS.map(bytes));
         self.module

@@ -1,10 +1,13 @@
 //! Frames drawn by the model, which the triangle engine must reproduce.
 
 use glint_core::camera::View;
+use glint_core::fixed::U4_28;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::{PreparedMesh, draw_parts};
-use glint_model::{DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Sky, Stats};
+use glint_model::{
+    DrawnTriangle, Fog, FrameBuffer, MeshSetup, Options, Projected, Shading, Sky, Stats,
+};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 pub const CLEAR: u16 = 0x1234;
@@ -17,6 +20,8 @@ pub struct Expected {
     pub options: Options<'static>,
     /// The sky, which replaces the clear colour.
     pub sky: Option<Sky>,
+    /// The fog on the triangles.
+    pub fog: Option<Fog>,
     pub colour: Vec<u16>,
     pub depth: Vec<u32>,
     /// Setups and colours of the clipped triangles.
@@ -65,8 +70,30 @@ pub fn expected_with(
     expected_parts(size, &[(mesh, frame, options)])
 }
 
+/// Draws a frame with the model in fog of a density per world unit and a colour.
+pub fn expected_in_fog(
+    (density, colour): (f64, [u8; 3]),
+    options: Options<'static>,
+    mesh: &[u8],
+    view: &View,
+    size: (u32, u32),
+) -> Expected {
+    let mesh = Mesh::new_checked(mesh).unwrap();
+    let frame = MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap();
+    let fog = Fog::new(U4_28::from_num(density), frame.depth, colour);
+    expected_parts_in_fog(fog, size, &[(mesh, frame, options)])
+}
+
 /// Draws a frame of several meshes with the model, from each mesh's frame constants and options.
 pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'static>)]) -> Expected {
+    expected_parts_in_fog(None, size, parts)
+}
+
+fn expected_parts_in_fog(
+    fog: Option<Fog>,
+    size: (u32, u32),
+    parts: &[(Mesh, MeshSetup, Options<'static>)],
+) -> Expected {
     let pixels = (size.0 * size.1) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
     let vertices = parts.iter().map(|(mesh, ..)| mesh.largest_chunk()).max();
@@ -96,6 +123,7 @@ pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'stat
     let stats = draw_parts(
         &mut part,
         Some(options.clear),
+        fog.as_ref(),
         &mut target,
         &mut scratch,
         &mut show,
@@ -106,6 +134,7 @@ pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'stat
         frame,
         options,
         sky: None,
+        fog,
         colour,
         depth,
         clipped,
@@ -134,6 +163,7 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
             ..Options::default()
         },
         sky: None,
+        fog: None,
         colour,
         depth,
         clipped: vec![],

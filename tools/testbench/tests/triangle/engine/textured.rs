@@ -3,6 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
+use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting, Rgb};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -81,15 +82,16 @@ struct Shown {
 
 impl Shown {
     fn new(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
-        Self::before(bytes, eye, None, None)
+        Self::before(bytes, eye, None, None, 0.0)
     }
 
-    /// A mesh in a field, or before a sky.
+    /// A mesh in a field, or before a sky, in fog of a density per world unit.
     fn before(
         bytes: Vec<u8>,
         eye: [f64; 3],
         field: Option<&FieldSubject>,
         sky: Option<[Rgb; 3]>,
+        fog: f64,
     ) -> Self {
         let mesh = Mesh::new_checked(&bytes).unwrap();
         let subject = MeshSubject {
@@ -106,6 +108,7 @@ impl Shown {
             size: Size::W320,
             clear: Rgb565(0x001F),
             sky,
+            fog: U4_28::from_num(fog),
             lighting: MeshLighting {
                 ambient: [0x60; 3],
                 light: Light::at_camera([0xA0; 3]),
@@ -148,6 +151,7 @@ impl Shown {
                 ..Options::default()
             },
             sky: constants.sky().copied(),
+            fog: constants.fog().copied(),
             colour: picture.colour,
             depth: picture.depth,
             clipped: vec![],
@@ -221,12 +225,15 @@ fn frames_with_textures_in_a_field() {
             let mesh = textured_layers(&textures, 1.0, 0.3);
             let field = FieldSubject {
                 field: &Field::parse(text).unwrap(),
-                appearance: &Appearance::default(),
+                appearance: &Appearance {
+                    fog: U4_28::from_num([0.0, 0.3][count]),
+                    ..Appearance::default()
+                },
                 quality: Quality::default(),
             };
             // From afar no triangle is clipped, so the second set has them all.
             let eye = [0.4, random.random_range(-4.0..-3.0), 2.0];
-            let mut shown = Shown::before(mesh, eye, Some(&field), None);
+            let mut shown = Shown::before(mesh, eye, Some(&field), None, 0.0);
             let name = format!("frame {count} in {text}");
             let triangles = [shown.whole, shown.clipped].concat();
             bench.set("field_source.enable", 1);
@@ -238,7 +245,7 @@ fn frames_with_textures_in_a_field() {
     }
 }
 
-/// A sky behind meshes, some of which are blended with it: then it is drawn before them. Frames without a sky follow.
+/// A sky behind meshes, with and without fog, some of which are blended with it: then it is drawn before them. Frames without a sky follow.
 #[test]
 fn frames_with_textures_before_a_sky() {
     let mut firsts = [0; 2];
@@ -261,7 +268,8 @@ fn frames_with_textures_before_a_sky() {
             if sky.is_some() {
                 firsts[usize::from(is_first)] += 1;
             }
-            let shown = Shown::before(mesh, eye, None, sky);
+            let fog = [0.0, 0.1, 1.0][random.random_range(0..3)];
+            let shown = Shown::before(mesh, eye, None, sky, fog);
             let triangles = [shown.whole, shown.clipped].concat();
             bench.slot = random.random_range(0..2);
             bench.set("raster_flags.sky_first", u64::from(is_first));
