@@ -126,6 +126,16 @@ impl Drawn<'_> {
 }
 
 impl Scene {
+    /// A scene of a mesh in front of a camera. All triangles of the mesh have its first texture.
+    pub const fn new(name: &'static str, size: Size, mesh: Vec<u8>, camera: Camera) -> Self {
+        Self {
+            name,
+            size,
+            mesh,
+            camera,
+        }
+    }
+
     /// Calls `visit` for each row of each triangle, with the row's number and covered pixels. The order is that of the engine: band by band.
     ///
     /// # Panics

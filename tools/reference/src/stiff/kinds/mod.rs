@@ -19,6 +19,7 @@ mod panel;
 mod rays;
 mod steering;
 mod texts;
+mod textures;
 mod transfers;
 mod triangles;
 mod volume;
@@ -47,6 +48,7 @@ pub fn all() -> Vec<Kind> {
         rays::kinds(),
         steering::kinds(),
         texts::kinds(),
+        textures::kinds(),
         transfers::kinds(),
         triangles::kinds(),
         volume::kinds(),
