@@ -1,6 +1,7 @@
 //! Frames of meshes with textures, whose descriptors come from the model.
 
 use glint_core::appearance::Appearance;
+use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
@@ -85,10 +86,26 @@ impl Shown {
         Self::before(bytes, eye, None, None, 0.0)
     }
 
+    /// As [`new`](Self::new), in orthographic projection.
+    fn orthographic(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
+        Self::shown(bytes, eye, Projection::Orthographic, None, None, 0.0)
+    }
+
     /// A mesh in a field, or before a sky, in fog of a density per world unit.
     fn before(
         bytes: Vec<u8>,
         eye: [f64; 3],
+        field: Option<&FieldSubject>,
+        sky: Option<[Rgb; 3]>,
+        fog: f64,
+    ) -> Self {
+        Self::shown(bytes, eye, Projection::Perspective, field, sky, fog)
+    }
+
+    fn shown(
+        bytes: Vec<u8>,
+        eye: [f64; 3],
+        projection: Projection,
         field: Option<&FieldSubject>,
         sky: Option<[Rgb; 3]>,
         fog: f64,
@@ -104,7 +121,7 @@ impl Shown {
                 None => Subject::Mesh(subject),
                 Some(&field) => Subject::MeshInField(subject, field),
             },
-            view: camera.rounded(),
+            view: camera.rounded().with_projection(projection),
             size: Size::W320,
             clear: Rgb565(0x001F),
             sky,
@@ -170,7 +187,7 @@ impl Shown {
 
 #[test]
 fn frames_with_textures() {
-    let (mut pixels, mut clocks, mut by_pass) = (0, 0, 0);
+    let (mut pixels, mut clocks, mut by_pass, mut orthographic) = (0, 0, 0, 0);
     for seed in 0..24 {
         let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
         let mut bench = Bench::of("texture", seed, [0.0, 0.3, 0.7][seed as usize % 3]);
@@ -194,8 +211,14 @@ fn frames_with_textures() {
                 distance * random.random_range(-2.0..-0.3),
                 distance * random.random_range(0.05..1.5),
             ];
-            let shown = Shown::new(mesh, eye);
+            let is_orthographic = random.random_bool(0.3);
+            let shown = if is_orthographic {
+                Shown::orthographic(mesh, eye)
+            } else {
+                Shown::new(mesh, eye)
+            };
             let expected = &shown.expected;
+            orthographic += u32::from(is_orthographic);
             pixels += expected.depth.iter().filter(|&&code| code != 0).count();
             let name = format!("frame {count} of seed {seed}");
             clocks += if random.random_bool(0.7) {
@@ -210,6 +233,7 @@ fn frames_with_textures() {
     }
     println!("{pixels} pixels in {clocks} clocks, {by_pass} triangles by the geometry pass");
     assert!(pixels > 500_000 && by_pass > 40, "{pixels}, {by_pass}");
+    assert!(orthographic > 10, "{orthographic}");
 }
 
 /// Meshes are drawn over the field around them, and blended with it.
