@@ -342,15 +342,15 @@ MUTATIONS = {
         _cpu_bus("instructions.dat_r.eq(bus.dat_r)", "instructions.dat_r.eq(0)", "data_pass"),
     ],
     "memory_crossbar": [
-        _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),
-        _crossbar("_select(turn, allowed)", "allowed[0]", "as_it_came"),
+        _crossbar("(turn[number] & may)", "(may)", "one_at_a_time"),
+        _crossbar("selected(allowed)", "allowed[0]", "as_it_came"),
         # Fault: a port requests a second bank before the first bank has completed its commands.
         _crossbar("~level[0] & ~Array(owned", "~Array(owned", "in_order"),
         _crossbar("Mux(stays, ~level[-1],", "Mux(stays, 1,", "room_in_queue"),
         _crossbar("level[0] & (place == done)", "level[0]", "read_answered"),
         _crossbar("ended & done_write, self.write_latency", "ended & done_write, self.write_latency + 1", "data_asked"),
         _crossbar("Mux(ended, len(writers), 0)", "Mux(ended, 0, len(writers))", "data_pass"),
-        _crossbar("arbiter.ce.eq(1)", "arbiter.ce.eq(valid)", "idle_takes"),
+        _crossbar("valid.eq(", "turns.holds.eq(~valid), valid.eq(", "idle_takes"),
         # Fault: a port keeps its bank forever.
         _crossbar("owner & ~level[0] & ~(port.cmd.valid & stays)", "0", "taken_in_time"),
     ],

@@ -5,9 +5,9 @@ from operator import or_
 
 from litedram.core.crossbar import LiteDRAMCrossbar
 from migen import Array, Cat, If, Mux, Replicate, Signal
-from migen.genlib import roundrobin
 
 from .delay import delayed
+from .round_robin import RoundRobin
 
 
 def _select(index, values):
@@ -68,7 +68,8 @@ class MemoryCrossbar(LiteDRAMCrossbar):
 
         # The banks that ports own, and the port selected by the arbiter.
         owned = Signal(self.nbanks)
-        turn = Signal(max=max(len(ports), 2))
+        self.submodules.turns = turns = RoundRobin(len(ports))
+        turn = turns.turn
         wanted, allowed, answered, released = [], [], [], []
         for number, port in enumerate(ports):
             # The bank that the port owns. Bit n of `level` is set while the port has more than n pending commands for its bank.
@@ -78,7 +79,7 @@ class MemoryCrossbar(LiteDRAMCrossbar):
                 bank.eq(port.get_bank_address(self.bank_bits, column_bits)),
                 stays.eq(owner & (place == bank)),
                 may.eq(Mux(stays, ~level[-1], ~level[0] & ~Array(owned[i] for i in range(self.nbanks))[bank])),
-                port.cmd.ready.eq((turn == number) & may),
+                port.cmd.ready.eq(turn[number] & may),
                 taken.eq(port.cmd.valid & port.cmd.ready),
                 ended.eq(level[0] & (place == done) & (done_read | done_write)),
                 # The port releases the bank when it has no command for it.
@@ -98,19 +99,19 @@ class MemoryCrossbar(LiteDRAMCrossbar):
 
         # Passes the command of the selected port. The arbiter then selects the next port with a permitted command whose bank the passed
         # command does not take.
-        self.arbiter = arbiter = roundrobin.RoundRobin(len(ports), roundrobin.SP_CE)
-        self.submodules += arbiter
+        def selected(values):
+            """Returns the value of the selected port."""
+            return reduce(or_, (Replicate(mine, len(value)) & value for mine, value in zip(turn, values, strict=True)))
+
         valid, bank = Signal(), Signal(self.bank_bits)
         passed, is_write, address = Signal(self.nbanks), Signal(), Signal(self.rca_bits)
         self.comb += [
-            arbiter.request.eq(Cat(*(may & ~(valid & (bank == other)) for may, other in zip(allowed, wanted)))),
-            arbiter.ce.eq(1),
-            turn.eq(arbiter.grant),
-            valid.eq(_select(turn, allowed)),
-            bank.eq(_select(turn, wanted)),
+            turns.wants.eq(Cat(*(may & ~(valid & (bank == other)) for may, other in zip(allowed, wanted)))),
+            valid.eq(selected(allowed)),
+            bank.eq(selected(wanted)),
             passed.eq(Mux(valid, 1 << bank, 0)),
-            is_write.eq(_select(turn, [port.cmd.we for port in ports])),
-            address.eq(_select(turn, [port.get_row_column_address(self.bank_bits, self.rca_bits, column_bits) for port in ports])),
+            is_write.eq(selected([port.cmd.we for port in ports])),
+            address.eq(selected([port.get_row_column_address(self.bank_bits, self.rca_bits, column_bits) for port in ports])),
         ]
         self.sync += owned.eq((owned & ~reduce(or_, released)) | passed)
         for number, machine in enumerate(banks):
