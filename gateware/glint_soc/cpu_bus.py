@@ -1,4 +1,4 @@
-"""Arbiter between the CPU's two buses and the shared bus, which registers one request at a time."""
+"""Arbiter between the CPU's two buses and the shared bus, which registers one request at a time, and the shared bus's decoder."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
@@ -24,6 +24,8 @@ class CpuBus(LiteXModule):
 
     def __init__(self, data, instructions):
         self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+        # The address of the next request, which the bus shows from the next clock on if `loads` is high.
+        self.next_adr, self.loads = next_adr, loads = Signal.like(bus.adr), Signal()
 
         # High while a read of this bus is pending. The bus then still shows the read, which must not start again.
         reads_data, reads_instructions = Signal(), Signal()
@@ -34,6 +36,8 @@ class CpuBus(LiteXModule):
             asks_instructions.eq(instructions.cyc & instructions.stb & ~reads_instructions & ~asks_data),
             more.eq(bursts & (word != LINE_WORDS - 1)),
             free.eq(~busy | (bus.ack & ~more)),
+            loads.eq(free),
+            next_adr.eq(Mux(asks_data, data.adr, instructions.adr)),
             bus.cyc.eq(busy),
             bus.stb.eq(busy),
             bus.cti.eq(Mux(more, CTI_BURST_INCREMENTING, CTI_BURST_END)),
@@ -50,11 +54,22 @@ class CpuBus(LiteXModule):
                 reads_instructions.eq(asks_instructions),
                 bus.dat_w.eq(data.dat_w),
                 bus.we.eq(asks_data & data.we),
+                bus.adr.eq(next_adr),
                 If(asks_data,
-                    Cat(bus.adr, bus.sel, bursts).eq(Cat(data.adr, data.sel, data.cti == CTI_BURST_INCREMENTING)),
+                    Cat(bus.sel, bursts).eq(Cat(data.sel, data.cti == CTI_BURST_INCREMENTING)),
                 ).Else(
-                    Cat(bus.adr, bus.sel, bursts).eq(
-                        Cat(instructions.adr, instructions.sel, instructions.cti == CTI_BURST_INCREMENTING)),
+                    Cat(bus.sel, bursts).eq(Cat(instructions.sel, instructions.cti == CTI_BURST_INCREMENTING)),
                 ),
             ),
         ]
+
+
+class BusDecoder(wishbone.Decoder):
+    """Replaces LiteX's decoder between the bus of the `stage`, a `CpuBus`, and the slaves: the addresses are compared before the stage
+    stores them, and the results are stored with them. The words of a burst have the same slave. LiteX's argument `register`, which
+    would delay the selection of the data, has no effect."""
+
+    def __init__(self, stage, master, slaves, register=False):
+        selected = [Signal() for _ in slaves]
+        self.sync += If(stage.loads, *(own.eq(covers(stage.next_adr)) for own, (covers, _) in zip(selected, slaves, strict=True)))
+        super().__init__(master, [(lambda _, own=own: own, slave) for own, (_, slave) in zip(selected, slaves)])

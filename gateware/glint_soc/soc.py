@@ -4,6 +4,7 @@ A board adds its platform, its clocks (domains `sys` and `pix`), its memory with
 that are visible to firmware are in this module.
 """
 
+from functools import partial
 from unittest.mock import patch
 
 from litedram.common import LiteDRAMNativePort
@@ -14,7 +15,7 @@ from litex.soc.interconnect import csr_bus, wishbone
 from migen import Cat, Constant, ResetInserter, Signal, log2_int
 
 from .constants import FLASH_BYTES, FLASH_FIRMWARE
-from .cpu_bus import CpuBus
+from .cpu_bus import BusDecoder, CpuBus
 from .digits import Digits
 from .flash import FlashReader
 from .gesture import GestureEngine
@@ -152,8 +153,10 @@ class GlintSoC(SoCCore):
         self.bus.add_master("cpu", self.cpu_bus.bus)
 
     def finalize(self, *arguments, **options):
-        """Finalizes the SoC, with register banks and their bridge of this project: LiteX has no parameters for these classes."""
-        with patch.object(csr_bus, "CSRBank", RegisterBank), patch.object(wishbone, "Wishbone2CSR", RegisterBridge):
+        """Finalizes the SoC, with register banks, their bridge and the decoder of the bus of this project: LiteX has no parameters for
+        these classes."""
+        with (patch.object(csr_bus, "CSRBank", RegisterBank), patch.object(wishbone, "Wishbone2CSR", RegisterBridge),
+              patch.object(wishbone, "Decoder", partial(BusDecoder, self.cpu_bus))):
             SoCCore.finalize(self, *arguments, **options)
 
     def do_finalize(self):

@@ -1,12 +1,14 @@
 """Test of the arbiter of the CPU's two buses, with main memory behind it, and with random traffic in the CPU's protocol."""
 
 import random
+from functools import partial
+from unittest.mock import patch
 
 import pytest
 from litex.soc.interconnect import wishbone
 from migen import Module, passive, run_simulation
 
-from glint_soc.cpu_bus import CpuBus
+from glint_soc.cpu_bus import BusDecoder, CpuBus
 from memory_bench import BASE, WORDS, access, bench, merged
 
 _TRANSACTIONS = 300
@@ -63,3 +65,45 @@ def test_random_traffic(data_width):
     run_simulation(cpu, [data(), instructions(), memory.run()])
     assert not problems
     assert memory.words == expected
+
+
+def test_selected_slaves():
+    """Compares the slaves that the decoder, in place of LiteX's as in the SoC, selects with those of LiteX's, for random requests of both
+    buses."""
+    rng, top = random.Random(8), Module()
+    top.data, top.instructions = (wishbone.Interface(data_width=32, address_width=32, addressing="word") for _ in range(2))
+    top.submodules.stage = stage = CpuBus(top.data, top.instructions)
+    covers = [lambda adr: adr[3:] == 1, lambda adr: adr[4:] == 3, lambda adr: adr[3:] == 2]
+    found, expected = ([(own, wishbone.Interface(data_width=32, address_width=32, addressing="word")) for own in covers] for _ in range(2))
+    with patch.object(wishbone, "Decoder", partial(BusDecoder, stage)):
+        top.submodules += wishbone.InterconnectShared([stage.bus], found)
+    shown = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+    top.comb += [shown.adr.eq(stage.bus.adr), shown.cyc.eq(stage.bus.cyc)]
+    top.submodules += wishbone.Decoder(shown, expected)
+    selected = []
+
+    def requests(bus):
+        for _ in range(200):
+            word, length, is_write = rng.randrange(64), rng.choice((1, _LINE)), rng.random() < 0.3
+            if is_write or length == 1:
+                yield from access(bus, word, data=rng.getrandbits(32) if is_write and bus is top.data else None)
+            else:
+                yield from access(bus, word - word % _LINE, length)
+
+    @passive
+    def answers():
+        while True:
+            pending, ours, theirs = (yield stage.bus.cyc), [], []
+            for (_, slave), (_, other) in zip(found, expected):
+                ours.append((yield slave.cyc))
+                theirs.append((yield other.cyc))
+                yield slave.ack.eq(0)
+            # A slave answers, or, for an address without a slave, the first one, as if it were LiteX's timeout.
+            if pending and rng.random() < 0.5:
+                yield found[ours.index(1) if 1 in ours else 0][1].ack.eq(1)
+            selected.append((ours, theirs))
+            yield
+
+    run_simulation(top, [requests(top.data), requests(top.instructions), answers()])
+    assert all(ours == theirs for ours, theirs in selected)
+    assert {tuple(ours) for ours, _ in selected} == {(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)}
