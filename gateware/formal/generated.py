@@ -1,9 +1,12 @@
 """Verilog for the proofs of modules that are written in Python."""
 
 import runpy
+from types import SimpleNamespace
 
-from litex.soc.interconnect import wishbone
-from migen import Module
+from litedram.common import cmd_request_rw_layout
+from litedram.phy.dfi import Interface
+from litex.soc.interconnect import stream, wishbone
+from migen import Module, Signal
 from migen.fhdl import verilog
 
 from crossbar import connect
@@ -53,7 +56,40 @@ class _Crossbar(Module):
         self.ios = add_ports(self, inputs, outputs)
 
 
-_MODULES = {"memory_crossbar": (_Crossbar, "MemoryCrossbar"), "cpu_bus": (_CpuBus, "CpuBus")}
+class _Multiplexer(Module):
+    """A multiplexer of the class `multiplexer` between three banks, a refresher and a memory, with addresses of 4 bits."""
+
+    def __init__(self, multiplexer):
+        commands = [stream.Endpoint(cmd_request_rw_layout(4, 2)) for _ in range(4)]
+        banks = [SimpleNamespace(cmd=cmd, refresh_req=Signal(), refresh_gnt=Signal()) for cmd in commands[:3]]
+        refresh = commands[3]
+        settings = SimpleNamespace(
+            timing=SimpleNamespace(tRRD=2, tFAW=10, tCCD=2, tWTR=1), phy=SimpleNamespace(cwl=1, nphases=1, read_latency=4),
+            read_time=8, write_time=8)
+        dfi, interface = Interface(4, 2, 1, 8, 1), SimpleNamespace(rdata=Signal(8), wdata=Signal(8), wdata_we=Signal())
+        self.submodules.multiplexer = multiplexer(settings, banks, SimpleNamespace(cmd=refresh), dfi, interface)
+        self.comb += (cmd.ba.eq(number) for number, cmd in enumerate(commands[:3]))
+        (phase,) = dfi.phases
+        inputs = {name: [getattr(bank.cmd, name) for bank in banks] for name in ("valid", "cas", "ras", "we", "a")} | {
+            "refresh_gnt": [bank.refresh_gnt for bank in banks],
+            "refresh_valid": [refresh.valid],
+            "refresh_last": [refresh.last],
+            "refresh_levels": [refresh.we, refresh.cas, refresh.ras],
+            "refresh_a": [refresh.a],
+        }
+        outputs = {
+            "ready": [bank.cmd.ready for bank in banks],
+            "refresh_req": [bank.refresh_req for bank in banks],
+            "refresh_ready": [refresh.ready],
+        } | {name: [getattr(phase, name)] for name in ("ras_n", "cas_n", "we_n", "bank", "address", "rddata_en", "wrdata_en")}
+        self.ios = add_ports(self, inputs, outputs)
+
+
+_MODULES = {
+    "memory_crossbar": (_Crossbar, "MemoryCrossbar"),
+    "memory_multiplexer": (_Multiplexer, "MemoryMultiplexer"),
+    "cpu_bus": (_CpuBus, "CpuBus"),
+}
 """The modules by the names of their files, each with the ports of its proof and the name of its class."""
 
 

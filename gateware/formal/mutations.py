@@ -43,6 +43,7 @@ _steps = partial(Mutation, "texture_queue.sv")
 _fog = partial(Mutation, "group_fog.sv")
 _cpu_bus = partial(Mutation, "cpu_bus.py")
 _crossbar = partial(Mutation, "memory_crossbar.py")
+_multiplexer = partial(Mutation, "memory_multiplexer.py")
 _paint = partial(Mutation, "ray_paint.sv")
 _ring = partial(Mutation, "ring_lane.sv")
 _shadow = partial(Mutation, "exit_shadow.sv")
@@ -340,6 +341,22 @@ MUTATIONS = {
         _cpu_bus("word != LINE_WORDS - 1", "word != LINE_WORDS - 2", "burst_ends"),
         _cpu_bus("(asks_data & data.we & free)", "(asks_data & data.we & ~busy)", "answered"),
         _cpu_bus("instructions.dat_r.eq(bus.dat_r)", "instructions.dat_r.eq(0)", "data_pass"),
+    ],
+    "memory_multiplexer": [
+        _multiplexer("opens & turns.turn[number] & fits", "opens & fits", "one_at_a_time"),
+        _multiplexer("refresher.cmd.a, selected(\"a\")", "selected(\"a\"), selected(\"a\")", "reaches_memory"),
+        _multiplexer("phase.wrdata_en.eq(writing)", "phase.wrdata_en.eq(reads)", "data_pass"),
+        _multiplexer("_Timer(timing.tRRD)", "_Timer(timing.tRRD - 1)", "activates_apart"),
+        _multiplexer("cmd.we | (activations.ready & four_activations.ready)", "cmd.we | activations.ready", "four_activates"),
+        _multiplexer("_Timer(timing.tCCD)", "_Timer(timing.tCCD - 1)", "columns_apart"),
+        # Fault: a change counts from the last command of the wrong direction.
+        _multiplexer("Mux(writes, after_reads.ready, after_writes.ready)", "after_writes.ready", "read_to_write"),
+        _multiplexer("Mux(writes, after_reads.ready, after_writes.ready)", "after_reads.ready", "write_to_read"),
+        _multiplexer("reduce(and_, (bank.refresh_gnt", "reduce(or_, (bank.refresh_gnt", "refresh_alone"),
+        _multiplexer("NextState(\"REFRESH\")", "NextState(\"OPEN\")", "refresh_in_time"),
+        _multiplexer("bank.refresh_req.eq(refresher.cmd.valid)", "bank.refresh_req.eq(0)", "asks_all"),
+        # Fault: the direction changes only when no command of the other direction is pending.
+        _multiplexer("~pending | left[-1]", "~pending", "given_in_time"),
     ],
     "memory_crossbar": [
         _crossbar("(turn[number] & may)", "(may)", "one_at_a_time"),

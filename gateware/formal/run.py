@@ -92,6 +92,7 @@ PROOFS = [
     Proof("read_port", "read_port_proof", 16),
     Proof("write_port", "write_port_proof", 16),
     Proof("memory_crossbar", "memory_crossbar_proof", 12, programs=("memory_crossbar",), engine=_WORDS),
+    Proof("memory_multiplexer", "memory_multiplexer_proof", 36, programs=("memory_multiplexer",)),
     Proof("cpu_bus", "cpu_bus_proof", 24, programs=("cpu_bus",)),
     Proof("skid_buffer", "buffer_proof", 24),
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),

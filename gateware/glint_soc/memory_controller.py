@@ -1,4 +1,5 @@
-"""Memory controller: LiteDRAM's controller with replacements for bank machines, refresher and crossbar, which have shorter paths."""
+"""Memory controller: LiteDRAM's controller with replacements for bank machines, multiplexer, refresher and crossbar, which have shorter
+paths."""
 
 from litedram.common import LiteDRAMInterface, burst_lengths
 from litedram.core.controller import ControllerSettings
@@ -10,6 +11,7 @@ from migen import log2_int
 from .memory_bank import MemoryBank
 from .memory_crossbar import MemoryCrossbar
 from .memory_injector import MemoryInjector
+from .memory_multiplexer import MemoryMultiplexer
 from .memory_refresh import MemoryRefresher
 
 
@@ -31,7 +33,8 @@ class _Controller(LiteXModule):
         for number, bank in enumerate(self.banks):
             self.submodules += bank
             self.comb += getattr(self.interface, f"bank{number}").connect(bank.req)
-        self.multiplexer = Multiplexer(settings, self.banks, self.refresher, self.dfi, self.interface)
+        multiplexer = MemoryMultiplexer if phy.settings.nphases == 1 else Multiplexer
+        self.multiplexer = multiplexer(settings, self.banks, self.refresher, self.dfi, self.interface)
 
 
 class MemoryController(LiteXModule):
