@@ -336,8 +336,8 @@ MUTATIONS = {
     "cpu_bus": [
         _cpu_bus("busy.eq(asks_data | asks_instructions)", "busy.eq(asks_data)", "shown"),
         _cpu_bus("& ~reads_data)", ")", "unchanged"),
-        _cpu_bus("Cat(data.adr, data.sel,", "Cat(data.adr, instructions.sel,", "written_as"),
-        _cpu_bus("Cat(instructions.adr, instructions.sel,", "Cat(instructions.adr, data.sel,", "read_whole"),
+        _cpu_bus("Cat(data.sel,", "Cat(instructions.sel,", "written_as"),
+        _cpu_bus("Cat(instructions.sel,", "Cat(data.sel,", "read_whole"),
         _cpu_bus("word != LINE_WORDS - 1", "word != LINE_WORDS - 2", "burst_ends"),
         _cpu_bus("(asks_data & data.we & free)", "(asks_data & data.we & ~busy)", "answered"),
         _cpu_bus("instructions.dat_r.eq(bus.dat_r)", "instructions.dat_r.eq(0)", "data_pass"),
@@ -367,7 +367,7 @@ MUTATIONS = {
         _crossbar("level[0] & (place == done)", "level[0]", "read_answered"),
         _crossbar("ended & done_write, self.write_latency", "ended & done_write, self.write_latency + 1", "data_asked"),
         _crossbar("Mux(ended, len(writers), 0)", "Mux(ended, 0, len(writers))", "data_pass"),
-        _crossbar("valid.eq(", "turns.holds.eq(~valid), valid.eq(", "idle_takes"),
+        _crossbar("valid.eq(selected(allowed))", "turns.holds.eq(~valid), valid.eq(selected(allowed))", "idle_takes"),
         # Fault: a port keeps its bank forever.
         _crossbar("owner & ~level[0] & ~(port.cmd.valid & stays)", "0", "taken_in_time"),
     ],
