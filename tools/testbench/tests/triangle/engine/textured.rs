@@ -1,14 +1,17 @@
 //! Frames of meshes with textures, whose descriptors come from the model.
 
+use std::f64::consts::{PI, TAU};
+
 use glint_core::appearance::Appearance;
-use glint_core::camera::Projection;
+use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting, Rgb};
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, encode_with};
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
+use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Blend, Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::setup::{Bounds, Setup};
@@ -18,7 +21,7 @@ use glint_model::{
     Stats, Subject,
 };
 use glint_testbench::raymarch::Pixel;
-use glint_vectors::meshes::{textured_layers, textured_square};
+use glint_vectors::meshes::{ahead, textured_layers, textured_square};
 use glint_vectors::{Camera, Picture};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -26,6 +29,7 @@ use rand_pcg::Pcg64Mcg;
 use super::bench::Bench;
 use super::expected::Expected;
 use super::fields::{bands, send_bands};
+use super::generated;
 
 /// A texture of random texels with all mip levels.
 fn texture(random: &mut Pcg64Mcg) -> Source {
@@ -81,6 +85,11 @@ struct Shown {
     bands: Vec<Vec<Pixel>>,
 }
 
+/// The view of a camera at `eye`, which looks along the square.
+fn looking(eye: [f64; 3]) -> View {
+    Camera::looking(eye, [0.1, 0.5, 0.0], 0.8, 0.02).rounded()
+}
+
 impl Shown {
     fn new(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
         Self::before(bytes, eye, None, None, 0.0)
@@ -88,7 +97,8 @@ impl Shown {
 
     /// As [`new`](Self::new), in orthographic projection.
     fn orthographic(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
-        Self::shown(bytes, eye, Projection::Orthographic, None, None, 0.0)
+        let view = looking(eye).with_projection(Projection::Orthographic);
+        Self::seen(bytes, view, Size::W320, None, None, 0.0)
     }
 
     /// A mesh in a field, or before a sky, in fog of a density per world unit.
@@ -99,13 +109,14 @@ impl Shown {
         sky: Option<[Rgb; 3]>,
         fog: f64,
     ) -> Self {
-        Self::shown(bytes, eye, Projection::Perspective, field, sky, fog)
+        Self::seen(bytes, looking(eye), Size::W320, field, sky, fog)
     }
 
-    fn shown(
+    /// A mesh as a view shows it, in a field, or before a sky, and in fog.
+    fn seen(
         bytes: Vec<u8>,
-        eye: [f64; 3],
-        projection: Projection,
+        view: View,
+        size: Size,
         field: Option<&FieldSubject>,
         sky: Option<[Rgb; 3]>,
         fog: f64,
@@ -115,14 +126,13 @@ impl Shown {
             shading: Shading::Flat,
             ..MeshSubject::new(mesh)
         };
-        let camera = Camera::looking(eye, [0.1, 0.5, 0.0], 0.8, 0.02);
         let frame = Frame {
             subject: match field {
                 None => Subject::Mesh(subject),
                 Some(&field) => Subject::MeshInField(subject, field),
             },
-            view: camera.rounded().with_projection(projection),
-            size: Size::W320,
+            view,
+            size,
             clear: Rgb565(0x001F),
             sky,
             fog: U4_28::from_num(fog),
@@ -159,7 +169,7 @@ impl Shown {
         let light = light.map(|&light| -> &MeshLight { Box::leak(Box::new(light)) });
         let picture = Picture::of_frame(&frame);
         let expected = Expected {
-            size: (320, 180),
+            size: size.pixels().into(),
             frame: *constants.mesh().unwrap(),
             options: Options {
                 clear: frame.clear.0,
@@ -302,6 +312,97 @@ fn frames_with_textures_before_a_sky() {
         }
     }
     assert!(firsts.iter().all(|&count| count > 2), "{firsts:?}");
+}
+
+/// A sphere with a texture around it, of noise with all mip levels.
+fn sphere(filter: Filter, format: Format) -> Vec<u8> {
+    let mut random = Pcg64Mcg::new(1);
+    let most = ((1_u32 << format.bits()) - 1) as u16;
+    let texture = encode(&Source {
+        format,
+        size_log2: [8, 8],
+        palette: (0..format.colours())
+            .map(|_| Rgb565(random.random()))
+            .collect(),
+        sampler: Sampler {
+            filter,
+            ..Sampler::default()
+        },
+        levels: (0..=8)
+            .map(|level| {
+                (0..1 << (16 - 2 * level))
+                    .map(|_| random.random_range(0..=most))
+                    .collect()
+            })
+            .collect(),
+        ..Source::default()
+    });
+    let bytes = generated("icosphere:12");
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let (mut vertices, mut triangles) = (vec![], vec![]);
+    for chunk in mesh.chunks() {
+        let first = vertices.len() as u32;
+        vertices.extend(chunk.vertices());
+        triangles.extend(chunk.triangles().map(|triangle| IndexedTriangle {
+            indices: triangle.indices.map(|index| first + u32::from(index)),
+            colour: Rgb565::WHITE,
+            normal: triangle.normal,
+            texture: 1,
+        }));
+    }
+    // The seam is behind.
+    let elements: Vec<_> = (vertices.iter())
+        .map(|vertex| {
+            let [x, y, z] = vertex.position.map(f64::from);
+            let (longitude, latitude) = (x.atan2(-y), z.atan2(x.hypot(y)));
+            let [s, t] = [longitude / TAU + 0.5, 0.5 - latitude / PI];
+            let [s, t] = [s, t].map(|c| (c * 65_536.0) as i32);
+            TextureCoordinates { s, t }.to_bytes()
+        })
+        .collect();
+    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
+    encode_with(&vertices, &triangles, &attributes, &[texture.unwrap()]).unwrap()
+}
+
+/// Checks the pixels drawn per clock of the raster pass on a sphere with a texture, by the latency of memory in clocks.
+#[test]
+fn a_sphere_with_a_texture_is_drawn_fast() {
+    for (filter, format, latency, least) in [
+        (Filter::Nearest, Format::Rgb565, 12, 2.93),
+        (Filter::Nearest, Format::Rgb565, 30, 2.76),
+        (Filter::Nearest, Format::Palette16, 30, 2.90),
+        (Filter::Bilinear, Format::Rgb565, 12, 1.76),
+        (Filter::Bilinear, Format::Rgb565, 30, 1.75),
+    ] {
+        let shown = Shown::seen(
+            sphere(filter, format),
+            ahead(0.4781, 0.5),
+            Size::W1280,
+            None,
+            None,
+            0.0,
+        );
+        let pixels = shown
+            .expected
+            .depth
+            .iter()
+            .filter(|&&code| code != 0)
+            .count();
+        let mut bench = Bench::of("texture", 9, 0.0);
+        bench.with_depth = false;
+        for read in &mut bench.reads {
+            read.latency = latency;
+        }
+        let name = format!("{filter:?}, {format:?}");
+        bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
+        let [geometry, clocks] =
+            bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
+        let rate = pixels as f64 / clocks as f64;
+        println!(
+            "{name}, latency {latency}: {pixels} pixels in {clocks} clocks, {geometry} for the geometry: {rate:.3}"
+        );
+        assert!(rate > least, "{name}: {rate}");
+    }
 }
 
 /// Blended groups take the number of clocks that docs/textures.md states, and that the emulated board assumes.
