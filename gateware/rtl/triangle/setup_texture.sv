@@ -5,8 +5,12 @@
 // the axis of the previous round. The module `setup` drives `count`, the number of the clock in a round, and `next`, which is high one
 // clock before its last clock. The coordinates must hold during a round.
 //
-//   count    0           1, 2       3        4, 5      6, 7     last
-//            selected ─▶ smallest ─▶ r ─▶ largest ─▶ range ─▶ kept for the next round ─▶ r of a vertex ─▶ share
+//   count    0, 1, 2          1, 2, 3              4      5        6        last
+//            vertex by vertex ─▶ smallest, largest ─▶ most ─▶ length ─▶ range ─▶ kept for the next round ─▶ r of a vertex ─▶ share
+//            3, 4, 5          4, 5, 6    5, 6, 7
+//            vertex by vertex ─▶ r ─────▶ fitting ────────────────────▶
+//
+// One comparator each for the smallest and the largest coordinate, and one subtractor for r, serve the three vertices in turn.
 
 `default_nettype none
 
@@ -21,24 +25,32 @@ module setup_texture (
     output logic [3:0]      range,
     output logic [3:0]      periods
 );
-    logic [2:0][31:0] places, distances, fitting, kept;
-    logic [31:0]      low, smallest, high, most;
+    logic [31:0]      place, smallest, largest, most, distance;
+    logic [2:0][31:0] fitting, kept;
     logic [14:0]      period;
+    logic [1:0]       number;
 
     assign period = smallest[31:17];
 
+    always_comb
+        unique case (count)
+            4'd0, 4'd3: number = 2'd0;
+            4'd1, 4'd4: number = 2'd1;
+            default:    number = 2'd2;
+        endcase
+
     // The range is 0 for a largest distance below 1, and increases by 1 for each further bit, and by another 1 if the
     // highest six bits are ones.
-    logic [4:0]  length, length_7;
-    logic [5:0]  head, head_7;
+    logic [4:0]  length, length_6;
+    logic [5:0]  head, head_6;
     logic        ones;
-    logic [3:0]  range_8;
+    logic [3:0]  range_7;
 
     always_comb begin
         length = '0;
         for (int i = 1; i <= 16; i++) if (most[15 + i]) length = 5'(i);
         head = 6'(most >> (5'd10 + 5'(length)));
-        ones = head_7 == '1;
+        ones = head_6 == '1;
     end
 
     // The base in units of two repeats of the texture. Clamping needs it saturated to four bits, because from 1 on the whole
@@ -52,34 +64,34 @@ module setup_texture (
     end
 
     always_ff @(posedge clk) begin
-        if (count == 4'd0) places <= coordinates;
-        low      <= $signed(places[1]) < $signed(places[0]) ? places[1] : places[0];
-        smallest <= $signed(places[2]) < $signed(low) ? places[2] : low;
-        for (int i = 0; i < 3; i++) distances[i] <= {places[i][31:17] - period, places[i][16:0]};
-        high     <= distances[1] > distances[0] ? distances[1] : distances[0];
-        most     <= distances[2] > high ? distances[2] : high;
+        place <= coordinates[number];
+        // Vertices that come again change nothing.
+        if (count == 4'd1 || $signed(place) < $signed(smallest)) smallest <= place;
+        if (count == 4'd1 || $signed(place) > $signed(largest)) largest <= place;
+        most     <= {largest[31:17] - period, largest[16:0]};
+        distance <= {place[31:17] - period, place[16:0]};
         // Distances saturate just below 63/64·2^15, the largest distance with range 15.
-        for (int i = 0; i < 3; i++)
-            fitting[i] <= distances[i][31] || distances[i][30:25] == '1 ? {7'b0111110, 25'h1FFFFFF} : distances[i];
-        length_7 <= length;
-        head_7   <= head;
-        range_8  <= length_7 == 5'd16 || length_7 == 5'd15 ? 4'd15 : 4'(length_7) + 4'(ones);
+        if (count == 4'd5 || count == 4'd6 || count == 4'd7)
+            fitting <= {distance[31] || distance[30:25] == '1 ? {7'b0111110, 25'h1FFFFFF} : distance, fitting[2:1]};
+        length_6 <= length;
+        head_6   <= head;
+        range_7  <= length_6 == 5'd16 || length_6 == 5'd15 ? 4'd15 : 4'(length_6) + 4'(ones);
     end
 
     wide_register #(.WIDTH(3 * 32 + 8)) round (
-        .clk, .next, .in({fitting, range_8, limited}), .out({kept, range, periods})
+        .clk, .next, .in({fitting, range_7, limited}), .out({kept, range, periods})
     );
 
-    logic [31:0] distance;
+    logic [31:0] of_vertex;
     logic [17:0] twice;
 
     always_comb begin
         unique case (vertex)
-            2'd0:    distance = kept[0];
-            2'd1:    distance = kept[1];
-            default: distance = kept[2];
+            2'd0:    of_vertex = kept[0];
+            2'd1:    of_vertex = kept[1];
+            default: of_vertex = kept[2];
         endcase
-        twice = 18'(({2'd0, distance} << 2) >> range) + 18'd1;
+        twice = 18'(({2'd0, of_vertex} << 2) >> range) + 18'd1;
     end
 
     always_ff @(posedge clk) share <= twice[17:1];
