@@ -60,7 +60,7 @@ package texture_pkg;
     // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
     // Clocks in texture_filter from a step to its light, and to its colours.
-    localparam int unsigned LIGHT  = 6;
+    localparam int unsigned LIGHT  = 5;
     localparam int unsigned FILTER = 9;
     // Most steps that wait for their texels in the sampler's queue.
     localparam int unsigned STEPS  = 64;

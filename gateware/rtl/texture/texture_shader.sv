@@ -199,7 +199,7 @@ module texture_shader #(
     texture_filter texture_filter (
         .clk, .rst, .in_valid(step_valid), .in_mask(step_mask), .in_half(step_half), .in_last(step_last), .in_bilinear(step_bilinear),
         .in_opaque(step_opaque), .in_texels(step_texels), .in_neighbours(step_neighbours), .in_weights(step_weights),
-        .lights({4{light}}),
+        .light,
         .out_valid(lit_valid), .out_mask(lit_mask), .out_half(lit_half), .out_last(lit_last), .out_opaque(lit_opaque),
         .out_colours(lit_colours)
     );

@@ -9,7 +9,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 /// Number of clocks from a step to its light, as in `texture_pkg`.
-const LIGHT: usize = 6;
+const LIGHT: usize = 5;
 /// Number of clocks from a step to its colours, as in `texture_pkg`.
 const LATENCY: usize = 9;
 /// Full light of each channel.
@@ -37,7 +37,7 @@ struct Step {
     half: bool,
     last: bool,
     opaque: u8,
-    lights: [[u8; 3]; 4],
+    light: [u8; 3],
 }
 
 impl Step {
@@ -62,14 +62,14 @@ impl Step {
                     average(neighbours, weights[lane % 2].map(u32::from))
                 }
             };
-            (self.mask >> lane & 1 == 1).then(|| lit(texel, self.lights[lane]).0)
+            (self.mask >> lane & 1 == 1).then(|| lit(texel, self.light).0)
         })
     }
 }
 
 struct Bench {
     module: Module,
-    lights: Port,
+    light: Port,
     inputs: [Port; 9],
     outputs: [Port; 6],
     /// Steps of the last clocks, newest first.
@@ -81,7 +81,7 @@ impl Bench {
     fn new(seed: u32) -> Self {
         let module = Module::new("texture_filter", seed);
         Self {
-            lights: module.port("lights"),
+            light: module.port("light"),
             inputs: [
                 "valid",
                 "mask",
@@ -131,8 +131,7 @@ impl Bench {
             }
         }
         if let Some(step) = self.inside[LIGHT] {
-            let lights = step.lights.as_flattened().iter().copied();
-            module.set(self.lights, Bits::pack(8, lights));
+            module.set(self.light, Bits::pack(8, step.light));
         }
         module.settle();
         let [valid, mask, half, last, opaque, colours] = self.outputs;
@@ -167,7 +166,7 @@ fn colour([r, g, b]: [usize; 3]) -> u16 {
 }
 
 /// A step with all its lanes covered.
-fn step(texels: Texels, lights: [[u8; 3]; 4]) -> Step {
+fn step(texels: Texels, light: [u8; 3]) -> Step {
     let mask = match texels {
         Texels::Nearest(_) => 0b1111,
         Texels::Bilinear { upper, .. } => 0b11 << (2 * u32::from(upper)),
@@ -178,30 +177,25 @@ fn step(texels: Texels, lights: [[u8; 3]; 4]) -> Step {
         half: false,
         last: false,
         opaque: mask,
-        lights,
+        light,
     }
 }
 
-/// Light of all lanes: over all values of `number`, each channel takes all its values.
-fn lights(number: usize) -> [[u8; 3]; 4] {
-    [0, 71, 0, 71].map(|lane| {
-        FULL.map(|full| {
-            let count = usize::from(full) + 1;
-            ((number + lane) % count) as u8
-        })
-    })
+/// Light: over all values of `number`, each channel takes all its values.
+fn light(number: usize) -> [u8; 3] {
+    FULL.map(|full| (number % (usize::from(full) + 1)) as u8)
 }
 
 #[test]
 fn nearest_texels_with_every_light() {
     let mut bench = Bench::new(1);
-    for light in 0..=252 {
+    for number in 0..=252 {
         for value in 0..64 {
             let texels = [0, 19, 38, 57].map(|lane: usize| {
                 let value = value + lane;
                 colour([value % 32, value % 64, (value + 5) % 32])
             });
-            bench.clock(Some(step(Texels::Nearest(texels), lights(light))));
+            bench.clock(Some(step(Texels::Nearest(texels), light(number))));
         }
     }
     bench.drain();
@@ -211,7 +205,7 @@ fn nearest_texels_with_every_light() {
 #[test]
 fn averages_of_every_value_with_every_light() {
     let mut bench = Bench::new(2);
-    for light in 0..=252 {
+    for number in 0..=252 {
         for value in 0..64 {
             // The weights of the two pixels together are all even weights, which give all values of
             // red and blue.
@@ -221,11 +215,11 @@ fn averages_of_every_value_with_every_light() {
                     [at(value), at(value + 1), 0, 0xFFFF]
                 };
                 let texels = Texels::Bilinear {
-                    upper: (value + light) % 2 == 1,
+                    upper: (value + number) % 2 == 1,
                     neighbours: [neighbours(value), neighbours(value % 32)],
                     weights: [[weight, 0], [weight + 2, 0]],
                 };
-                bench.clock(Some(step(texels, lights(light))));
+                bench.clock(Some(step(texels, light(number))));
             }
         }
     }
@@ -253,12 +247,12 @@ fn every_weight_with_random_and_extreme_texels() {
                 neighbours,
                 weights: [weights, other].map(|weights| [weights & 15, weights >> 4]),
             };
-            let lights = if round % 2 == 0 {
-                [FULL; 4]
+            let light = if round % 2 == 0 {
+                FULL
             } else {
-                [(); 4].map(|()| FULL.map(|full| random.random_range(0..=full)))
+                FULL.map(|full| random.random_range(0..=full))
             };
-            bench.clock(Some(step(texels, lights)));
+            bench.clock(Some(step(texels, light)));
         }
     }
     bench.drain();
@@ -283,7 +277,7 @@ fn steps_keep_their_flags() {
             } else {
                 Texels::Nearest(random.random())
             };
-            let mut step = step(texels, [FULL; 4]);
+            let mut step = step(texels, FULL);
             step.mask = match (is_bilinear, upper) {
                 (false, _) => random.random_range(1..16),
                 (true, false) => random.random_range(1..4),
