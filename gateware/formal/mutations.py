@@ -331,6 +331,7 @@ MUTATIONS = {
         _steps("data_ready && data_valid;", "data_ready;", "word_taken"),
         _steps("count == '0;", "count <= pointer_t'(1);", "idle_when_empty"),
         _steps("reads      <= next_valid && next_missed == '0;", "reads      <= next_valid && next_missed == '0 && !reads;", "goes_in_time"),
+        _steps("!data_ready && out_room", "!data_ready", "waits_for_room"),
         _steps("room       <= count <= MOST;", "room       <= count == MOST;", "taken_in_time"),
     ],
     "cpu_bus": [

@@ -1,7 +1,8 @@
 // Proof of the queue of texture steps, for steps with any misses, at any distance, and words of memory at any time. Steps are numbered.
 // Each step is read once, in order, with its own fields and places. Each block that the step missed is filled with two words after the
-// previous step is read and before this step is read, so no block is replaced before all earlier steps have read it. Every wait is
-// bounded. To keep the proof short, the queue holds fewer steps than in the sampler.
+// previous step is read and before this step is read, so no block is replaced before all earlier steps have read it. A step leaves only
+// while there is room, or after it has been filled. Every wait is bounded. To keep the proof short, the queue holds fewer steps than in the
+// sampler.
 
 `default_nettype none
 
@@ -9,7 +10,8 @@ module texture_queue_proof (
     input wire       clk,
     input wire       in_valid,
     input wire [3:0] in_missed,
-    input wire       data_valid
+    input wire       data_valid,
+    input wire       out_room
 );
     localparam int unsigned BITS = 3;
 
@@ -28,6 +30,8 @@ module texture_queue_proof (
     logic [3:0]           done = '0, left, lowest;
     logic                 half = 1'b0;
     logic [1:0]           waits = '0, refused = '0;
+    // A clock ago: a step may leave.
+    logic                 may = 1'b0;
 
     assign sent = in_valid && room && !rst;
 
@@ -38,8 +42,8 @@ module texture_queue_proof (
 
     texture_queue #(.STEPS(4)) dut (
         .clk, .rst, .idle, .room, .step_valid(sent), .in_step(step), .places_valid(sends[1]), .in_places(28'(numbers[1])),
-        .missed_valid(sends[2]), .in_missed(missed[numbers[2]]), .data_valid, .data_ready, .fills, .fill_class, .fill_second, .reads,
-        .head_step(head), .head_places
+        .missed_valid(sends[2]), .in_missed(missed[numbers[2]]), .data_valid, .data_ready, .fills, .fill_class, .fill_second, .out_room,
+        .reads, .head_step(head), .head_places
     );
 
     assign left    = missed[went] & ~done;
@@ -56,7 +60,8 @@ module texture_queue_proof (
         half    <= half ^ fills;
         if (fills && half) done <= done | lowest;
         if (reads) done <= '0;
-        waits   <= arrived != went && !reads && !data_ready ? waits + 1'b1 : '0;
+        waits   <= arrived != went && !reads && !data_ready && out_room ? waits + 1'b1 : '0;
+        may     <= data_ready || out_room;
         refused <= !room && kept == went ? refused + 1'b1 : '0;
 
         nothing_made_up: assert (!(fills || reads) || arrived != went);
@@ -66,6 +71,7 @@ module texture_queue_proof (
         read_complete:   assert (!reads || left == '0 && !half && !fills);
         idle_when_empty: assert (idle == (kept == went));
         never_too_full:  assert (kept - went <= BITS'(4));
+        waits_for_room:  assert (!reads || may);
         goes_in_time:    assert (waits < 2'd2);
         taken_in_time:   assert (refused < 2'd2);
 

@@ -6,20 +6,22 @@
 //                                                                            └───────┘
 //
 // The first pixel that waits is always in the step: so is every other one whose slots are all in the column and row of the first slot with
-// their parity. `items_room` and the flight of items are those of pipeline_fifo; a step goes in each clock with `step_room` while there
-// are items. Latency 2 clocks, throughput a step a clock.
+// their parity. A step goes in each clock with `step_room` while there are items. Latency 2 clocks, throughput a step a clock.
+//
+// Items come from a pipeline that cannot be stopped. As in credit_fifo, `sent` is high for a clock for each item that enters the pipeline,
+// and the pipeline takes at most 28 clocks if it is not to wait for credits. The first of two items in neighbouring clocks enters while
+// `credit` is high, and the second one in any case. `busy` is high while an item is in the pipeline or here.
 
 `default_nettype none
 
-module texture_choice #(
-    parameter int unsigned FLIGHT = 5
-) (
+module texture_choice (
     input  wire                    clk,
     input  wire                    rst,
     input  wire  [1:0]             format,
     input  wire                    bilinear,
     output logic                   busy,
-    output logic                   items_room,
+    output logic                   credit,
+    input  wire                    sent,
     input  wire                    in_valid,
     input  texture_pkg::item_t     in_item,
     input  wire                    step_room,
@@ -29,7 +31,7 @@ module texture_choice #(
     output logic [1:0][3:0][7:0]   out_places,
     output logic [3:0]             out_level
 );
-    localparam int unsigned ITEMS = 16;
+    localparam int unsigned ITEMS = 32;
 
     // A block has four or eight columns, and four or eight rows.
     logic [1:0]      wide;
@@ -62,13 +64,12 @@ module texture_choice #(
     // What a choice needs is in the FIFO's output register; everything else is read from LUT memory.
     localparam int unsigned FITS_BITS = 4 + 2 * (4 + 6 + 3);
 
-    logic               ends, item_valid, items_idle, fits_room, fits_valid, more;
+    logic               ends, item_valid, items_room, fits_room, fits_valid, more;
     logic [3:0]         mask, waiting, rest, left, served;
     texture_pkg::item_t item;
 
-    pipeline_fifo #(.WIDTH($bits(in_item)), .DEPTH(ITEMS), .FLIGHT(FLIGHT), .DIRECT(1'b1)) items (
-        .clk, .rst, .idle(items_idle), .room(items_room), .in_valid, .in_data(in_item),
-        .out_valid(item_valid), .out_ready(ends), .out_data(item)
+    fifo #(.WIDTH($bits(in_item)), .DEPTH(ITEMS), .DIRECT(1'b1)) items (
+        .clk, .rst, .in_valid, .in_ready(items_room), .in_data(in_item), .out_valid(item_valid), .out_ready(ends), .out_data(item)
     );
 
     fifo #(.WIDTH(FITS_BITS), .DEPTH(ITEMS)) fits (
@@ -77,7 +78,21 @@ module texture_choice #(
         .out_valid(fits_valid), .out_ready(ends), .out_data({mask, item_parity, item_differ, item_same})
     );
 
-    assign busy      = !items_idle;
+    // Free places for items, of which a quad may take two.
+    typedef logic [$clog2(ITEMS + 1)-1:0] count_t;
+    count_t credits;
+
+    assign credit = credits > count_t'(1);
+
+    always_ff @(posedge clk) begin
+        credits <= credits - count_t'(sent) + count_t'(ends);
+        busy    <= sent || credits != count_t'(ITEMS);
+        if (rst) begin
+            credits <= count_t'(ITEMS);
+            busy    <= 1'b0;
+        end
+    end
+
     assign out_valid = fits_valid && step_room;
     assign waiting   = more ? rest : mask;
     assign left      = waiting & ~served;
@@ -134,7 +149,7 @@ module texture_choice #(
         end
     end
 
-    wire _unused = &{1'b0, fits_room, item_valid, item.mask, same};
+    wire _unused = &{1'b0, items_room, fits_room, item_valid, item.mask, same};
 endmodule
 
 `default_nettype wire

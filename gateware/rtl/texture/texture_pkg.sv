@@ -20,7 +20,7 @@ package texture_pkg;
         logic        below;    // below 0
         logic        past;     // at or above 1
         logic        odd;      // the number of the repeat is odd
-        logic [17:0] fraction; // of a repeat, u0.18, rounded down
+        logic [14:0] fraction; // of a repeat, u0.15, rounded down
     } position_t;
 
     // Four columns and four rows of texels that a pair or a quad of pixels needs, each called a slot. Of a nearest texture, slot i is the

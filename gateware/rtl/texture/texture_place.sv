@@ -34,10 +34,8 @@ module texture_place (
     output logic             out_half,
     output logic             out_last,
     output logic [3:0]       out_level,
-    output logic [1:0][3:0][20:0] out_positions // position_t by axis and lane
+    output logic [1:0][3:0][17:0] out_positions // position_t by axis and lane
 );
-    // The constant that replaces the depth with its half code.
-    localparam logic [31:0] WEIGHT = 32'h8000_0000;
     localparam int unsigned LATENCY = 24;
 
     // Lanes: the accumulators at the quad's first pixel, then at the third one, then at the second and fourth ones.
@@ -47,15 +45,12 @@ module texture_place (
 
     for (genvar k = 0; k < 3; k++) begin : planes
         records_pkg::plane_t plane;
-        logic [31:0]         start, step_x;
 
-        assign plane  = in_planes[k];
-        assign start  = k == 0 && in_linear ? WEIGHT : plane.start;
-        assign step_x = k == 0 && in_linear ? '0 : plane.step_x;
+        assign plane = in_planes[k];
 
         always_ff @(posedge clk) begin
-            start_1[k] <= start + (in_half ? step_x << 2 : '0);
-            step_1[k]  <= step_x;
+            start_1[k] <= plane.start + (in_half ? plane.step_x << 2 : '0);
+            step_1[k]  <= plane.step_x;
             two[k][0]  <= start_1[k];
             two[k][1]  <= start_1[k] + (step_1[k] << 1);
             step_2[k]  <= step_1[k];
@@ -73,7 +68,7 @@ module texture_place (
     logic [3:0]       mask_5, mask_12;
     logic [1:0]       lane_5, lane_12;
     logic [1:0][3:0]  range_5, range_20, periods_14;
-    logic             first_23;
+    logic             first_23, linear_3, linear_13;
 
     always_ff @(posedge clk) begin
         valid <= {valid[LATENCY-1:1], in_valid};
@@ -87,6 +82,8 @@ module texture_place (
     delay #(.WIDTH(8), .CLOCKS(5)) range_delay (.clk, .enable(1'b1), .in(in_range), .out(range_5));
     delay #(.WIDTH(8), .CLOCKS(15)) range_delay_20 (.clk, .enable(1'b1), .in(range_5), .out(range_20));
     delay #(.WIDTH(8), .CLOCKS(14)) periods_delay (.clk, .enable(1'b1), .in(in_periods), .out(periods_14));
+    delay #(.WIDTH(1), .CLOCKS(3)) linear_delay (.clk, .enable(1'b1), .in(in_linear), .out(linear_3));
+    delay #(.WIDTH(1), .CLOCKS(10)) linear_delay_13 (.clk, .enable(1'b1), .in(linear_3), .out(linear_13));
     delay #(.WIDTH(1), .CLOCKS(LATENCY - 1)) first_delay (.clk, .enable(1'b1), .in(in_first), .out(first_23));
 
     assign out_valid = valid[LATENCY];
@@ -128,13 +125,14 @@ module texture_place (
         logic signed [31:0] inverse;
 
         assign depth = values[0][lane];
-        assign fours = depth[31:28] != '0 ? 2'd0 : depth[27:24] != '0 ? 2'd1 : 2'd2;
+        assign fours = linear_3 || depth[31:28] != '0 ? 2'd0 : depth[27:24] != '0 ? 2'd1 : 2'd2;
         assign ones  = by_4[21] ? 2'd0 : by_4[20] ? 2'd1 : by_4[19] ? 2'd2 : 2'd3;
 
         always_ff @(posedge clk) begin
             fours_4 <= fours;
             case (fours)
-                2'd0:    by_4 <= depth[31:10];
+                // The constant that replaces the depth is 2^31.
+                2'd0:    by_4 <= linear_3 ? {1'b1, 21'd0} : depth[31:10];
                 2'd1:    by_4 <= depth[27:6];
                 default: by_4 <= depth[23:2];
             endcase
@@ -194,8 +192,8 @@ module texture_place (
         wire _unused = &{1'b0, depth[1:0], inverse[31:28], inverse[10:0]};
     end
 
-    // Positions. A share times 2^shift has 41 fraction bits; five integer bits and 18 fraction bits stay, and whether higher bits are set.
-    logic [1:0][3:0][20:0] positions;
+    // Positions. A share times 2^shift has 41 fraction bits; five integer bits and 15 fraction bits stay, and whether higher bits are set.
+    logic [1:0][3:0][17:0] positions;
 
     for (genvar axis = 0; axis < 2; axis++) begin : position_axes
         for (genvar lane = 0; lane < 4; lane++) begin : position_lanes
@@ -203,9 +201,9 @@ module texture_place (
             logic [4:0]  shift;
             logic [2:0]  shift_13;
             logic        shift_14, beyond_13, beyond_14, beyond;
-            logic [29:0] by_8;
-            logic [23:0] by_2;
-            logic [22:0] repeats;
+            logic [26:0] by_8;
+            logic [20:0] by_2;
+            logic [19:0] repeats;
             logic signed [6:0] whole;
             texture_pkg::position_t position;
 
@@ -214,57 +212,57 @@ module texture_place (
 
             always_ff @(posedge clk) begin
                 unique case (shift[4:3])
-                    2'd0: {beyond_13, by_8} <= {1'b0, 4'd0, share[41:16]};
-                    2'd1: {beyond_13, by_8} <= {share[41:38] != '0, share[37:8]};
-                    2'd2: {beyond_13, by_8} <= {share[41:30] != '0, share[29:0]};
-                    2'd3: {beyond_13, by_8} <= {share[41:22] != '0, share[21:0], 8'd0};
+                    2'd0: {beyond_13, by_8} <= {1'b0, 4'd0, share[41:19]};
+                    2'd1: {beyond_13, by_8} <= {share[41:38] != '0, share[37:11]};
+                    2'd2: {beyond_13, by_8} <= {share[41:30] != '0, share[29:3]};
+                    2'd3: {beyond_13, by_8} <= {share[41:22] != '0, share[21:0], 5'd0};
                 endcase
                 shift_13 <= shift[2:0];
 
                 unique case (shift_13[2:1])
-                    2'd0: {beyond_14, by_2} <= {beyond_13, by_8[29:6]};
-                    2'd1: {beyond_14, by_2} <= {beyond_13 || by_8[29:28] != '0, by_8[27:4]};
-                    2'd2: {beyond_14, by_2} <= {beyond_13 || by_8[29:26] != '0, by_8[25:2]};
-                    2'd3: {beyond_14, by_2} <= {beyond_13 || by_8[29:24] != '0, by_8[23:0]};
+                    2'd0: {beyond_14, by_2} <= {beyond_13, by_8[26:6]};
+                    2'd1: {beyond_14, by_2} <= {beyond_13 || by_8[26:25] != '0, by_8[24:4]};
+                    2'd2: {beyond_14, by_2} <= {beyond_13 || by_8[26:23] != '0, by_8[22:2]};
+                    2'd3: {beyond_14, by_2} <= {beyond_13 || by_8[26:21] != '0, by_8[20:0]};
                 endcase
                 shift_14 <= shift_13[0];
             end
 
-            assign repeats = shift_14 ? by_2[22:0] : by_2[23:1];
-            assign beyond  = beyond_14 || shift_14 && by_2[23];
-            assign whole   = 7'(repeats[22:18]) + {{2{periods_14[axis][3]}}, periods_14[axis], 1'b0};
+            assign repeats = shift_14 ? by_2[19:0] : by_2[20:1];
+            assign beyond  = beyond_14 || shift_14 && by_2[20];
+            assign whole   = 7'(repeats[19:15]) + {{2{periods_14[axis][3]}}, periods_14[axis], 1'b0};
 
             assign position.below    = !beyond && whole[6];
             assign position.past     = beyond || !whole[6] && whole != '0;
-            assign position.odd      = repeats[18];
-            assign position.fraction = repeats[17:0];
+            assign position.odd      = repeats[15];
+            assign position.fraction = repeats[14:0];
 
             always_ff @(posedge clk) positions[axis][lane] <= position;
         end
     end
 
-    wide_delay #(.WIDTH(8 * 21), .CLOCKS(LATENCY - 15)) positions_delay (.clk, .zero(1'b0), .in(positions), .out(out_positions));
+    wide_delay #(.WIDTH(8 * 18), .CLOCKS(LATENCY - 15)) positions_delay (.clk, .zero(1'b0), .in(positions), .out(out_positions));
 
     // The mip level of the first pixel. The changes of a coordinate for a pixel to the right and down are G - σ·Gd, with the gradients G of
     // the coordinate and Gd of the depth.
-    logic [5:0][23:0] gradients, gradients_14;
-    logic [1:0][23:0] depth_gradients;
+    logic [5:0][23:0] gradients;
+    logic [1:0][23:0] depth_gradients; // at clock 14
+    logic [3:0][23:0] gradients_16;    // of s and t
 
     for (genvar k = 0; k < 3; k++) begin : gradients_of
         records_pkg::plane_t plane;
 
         assign plane                = in_planes[k];
-        assign gradients[2 * k]     = k == 0 && in_linear ? '0 : plane.step_x[31:8];
-        assign gradients[2 * k + 1] = k == 0 && in_linear ? '0 : plane.step_y[31:8];
+        assign gradients[2 * k]     = plane.step_x[31:8];
+        assign gradients[2 * k + 1] = plane.step_y[31:8];
 
         wire _unused = &{1'b0, plane};
     end
 
-    wide_delay #(.WIDTH(6 * 24), .CLOCKS(14)) gradients_delay (.clk, .zero(1'b0), .in(gradients), .out(gradients_14));
+    wide_delay #(.WIDTH(2 * 24), .CLOCKS(14)) depth_delay_14 (.clk, .zero(linear_13), .in(gradients[1:0]), .out(depth_gradients));
+    wide_delay #(.WIDTH(4 * 24), .CLOCKS(16)) gradients_delay (.clk, .zero(1'b0), .in(gradients[5:2]), .out(gradients_16));
 
-    assign depth_gradients = gradients_14[1:0];
-
-    logic [1:0][1:0][28:0] sizes;
+    logic [1:0][1:0][27:0] sizes;
     logic [1:0][8:0]       magnitudes;
 
     for (genvar axis = 0; axis < 2; axis++) begin : changes
@@ -274,7 +272,7 @@ module texture_place (
         logic [1:0]  ones, zeros_13;
         logic [19:0] by_4;
         logic [16:0] sigma;
-        logic [28:0] most;
+        logic [27:0] most;
         logic [2:0]  nibble, nibble_20;
         logic [6:0]  head, head_20;
         logic [1:0]  zeros_of_head;
@@ -304,19 +302,18 @@ module texture_place (
         end
 
         for (genvar direction = 0; direction < 2; direction++) begin : directions
-            logic [23:0]        gradient_15, gradient_16;
-            logic signed [42:0] change;
+            logic [23:0]        gradient_16;
+            // As wide as the product, so that the DSP48's adder has its sign bit. The sum fits.
+            logic signed [41:0] change;
 
-            always_ff @(posedge clk) begin
-                gradient_15 <= gradients_14[2 + 2 * axis + direction];
-                gradient_16 <= gradient_15;
-                sizes[axis][direction] <= change[41:13] ^ {29{change[42]}};
-            end
+            assign gradient_16 = gradients_16[2 * axis + direction];
+
+            always_ff @(posedge clk) sizes[axis][direction] <= change[40:13] ^ {28{change[41]}};
 
             // -(σ + 1) is the complement of σ.
-            multiply_add #(.BITS(43)) change_of_axis (
+            multiply_add #(.BITS(42)) change_of_axis (
                 .clk, .enable(1'b1), .a(25'($signed(depth_gradients[direction]))), .b({1'b1, ~sigma}),
-                .c({{2{gradient_16[23]}}, gradient_16, 17'd0}), .p(change)
+                .c({gradient_16[23], gradient_16, 17'd0}), .p(change)
             );
 
             wire _unused = &{1'b0, change[12:0]};
@@ -325,7 +322,7 @@ module texture_place (
         // The leading bit and three bits below it, in two steps.
         always_comb begin
             nibble = '0;
-            for (int i = 1; i < 8; i++) if (4'({3'd0, most} >> (4 * i)) != '0) nibble = 3'(i);
+            for (int i = 1; i < 8; i++) if (4'({4'd0, most} >> (4 * i)) != '0) nibble = 3'(i);
             head = 7'({most, 3'd0} >> {nibble, 2'd0});
             zeros_of_head = head_20[6] ? 2'd0 : head_20[5] ? 2'd1 : head_20[4] ? 2'd2 : 2'd3;
             head_part = 3'(head_20 >> (2'd3 - zeros_of_head));

@@ -7,7 +7,8 @@
 //
 // The parts of a step arrive at different times, each in the order of the steps; it is in the queue when its misses have come. `room` is
 // high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks, throughput a step a clock.
-// Outputs: in a clock with `fills` or `reads`, the step at the head; the output is never stopped.
+// Outputs: in a clock with `fills` or `reads`, the step at the head. After `out_room` has fallen, at most two steps leave: one at once, and
+// the one that is being filled.
 
 `default_nettype none
 
@@ -30,6 +31,7 @@ module texture_queue #(
     output logic                 fills,
     output logic [1:0]           fill_class,
     output logic                 fill_second, // the second word of the block
+    input  wire                  out_room,
     output logic                 reads,
     output texture_pkg::step_t   head_step,
     output logic [3:0][6:0]      head_places
@@ -75,7 +77,7 @@ module texture_queue #(
         .out_valid(next_valid), .out_ready(next_taken), .out_data(next_missed)
     );
 
-    assign next_taken = !data_ready;
+    assign next_taken = !data_ready && out_room;
     assign fills      = data_ready && data_valid;
     assign ends       = fills && fill_second && (left & (left - 4'd1)) == '0;
     assign fill_class = left[0] ? 2'd0 : left[1] ? 2'd1 : left[2] ? 2'd2 : 2'd3;

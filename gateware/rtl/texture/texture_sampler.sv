@@ -11,10 +11,12 @@
 // in the order of the quads. The colours of memory are read as they are; `sampler` may have any value, and no value stops the unit.
 //
 // Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for some 60 steps
-// ahead. Latency 18 clocks without misses. The quads are a valid/ready stream. Steps have no ready: what follows takes a step in every
-// clock. `idle` is high while no quad is inside; `sampler` and `number`, the texture's, hold while it is low. `forget` (one clock while
-// `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a texture's bytes have changed, or another
-// texture has got its number. The palette may be written while `idle` is high, and the addresses of the levels too.
+// ahead. Latency 18 clocks without misses. Quads come from a pipeline that cannot be stopped: `sent` is high for a clock for each item of
+// texture_wrap that enters it, as texture_choice explains. Steps have no ready: they leave the queue while `out_room` is high, and at most
+// nine come after it has fallen. `idle` is high while no quad is in the pipeline or inside; `sampler` and `number`, the texture's, hold
+// while it is low. `forget` (one clock while `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a
+// texture's bytes have changed, or another texture has got its number. The palette may be written while `idle` is high, and the addresses
+// of the levels too.
 //
 // Memory: a client of read_port.
 
@@ -37,13 +39,14 @@ module texture_sampler #(
     input  wire  [7:0]                   palette_index,
     input  wire  [15:0]                  palette_colour,
     // Quads: the covered pixels, never none; whether the quad is the upper half of its group of eight pixels; the last quad of its group.
+    output logic                         credit,
+    input  wire                          sent,
     input  wire                          in_valid,
-    output logic                         in_ready,
     input  wire  [3:0]                   in_mask,
     input  wire                          in_half,
     input  wire                          in_last,
     input  wire  [3:0]                   in_level,
-    input  wire  [1:0][3:0][20:0]        in_positions, // axis, lane: a texture_pkg::position_t
+    input  wire  [1:0][3:0][17:0]        in_positions, // axis, lane: a texture_pkg::position_t
     output logic                         ask_valid,
     input  wire                          ask_ready,
     output logic [ADDRESS_BITS-1:0]      ask_addr,
@@ -51,6 +54,7 @@ module texture_sampler #(
     output logic                         data_ready,
     input  wire  [127:0]                 data,
     // Steps.
+    input  wire                          out_room,
     output logic                         out_valid,
     output logic [3:0]                   out_mask,     // lanes of the quad that are in the step
     output logic                         out_half,
@@ -65,19 +69,19 @@ module texture_sampler #(
     // Clocks from the head of the queue to a step.
     localparam int unsigned LATENCY = 7;
 
-    logic wrap_busy, choice_busy, queue_idle, tags_busy, sweeping, passing;
+    logic choice_busy, queue_idle, tags_busy, sweeping, passing;
 
     always_ff @(posedge clk) begin
-        idle <= !(in_valid && in_ready) && !wrap_busy && !choice_busy && !tags_busy && queue_idle && !passing;
+        idle <= !sent && !choice_busy && !tags_busy && queue_idle && !passing;
         if (rst) idle <= 1'b1;
     end
 
-    logic               items_room, item_valid;
+    logic               item_valid;
     texture_pkg::item_t item;
 
     texture_wrap wrapping (
-        .clk, .rst, .side_log2(sampler.side_log2), .wrap(sampler.wrap), .bilinear(sampler.bilinear), .room(items_room), .busy(wrap_busy),
-        .in_valid, .in_ready, .in_mask, .in_half, .in_last, .in_level, .in_positions, .out_valid(item_valid), .out_item(item)
+        .clk, .rst, .side_log2(sampler.side_log2), .wrap(sampler.wrap), .bilinear(sampler.bilinear),
+        .in_valid, .in_mask, .in_half, .in_last, .in_level, .in_positions, .out_valid(item_valid), .out_item(item)
     );
 
     logic                 queue_room, step_room, step_valid;
@@ -89,7 +93,7 @@ module texture_sampler #(
     assign step_room = queue_room && !sweeping;
 
     texture_choice choice (
-        .clk, .rst, .format(sampler.format), .bilinear(sampler.bilinear), .busy(choice_busy), .items_room, .in_valid(item_valid),
+        .clk, .rst, .format(sampler.format), .bilinear(sampler.bilinear), .busy(choice_busy), .credit, .sent, .in_valid(item_valid),
         .in_item(item), .step_room, .out_valid(step_valid), .out_step(step), .out_places(step_places), .out_level(step_level)
     );
 
@@ -117,7 +121,8 @@ module texture_sampler #(
 
     texture_queue queue (
         .clk, .rst, .idle(queue_idle), .room(queue_room), .step_valid, .in_step(step), .places_valid, .in_places(places), .missed_valid,
-        .in_missed(missed), .data_valid, .data_ready, .fills, .fill_class, .fill_second, .reads, .head_step(head), .head_places
+        .in_missed(missed), .data_valid, .data_ready, .fills, .fill_class, .fill_second, .out_room, .reads, .head_step(head),
+        .head_places
     );
 
     logic [1:0][3:0][15:0] values;

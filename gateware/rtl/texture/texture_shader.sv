@@ -2,9 +2,9 @@
 //
 //            ┌─ pipeline_fifo: groups ─────────────────────────────────────────────────────────────────────────────┐
 //   group ──▶┤                                                                                                     ├──▶ group, colours
-//            └─ fifo: planes ─▶ quads ─▶ texture_place ─▶ credit_fifo ─▶ texture_sampler ─▶ texture_filter ─▶ fifo ─┘
-//                                 │                                        ▲
-//                                 └─▶ texture_loader ── texture, palette ──┘
+//            └─ fifo: planes ─▶ quads ─▶ texture_place ─▶ texture_sampler ─▶ texture_filter ─▶ texture_collect ─────┘
+//                                 │                         ▲
+//                                 └─▶ texture_loader ───────┘ texture, palette
 //
 // A group without a texture takes one clock. A group with a texture takes one clock for each half with a covered pixel (a quad of four
 // pixels), with bilinear filtering one clock for each two pixels; more if its texels are in more than 2x2 blocks of the texture. A group
@@ -53,7 +53,7 @@ module texture_shader #(
     output logic [3:0]             out_blend   // rule by which the group is blended with the picture, see texture_blend; 0 for none
 );
     // Groups that wait for their colours.
-    logic             is_textured, group_valid, group_textured, group_gone, colours_valid, groups_room, waiting_idle, waiting_room;
+    logic             is_textured, group_valid, group_textured, group_gone, colours_valid, colours_room, groups_room, waiting_idle, waiting_room;
     logic [15:0]      group_colour;
     logic [7:0]       opaque;
     logic [7:0][15:0] colours;
@@ -74,18 +74,32 @@ module texture_shader #(
     assign out_blend   = group_textured ? blend : '0;
 
     // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than there may be inside.
-    localparam int unsigned WAITING_BITS = 8 + $bits(in_depth) + $bits(in_texture);
+    // The lowest bits of a plane's step down have no effect.
+    localparam int unsigned PLANE_BITS   = 88;
+    localparam int unsigned OTHER_BITS   = $bits(in_texture) - 2 * 96;
+    localparam int unsigned WAITING_BITS = 8 + 3 * PLANE_BITS + OTHER_BITS;
 
-    logic                         waiting_valid, waiting_gone;
-    logic [7:0]                   mask;
-    records_pkg::plane_t          depth;
-    records_pkg::texture_planes_t texture;
+    logic                           waiting_valid, waiting_gone;
+    logic [7:0]                     mask;
+    logic [2:0][95:0]               in_planes, planes;
+    logic [2:0][PLANE_BITS-1:0]     in_short, short;
+    records_pkg::texture_planes_t   texture;
 
-    assign room = groups_room && waiting_room;
+    assign room      = groups_room && waiting_room;
+    assign in_planes = {in_texture.planes, in_depth};
+
+    for (genvar k = 0; k < 3; k++) begin : shortened
+        assign in_short[k] = {in_planes[k][95:72], in_planes[k][63:0]};
+        assign planes[k]   = {short[k][87:64], 8'd0, short[k][63:0]};
+    end
+
+    assign texture.planes = planes[2:1];
 
     pipeline_fifo #(.WIDTH(WAITING_BITS), .DEPTH(32), .FLIGHT(FLIGHT)) waiting (
-        .clk, .rst, .idle(waiting_idle), .room(waiting_room), .in_valid(in_valid && is_textured), .in_data({in_mask, in_depth, in_texture}),
-        .out_valid(waiting_valid), .out_ready(waiting_gone), .out_data({mask, depth, texture})
+        .clk, .rst, .idle(waiting_idle), .room(waiting_room), .in_valid(in_valid && is_textured),
+        .in_data({in_mask, in_short, in_texture.linear, in_texture.texture, in_texture.periods, in_texture.range, in_texture.light}),
+        .out_valid(waiting_valid), .out_ready(waiting_gone),
+        .out_data({mask, short, texture.linear, texture.texture, texture.periods, texture.range, texture.light})
     );
 
     // Sends the quads of the first waiting group, one per clock, if its texture is the current one; otherwise changes the texture as soon as
@@ -94,22 +108,26 @@ module texture_shader #(
     state_t state;
 
     logic [7:0] number;
-    logic       second, half, sends, ends, credit, place_idle, sampler_idle, same, loaded;
+    logic       second, half, sends, ends, both, follows, credit, sampler_idle, same, loaded;
     logic [3:0] quad;
 
     assign half  = second || mask[3:0] == '0;
     assign quad  = half ? mask[7:4] : mask[3:0];
     assign ends  = half || mask[7:4] == '0;
-    assign sends = state == SEND && waiting_valid && same && credit;
+    assign sends = state == SEND && waiting_valid && same && credit && !follows;
+
+    // A quad of a bilinear texture with pixels in both pairs is two items of the sampler, the second of which follows a clock later.
+    assign both = sampler.bilinear && quad[1:0] != '0 && quad[3:2] != '0;
 
     assign waiting_gone = sends && ends;
     assign same         = texture.texture == number;
 
     always_ff @(posedge clk) begin
         if (sends) second <= !ends;
+        follows <= sends && both;
 
         case (state)
-            EMPTY: if (waiting_valid && place_idle && sampler_idle) begin
+            EMPTY: if (waiting_valid && sampler_idle) begin
                 number <= texture.texture;
                 state  <= START;
             end
@@ -119,7 +137,7 @@ module texture_shader #(
         endcase
 
         if (rst || forget) state <= EMPTY;
-        if (rst) second <= 1'b0;
+        if (rst) {second, follows} <= '0;
     end
 
     texture_pkg::sampler_t sampler;
@@ -145,21 +163,15 @@ module texture_shader #(
         .sampler, .level_write, .level_number, .level_first, .palette_write, .palette_index, .palette_colour
     );
 
-    logic                   placed_valid, placed_half, placed_last, quad_valid, quad_ready, quad_half, quad_last;
-    logic [3:0]             placed_mask, placed_level, quad_mask, quad_level;
-    logic [1:0][3:0][20:0]  placed_positions, quad_positions;
+    logic                   placed_valid, placed_half, placed_last;
+    logic [3:0]             placed_mask, placed_level;
+    logic [1:0][3:0][17:0]  placed_positions;
 
     texture_place texture_place (
         .clk, .rst, .sampler, .in_valid(sends), .in_mask(quad), .in_half(half), .in_first(!second), .in_last(ends),
-        .in_planes({texture.planes, depth}), .in_linear(texture.linear), .in_range(texture.range), .in_periods(texture.periods),
+        .in_planes(planes), .in_linear(texture.linear), .in_range(texture.range), .in_periods(texture.periods),
         .out_valid(placed_valid), .out_mask(placed_mask), .out_half(placed_half), .out_last(placed_last), .out_level(placed_level),
         .out_positions(placed_positions)
-    );
-
-    credit_fifo #(.WIDTH(4 + 1 + 1 + 4 + 8 * 21), .DEPTH(32)) quads (
-        .clk, .rst, .idle(place_idle), .credit, .sent(sends), .in_valid(placed_valid),
-        .in_data({placed_mask, placed_half, placed_last, placed_level, placed_positions}),
-        .out_valid(quad_valid), .out_ready(quad_ready), .out_data({quad_mask, quad_half, quad_last, quad_level, quad_positions})
     );
 
     logic                        step_valid, step_half, step_last, step_bilinear;
@@ -171,11 +183,11 @@ module texture_shader #(
     texture_sampler #(.ADDRESS_BITS(ADDRESS_BITS)) texture_sampler (
         .clk, .rst, .forget, .idle(sampler_idle), .sampler, .number,
         .level_write, .level_number, .level_first, .palette_write, .palette_index, .palette_colour,
-        .in_valid(quad_valid), .in_ready(quad_ready), .in_mask(quad_mask), .in_half(quad_half), .in_last(quad_last),
-        .in_level(quad_level), .in_positions(quad_positions),
+        .credit, .sent(sends || follows), .in_valid(placed_valid), .in_mask(placed_mask), .in_half(placed_half), .in_last(placed_last),
+        .in_level(placed_level), .in_positions(placed_positions),
         .ask_valid(sample_ask_valid), .ask_ready(ask_ready && !loading), .ask_addr(sample_ask_addr),
         .data_valid(data_valid && !loading), .data_ready(sample_data_ready), .data,
-        .out_valid(step_valid), .out_mask(step_mask), .out_half(step_half), .out_last(step_last), .out_bilinear(step_bilinear),
+        .out_room(colours_room), .out_valid(step_valid), .out_mask(step_mask), .out_half(step_half), .out_last(step_last), .out_bilinear(step_bilinear),
         .out_opaque(step_opaque), .out_texels(step_texels), .out_neighbours(step_neighbours), .out_weights(step_weights)
     );
 
@@ -205,40 +217,19 @@ module texture_shader #(
     );
 
     // The blend of the texture comes along with the pixels, because the next texture may be loaded while they are in the filter.
-    logic [3:0] finished_blend;
+    logic [3:0] lit_blend;
 
-    delay #(.WIDTH(4), .CLOCKS(texture_pkg::FILTER + 1)) blend_delay (
-        .clk, .enable(1'b1), .in(sampler.blend), .out(finished_blend)
+    delay #(.WIDTH(4), .CLOCKS(texture_pkg::FILTER)) blend_delay (
+        .clk, .enable(1'b1), .in(sampler.blend), .out(lit_blend)
     );
 
-    // Collects the pixels of a group.
-    logic             finished, colours_room;
-    logic [7:0]       found, found_before;
-    logic [7:0][15:0] collected;
-
-    assign found_before = finished ? '0 : found;
-
-    always_ff @(posedge clk) begin
-        finished <= lit_valid && lit_last;
-        found    <= found_before;
-        for (int i = 0; i < 8; i++)
-            if (lit_valid && lit_half == 1'(i / 4) && lit_mask[i % 4]) begin
-                found[i]     <= lit_opaque[i % 4];
-                collected[i] <= lit_colours[i % 4];
-            end
-        if (rst) begin
-            finished <= 1'b0;
-            found    <= '0;
-        end
-    end
-
-    // This FIFO only holds colours of groups that are in the FIFO of groups, so it is never full.
-    fifo #(.WIDTH(4 + 8 + 8 * 16), .DEPTH(GROUPS)) finished_colours (
-        .clk, .rst, .in_valid(finished), .in_ready(colours_room), .in_data({finished_blend, found, collected}),
-        .out_valid(colours_valid), .out_ready(group_gone && group_textured), .out_data({blend, opaque, colours})
+    texture_collect texture_collect (
+        .clk, .rst, .room(colours_room), .in_valid(lit_valid), .in_mask(lit_mask), .in_half(lit_half), .in_last(lit_last),
+        .in_opaque(lit_opaque), .in_colours(lit_colours), .in_blend(lit_blend),
+        .out_valid(colours_valid), .out_ready(group_gone && group_textured), .out_blend(blend), .out_opaque(opaque), .out_colours(colours)
     );
 
-    wire _unused = &{1'b0, waiting_idle, light_room, light_valid, colours_room};
+    wire _unused = &{1'b0, waiting_idle, light_room, light_valid, in_planes, texture.planes};
 endmodule
 
 `default_nettype wire

@@ -2,9 +2,8 @@
 //
 //   quad ─▶ pairs ─▶ texels of the level ─▶ neighbours ─▶ wrapped ─▶ item
 //
-// A quad of a nearest texture makes one item, one of a bilinear texture an item for each pair of lanes that has covered pixels. Quads are
-// accepted while `room` is high. Latency 4 clocks, throughput an item a clock; the pipeline cannot be stopped, and up to five clocks after
-// `room` has fallen an item may come. `busy` is high while an item is inside.
+// A quad of a nearest texture makes one item, one of a bilinear texture an item for each pair of lanes that has covered pixels. No quad may
+// come in the clock after a quad with two items. Latency 4 clocks, throughput an item a clock; the pipeline cannot be stopped.
 
 `default_nettype none
 
@@ -14,34 +13,28 @@ module texture_wrap (
     input  wire  [1:0][3:0]         side_log2,    // by axis
     input  wire  [1:0][1:0]         wrap,         // by axis
     input  wire                     bilinear,
-    input  wire                     room,
-    output logic                    busy,
     input  wire                     in_valid,
-    output logic                    in_ready,
     input  wire  [3:0]              in_mask,
     input  wire                     in_half,
     input  wire                     in_last,
     input  wire  [3:0]              in_level,
-    input  wire  [1:0][3:0][20:0]   in_positions, // axis, lane: a texture_pkg::position_t
+    input  wire  [1:0][3:0][17:0]   in_positions, // axis, lane: a texture_pkg::position_t
     output logic                    out_valid,
     output texture_pkg::item_t      out_item
 );
     // Fields of a position: 10 bits for the columns of the largest level, and of the 8 fraction bits behind them the five that the weights
     // depend on; then whether it is below 0, at or above 1, or in an odd repeat.
-    localparam int unsigned LOW   = 3;
-    localparam int unsigned KEPT  = 18 - LOW;
+    localparam int unsigned KEPT  = 15;
     localparam int unsigned SHARE = 5;
 
     // A second item of a quad follows the first one at once.
-    logic taken, follows, both, upper_alone;
+    logic follows, both, upper_alone;
 
-    assign in_ready    = room && !follows;
-    assign taken       = in_valid && in_ready;
     assign both        = bilinear && in_mask[1:0] != '0 && in_mask[3:2] != '0;
     assign upper_alone = bilinear && in_mask[1:0] == '0;
 
-    // The position in texels of the level has a fraction of 8 bits more than the base-2 logarithm of the level's side: it is the position
-    // in the repeat without its last 10 bits less that logarithm. These are cut off, at most all 10.
+    // The position in texels of the level, with 5 fraction bits, is the position in the repeat without its last bits, as many as the base-2
+    // logarithm of the level's side is less than 10. These are cut off, at most 10.
     logic [1:0][3:0] cut;
 
     for (genvar axis = 0; axis < 2; axis++) begin : levels
@@ -63,12 +56,11 @@ module texture_wrap (
     logic [1:0][3:0][KEPT-1:0] places;
     logic [1:0][3:0][2:0]      beyond;
 
-    assign busy      = paired_valid != '0;
     assign out_valid = paired_valid[3];
 
     always_ff @(posedge clk) begin
-        paired_valid <= {paired_valid[2:0], taken || follows};
-        follows      <= taken && both;
+        paired_valid <= {paired_valid[2:0], in_valid || follows};
+        follows      <= in_valid && both;
         if (rst) begin
             paired_valid <= '0;
             follows      <= 1'b0;
@@ -81,8 +73,8 @@ module texture_wrap (
                 if (i < 2 && follows) begin
                     places[axis][i] <= places[axis][i + 2];
                     beyond[axis][i] <= beyond[axis][i + 2];
-                end else if (i < 2 && upper_alone) {beyond[axis][i], places[axis][i]} <= in_positions[axis][i + 2][20:LOW];
-                else {beyond[axis][i], places[axis][i]} <= in_positions[axis][i][20:LOW];
+                end else if (i < 2 && upper_alone) {beyond[axis][i], places[axis][i]} <= in_positions[axis][i + 2];
+                else {beyond[axis][i], places[axis][i]} <= in_positions[axis][i];
             end
         end
         mask[0]    <= follows ? {2'b00, upper_mask} : upper_alone ? {2'b00, in_mask[3:2]} : bilinear ? {2'b00, in_mask[1:0]} : in_mask;

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use glint_core::records::TextureHeader;
 use glint_core::texture::{Filter, Texture};
-use glint_testbench::{Bits, Module, Port, Source, Stalls};
+use glint_testbench::{Bits, Module, Port, Stalls};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -56,13 +56,19 @@ struct Ports {
     neighbours: Port,
     weights: Port,
     idle: Port,
+    credit: Port,
+    sent: Port,
+    room: Port,
+    quad: [Port; 6],
 }
 
 pub struct Bench {
     module: Module,
     ports: Ports,
-    quads: Source,
-    stalls: [Stalls; 2],
+    quads: VecDeque<Quad>,
+    /// Whether the last clock had a quad of two items.
+    follows: bool,
+    stalls: [Stalls; 4],
     latency: u64,
     seed: u32,
     /// Words that are asked for: the earliest clock, and the address.
@@ -87,12 +93,12 @@ struct Step {
 impl Bench {
     pub fn new(seed: u32, shares: [f64; 3], latency: u64) -> Self {
         let module = Module::new("texture_sampler", seed);
-        let stalls = |i: usize| Stalls::new(u64::from(seed) * 3 + i as u64, shares[i]);
-        let payload = ["mask", "half", "last", "level", "positions"];
+        let stalls = |i: usize| Stalls::new(u64::from(seed) * 4 + i as u64, shares[i % 3]);
         let port = |name: &str| module.port(name);
         Self {
-            quads: Source::new(&module, "in", &payload, stalls(0)),
-            stalls: [stalls(1), stalls(2)],
+            quads: VecDeque::new(),
+            follows: false,
+            stalls: [stalls(0), stalls(1), stalls(2), stalls(3)],
             ports: Ports {
                 ask: ["ask_valid", "ask_ready", "ask_addr"].map(port),
                 data: ["data_valid", "data_ready", "data"].map(port),
@@ -106,6 +112,11 @@ impl Bench {
                 neighbours: port("out_neighbours"),
                 weights: port("out_weights"),
                 idle: port("idle"),
+                credit: port("credit"),
+                sent: port("sent"),
+                room: port("out_room"),
+                quad: ["valid", "mask", "half", "last", "level", "positions"]
+                    .map(|name| port(&format!("in_{name}"))),
             },
             module,
             latency,
@@ -166,11 +177,12 @@ impl Bench {
             let value = Bits::from(value & ((1 << width) - 1));
             self.module.drive_bits(name, value);
         }
+        self.module.settle();
     }
 
     /// Sends quads, and checks that their steps serve each covered lane once.
     pub fn check_any(&mut self, memory: &Memory, quads: &[Quad]) {
-        self.push(quads);
+        self.quads.extend(quads);
         let limit = self.module.cycles() + 1000 + quads.len() as u64 * (200 + 20 * self.latency);
         for quad in quads {
             let mut left = quad.mask;
@@ -194,24 +206,33 @@ impl Bench {
         self.module.drive("forget", 0);
     }
 
-    fn push(&mut self, quads: &[Quad]) {
-        for quad in quads {
-            let positions = [0, 1].into_iter().flat_map(|axis: usize| {
+    /// Drives a quad for this clock, if there is one with a credit. The second item of a quad is sent a clock later.
+    fn drive_quad(&mut self) {
+        let may = self.module.is_high(self.ports.credit) && !self.stalls[0].next_stalled();
+        let quad = (may && !self.follows).then(|| self.quads.pop_front());
+        let quad = quad.flatten();
+        let sent = self.follows || quad.is_some();
+        self.module.set_value(self.ports.sent, sent.into());
+        let [valid, mask, half, last, level, positions] = self.ports.quad;
+        self.module.set_value(valid, quad.is_some().into());
+        self.follows = false;
+        if let Some(quad) = quad {
+            let is_bilinear = self.module.is_high(self.ports.bilinear);
+            self.follows = is_bilinear && quad.mask & 0x3 != 0 && quad.mask & 0xC != 0;
+            let placed = [0, 1].into_iter().flat_map(|axis: usize| {
                 quad.positions.map(|position| {
                     let position = position[axis];
                     let flags = i64::from(position < 0) << 2
                         | i64::from(position >= REPEAT) << 1
                         | position.div_euclid(REPEAT) & 1;
-                    flags << 18 | position.rem_euclid(REPEAT)
+                    flags << 15 | position.rem_euclid(REPEAT) >> 3
                 })
             });
-            self.quads.push(vec![
-                Bits::from(u64::from(quad.mask)),
-                Bits::from(u64::from(quad.half)),
-                Bits::from(u64::from(quad.last)),
-                Bits::from(u64::from(quad.level)),
-                Bits::pack(21, positions),
-            ]);
+            self.module.set(mask, u64::from(quad.mask));
+            self.module.set(half, u64::from(quad.half));
+            self.module.set(last, u64::from(quad.last));
+            self.module.set(level, u64::from(quad.level));
+            self.module.set(positions, Bits::pack(18, placed));
         }
     }
 
@@ -226,17 +247,18 @@ impl Bench {
 
     fn clock(&mut self, memory: &Memory) -> Option<Step> {
         let now = self.module.cycles();
-        self.quads.drive(&mut self.module);
-        let has_room = self.asked.len() < PORT_WORDS && !self.stalls[0].next_stalled();
+        self.drive_quad();
+        let has_room = self.asked.len() < PORT_WORDS && !self.stalls[1].next_stalled();
         self.module.set_value(self.ports.ask[1], has_room.into());
-        let stalled = self.stalls[1].next_stalled();
+        let may_leave = !self.stalls[3].next_stalled();
+        self.module.set_value(self.ports.room, may_leave.into());
+        let stalled = self.stalls[2].next_stalled();
         self.shown |= !stalled && self.asked.front().is_some_and(|&(due, _)| due <= now);
         self.module.set_value(self.ports.data[0], self.shown.into());
         if let Some(&(_, address)) = self.asked.front().filter(|_| self.shown) {
             self.module.set(self.ports.data[2], memory.word(address));
         }
         self.module.settle();
-        self.quads.sample(&self.module);
         let module = &self.module;
         if module.is_high(self.ports.ask[0]) && has_room {
             let address = module.value(self.ports.ask[2]) as u32;
@@ -262,7 +284,7 @@ impl Bench {
 
     /// Sends quads on a texture, and compares all steps. Returns the number of clocks from the first to the last step.
     pub fn check(&mut self, memory: &Memory, quads: &[Quad]) -> u64 {
-        self.push(quads);
+        self.quads.extend(quads);
         let texture = memory.texture();
         let limit = self.module.cycles() + 1000 + quads.len() as u64 * (200 + 20 * self.latency);
         let mut first = None;
