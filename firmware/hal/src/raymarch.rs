@@ -49,7 +49,7 @@ pub struct Start {
     pub distance: u32,
     /// Whether the plane exists.
     pub there: bool,
-    /// Whether a ray along the axis leads away from the solid.
+    /// Whether rays that go forward along the axis move away from the solid.
     pub away: bool,
     /// Whether a ray has left the solid beyond the plane.
     pub last: bool,

@@ -165,8 +165,8 @@ pub struct Line {
 struct Coordinate {
     /// Index of the column or row.
     pixel: i32,
-    /// Distance to the lower border of the column or row in 1/256 pixel, less 1 on an axis that is not mirrored. A point on the upper
-    /// border belongs to the column or row; on a mirrored axis, a point on the lower border.
+    /// Distance from the border with the smaller coordinate, in 1/256 pixel; minus 1 if the axis is not mirrored. A point on the border with
+    /// the larger coordinate belongs to the column or row; on a mirrored axis, a point on the border with the smaller one.
     place: i32,
 }
 

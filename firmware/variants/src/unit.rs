@@ -41,13 +41,13 @@ pub const KERNELS: &[Kernel<[i32; 3], [i32; 3]>] = &[
     ),
     other(
         "unit_divided_14",
-        "14 fraction bits, divided in 64 bits",
+        "14 fraction bits, 64-bit division",
         Fixed(14),
         divided::<14>,
     ),
     other(
         "unit_divided_30",
-        "30 fraction bits, divided in 64 bits",
+        "30 fraction bits, 64-bit division",
         Fixed(30),
         divided::<30>,
     ),

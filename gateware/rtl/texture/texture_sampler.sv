@@ -89,7 +89,7 @@ module texture_sampler #(
     logic [1:0][3:0][7:0] step_places;
     logic [3:0]           step_level;
 
-    // Tags are swept long before the first quad behind `forget` comes here.
+    // No step is accepted while the tags are cleared. This costs no time: they are clear long before the first quad after `forget` arrives.
     assign step_room = queue_room && !sweeping;
 
     texture_choice choice (

@@ -192,8 +192,8 @@ pub fn build_beside(name: &str, options: &[&str], library: Library) -> Result<Pa
     Ok(folder)
 }
 
-/// Generates the gateware of a board with `options` of `glint_soc` in `target/gateware/BOARD-NAME`, beside the standard build.
-/// Returns the folder.
+/// Generates the gateware of `board` with `options` of `glint_soc`, beside the standard build. Returns its folder: in `target/gateware`, the
+/// board's name, a hyphen and `name`.
 ///
 /// # Errors
 /// Those of [`build`].

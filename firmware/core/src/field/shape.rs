@@ -44,8 +44,8 @@ pub trait FieldKind: Sized {
     /// Converts the field to its solid in field units.
     fn placed(&self) -> Placed<Self::Solid>;
 
-    /// The spheres of a list with this number of field units per world unit; `None` for a kind that cannot be
-    /// the second member of a union.
+    /// The field's spheres in field units, of which a world unit has `scale`; `None` for a kind of field that cannot be the second member of
+    /// a union.
     fn spheres(&self, scale: Q32_32) -> Option<FixedSpheres> {
         let _ = scale;
         None

@@ -197,7 +197,7 @@ fn the_demo_goes_on_during_an_upload() {
     assert_eq!(line.lost(), lost, "samples were lost");
 }
 
-/// A frame of the CPU takes longer than the board's time-out for bytes of a transfer.
+/// The CPU takes longer to draw a picture than the board waits for the next byte of a transfer.
 #[test]
 fn an_upload_goes_on_while_the_cpu_draws() {
     let mesh = mesh("icosphere:10");

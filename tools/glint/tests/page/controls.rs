@@ -227,7 +227,7 @@ fn rest_looks_like_rest() {
     let page = open(&mut browser, &served.url);
     let rate = "document.getElementById('rate').textContent";
     browser.wait(&page, &format!("{rate} === 'still'"));
-    // For one second the angles are small, and none is shown as a negative zero.
+    // The sensor is at rest, so angles stay near 0. No angle may be shown as a negative zero.
     let caption = "document.querySelector('#curve-attitude figcaption').textContent";
     for _ in 0..20 {
         let text = browser.evaluate(

@@ -11,7 +11,7 @@ use glint_reference::report::workspace;
 
 use crate::{TRANSCRIPT, folder};
 
-/// Jobs of the workflow that these tests run. The contents of the pages are covered by the pages' tests.
+/// Jobs of the workflow that these tests run. Other tests check the pages that the jobs write.
 const TABLES: [&str; 2] = ["tables/sine", "tables/raymarch-pictures"];
 
 /// A run of the workflow in a separate folder, with jobs that need no board.

@@ -15,7 +15,7 @@ use crate::raymarch::State;
 pub struct End {
     /// A hit or a miss; no ray is undecided.
     pub state: State,
-    /// Parameter T at the end, u14 with the fraction bits of `Words::parameter`; for a miss, T at the last exit.
+    /// Parameter T at the end, with 14 integer bits and the fraction bits of `Words::parameter`; for a miss, T at the last exit.
     pub t: i64,
     /// Number of evaluations of the flat solid or the lattice.
     pub steps: u32,

@@ -40,7 +40,7 @@ pub struct Beam {
 /// A point on a ray's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// The parameter T, u14 with the fraction bits of `Words::parameter`.
+    /// The parameter T, with 14 integer bits and the fraction bits of `Words::parameter`.
     pub t: i64,
     /// The axis of the last crossed border.
     pub face: usize,

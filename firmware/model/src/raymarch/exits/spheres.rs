@@ -8,9 +8,10 @@ use super::words::Inverse;
 
 /// Fraction bits of c·D and of the root.
 const LENGTH: i32 = 22;
-/// Fraction bits of the square of the root.
+/// Fraction bits of the number under the root.
 const SQUARE: i32 = 30;
-/// A ray meets a sphere if the square of the root exceeds 2^−`LEAST`, so that a tangent ray misses with any rounding of the words.
+/// A ray meets a sphere if the number under the root exceeds 2^−`LEAST`. With this margin a tangent ray misses, however its numbers have
+/// been rounded.
 const LEAST: i32 = 20;
 /// Fraction bits of the mantissa of a reciprocal.
 const MANTISSA: i32 = 18;
@@ -18,7 +19,7 @@ const MANTISSA: i32 = 18;
 /// A sphere, or a face of a solid cone, that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Met {
-    /// The parameter T, u14 with the fraction bits of `Words::parameter`.
+    /// The parameter T, with 14 integer bits and the fraction bits of `Words::parameter`.
     pub t: i64,
     /// Number of the sphere, or [`Cone::BASE`].
     pub number: u8,
