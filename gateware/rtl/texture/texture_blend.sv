@@ -64,6 +64,12 @@ module texture_blend (
     logic        picked_valid, picked_last;
     logic [7:0]  picked;
     logic [15:0] source;
+    // `keep` holds the selections of four lanes apart, which are one LUT for each bit.
+    (* keep *) logic [1:0][15:0] colours;
+
+    for (genvar half = 0; half < 2; half++) begin : halves
+        assign colours[half] = in_colours[4*half + 32'(lane[1:0])];
+    end
 
     always_ff @(posedge clk) begin
         case (state)
@@ -77,7 +83,7 @@ module texture_blend (
         picked_valid <= state == PICK && left != '0;
         picked_last  <= state == PICK && is_last;
         picked       <= lowest;
-        source       <= in_colours[lane];
+        source       <= lane[2] ? colours[1] : colours[0];
         pixel_valid  <= picked_valid;
         pixel_mask   <= picked;
         gone         <= picked_last;
