@@ -271,7 +271,7 @@ module texture_place (
         (* keep *) logic [1:0]  fours;
         logic [1:0]  ones, zeros_13;
         logic [19:0] by_4;
-        logic [16:0] sigma;
+        logic [16:0] not_sigma; // the complement of σ
         logic [27:0] most;
         logic [2:0]  nibble, nibble_20;
         logic [6:0]  head, head_20;
@@ -294,10 +294,10 @@ module texture_place (
             endcase
             zeros_13 <= ones;
             unique case (zeros_13)
-                2'd0: sigma <= by_4[19:3];
-                2'd1: sigma <= by_4[18:2];
-                2'd2: sigma <= by_4[17:1];
-                2'd3: sigma <= by_4[16:0];
+                2'd0: not_sigma <= ~by_4[19:3];
+                2'd1: not_sigma <= ~by_4[18:2];
+                2'd2: not_sigma <= ~by_4[17:1];
+                2'd3: not_sigma <= ~by_4[16:0];
             endcase
         end
 
@@ -312,7 +312,7 @@ module texture_place (
 
             // -(σ + 1) is the complement of σ.
             multiply_add #(.BITS(42)) change_of_axis (
-                .clk, .enable(1'b1), .a(25'($signed(depth_gradients[direction]))), .b({1'b1, ~sigma}),
+                .clk, .enable(1'b1), .a(25'($signed(depth_gradients[direction]))), .b({1'b1, not_sigma}),
                 .c({gradient_16[23], gradient_16, 17'd0}), .p(change)
             );
 
