@@ -62,7 +62,7 @@ def test_amounts():
 def test_selection():
     """Checks that each block is measured once, and that the flat build is replaced by its parts."""
     assert selection([], ALL) == list(ALL)
-    assert len(ALL) == 1 + 15 + 11 + 3
+    assert len(ALL) == 1 + 16 + 11 + 3
     assert ALL[0] == SOC
     assert selection(["scanout"], ALL) == ["scanout"]
     assert selection(["setup", FLAT], ALL) == ["setup", "vertex_stage", "triangle_raster"]
