@@ -10,8 +10,8 @@ pub fn commands() -> Vec<&'static Row> {
 }
 
 /// The keys that are not console commands.
-pub const OTHERS: [&str; 7] = [
-    "title", "steer", "scenes", "depth", "lanes", "clock", "budget",
+pub const OTHERS: [&str; 8] = [
+    "title", "steer", "scenes", "depth", "geometry", "lanes", "clock", "budget",
 ];
 
 /// The members of the key `budget`.

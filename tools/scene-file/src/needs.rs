@@ -118,6 +118,7 @@ impl SceneFile {
             // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
+                    && self.geometry
                     && scene.options.clip == Clip::Guard
                     && scene.options.winding == Winding::Mesh,
             depths: has_triangles || self.depth,
@@ -155,6 +156,7 @@ impl SceneFile {
         } = scene.options;
         // The soft core computes the descriptors of such meshes, or draws the whole picture.
         if scene.backend == Backend::Cpu
+            || !self.geometry
             || !cull
             || textures && shading == Shading::Smooth && features.contains(&TEXTURE)
             || clip != Clip::Guard

@@ -65,6 +65,8 @@ pub struct SceneFile {
     scenes: Vec<SceneFile>,
     /// Whether depth codes are requested in addition to the colours.
     pub(crate) depth: bool,
+    /// Whether the build has the geometry pass of the triangle engine, if the scene needs it.
+    pub(crate) geometry: bool,
     pub(crate) lanes: Option<u8>,
     clock: Option<f64>,
     budget: Budget,
@@ -121,6 +123,7 @@ impl SceneFile {
                 .filter_map(|(name, span)| member(file, name, &span))
                 .collect(),
             depth: file.switch("depth").unwrap_or(false),
+            geometry: geometry(file),
             lanes: lanes(file),
             clock: file.number("clock"),
             budget: file.numbers("budget", &BUDGET),
@@ -461,6 +464,19 @@ fn has_colour(line: &str) -> bool {
         return false;
     };
     matches!(action, ObjectAction::Add { place, .. } if place.colour.is_some())
+}
+
+fn geometry(file: &File) -> bool {
+    if let Some(value) = file.get("geometry")
+        && (!file.has_any(&["model", "object"]) || file.has("edges"))
+    {
+        file.refuse(
+            "geometry",
+            value,
+            "the key only beside model or object, without edges",
+        );
+    }
+    file.switch("geometry").unwrap_or(true)
 }
 
 fn lanes(file: &File) -> Option<u8> {

@@ -207,6 +207,8 @@ fn refused_files() {
             orthographic = 2 → orthographic: expected only beside model or object
             edges = "over" → edges: expected only beside model
             depth = "on" → depth: `"on"`: expected true or false
+            geometry = "off" → geometry: `"off"`: expected true or false
+            geometry = false → geometry: `false`: expected the key only beside model or object
             animate = "orbit 30" → line 4: animate: `"orbit 30"`: expected a field moving:R,ORBIT,ANGLE beside orbit
         "#,
         ),
@@ -322,6 +324,7 @@ fn needs_follow_from_the_keys() {
         model = "cube" → --blocks scanout triangle --no-sky
         model = "cube"; background = "sky" → --blocks scanout triangle
         model = "cube"; fog = 0.2 → --blocks scanout triangle --no-sky --fog
+        model = "cube"; geometry = false → --blocks scanout triangle --no-sky --no-geometry
         model = "cube"; fog = "off" → --blocks scanout triangle --no-sky
         model = "cube"; backend = "cpu" → --blocks scanout
         model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth --no-sky
@@ -377,6 +380,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         model = "cow.obj"; textures = true; shading = "smooth" → cpu mesh texture upload view
         model = "torus"; background = "sky" → mesh sky view
         model = "torus"; fog = 0.1 → fog mesh view
+        model = "torus"; geometry = false → cpu mesh view
         model = "torus"; background = "sky"; field = "menger:1" → field mesh mesh-in-field sky view
         model = "cow.obj"; textures = false → mesh texture upload view
         model = "torus"; backend = "cpu" → cpu mesh view
