@@ -1,6 +1,8 @@
 //! Meshes of triangles that share no vertices, and a square with a texture, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in
 //! memory").
 
+use std::f64::consts::{PI, TAU};
+
 use glint_core::camera::View;
 use glint_core::mesh::{self, Attribute, ChunkHeader, IndexedTriangle, MeshHeader, Rgb565, Vertex};
 use glint_core::records::TextureCoordinates;
@@ -157,4 +159,33 @@ fn squares(layers: &[(f64, [u8; 2])], textures: &[Vec<u8>], repeats: f64) -> Vec
     }
     let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
     mesh::encode_with(&vertices, &triangles, &attributes, textures).unwrap()
+}
+
+/// A mesh about the origin with a texture around it; its seam is behind, as seen from -y.
+///
+/// # Panics
+/// If the texture is too large for a mesh.
+pub fn wrapped(mesh: &mesh::Mesh, texture: Vec<u8>) -> Vec<u8> {
+    let (mut vertices, mut triangles) = (vec![], vec![]);
+    for chunk in mesh.chunks() {
+        let first = vertices.len() as u32;
+        vertices.extend(chunk.vertices());
+        triangles.extend(chunk.triangles().map(|triangle| IndexedTriangle {
+            indices: triangle.indices.map(|index| first + u32::from(index)),
+            colour: Rgb565::WHITE,
+            normal: triangle.normal,
+            texture: 1,
+        }));
+    }
+    let elements: Vec<_> = (vertices.iter())
+        .map(|vertex| {
+            let [x, y, z] = vertex.position.map(f64::from);
+            let (longitude, latitude) = (x.atan2(-y), z.atan2(x.hypot(y)));
+            let [s, t] = [longitude / TAU + 0.5, 0.5 - latitude / PI];
+            let [s, t] = [s, t].map(|c| (c * 65_536.0) as i32);
+            TextureCoordinates { s, t }.to_bytes()
+        })
+        .collect();
+    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
+    mesh::encode_with(&vertices, &triangles, &attributes, &[texture]).unwrap()
 }

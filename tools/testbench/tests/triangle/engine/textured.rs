@@ -1,17 +1,14 @@
 //! Frames of meshes with textures, whose descriptors come from the model.
 
-use std::f64::consts::{PI, TAU};
-
 use glint_core::appearance::Appearance;
 use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting, Rgb};
-use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, encode_with};
+use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
-use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Blend, Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::setup::{Bounds, Setup};
@@ -21,7 +18,7 @@ use glint_model::{
     Stats, Subject,
 };
 use glint_testbench::raymarch::Pixel;
-use glint_vectors::meshes::{ahead, textured_layers, textured_square};
+use glint_vectors::meshes::{ahead, textured_layers, textured_square, wrapped};
 use glint_vectors::{Camera, Picture};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -338,41 +335,20 @@ fn sphere(filter: Filter, format: Format) -> Vec<u8> {
         ..Source::default()
     });
     let bytes = generated("icosphere:12");
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let (mut vertices, mut triangles) = (vec![], vec![]);
-    for chunk in mesh.chunks() {
-        let first = vertices.len() as u32;
-        vertices.extend(chunk.vertices());
-        triangles.extend(chunk.triangles().map(|triangle| IndexedTriangle {
-            indices: triangle.indices.map(|index| first + u32::from(index)),
-            colour: Rgb565::WHITE,
-            normal: triangle.normal,
-            texture: 1,
-        }));
-    }
-    // The seam is behind.
-    let elements: Vec<_> = (vertices.iter())
-        .map(|vertex| {
-            let [x, y, z] = vertex.position.map(f64::from);
-            let (longitude, latitude) = (x.atan2(-y), z.atan2(x.hypot(y)));
-            let [s, t] = [longitude / TAU + 0.5, 0.5 - latitude / PI];
-            let [s, t] = [s, t].map(|c| (c * 65_536.0) as i32);
-            TextureCoordinates { s, t }.to_bytes()
-        })
-        .collect();
-    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
-    encode_with(&vertices, &triangles, &attributes, &[texture.unwrap()]).unwrap()
+    wrapped(&Mesh::new_checked(&bytes).unwrap(), texture.unwrap())
 }
 
-/// Checks the pixels drawn per clock of the raster pass on a sphere with a texture, by the latency of memory in clocks.
+/// Checks the pixels drawn per clock of the raster pass on a sphere with a texture, by the latency of memory in clocks. The last case is in
+/// fog, whose latency each band has once.
 #[test]
 fn a_sphere_with_a_texture_is_drawn_fast() {
-    for (filter, format, latency, least) in [
-        (Filter::Nearest, Format::Rgb565, 12, 2.93),
-        (Filter::Nearest, Format::Rgb565, 30, 2.76),
-        (Filter::Nearest, Format::Palette16, 30, 2.90),
-        (Filter::Bilinear, Format::Rgb565, 12, 1.76),
-        (Filter::Bilinear, Format::Rgb565, 30, 1.75),
+    for (filter, format, latency, fog, least) in [
+        (Filter::Nearest, Format::Rgb565, 12, 0.0, 2.93),
+        (Filter::Nearest, Format::Rgb565, 30, 0.0, 2.76),
+        (Filter::Nearest, Format::Palette16, 30, 0.0, 2.90),
+        (Filter::Bilinear, Format::Rgb565, 12, 0.0, 1.76),
+        (Filter::Bilinear, Format::Rgb565, 30, 0.0, 1.75),
+        (Filter::Nearest, Format::Rgb565, 12, 0.3, 2.91),
     ] {
         let shown = Shown::seen(
             sphere(filter, format),
@@ -380,7 +356,7 @@ fn a_sphere_with_a_texture_is_drawn_fast() {
             Size::W1280,
             None,
             None,
-            0.0,
+            fog,
         );
         let pixels = shown
             .expected
@@ -388,12 +364,18 @@ fn a_sphere_with_a_texture_is_drawn_fast() {
             .iter()
             .filter(|&&code| code != 0)
             .count();
-        let mut bench = Bench::of("texture", 9, 0.0);
+        let mut bench = if fog > 0.0 {
+            let mut bench = Bench::of("texture_fields", 9, 0.0);
+            bench.set("field_source.enable", 0);
+            bench
+        } else {
+            Bench::of("texture", 9, 0.0)
+        };
         bench.with_depth = false;
         for read in &mut bench.reads {
             read.latency = latency;
         }
-        let name = format!("{filter:?}, {format:?}");
+        let name = format!("{filter:?}, {format:?}, fog {fog}");
         bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);
         let [geometry, clocks] =
             bench.draw_textured(&name, &shown.expected, &shown.mesh, &shown.clipped);

@@ -1,7 +1,5 @@
 //! Experiment: the speed of the triangle engine with textures on the whole SoC, where scan-out also uses LiteDRAM.
 
-use std::f64::consts::{PI, TAU};
-
 use anyhow::{Context, Result, ensure};
 use glint::board::built_firmware;
 use glint::console::Console;
@@ -9,12 +7,11 @@ use glint::render::{self, BoardRenderer, Frame, Route, Subject};
 use glint::{convert, generate};
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
-use glint_core::mesh::{Attribute, IndexedTriangle, Mesh, encode_with};
+use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
-use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Format, Sampler, Source, encode};
 use glint_vectors::Camera;
-use glint_vectors::meshes::textured_square;
+use glint_vectors::meshes::{textured_square, wrapped};
 use serde::{Deserialize, Serialize};
 
 use crate::report::experiments::triangle::ahead;
@@ -193,32 +190,6 @@ impl Model {
             }
         }
     }
-}
-
-/// A mesh about the origin with a texture around it; its seam is behind, as seen from -y.
-fn wrapped(mesh: &Mesh, texture: Vec<u8>) -> Vec<u8> {
-    let (mut vertices, mut triangles) = (vec![], vec![]);
-    for chunk in mesh.chunks() {
-        let first = vertices.len() as u32;
-        vertices.extend(chunk.vertices());
-        triangles.extend(chunk.triangles().map(|triangle| IndexedTriangle {
-            indices: triangle.indices.map(|index| first + u32::from(index)),
-            colour: Rgb565::WHITE,
-            normal: triangle.normal,
-            texture: 1,
-        }));
-    }
-    let elements: Vec<_> = (vertices.iter())
-        .map(|vertex| {
-            let [x, y, z] = vertex.position.map(f64::from);
-            let (longitude, latitude) = (x.atan2(-y), z.atan2(x.hypot(y)));
-            let [s, t] = [longitude / TAU + 0.5, 0.5 - latitude / PI];
-            let [s, t] = [s, t].map(|c| (c * 65_536.0) as i32);
-            TextureCoordinates { s, t }.to_bytes()
-        })
-        .collect();
-    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
-    encode_with(&vertices, &triangles, &attributes, &[texture]).expect("a small mesh")
 }
 
 /// Speed of the triangle engine with a texture: a line of `textures-engine.csv`. Numbers of cycles are means for frames drawn back to
