@@ -25,6 +25,7 @@ pub struct Fog {
 const STEPS_LOG2: u32 = 7;
 /// The octaves of the table of shares: x from 2^3, which hides all, to 2^−9, which hides nothing.
 const OCTAVES: usize = 12;
+/// Base-2 logarithm of the largest x of the table.
 const DENSEST: i32 = 3;
 
 impl Fog {

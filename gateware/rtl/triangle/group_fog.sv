@@ -5,10 +5,10 @@
 //             └─ quads ─▶ log2 of the codes ─▶ table of shares ─▶ mix with the fog ─▶ dither ─▶ fifo: colours ─┘
 //
 // A group takes one clock for each half with a pixel in its mask (a quad of four pixels). Streams are valid/ready; `in_ready` depends on
-// `in_mask`. Latency 16 clocks; throughput one quad per clock. The pipeline of quads cannot be stopped: a group enters only while the FIFO
+// `in_mask`. Latency 14 clocks from the last quad of a group; throughput one quad per clock. The pipeline of quads cannot be stopped: a group enters only while the FIFO
 // of groups has a free place, and the FIFO of colours, which is as deep, never has more groups. Without `enable` colours stay as they are.
-// `enable`, `fog` and `first_line`, the number of the line 0 of the groups, must hold while groups are inside. `idle` is high while no group
-// is inside.
+// `enable`, `fog` and `first_line`, the place in the picture of the groups' line 0, must hold while groups are inside. `idle` is high while
+// no group is inside.
 
 `default_nettype none
 
@@ -71,8 +71,8 @@ module group_fog #(
     logic signed [8:0]   green_fog_8;
 
     always_ff @(posedge clk) begin
-        valid  <= {valid[LAST-1:1], sends};
-        line_1 <= in_line + first_line;
+        valid       <= {valid[LAST-1:1], sends};
+        line_1      <= in_line + first_line;
         fog_8       <= $signed({1'b0, added_7 ? 24'd0 : {fog.colour[23:16], 8'd0, fog.colour[7:0]}}) + 25'sd1;
         green_fog_8 <= $signed({1'b0, added_7 ? 8'd0 : fog.colour[15:8]}) + 9'sd1;
         if (rst) valid <= '0;

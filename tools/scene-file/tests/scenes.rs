@@ -182,6 +182,7 @@ fn refused_files() {
             object = "cube" → line 2: model: expected only without object, found it in line 4
             lookat = "1 1 1 0 0 0" → camera: expected only without lookat
             lanes = 2 → lanes: `2`: expected the key only beside field
+            geometry = false; edges = "over" → geometry: `false`: expected the key only beside model or object, without edges
             steer = "buttons" → expected buttons only beside program
             steer = "imu off" → steer: `"imu off"`: expected fixed, buttons, orbit FRAMES
             clock = -1 → clock: `-1`: expected a number above 0

@@ -72,7 +72,7 @@ pub fn draw_groups(
 
 fn grouped(
     setup: &Setup,
-    brush: impl Brush,
+    mut brush: impl Brush,
     fog: Option<&Fog>,
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
@@ -81,7 +81,7 @@ fn grouped(
     match fog {
         None => draw_with(setup, Grouped { brush, row, visit }, target),
         Some(fog) => {
-            let brush = Fogged::new(brush, setup, fog);
+            let brush = Fogged::new(&mut brush, setup, fog);
             draw_with(setup, Grouped { brush, row, visit }, target)
         }
     }
@@ -130,27 +130,6 @@ trait Brush {
     }
 }
 
-impl<B: Brush + ?Sized> Brush for &mut B {
-    fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
-        (**self).go_to(offset, columns);
-    }
-    fn go_right(&mut self) {
-        (**self).go_right();
-    }
-    fn go_down(&mut self) {
-        (**self).go_down();
-    }
-    fn colour(&self, depth: u32) -> Option<Rgb565> {
-        (**self).colour(depth)
-    }
-    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
-        (**self).write(colour, code, pixel, stored);
-    }
-    fn is_added(&self) -> bool {
-        (**self).is_added()
-    }
-}
-
 /// Flat shading: every pixel has the triangle's colour.
 impl Brush for Rgb565 {
     fn go_to(&mut self, _: u32, _: [i32; 2]) {}
@@ -186,14 +165,11 @@ impl<B: Brush> Brush for Grouped<'_, B> {
     fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
         self.brush.write(colour, code, pixel, stored);
     }
-    fn is_added(&self) -> bool {
-        self.brush.is_added()
-    }
 }
 
 /// A brush in fog.
-struct Fogged<'a, B> {
-    brush: B,
+struct Fogged<'a> {
+    brush: &'a mut dyn Brush,
     fog: &'a Fog,
     /// Colour of the fog, black for pixels that are added to the picture.
     colour: [u8; 3],
@@ -201,8 +177,8 @@ struct Fogged<'a, B> {
     column: i32,
 }
 
-impl<'a, B: Brush> Fogged<'a, B> {
-    fn new(brush: B, setup: &Setup, fog: &'a Fog) -> Self {
+impl<'a> Fogged<'a> {
+    fn new(brush: &'a mut dyn Brush, setup: &Setup, fog: &'a Fog) -> Self {
         let colour = if brush.is_added() { [0; 3] } else { fog.colour };
         Self {
             brush,
@@ -214,7 +190,7 @@ impl<'a, B: Brush> Fogged<'a, B> {
     }
 }
 
-impl<B: Brush> Brush for Fogged<'_, B> {
+impl Brush for Fogged<'_> {
     fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
         self.column = columns[0];
         self.brush.go_to(offset, columns);
@@ -234,9 +210,6 @@ impl<B: Brush> Brush for Fogged<'_, B> {
         let place = [self.column, self.row].map(|place| place as u32);
         let colour = self.fog.over(self.colour, colour, code, place);
         self.brush.write(colour, code, pixel, stored);
-    }
-    fn is_added(&self) -> bool {
-        self.brush.is_added()
     }
 }
 

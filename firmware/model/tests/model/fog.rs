@@ -57,6 +57,22 @@ fn shares_of_all_densities() {
     }
 }
 
+/// The offset of every density and scale fits the register of the engine, s13.
+#[test]
+fn offsets_fit_the_register() {
+    let densities = [U4_28::from_bits(1), U4_28::MAX];
+    let scales = [(1 << 16, -5), ((1 << 17) - 1, 5)].map(|(mantissa, exponent)| DepthScale {
+        mantissa,
+        exponent,
+        origin: None,
+    });
+    for (density, scale) in densities.into_iter().zip(scales) {
+        let offset = Fog::new(density, scale, [0; 3]).unwrap().offset;
+        println!("density {density}, {scale:?}: offset {offset}");
+        assert!((-4096..4096).contains(&offset));
+    }
+}
+
 /// Without density there is no fog; fog of no share changes no colour, and fog that hides everything leaves only its own.
 #[test]
 fn ends_of_the_fog() {

@@ -5,11 +5,13 @@ use std::collections::BTreeSet;
 use anyhow::{Context, Result, ensure};
 use glint_core::colour::Rgb565;
 use glint_core::fixed::U4_28;
+use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::texture::{Blend, Sampler, Source, encode};
 use glint_model::{DepthScale, Fog, Frame, MeshSubject, Subject};
 use glint_texture::convert::convert;
+use glint_texture::levels::srgb;
 use glint_texture::options::Options;
 use glint_texture::picture::Picture as Drawing;
 use glint_vectors::camera::Size as Pixels;
@@ -105,10 +107,10 @@ impl Floor {
 }
 
 /// Light that leaves colours unchanged.
-fn full_light() -> glint_core::light::MeshLighting {
-    glint_core::light::MeshLighting {
+fn full_light() -> MeshLighting {
+    MeshLighting {
         ambient: [255; 3],
-        light: glint_core::light::Light::at_camera([0; 3]),
+        light: Light::at_camera([0; 3]),
     }
 }
 
@@ -143,7 +145,7 @@ fn mean_error(floor: Floor) -> Result<Outcome> {
         "no pixel of the floor is in the picture"
     );
     let mean = colours.iter().sum::<f64>() / colours.len() as f64;
-    let exact = f64::from(glint_texture::levels::srgb(0.5));
+    let exact = f64::from(srgb(0.5));
     Ok(Outcome::Error((mean - exact).abs(), "of 255"))
 }
 
