@@ -321,8 +321,9 @@ MUTATIONS = {
     ],
     "texture_queue": [
         _steps("pointer_t'(STEPS - 2)", "pointer_t'(STEPS)", "never_too_full"),
-        _steps("head       <= head + pointer_t'(reads)", "head       <= head + pointer_t'(reads || fills)", "in_order"),
-        _steps("places_end <= places_end + INDEX_BITS'(places_valid)", "places_end <= places_end + INDEX_BITS'(step_valid)", "in_order"),
+        _steps("head + pointer_t'(reads)", "head + pointer_t'(reads || fills)", "in_order"),
+        _steps("head_places <= places[next[", "head_places <= places[head[", "in_order"),
+        _steps("places_end + INDEX_BITS'(places_valid)", "places_end + INDEX_BITS'(step_valid)", "in_order"),
         _steps("reads      <= next_valid && next_missed", "reads      <= next_missed", "nothing_made_up"),
         _steps("fill_second && (left & (left - 4'd1)) == '0", "fill_second", "read_complete"),
         _steps("fills && fill_second && (left", "fills && (left", "read_complete"),
@@ -332,7 +333,7 @@ MUTATIONS = {
         _steps("count == '0;", "count <= pointer_t'(1);", "idle_when_empty"),
         _steps("reads      <= next_valid && next_missed == '0;", "reads      <= next_valid && next_missed == '0 && !reads;", "goes_in_time"),
         _steps("!data_ready && out_room", "!data_ready", "waits_for_room"),
-        _steps("room       <= count <= MOST;", "room       <= count == MOST;", "taken_in_time"),
+        _steps("count <= MOST;", "count == MOST;", "taken_in_time"),
     ],
     "cpu_bus": [
         _cpu_bus("busy.eq(asks_data | asks_instructions)", "busy.eq(asks_data)", "shown"),

@@ -204,7 +204,7 @@ class GlintSoC(SoCCore):
             has_lists = self.draws_triangles or self.draws_lines
             has_geometry = self.geometry and has_lists
             readers = [self._port("read", main_ram, built)
-                       for built in (has_geometry, has_geometry and self.draws_triangles, has_lists)]
+                       for built in (has_geometry, has_geometry and self.draws_triangles, has_lists, has_lists and self.texture)]
             lists = [self._port("write", main_ram, has_geometry) for _ in range(2)]
             frame = [self._port("write", main_ram) for _ in range(2)]
             self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,

@@ -338,7 +338,7 @@ class TriangleEngine(LiteXModule):
             name: getattr(field, name) for name in ("enable", "compose", "done", "valid", *(name for name, _ in _FIELD_GROUP))})
         field_sink = Struct("field_sink_t", "Link from the engine to a raymarcher.", {
             name: getattr(field, name) for name in ("start", "open", "next", "ready")})
-        read_ports = {name: _read_port(port) for name, port in zip(("mesh", "vertex", "raster"), readers, strict=True)}
+        read_ports = {name: _read_port(port) for name, port in zip(("mesh", "vertex", "raster", "texture"), readers, strict=True)}
         write_ports = {name: _write_port(port) for name, port in zip(
             ("descriptors", "lists", "frame_even", "frame_odd"), writers, strict=True)}
         self.package = Package(

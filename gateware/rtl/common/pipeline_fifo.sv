@@ -10,7 +10,7 @@
 // high. An item may also be dropped in the pipeline. `room` comes from a register and depends on the number of items two clocks earlier, so
 // it already falls when FLIGHT + 2 entries are free.
 //
-// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two.
+// Latency 2 clocks, 3 with BLOCK, 1 with DIRECT; throughput one item per clock, or one in two clocks with PAUSE. DEPTH is a power of two.
 // If DEPTH exceeds 2·(FLIGHT + 2), the FIFO does not run empty before `room` is high again. `idle` is high while the FIFO is empty; items
 // in the pipeline have no effect on `idle`.
 
@@ -20,8 +20,9 @@ module pipeline_fifo #(
     parameter int unsigned WIDTH  = 8,
     parameter int unsigned DEPTH  = 16,
     parameter int unsigned FLIGHT = 4,
-    // BLOCK: the FIFO is in block RAM, and each item is followed by a clock without an item.
+    // BLOCK: the FIFO is in block RAM; by default a clock without an item follows each item, as in `fifo`.
     parameter bit          BLOCK  = 1'b0,
+    parameter bit          PAUSE  = BLOCK,
     // No output register, as in `fifo`.
     parameter bit          DIRECT = 1'b0
 ) (
@@ -55,7 +56,7 @@ module pipeline_fifo #(
         end
     end
 
-    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(BLOCK), .DIRECT(DIRECT)) fifo (
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(PAUSE), .DIRECT(DIRECT)) fifo (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 

@@ -2,7 +2,7 @@
 //
 //   blocks ─▶ FIFO ─▶ one after another ─▶ number in the level ─▶ + first block of the level ─▶ FIFO ─▶ ask
 //
-// The blocks of a step are asked for in the order of their classes. Latency 6 clocks, throughput a word a clock. The FIFO of blocks has
+// The blocks of a step are asked for in the order of their classes. Latency 7 clocks, throughput a word a clock. The FIFO of blocks has
 // room for STEPS steps; the source sees to it that there are no more.
 
 `default_nettype none
@@ -36,12 +36,20 @@ module texture_fetch #(
 
     // The lowest class of those that are left is next.
     logic                 step_valid, step_room, step_gone, room, sends, second;
-    logic [3:0]           missed, done, left, next;
-    texture_pkg::blocks_t blocks;
+    logic [3:0]           missed, done, left, next, level;
 
-    fifo #(.WIDTH(4 + $bits(in_blocks)), .DEPTH(STEPS)) steps (
-        .clk, .rst, .in_valid, .in_ready(step_room), .in_data({in_missed, in_blocks}),
-        .out_valid(step_valid), .out_ready(step_gone), .out_data({missed, blocks})
+    // Without the lowest bit of each place: it is the parity, or not used. So a step has 36 bits, the width of half a block RAM.
+    logic [1:0][1:0][7:1] in_places, places;
+
+    for (genvar axis = 0; axis < 2; axis++) begin : shortened
+        for (genvar odd = 0; odd < 2; odd++) begin : each
+            assign in_places[axis][odd] = in_blocks.places[axis][odd][7:1];
+        end
+    end
+
+    fifo #(.WIDTH(36), .DEPTH(STEPS), .BLOCK(1'b1)) steps (
+        .clk, .rst, .in_valid, .in_ready(step_room), .in_data({in_missed, in_blocks.level, in_places}),
+        .out_valid(step_valid), .out_ready(step_gone), .out_data({missed, level, places})
     );
 
     assign left      = missed & ~done;
@@ -62,23 +70,27 @@ module texture_fetch #(
 
     // The block, then its number: the columns of a level's blocks are a power of two.
     logic                    chosen_valid, placed_valid, chosen_second, placed_second, unused_idle;
-    logic [7:0]              column, row, chosen_column, chosen_row;
+    logic [7:0]              chosen_column, chosen_row;
+    logic [7:1]              column, row;
+    logic                    odd_column, odd_row;
     logic [15:0]             placed;
     logic [3:0]              columns_log2, level_columns_log2, block_log2;
     logic [ADDRESS_BITS-1:0] chosen_first, placed_first, address;
 
-    assign column             = next[1] || next[3] ? blocks.places[0][1] : blocks.places[0][0];
-    assign row                = next[2] || next[3] ? blocks.places[1][1] : blocks.places[1][0];
+    assign odd_column         = next[1] || next[3];
+    assign odd_row            = next[2] || next[3];
+    assign column             = places[0][odd_column];
+    assign row                = places[1][odd_row];
     assign block_log2         = format != 2'd0 ? 4'd3 : 4'd2;
-    assign level_columns_log2 = width_log2 - blocks.level - block_log2;
+    assign level_columns_log2 = width_log2 - level - block_log2;
 
     always_ff @(posedge clk) begin
         chosen_valid  <= sends && !rst;
         chosen_second <= second;
-        chosen_column <= format != 2'd0 ? column >> 1 : column;
-        chosen_row    <= format[1] ? row >> 1 : row;
-        columns_log2  <= {1'b0, width_log2} < {1'b0, blocks.level} + {1'b0, block_log2} ? '0 : level_columns_log2;
-        chosen_first  <= firsts[blocks.level];
+        chosen_column <= format != 2'd0 ? {1'b0, column} : {column, odd_column};
+        chosen_row    <= format[1] ? {1'b0, row} : {row, odd_row};
+        columns_log2  <= {1'b0, width_log2} < {1'b0, level} + {1'b0, block_log2} ? '0 : level_columns_log2;
+        chosen_first  <= firsts[level];
 
         placed_valid  <= chosen_valid && !rst;
         placed_second <= chosen_second;
@@ -93,7 +105,7 @@ module texture_fetch #(
         .out_valid(ask_valid), .out_ready(ask_ready), .out_data(ask_addr)
     );
 
-    wire _unused = &{1'b0, step_room, unused_idle};
+    wire _unused = &{1'b0, step_room, unused_idle, in_blocks.places};
 endmodule
 
 `default_nettype wire

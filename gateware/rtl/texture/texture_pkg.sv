@@ -63,7 +63,7 @@ package texture_pkg;
     localparam int unsigned LIGHT  = 5;
     localparam int unsigned FILTER = 9;
     // Most steps that wait for their texels in the sampler's queue.
-    localparam int unsigned STEPS  = 64;
+    localparam int unsigned STEPS  = 256;
     /* verilator lint_on UNUSEDPARAM */
 endpackage
 

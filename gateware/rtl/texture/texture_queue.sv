@@ -1,12 +1,12 @@
 // The queue of steps between tags and texels. At its head, the missed blocks of a step are filled, a word of memory a clock; then it
 // leaves and reads. So no block is replaced before the steps that were looked up earlier have read it, and each step finds its blocks.
 //
-//   step ───────────▶ memory ─┐
-//   places ─────────▶ memory ─┼──▶ head: fill clocks, then one that reads
-//   misses ─▶ FIFO ───────────┘
+//   step ───▶ block RAM ─┐
+//   places ─▶ block RAM ─┼──▶ head: fill clocks, then one that reads
+//   misses ─▶ FIFO ──────┘
 //
-// The parts of a step arrive at different times, each in the order of the steps; it is in the queue when its misses have come. `room` is
-// high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks, throughput a step a clock.
+// The parts of a step arrive at different times, each in the order of the steps; it is in the queue when its misses have come, after the
+// other parts. `room` is high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks, throughput a step a clock.
 // Outputs: in a clock with `fills` or `reads`, the step at the head. After `out_room` has fallen, at most two steps leave: one at once, and
 // the one that is being filled.
 
@@ -43,23 +43,24 @@ module texture_queue #(
     // A step may come in the clock in which `room` is computed, and in the next one.
     localparam pointer_t MOST = pointer_t'(STEPS - 2);
 
-    (* ram_style = "distributed", no_rw_check *) logic [$bits(in_step)-1:0] steps [0:STEPS-1];
-    (* ram_style = "distributed", no_rw_check *) logic [27:0] places [0:STEPS-1];
-    pointer_t              step_end, head, count;
+    (* ram_style = "block", no_rw_check *) logic [$bits(in_step)-1:0] steps [0:STEPS-1];
+    (* ram_style = "block", no_rw_check *) logic [27:0] places [0:STEPS-1];
+    pointer_t              step_end, head, next, count;
     logic [INDEX_BITS-1:0] places_end;
 
-    assign count      = step_end - head;
-    assign idle        = count == '0;
-    assign head_step   = steps[head[INDEX_BITS-1:0]];
-    assign head_places = places[head[INDEX_BITS-1:0]];
+    assign count = step_end - head;
+    assign idle  = count == '0;
+    assign next  = head + pointer_t'(reads);
 
     always_ff @(posedge clk) begin
         if (step_valid) steps[step_end[INDEX_BITS-1:0]] <= in_step;
         if (places_valid) places[places_end] <= in_places;
-        step_end   <= step_end + pointer_t'(step_valid);
-        places_end <= places_end + INDEX_BITS'(places_valid);
-        head       <= head + pointer_t'(reads);
-        room       <= count <= MOST;
+        head_step   <= steps[next[INDEX_BITS-1:0]];
+        head_places <= places[next[INDEX_BITS-1:0]];
+        step_end    <= step_end + pointer_t'(step_valid);
+        places_end  <= places_end + INDEX_BITS'(places_valid);
+        head        <= next;
+        room        <= count <= MOST;
         if (rst) begin
             step_end   <= '0;
             places_end <= '0;

@@ -22,8 +22,8 @@ module texture_shader #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned GROUP_BITS   = 8,
     parameter int unsigned FLIGHT       = 5,
-    // Most groups inside, a power of two. Each has one or two quads, and a quad takes some 60 clocks if no block is missing.
-    parameter int unsigned GROUPS       = 64
+    // Most groups inside, a power of two. They fill the sampler's queue: each has one or two quads.
+    parameter int unsigned GROUPS       = 256
 ) (
     input  wire                    clk,
     input  wire                    rst,
@@ -60,7 +60,7 @@ module texture_shader #(
 
     assign is_textured = in_texture.texture != '0;
 
-    pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(GROUPS), .FLIGHT(FLIGHT)) groups (
+    pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(GROUPS), .FLIGHT(FLIGHT), .BLOCK(1'b1), .PAUSE(1'b0)) groups (
         .clk, .rst, .idle, .room(groups_room), .in_valid, .in_data({is_textured, in_colour, in_group}),
         .out_valid(group_valid), .out_ready(group_gone), .out_data({group_textured, group_colour, out_group})
     );
@@ -199,7 +199,7 @@ module texture_shader #(
         .clk, .enable(1'b1), .in(step_valid && step_last), .out(light_gone)
     );
 
-    fifo #(.WIDTH(24), .DEPTH(GROUPS)) lights (
+    fifo #(.WIDTH(24), .DEPTH(GROUPS), .BLOCK(1'b1)) lights (
         .clk, .rst, .in_valid(sends && !second), .in_ready(light_room), .in_data(texture.light),
         .out_valid(light_valid), .out_ready(light_gone), .out_data(light)
     );

@@ -38,10 +38,10 @@
 // address, of the picture's size or of the clear colour, or after a write by the CPU). `depth` implies `whole`. All words are also written
 // if the slot holds no complete frame: after reset, and after a cancelled frame.
 //
-// Memory: four clients of a read_port, the last one with TEXTURE alone, and two native write ports, one for the words in even banks of the
-// DDR3 memory and one for the words in odd banks. 128 successive words of a frame lie in one bank, and the following words in the next
-// bank. A port only switches to another bank when the previous bank is idle, a dozen clocks later. With two ports, one port writes while
-// the other port waits for its bank.
+// Memory: clients of read_ports, three for lists and descriptors and, with TEXTURE, one for texels; and two native write ports, one for the
+// words in even banks of the DDR3 memory and one for the words in odd banks. 128 successive words of a frame lie in one bank, and the
+// following words in the next bank. A port only switches to another bank when the previous bank is idle, a dozen clocks later. With two
+// ports, one port writes while the other port waits for its bank.
 
 `default_nettype none
 

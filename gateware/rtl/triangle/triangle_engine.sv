@@ -72,6 +72,8 @@ module triangle_engine #(
     input  wire triangle_registers_pkg::read_answer_t vertex_read_answer,
     output triangle_registers_pkg::read_request_t raster_read_request,
     input  wire triangle_registers_pkg::read_answer_t raster_read_answer,
+    output triangle_registers_pkg::read_request_t texture_read_request,
+    input  wire triangle_registers_pkg::read_answer_t texture_read_answer,
     output triangle_registers_pkg::write_request_t descriptors_write_request,
     input  wire triangle_registers_pkg::write_answer_t descriptors_write_answer,
     output triangle_registers_pkg::write_request_t lists_write_request,
@@ -83,8 +85,6 @@ module triangle_engine #(
 );
     localparam int unsigned ADDRESS_BITS   = triangle_registers_pkg::ADDRESS_BITS;
     localparam int unsigned RASTER_CLIENTS = 4;
-    // The client that reads textures is only built with TEXTURE.
-    localparam int unsigned BUILT_CLIENTS  = TEXTURE ? 4 : 3;
     // Three clients of the geometry pass read the mesh, the vertices and the texture coordinates.
     localparam int unsigned CLIENTS        = 3 + RASTER_CLIENTS;
     localparam int unsigned VERTEX_CLIENTS = TEXTURE ? 2 : 1;
@@ -92,7 +92,7 @@ module triangle_engine #(
     logic [CLIENTS-1:0]              ask_valid, ask_ready, data_valid, data_ready;
     logic [CLIENTS*ADDRESS_BITS-1:0] ask_addr;
     logic [CLIENTS*128-1:0]          data;
-    logic [2:0]                      ports_idle;
+    logic [3:0]                      ports_idle;
     logic                            dropping, drop, raster_ready;
 
     assign drop = cancel || dropping;
@@ -158,11 +158,10 @@ module triangle_engine #(
 
     if (TRIANGLES || LINES) begin : descriptors
         // The FIFOs of list words and of descriptor words are in block RAM, which is less scarce in the FPGA than LUTs.
-        read_port #(.CLIENTS(BUILT_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(BUILT_CLIENTS'(4'b1110))) raster_read (
+        read_port #(.CLIENTS(3), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
             .clk, .rst, .drop, .idle(ports_idle[2]),
-            .ask_valid(ask_valid[3 +: BUILT_CLIENTS]), .ask_ready(ask_ready[3 +: BUILT_CLIENTS]),
-            .ask_addr(ask_addr[3*ADDRESS_BITS +: BUILT_CLIENTS*ADDRESS_BITS]), .data_valid(data_valid[3 +: BUILT_CLIENTS]),
-            .data_ready(data_ready[3 +: BUILT_CLIENTS]), .data(data[3*128 +: BUILT_CLIENTS*128]),
+            .ask_valid(ask_valid[5:3]), .ask_ready(ask_ready[5:3]), .ask_addr(ask_addr[6*ADDRESS_BITS-1:3*ADDRESS_BITS]),
+            .data_valid(data_valid[5:3]), .data_ready(data_ready[5:3]), .data(data[6*128-1:3*128]),
             .cmd_valid(raster_read_request.cmd_valid), .cmd_ready(raster_read_answer.cmd_ready), .cmd_addr(raster_read_request.cmd_addr),
             .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
         );
@@ -173,9 +172,20 @@ module triangle_engine #(
         wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[5:3], ask_addr[6*ADDRESS_BITS-1:3*ADDRESS_BITS], data_ready[5:3]};
     end
 
-    if (!TEXTURE || !TRIANGLES && !LINES) begin : no_textures
+    // Texels have a port of their own: behind lists and descriptors they would come later than the queue of the sampler can wait.
+    if (TEXTURE && (TRIANGLES || LINES)) begin : texels
+        read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(1'b1)) texture_read (
+            .clk, .rst, .drop, .idle(ports_idle[3]),
+            .ask_valid(ask_valid[6]), .ask_ready(ask_ready[6]), .ask_addr(ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS]),
+            .data_valid(data_valid[6]), .data_ready(data_ready[6]), .data(data[7*128-1:6*128]),
+            .cmd_valid(texture_read_request.cmd_valid), .cmd_ready(texture_read_answer.cmd_ready),
+            .cmd_addr(texture_read_request.cmd_addr), .rdata_valid(texture_read_answer.rdata_valid), .rdata(texture_read_answer.rdata)
+        );
+    end else begin : no_texels
+        assign texture_read_request = '0;
         assign {ask_ready[6], data_valid[6], data[7*128-1:6*128]} = '0;
-        wire _unused = &{1'b0, ask_valid[6], ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS], data_ready[6]};
+        assign ports_idle[3] = 1'b1;
+        wire _unused = &{1'b0, texture_read_answer, ask_valid[6], ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS], data_ready[6]};
     end
 
     raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .SKY(SKY), .FOG(FOG), .FIELDS(FIELDS), .LINES(LINES),
@@ -192,14 +202,15 @@ module triangle_engine #(
 
     // LiteDRAM answers one read port at a time and takes data from one write port at a time, so `items_in` and `items_out` increase by at
     // most 1 per clock.
-    logic [2:0] stalled_reads;
+    logic [3:0] stalled_reads;
     logic [1:0] stalled_lists, stalled_frame;
 
     // These signals are registered, because the ready signal of a command ends a long path in LiteDRAM.
     always_ff @(posedge clk) begin
         stalled_reads <= {mesh_read_request.cmd_valid && !mesh_read_answer.cmd_ready,
                           vertex_read_request.cmd_valid && !vertex_read_answer.cmd_ready,
-                          raster_read_request.cmd_valid && !raster_read_answer.cmd_ready};
+                          raster_read_request.cmd_valid && !raster_read_answer.cmd_ready,
+                          texture_read_request.cmd_valid && !texture_read_answer.cmd_ready};
         stalled_lists <= {descriptors_write_request.cmd_valid && !descriptors_write_answer.cmd_ready,
                           lists_write_request.cmd_valid && !lists_write_answer.cmd_ready};
         stalled_frame <= {frame_even_write_request.cmd_valid && !frame_even_write_answer.cmd_ready,
@@ -212,7 +223,8 @@ module triangle_engine #(
         port_events.stalled_lists = stalled_lists != '0;
         port_events.stalled_frame = stalled_frame != '0;
         port_events.cycles_stalled = port_events.stalled_reads || port_events.stalled_lists || port_events.stalled_frame;
-        port_events.items_in  = mesh_read_answer.rdata_valid || vertex_read_answer.rdata_valid || raster_read_answer.rdata_valid;
+        port_events.items_in  = mesh_read_answer.rdata_valid || vertex_read_answer.rdata_valid || raster_read_answer.rdata_valid
+                             || texture_read_answer.rdata_valid;
         port_events.items_out = descriptors_write_request.wdata_valid && descriptors_write_answer.wdata_ready
                              || lists_write_request.wdata_valid && lists_write_answer.wdata_ready
                              || frame_even_write_request.wdata_valid && frame_even_write_answer.wdata_ready

@@ -69,7 +69,7 @@ pub struct Bench {
     counters: Counters,
     layout: Layout,
     pub memory: Memory,
-    pub reads: [ReadPort; 3],
+    pub reads: [ReadPort; 4],
     writes: [WritePort; 4],
     /// Whether frames are drawn, and compared, with depths.
     pub with_depth: bool,
@@ -110,7 +110,7 @@ impl Bench {
         let seed = u64::from(seed);
         Self {
             memory: Memory::new(WORDS),
-            reads: ["mesh", "vertex", "raster"]
+            reads: ["mesh", "vertex", "raster", "texture"]
                 .map(|name| ReadPort::new(&module, name, Stalls::new(seed, stalls))),
             writes: ["descriptors", "lists", "frame_even", "frame_odd"]
                 .map(|name| WritePort::new(&module, name, Stalls::new(seed + 1, stalls))),

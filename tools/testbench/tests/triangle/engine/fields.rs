@@ -153,7 +153,7 @@ fn fields_are_drawn_without_triangles() {
             draw(&mut bench, &mut random, name, picture);
         }
         let read = bench.reads.each_ref().map(|port| port.given);
-        assert_eq!(read, [0; 3], "words read");
+        assert_eq!(read, [0; 4], "words read");
     }
     // Without the depth buffer the colours are unchanged, and depths are written as 0.
     let mut bench = Bench::of("no_depths", 3, 0.4);
