@@ -64,7 +64,7 @@ impl Frame<'_> {
         constants: &'s FrameConstants,
         number: usize,
     ) -> Option<PreparedMesh<'s>> {
-        let (subject, options) = self.subject.numbered_mesh(number, constants.light())?;
+        let (subject, options) = self.numbered_mesh(number, constants.light())?;
         Some(PreparedMesh {
             mesh: subject.mesh,
             frame: constants.numbered_mesh(self, number).ok()??,

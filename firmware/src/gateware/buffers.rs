@@ -182,25 +182,39 @@ impl TextureTable {
         (self.count, self.blends) = (0, false);
     }
 
-    /// Adds the textures of a mesh to the table if they are new, and returns them for the geometry pass;
-    /// `None` for a mesh without textures or coordinates.
+    /// Adds the textures of a mesh to the table if they are new, or as many entries of `other`, which is drawn in place of them. Returns
+    /// the textures for the geometry pass; `None` for a mesh without textures or coordinates.
     ///
     /// # Errors
     /// The table is full.
-    pub fn of_mesh<'a>(&mut self, mesh: &Mesh<'a>) -> Result<Option<Textures<'a>>, Fallback> {
+    pub fn of_mesh<'a>(
+        &mut self,
+        mesh: &Mesh<'a>,
+        other: Option<&Texture>,
+    ) -> Result<Option<Textures<'a>>, Fallback> {
         let coordinates = mesh.attribute(Attribute::TextureCoordinates);
         let Some((coordinates, first)) = coordinates.zip(mesh.textures().next()) else {
             return Ok(None);
         };
         // The textures of a mesh follow each other in the table.
-        let first = self.number(&first);
-        let fits = mesh
-            .textures()
-            .all(|texture| self.number(&texture).is_some());
-        let first = first.filter(|_| fits).ok_or(Fallback::TooManyTextures)?;
+        let before = match other {
+            Some(other) => {
+                // All meshes of the frame show this texture, so they share its entries.
+                let mut missing = mesh.textures().skip(self.count);
+                missing.all(|_| self.add(other).is_some()).then_some(0)
+            }
+            None => {
+                let first = self.number(&first);
+                let fits = mesh
+                    .textures()
+                    .all(|texture| self.number(&texture).is_some());
+                first.filter(|_| fits).map(|first| first - 1)
+            }
+        };
+        let before = before.ok_or(Fallback::TooManyTextures)?;
         Ok(Some(Textures {
             coordinates,
-            before: first - 1,
+            before,
         }))
     }
 
@@ -208,11 +222,16 @@ impl TextureTable {
     pub fn number(&mut self, texture: &Texture) -> Option<u8> {
         let address = address(texture.bytes());
         let known = self.addresses.get(1..=self.count).unwrap_or_default();
-        if let Some(place) = known.iter().rposition(|&known| known == address) {
-            return u8::try_from(place + 1).ok();
+        match known.iter().rposition(|&known| known == address) {
+            Some(place) => u8::try_from(place + 1).ok(),
+            None => self.add(texture),
         }
+    }
+
+    /// Adds a texture to the table, and returns its number; `None` if the table is full.
+    fn add(&mut self, texture: &Texture) -> Option<u8> {
         let next = self.count + 1;
-        *self.addresses.get_mut(next)? = address;
+        *self.addresses.get_mut(next)? = address(texture.bytes());
         self.count = next;
         self.blends |= texture.blend() != Blend::Opaque;
         u8::try_from(next).ok()

@@ -122,7 +122,9 @@ impl GeometryPasses {
         };
         let setup = job.constants.mesh_setup(job.frame, number, &mut self.own)?;
         let textures = if TEXTURE.is_built && subject.has_textures() {
-            job.buffers.textures.of_mesh(&subject.mesh)?
+            job.buffers
+                .textures
+                .of_mesh(&subject.mesh, job.frame.texture.as_ref())?
         } else {
             None
         };
@@ -198,10 +200,7 @@ impl GeometryPasses {
     #[inline(never)]
     fn clip(&mut self, job: &mut Job, number: usize, counts: &Counts) -> Result<(), Fallback> {
         let buffers = &mut *job.buffers;
-        let subject = job
-            .frame
-            .subject
-            .numbered_mesh(number, job.constants.light());
+        let subject = job.frame.numbered_mesh(number, job.constants.light());
         let setup = job.constants.numbered_mesh(job.frame, number)?;
         let both = subject.zip(setup.as_ref());
         let ((subject, options), setup) = both.ok_or(EngineError::from(Error::Size))?;

@@ -13,6 +13,7 @@ use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
+use glint_core::texture::Texture;
 
 use crate::raymarch::FieldOptions;
 use crate::triangle::{Clip, MeshLight, Options, Placement};
@@ -36,6 +37,8 @@ pub struct Frame<'a> {
     pub fog: U4_28,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
+    /// A texture that all faces with a texture show in place of their own; `None` for their own textures.
+    pub texture: Option<Texture<'a>>,
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
 }
@@ -218,26 +221,6 @@ impl<'a> Subject<'a> {
         Some((self.mesh_part()?, is_hidden.then_some(Rgb565(0))))
     }
 
-    /// The mesh with this number, and its drawing options under the light [`FrameConstants::light`](super::FrameConstants::light); `None`
-    /// after the last mesh. The option `clear` has no effect.
-    pub fn numbered_mesh<'s>(
-        &'s self,
-        number: usize,
-        light: Option<&'s MeshLight>,
-    ) -> Option<(&'s MeshSubject<'a>, Options<'s>)> {
-        let (subject, colour) = self.coloured_mesh(number)?;
-        let object = self.objects().and_then(|objects| objects.get(number));
-        let placement = object.map(|object| &object.placement);
-        let options = Options {
-            colour,
-            light,
-            normals: placement.and_then(Placement::normals),
-            lit_in_world: placement.is_some_and(Placement::has_normals_in_world),
-            ..subject.options()
-        };
-        Some((subject, options))
-    }
-
     /// The field, if the subject has one.
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
@@ -269,6 +252,7 @@ impl<'a> Frame<'a> {
             sky: None,
             fog: U4_28::ZERO,
             lighting: MeshLighting::CAMERA,
+            texture: None,
             stereo: None,
         }
     }
@@ -299,6 +283,30 @@ impl<'a> Frame<'a> {
             lighting: appearance.mesh_lighting(),
             ..Self::new(subject, view, size)
         }
+    }
+
+    /// The mesh with this number, and its drawing options under the light [`FrameConstants::light`](super::FrameConstants::light); `None`
+    /// after the last mesh. The option `clear` has no effect.
+    pub fn numbered_mesh<'s>(
+        &'s self,
+        number: usize,
+        light: Option<&'s MeshLight>,
+    ) -> Option<(&'s MeshSubject<'a>, Options<'s>)> {
+        let (subject, colour) = self.subject.coloured_mesh(number)?;
+        let object = self
+            .subject
+            .objects()
+            .and_then(|objects| objects.get(number));
+        let placement = object.map(|object| &object.placement);
+        let options = Options {
+            colour,
+            light,
+            normals: placement.and_then(Placement::normals),
+            texture: self.texture.as_ref(),
+            lit_in_world: placement.is_some_and(Placement::has_normals_in_world),
+            ..subject.options()
+        };
+        Some((subject, options))
     }
 
     /// The density of the fog on the meshes, and its colour, that of the background at the horizon: the frame's or, for a mesh in a field,

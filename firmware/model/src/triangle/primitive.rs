@@ -4,6 +4,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
+use glint_core::texture::Texture;
 
 use crate::triangle::clip::{Cut, TexturedVertex, clip, off_picture};
 use crate::triangle::facing::Facing;
@@ -35,6 +36,8 @@ pub struct Options<'a> {
     pub lit_in_world: bool,
     /// Whether the textures of the mesh are drawn.
     pub textures: bool,
+    /// A texture that is drawn in place of the textures of the mesh.
+    pub texture: Option<&'a Texture<'a>>,
 }
 
 impl Options<'_> {
@@ -77,6 +80,7 @@ impl Default for Options<'_> {
             normals: None,
             lit_in_world: false,
             textures: true,
+            texture: None,
         }
     }
 }

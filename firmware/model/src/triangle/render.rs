@@ -332,7 +332,7 @@ impl<'a, 'b> Renderer<'a, 'b> {
         Self {
             frame: *frame,
             options: *options,
-            textures: MeshTextures::new(mesh, options.textures),
+            textures: MeshTextures::new(mesh, options.textures, options.texture),
             emit,
             stats: Stats::default(),
         }

@@ -64,22 +64,26 @@ impl OfTexture {
     }
 }
 
-/// The textures of a mesh, and the coordinates of its vertices.
+/// The textures on a mesh, and the coordinates of its vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshTextures<'a> {
     mesh: Mesh<'a>,
+    /// The texture that is drawn in place of the textures of the mesh.
+    other: Option<&'a Texture<'a>>,
     coordinates: &'a [u8],
 }
 
 impl<'a> MeshTextures<'a> {
-    /// The textures of a mesh; `None` if the mesh has no textures or no texture coordinates, or if textures are not drawn.
-    pub fn new(mesh: &Mesh<'a>, is_drawn: bool) -> Option<Self> {
+    /// The textures of a mesh, or `other` in place of each of them; `None` if the mesh has no textures or no texture coordinates, or if
+    /// textures are not drawn.
+    pub fn new(mesh: &Mesh<'a>, is_drawn: bool, other: Option<&'a Texture<'a>>) -> Option<Self> {
         if !(TEXTURE.is_built && is_drawn && mesh.has_textures()) {
             return None;
         }
         let coordinates = mesh.attribute(Attribute::TextureCoordinates)?;
         Some(Self {
             mesh: *mesh,
+            other,
             coordinates,
         })
     }
@@ -88,7 +92,10 @@ impl<'a> MeshTextures<'a> {
     /// number in the mesh of the first vertex of the triangle's chunk.
     pub fn of(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
         let number = usize::from(triangle.texture).checked_sub(1)?;
-        let texture = self.mesh.textures().nth(number)?;
+        let texture = match self.other {
+            Some(texture) => *texture,
+            None => self.mesh.textures().nth(number)?,
+        };
         let coordinates = triangle.indices.map(|index| {
             let at = TextureCoordinates::BYTES * (first + usize::from(index));
             let element = self.coordinates.get(at..).and_then(<[u8]>::first_chunk);

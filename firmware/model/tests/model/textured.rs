@@ -3,7 +3,7 @@
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting};
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{ChunkHeader, Mesh, MeshHeader, Triangle, Vertex};
 use glint_core::picture::Size;
 use glint_core::texture::{Blend, Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::setup::Plane;
@@ -148,6 +148,7 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
             ambient: [0xFF; 3],
             light: Light::at_camera([0; 3]),
         },
+        texture: None,
         stereo: None,
     }
 }
@@ -274,6 +275,49 @@ fn blended_texels_keep_the_depth_behind_them() {
             (hidden.colour, hidden.depth),
             (below.colour.clone(), below.depth.clone())
         );
+    }
+}
+
+/// A texture in place of others gives the picture of a mesh with this texture. A face without a texture keeps its colour.
+#[test]
+fn a_texture_replaces_those_of_the_mesh() {
+    let texture = |colour: u16, blend| {
+        let texture = encode(&Source {
+            size_log2: [3, 3],
+            blend,
+            levels: vec![vec![colour; 64]],
+            ..Source::default()
+        });
+        texture.unwrap()
+    };
+    let other = texture(0x07E0, Blend::Opaque);
+    let own = [
+        texture(0xF800, Blend::Opaque),
+        texture(0x001F, Blend::Additive),
+    ];
+    // The first half of the first layer has no texture.
+    let first = MeshHeader::BYTES + ChunkHeader::BYTES + 8 * Vertex::BYTES;
+    let [own, same] = [&own[..], &[other.clone(), other.clone()]].map(|textures| {
+        let mut bytes = textured_layers(textures, 0.3, 0.2);
+        bytes[first + Triangle::TEXTURE.start] = 0;
+        bytes
+    });
+    let [own, same] = [&own, &same].map(|bytes| Mesh::new_checked(bytes).unwrap());
+    // Some triangles are clipped.
+    let camera = Camera::looking([0.3, -1.9, 0.3], [0.2, 1.0, 0.0], 0.8, 0.02);
+    for shading in [Shading::Flat, Shading::Smooth] {
+        let replaced = Frame {
+            texture: Some(Texture::new_checked(&other).unwrap()),
+            ..frame(own, &camera, shading)
+        };
+        let [replaced, same, own] = [
+            replaced,
+            frame(same, &camera, shading),
+            frame(own, &camera, shading),
+        ]
+        .map(|frame| Picture::of_frame(&frame));
+        assert!(replaced.colour == same.colour && replaced.depth == same.depth);
+        assert!(replaced.colour != own.colour);
     }
 }
 
