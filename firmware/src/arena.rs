@@ -7,7 +7,7 @@ use core::slice;
 
 use glint_core::allocator::{Allocator, Region};
 
-/// Largest number of uploads: the meshes, a program, and a new upload that is to replace one of them.
+/// Largest number of uploads: meshes and textures, a program, and a new upload that is to replace one of them.
 const UPLOADS: usize = 18;
 
 /// Memory that a task fills or sends over several turns. Until it is given back, no other reference to it exists.

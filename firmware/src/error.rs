@@ -15,7 +15,7 @@ use glint_engines::gesture::SetUpError;
 use glint_scene::{LineError, SettingError};
 
 use crate::gateware::Fallback;
-use crate::models::{MAX_MESHES, NameError};
+use crate::models::{MAX_UPLOADS, NameError, UploadError};
 use crate::picture::DrawError;
 use crate::scenes::{BuiltIn, DEFAULT, SCENES};
 use crate::sensor::{CalibrationError, SensorError};
@@ -47,8 +47,8 @@ pub enum CommandError<'l> {
         /// The mesh.
         mesh: &'l str,
     },
-    /// The mesh of this name in the flash is invalid.
-    FlashMesh(&'l str, Deviation),
+    /// The mesh or texture of this name in the flash is refused.
+    FlashItem(&'l str, UploadError),
     /// The gateware lacks these blocks, one bit each, which the scene of this name needs.
     Blocks(&'l str, u32),
     /// This build lacks parts of the firmware that this scene needs.
@@ -70,15 +70,15 @@ pub enum CommandError<'l> {
         /// Length of the free memory in bytes.
         free: usize,
     },
-    /// A mesh cannot be uploaded under this name.
-    MeshName(&'l str, NameError),
-    /// The mesh of this name cannot be removed, because the object with this number, from 1, uses it;
-    /// `None` if no uploaded mesh has the name.
+    /// Nothing can be uploaded under this name.
+    UploadName(&'l str, NameError),
+    /// The upload of this name cannot be removed, because the object with this number, from 1, uses it;
+    /// `None` if no upload has the name.
     Unload(&'l str, Option<u32>),
     /// A transfer failed.
     Transfer(Failure),
-    /// The upload is not a mesh, or one of too many triangles.
-    Mesh(Deviation),
+    /// The upload of a mesh or a texture is refused.
+    Upload(UploadError),
     /// The upload is not a wireframe program.
     Program(ProgramError<'static>),
     /// A key of the wireframe was pressed while no wireframe is shown.
@@ -124,9 +124,9 @@ impl CommandError<'_> {
             Self::Flash(..) => 2,
             Self::Scene(_) => 3,
             Self::NoMesh { .. }
-            | Self::FlashMesh(..)
+            | Self::FlashItem(..)
             | Self::TooLong { .. }
-            | Self::MeshName(..) => 4,
+            | Self::UploadName(..) => 4,
             Self::Blocks(..) => 5,
             Self::Features(_) | Self::LeftOut(_) => 6,
             Self::Line(..) => 7,
@@ -140,7 +140,7 @@ impl CommandError<'_> {
             | Self::Engine(..)
             | Self::Unload(..)
             | Self::Transfer(..)
-            | Self::Mesh(..)
+            | Self::Upload(..)
             | Self::Program(..)
             | Self::NoWireframe
             | Self::Reach
@@ -201,8 +201,8 @@ impl Display for CommandError<'_> {
                 f,
                 "scene {name}: no mesh `{mesh}`, expected a built-in one, or one of the flash"
             ),
-            Self::FlashMesh(name, error) => {
-                DEMO.when_built(|| write!(f, "mesh {name} of the flash: {error}"))
+            Self::FlashItem(name, error) => {
+                DEMO.when_built(|| write!(f, "{name} of the flash: {error}"))
             }
             Self::Blocks(name, lacks) => {
                 write!(f, "scene {name}: this gateware lacks")?;
@@ -227,28 +227,29 @@ impl Display for CommandError<'_> {
             Self::Engine(error) => error.fmt(f),
             Self::TooLong { name, bytes, free } => write!(
                 f,
-                "{name} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of a mesh"
+                "{name} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of an upload"
             ),
-            Self::MeshName(name, error) => {
+            Self::UploadName(name, error) => {
                 write!(f, "load `{name}`: ")?;
                 match error {
                     NameError::Scene => f.write_str("the name of a scene, expected another name"),
+                    NameError::Own => f.write_str("the word for own textures, expected another name"),
                     NameError::Full => write!(
                         f,
-                        "{MAX_MESHES} meshes, expected at most {MAX_MESHES}; `unload NAME` removes one"
+                        "{MAX_UPLOADS} uploads, expected at most {MAX_UPLOADS}; `unload NAME` removes one"
                     ),
                 }
             }
             Self::Unload(name, None) => write!(
                 f,
-                "unload `{name}`: expected an uploaded mesh, `models` lists them"
+                "unload `{name}`: expected an upload, `models` lists them"
             ),
             Self::Unload(name, Some(number)) => write!(
                 f,
                 "unload `{name}`: the mesh of object {number}, expected `object remove {number}` first"
             ),
             Self::Transfer(error) => error.fmt(f),
-            Self::Mesh(error) => UPLOAD.when_built(|| write!(f, "load: mesh refused, previous meshes kept: {error}")),
+            Self::Upload(error) => UPLOAD.when_built(|| write!(f, "load: refused, previous uploads kept: {error}")),
             Self::Program(error) => WIREFRAME.when_built(|| write!(f, "program: previous scene kept: {error}")),
             Self::NoWireframe => f.write_str(
                 "press: no wireframe shown, expected `program` first",

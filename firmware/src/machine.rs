@@ -1,6 +1,7 @@
 //! The state of the machine.
 
 use glint_core::block::Block;
+use glint_core::feature::TEXTURE;
 use glint_hal::digits::Digits;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
@@ -147,6 +148,16 @@ impl Machine {
     /// Whether a new frame is needed.
     pub fn needs_picture(&self) -> bool {
         self.picture.is_outdated(&self.scene, &self.models)
+    }
+
+    /// Prints a note if the scene has a texture that no face of the shown meshes can show.
+    pub fn note_texture(&mut self) {
+        let models = &self.models;
+        if TEXTURE.is_built && self.scene.lacks_textured_faces(|name| models.known(name)) {
+            self.terminal.print(format_args!(
+                "note: texture: no shown mesh has faces with a texture, so the picture does not change; `scene crate` shows one\n"
+            ));
+        }
     }
 
     /// Takes back memory that was lent for a transfer or a replay.

@@ -1,11 +1,14 @@
-//! Meshes and wireframe programs, built-in and uploaded, and the staging memory for the next upload.
+//! Meshes, textures and wireframe programs, built-in and uploaded, and the staging memory for the next upload.
 
-use core::slice;
+use core::mem::discriminant;
+use core::{fmt, mem, slice};
 
 use glint_core::allocator::Region;
 use glint_core::deviation::Deviation;
+use glint_core::feature::TEXTURE;
 use glint_core::mesh::Mesh;
 use glint_core::shape::Shape;
+use glint_core::texture::{self, Texture};
 use glint_core::wireframe::{Program, ProgramError};
 use glint_model::Frame;
 use glint_scene::{Assets, Name, Scene};
@@ -15,15 +18,41 @@ use crate::arena::{Arena, Loan};
 use crate::objects::Objects;
 use crate::shapes::Shapes;
 
-/// Name of a mesh that is uploaded without a name.
+/// Name of an upload without a name.
 pub const MODEL: &str = "model";
-/// Largest number of uploaded meshes.
-pub const MAX_MESHES: usize = 16;
+/// Largest number of uploaded meshes and textures.
+pub const MAX_UPLOADS: usize = 16;
 
-/// A mesh and its name.
-struct Named {
+/// A mesh or a texture, with its name and its memory.
+struct Upload {
     name: Name,
-    mesh: Mesh<'static>,
+    content: Content,
+    region: Region,
+}
+
+/// The content of an upload.
+#[derive(Clone, Copy)]
+enum Content {
+    Mesh(Mesh<'static>),
+    Texture(Texture<'static>),
+}
+
+impl Content {
+    /// Checks an upload. Its first bytes state whether it is a texture.
+    fn new_checked(bytes: &'static [u8], most_triangles: u32) -> Result<Self, Deviation> {
+        if TEXTURE.is_built && bytes.starts_with(&texture::MAGIC) {
+            return Texture::new_alone(bytes).map(Self::Texture);
+        }
+        let mesh = Mesh::new_checked(bytes)?.with_at_most(most_triangles)?;
+        Ok(Self::Mesh(mesh))
+    }
+
+    const fn bytes(&self) -> &'static [u8] {
+        match self {
+            Self::Mesh(mesh) => mesh.bytes(),
+            Self::Texture(texture) => texture.bytes(),
+        }
+    }
 }
 
 /// Reason why a name is not allowed for an upload.
@@ -31,16 +60,40 @@ struct Named {
 pub enum NameError {
     /// The name is the name of a scene.
     Scene,
-    /// There are [`MAX_MESHES`] meshes with other names.
+    /// The name is the word for the own textures of meshes.
+    Own,
+    /// There are [`MAX_UPLOADS`] uploads with other names.
     Full,
+}
+
+/// Reason why an upload is refused.
+#[derive(Clone, Copy, Debug)]
+pub enum UploadError {
+    /// The data are not a mesh or a texture, or a mesh of too many triangles.
+    Content(Deviation),
+    /// A texture has the name of a mesh, or a mesh that of a texture.
+    OtherKind,
+}
+
+impl fmt::Display for UploadError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Content(error) => error.fmt(f),
+            Self::OtherKind => TEXTURE.when_built(|| {
+                f.write_str(
+                    "a mesh and a texture of one name, expected another name; `models` lists the names",
+                )
+            }),
+        }
+    }
 }
 
 /// The built-in meshes and program, the uploads in an arena, and the objects made of the meshes. An uploaded mesh replaces a built-in mesh
 /// of equal name.
 pub struct Models {
     arena: Arena,
-    /// The uploaded meshes and their memory.
-    meshes: Vec<(Named, Region), MAX_MESHES>,
+    /// The uploaded meshes and textures.
+    uploads: Vec<Upload, MAX_UPLOADS>,
     /// The uploaded program and its memory.
     program: Option<(Program<'static>, Region)>,
     shapes: Shapes,
@@ -50,6 +103,8 @@ pub struct Models {
     /// The mesh of the scene of the last [`update`](Models::update). The mesh is stored, because finding it
     /// by its name takes a thousand clock cycles, and every step of drawing a frame needs it.
     shown: Mesh<'static>,
+    /// The texture of this scene that replaces those of the meshes.
+    texture: Option<Texture<'static>>,
     revision: u32,
     /// Largest number of triangles of an uploaded mesh.
     most_triangles: u32,
@@ -71,9 +126,10 @@ impl Models {
         let shapes = Shapes::new(shapes)?;
         Ok(Self {
             arena,
-            meshes: Vec::new(),
+            uploads: Vec::new(),
             program: None,
             shown: shapes.cube(),
+            texture: None,
             shapes,
             cube_program,
             objects: Objects::new(turned),
@@ -97,27 +153,30 @@ impl Models {
         self.known(&scene.mesh).unwrap_or(self.shapes.cube())
     }
 
-    /// The frame of `scene`, with mesh and objects as of the last [`update`](Self::update).
+    /// The frame of `scene`, with mesh, objects and texture as of the last [`update`](Self::update).
     pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
         scene.frame(Assets {
             mesh: Some(self.shown),
             objects: self.objects.all(),
+            texture: self.texture,
             program: *self.program(),
         })
     }
 
-    /// Prepares mesh and objects of `scene` for the next frame. Calls `progress` at short intervals.
+    /// Prepares mesh, objects and texture of `scene` for the next frame. Calls `progress` at short intervals.
     pub fn update(&mut self, scene: &Scene, progress: &mut dyn FnMut()) {
-        let mesh = known(&self.meshes, &self.shapes, &scene.mesh);
+        let mesh = known(&self.uploads, &self.shapes, &scene.mesh);
         self.shown = mesh.unwrap_or(self.shapes.cube());
+        let texture = scene.texture.as_ref().filter(|_| TEXTURE.is_built);
+        self.texture = texture.and_then(|name| of_name(&self.uploads, name)?.texture());
         if scene.shows_objects() {
             let Self {
                 objects,
-                meshes,
+                uploads,
                 shapes,
                 ..
             } = self;
-            objects.update(scene, |name| known(meshes, shapes, name), progress);
+            objects.update(scene, |name| known(uploads, shapes, name), progress);
         }
     }
 
@@ -131,15 +190,26 @@ impl Models {
         self.program.as_ref().map(|(program, _)| program)
     }
 
-    /// Names and meshes of the uploads.
-    pub fn uploads(&self) -> impl Iterator<Item = (&str, &Mesh<'_>)> + Clone {
-        let uploads = self.meshes.iter();
-        uploads.map(|(named, _)| (named.name.as_str(), &named.mesh))
+    /// Names and meshes of the uploaded meshes.
+    pub fn meshes(&self) -> impl Iterator<Item = (&str, Mesh<'_>)> + Clone {
+        let uploads = self.uploads.iter();
+        uploads.filter_map(|upload| Some((upload.name.as_str(), upload.mesh()?)))
+    }
+
+    /// Names and textures of the uploaded textures.
+    pub fn textures(&self) -> impl Iterator<Item = (&str, Texture<'_>)> + Clone {
+        let uploads = self.uploads.iter().filter(|_| TEXTURE.is_built);
+        uploads.filter_map(|upload| Some((upload.name.as_str(), upload.texture()?)))
     }
 
     /// Names of the built-in meshes that no upload replaces.
     pub fn built_in(&self) -> impl Iterator<Item = &'static str> {
-        Shapes::names().filter(move |built_in| self.uploads().all(|(name, _)| name != *built_in))
+        Shapes::names().filter(move |built_in| self.meshes().all(|(name, _)| name != *built_in))
+    }
+
+    /// Number of uploaded meshes and textures.
+    pub fn upload_count(&self) -> usize {
+        self.uploads.len()
     }
 
     /// Number of free bytes.
@@ -153,23 +223,28 @@ impl Models {
     }
 
     /// Whether an uploaded mesh has this name.
-    pub fn has_upload(&self, name: &str) -> bool {
-        self.meshes.iter().any(|(named, _)| named.name == name)
+    pub fn has_mesh(&self, name: &str) -> bool {
+        self.meshes().any(|(mesh, _)| mesh == name)
+    }
+
+    /// Whether an uploaded texture has this name.
+    pub fn has_texture(&self, name: &str) -> bool {
+        self.textures().any(|(texture, _)| texture == name)
     }
 
     /// Whether an uploaded or a built-in mesh has this name.
     pub fn has(&self, name: &str) -> bool {
-        self.has_upload(name) || Shapes::names().any(|built_in| built_in == name)
+        self.has_mesh(name) || Shapes::names().any(|built_in| built_in == name)
     }
 
     /// Whether there is a mesh with this name. Makes a built-in shape on first use.
     pub fn prepare(&mut self, name: &str) -> bool {
-        self.has_upload(name) || self.shapes.named(name).is_some()
+        self.has_mesh(name) || self.shapes.named(name).is_some()
     }
 
     /// The mesh with this name, if it is an upload or a built-in mesh that has been made.
     pub fn known(&self, name: &str) -> Option<Mesh<'_>> {
-        known(&self.meshes, &self.shapes, name)
+        known(&self.uploads, &self.shapes, name)
     }
 
     /// The staging memory for the next upload, which is separate from all uploads.
@@ -177,12 +252,13 @@ impl Models {
         self.arena.staging()
     }
 
-    /// Checks that the list of meshes has a place for an upload with this name. An upload in progress counts as a mesh.
+    /// Checks that the list of uploads has a place for an upload with this name. An upload in progress counts.
     ///
     /// # Errors
     /// [`NameError::Full`].
     pub fn check_capacity(&self, name: &str) -> Result<(), NameError> {
-        if self.meshes.len() + self.arena.lent() >= MAX_MESHES && !self.has_upload(name) {
+        let is_new = of_name(&self.uploads, name).is_none();
+        if self.uploads.len() + self.arena.lent() >= MAX_UPLOADS && is_new {
             return Err(NameError::Full);
         }
         Ok(())
@@ -203,42 +279,52 @@ impl Models {
         self.arena.give_back(loan);
     }
 
-    /// Checks lent memory as a mesh, and keeps the mesh under `name`; it replaces an earlier mesh of this name. No frame may be in
+    /// Checks lent memory as a mesh or a texture, and keeps it under `name`; it replaces an earlier one of this name. No frame may be in
     /// progress.
     ///
     /// # Errors
-    /// [`Deviation`] for an invalid mesh, or one of too many triangles; then nothing changes, and the memory is given back.
-    pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), Deviation> {
+    /// [`UploadError`]; then nothing changes, and the memory is given back.
+    pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), UploadError> {
         let length = loan.as_ref().len();
         let region = self.arena.keep_lent(loan);
-        let mesh = Mesh::new_checked(self.lasting(region, length));
-        let mesh = match mesh.and_then(|mesh| mesh.with_at_most(self.most_triangles)) {
-            Ok(mesh) => mesh,
+        let content = Content::new_checked(self.lasting(region, length), self.most_triangles);
+        let content = content.map_err(UploadError::Content).and_then(|content| {
+            let old = of_name(&self.uploads, name);
+            let is_same =
+                old.is_none_or(|old| discriminant(&old.content) == discriminant(&content));
+            is_same.then_some(content).ok_or(UploadError::OtherKind)
+        });
+        let content = match content {
+            Ok(content) => content,
             Err(error) => {
                 self.arena.release(region);
                 return Err(error);
             }
         };
         self.revise();
-        let new = (named(name, mesh), region);
-        let old = self.meshes.iter_mut().find(|(old, _)| old.name == name);
-        match old {
+        let new = Upload {
+            name: Name::try_from(name).unwrap_or_default(),
+            content,
+            region,
+        };
+        match self.uploads.iter_mut().find(|old| old.name == name) {
             Some(old) => {
-                let (_, unused) = core::mem::replace(old, new);
-                self.arena.release(unused);
+                let unused = mem::replace(old, new);
+                self.arena.release(unused.region);
             }
             // The caller has checked that the list is not full.
-            None => drop(self.meshes.push(new)),
+            None => drop(self.uploads.push(new)),
         }
         Ok(())
     }
 
-    /// Records a change of the uploads. Drops every reference to an uploaded mesh except those in the list of uploads: empties the list of
-    /// objects, and shows the cube.
+    /// Records a change of the uploads. Drops every reference to an upload except those in the list of uploads: empties the list of
+    /// objects, and shows the cube with its own textures.
     fn revise(&mut self) {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);
         self.shown = self.shapes.cube();
+        self.texture = None;
     }
 
     /// Checks lent memory as a wireframe program, and keeps the program; it replaces the last program. No frame may be in progress.
@@ -263,14 +349,13 @@ impl Models {
         }
     }
 
-    /// Removes an uploaded mesh, and closes the gap by moving other uploads, so no frame may be in progress. Returns whether the mesh
-    /// existed.
+    /// Removes an upload, and closes the gap by moving other uploads, so no frame may be in progress. Returns whether the upload existed.
     pub fn remove(&mut self, name: &str) -> bool {
-        let Some(position) = self.meshes.iter().position(|(named, _)| named.name == name) else {
+        let Some(position) = self.uploads.iter().position(|upload| upload.name == name) else {
             return false;
         };
-        let (_, region) = self.meshes.remove(position);
-        self.arena.release(region);
+        let removed = self.uploads.remove(position);
+        self.arena.release(removed.region);
         self.compact();
         true
     }
@@ -278,26 +363,24 @@ impl Models {
     /// Moves all uploads so that one gap remains.
     fn compact(&mut self) {
         self.revise();
-        let cube = self.shapes.cube();
+        let cube = Content::Mesh(self.shapes.cube());
         // No references into the arena may exist while it moves its regions.
-        let lengths: Vec<usize, MAX_MESHES> = self
-            .meshes
+        let lengths: Vec<usize, MAX_UPLOADS> = self
+            .uploads
             .iter_mut()
-            .map(|(named, _)| {
-                let length = named.mesh.bytes().len();
-                named.mesh = cube;
-                length
-            })
+            .map(|upload| mem::replace(&mut upload.content, cube).bytes().len())
             .collect();
         let program = self.program.take();
         let program = program.map(|(program, region)| (program.bytes().len(), region));
 
         self.arena.compact();
         for (index, length) in lengths.iter().enumerate() {
-            let region = self.meshes.get(index).map(|(_, region)| *region);
-            let mesh = region.map(|region| Mesh::new_checked(self.lasting(region, *length)));
-            if let (Some((named, _)), Some(Ok(mesh))) = (self.meshes.get_mut(index), mesh) {
-                named.mesh = mesh;
+            let region = self.uploads.get(index).map(|upload| upload.region);
+            let content = region.map(|region| {
+                Content::new_checked(self.lasting(region, *length), self.most_triangles)
+            });
+            if let (Some(upload), Some(Ok(content))) = (self.uploads.get_mut(index), content) {
+                upload.content = content;
             }
         }
         if let Some((length, region)) = program {
@@ -306,26 +389,37 @@ impl Models {
         }
     }
 
-    /// The first `length` bytes of a region, for a mesh or a program that borrows them.
+    /// The first `length` bytes of a region, for a mesh, a texture or a program that borrows them.
     fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
         let bytes = self.arena.bytes(region, length);
-        // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `meshes`, `program`,
-        // `objects` and `shown`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its
+        // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `uploads`, `program`,
+        // `objects`, `shown` and `texture`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its
         // region, and `compact` before it moves the regions; the arena lends only gaps mutably.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }
 }
 
-fn known(meshes: &[(Named, Region)], shapes: &Shapes, name: &str) -> Option<Mesh<'static>> {
-    let mut uploads = meshes.iter().map(|(named, _)| named);
-    let upload = uploads.find(|named| named.name == name);
-    upload.map_or_else(|| shapes.made(name), |named| Some(named.mesh))
+impl Upload {
+    const fn mesh(&self) -> Option<Mesh<'static>> {
+        match self.content {
+            Content::Mesh(mesh) => Some(mesh),
+            Content::Texture(_) => None,
+        }
+    }
+
+    const fn texture(&self) -> Option<Texture<'static>> {
+        match self.content {
+            Content::Texture(texture) => Some(texture),
+            Content::Mesh(_) => None,
+        }
+    }
 }
 
-/// A mesh and its name, which has at most [`MAX_NAME`] bytes.
-fn named(name: &str, mesh: Mesh<'static>) -> Named {
-    Named {
-        name: Name::try_from(name).unwrap_or_default(),
-        mesh,
-    }
+fn of_name<'u>(uploads: &'u [Upload], name: &str) -> Option<&'u Upload> {
+    uploads.iter().find(|upload| upload.name == name)
+}
+
+fn known(uploads: &[Upload], shapes: &Shapes, name: &str) -> Option<Mesh<'static>> {
+    let upload = of_name(uploads, name).and_then(Upload::mesh);
+    upload.or_else(|| shapes.made(name))
 }

@@ -1,11 +1,11 @@
-//! The names of scenes and meshes, for the completion on the console.
+//! The names of scenes, meshes and textures, for the completion on the console.
 
 use glint_core::console::{NameList, Names};
 use glint_core::flash::Kind;
 use glint_scene::Name;
 use heapless::Vec;
 
-use crate::models::{MAX_MESHES, Models};
+use crate::models::{MAX_UPLOADS, Models};
 use crate::scenes::{DEFAULT, Library, SCENES, SceneItem};
 use crate::shapes::Shapes;
 
@@ -13,7 +13,8 @@ use crate::shapes::Shapes;
 #[derive(Default)]
 pub struct MachineNames {
     library: Library,
-    uploads: Vec<Name, MAX_MESHES>,
+    meshes: Vec<Name, MAX_UPLOADS>,
+    textures: Vec<Name, MAX_UPLOADS>,
     /// [`Models::revision`] of the copies.
     revision: u32,
 }
@@ -23,7 +24,8 @@ impl MachineNames {
     pub const fn new(library: Library) -> Self {
         Self {
             library,
-            uploads: Vec::new(),
+            meshes: Vec::new(),
+            textures: Vec::new(),
             revision: 0,
         }
     }
@@ -32,27 +34,44 @@ impl MachineNames {
     pub fn update(&mut self, models: &Models) {
         if self.revision != models.revision() {
             self.revision = models.revision();
-            let names = models.uploads().map(|(name, _)| name);
-            self.uploads = names.filter_map(|name| Name::try_from(name).ok()).collect();
+            let copy = |name| Name::try_from(name).ok();
+            let meshes = models.meshes();
+            self.meshes = meshes.filter_map(|(name, _)| copy(name)).collect();
+            let textures = models.textures();
+            self.textures = textures.filter_map(|(name, _)| copy(name)).collect();
         }
     }
 
+    /// Whether an uploaded mesh has this name.
     fn is_uploaded(&self, name: &str) -> bool {
-        self.uploads.iter().any(|upload| upload == name)
+        self.meshes.iter().any(|mesh| mesh == name)
     }
 }
 
 impl Names for MachineNames {
     fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
-        if list != NameList::Uploads {
+        if matches!(list, NameList::Scenes | NameList::Meshes) {
             let built_in = Shapes::names().filter(|name| !self.is_uploaded(name));
             built_in.for_each(&mut *visit);
         }
-        self.uploads.iter().for_each(|name| visit(name));
+        if list != NameList::Textures {
+            self.meshes.iter().for_each(|name| visit(name));
+        }
+        if matches!(list, NameList::Textures | NameList::Uploads) {
+            self.textures.iter().for_each(|name| visit(name));
+        }
         for item in self.library.items() {
             let is_listed = match list {
-                NameList::Scenes => item.kind != Kind::Mesh || !self.is_uploaded(item.name),
+                NameList::Scenes => match item.kind {
+                    Kind::Mesh => !self.is_uploaded(item.name),
+                    Kind::Scene | Kind::List => true,
+                    Kind::Texture => false,
+                },
                 NameList::Meshes => item.kind == Kind::Mesh && !self.is_uploaded(item.name),
+                NameList::Textures => {
+                    item.kind == Kind::Texture
+                        && self.textures.iter().all(|texture| texture != item.name)
+                }
                 NameList::Uploads => false,
             };
             if is_listed {

@@ -100,9 +100,9 @@ impl Library {
         found.next().map(SceneItem::Flash).or_else(built_in)
     }
 
-    /// The mesh of the flash with this name.
-    pub fn mesh(&self, name: &str) -> Option<Item<'static>> {
-        self.contents?.find(Kind::Mesh, name)
+    /// The mesh or texture of the flash with this name.
+    pub fn item(&self, kind: Kind, name: &str) -> Option<Item<'static>> {
+        self.contents?.find(kind, name)
     }
 
     /// The first list of the flash.

@@ -18,6 +18,7 @@ mod syntax;
 mod table;
 mod values;
 
+pub use argument::OWN;
 pub use command::{
     Command, DemoCommands, Executor, FORMS, FrameCommands, GestureCommands, ImuCommands,
     MachineCommands, OptionName, OrbitCommands, SceneCommands, Setting, accepted_words, write_help,

@@ -51,11 +51,13 @@ pub enum Kind {
     Scene = 2,
     /// A list of scenes: names, one per line. The board shows the first list of the flash.
     List = 3,
+    /// A texture, in the format of an upload.
+    Texture = 4,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Mesh, Self::Scene, Self::List];
+    pub const ALL: [Self; 4] = [Self::Mesh, Self::Scene, Self::List, Self::Texture];
 
     /// Name for messages.
     pub const fn name(self) -> &'static str {
@@ -63,6 +65,7 @@ impl Kind {
             Self::Mesh => "mesh",
             Self::Scene => "scene",
             Self::List => "list",
+            Self::Texture => "texture",
         }
     }
 }
@@ -216,7 +219,8 @@ impl<'a> Contents<'a> {
                 kind, length, name, ..
             } = FlashEntry::from_bytes(entry);
             if kind_of(kind).is_none() {
-                let expected = Content("a kind of items: 1 (mesh), 2 (scene) or 3 (list)");
+                let expected =
+                    Content("a kind of items: 1 (mesh), 2 (scene), 3 (list) or 4 (texture)");
                 return Err(error(place(FlashEntry::KIND), expected, kind));
             }
             let rest = clamped(self.bytes.len().saturating_sub(offset));
@@ -265,7 +269,7 @@ impl<'a> Image<'a> {
         let contents = Contents::new_checked(bytes.get(CONTENTS..).unwrap_or_default())?;
         for item in contents.items() {
             match item.kind {
-                Kind::Mesh => drop(item.checked()?),
+                Kind::Mesh | Kind::Texture => drop(item.checked()?),
                 Kind::Scene | Kind::List => drop(item.text()?),
             }
         }

@@ -3,7 +3,7 @@
 use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
-use glint_core::feature::{MESH, OBJECT, SKY};
+use glint_core::feature::{MESH, OBJECT, SKY, TEXTURE};
 use glint_core::framing::FramingError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::matrix::MatrixError;
@@ -33,6 +33,8 @@ pub enum SettingError<'l> {
     Lights,
     /// No mesh has this name.
     ObjectMesh(&'l str),
+    /// No uploaded texture has this name.
+    Texture(&'l str),
     /// The list of objects cannot be changed.
     Object(ObjectError),
 }
@@ -90,6 +92,12 @@ impl Display for SettingError<'_> {
                     "object add `{name}`: expected a mesh, `models` lists them"
                 )
             }
+            Self::Texture(name) => TEXTURE.when_built(|| {
+                write!(
+                    f,
+                    "texture `{name}`: expected own or an uploaded texture, `models` lists them"
+                )
+            }),
             Self::Object(error) => OBJECT.when_built(|| error.fmt(f)),
         }
     }

@@ -83,6 +83,14 @@ impl<'l> Line<'l> {
         }
     }
 
+    /// Name of the texture that the line sets.
+    pub const fn texture(&self) -> Option<&'l str> {
+        match self {
+            Self::Option(Setting::Texture { texture }) => *texture,
+            Self::Option(_) | Self::Mesh(_) | Self::Wireframe | Self::Motion(_) => None,
+        }
+    }
+
     /// The feature that contains the line's command.
     pub const fn feature(&self) -> Feature {
         match self {

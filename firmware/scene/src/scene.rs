@@ -20,6 +20,7 @@ use glint_core::object::{MAX_OBJECTS, Place};
 use glint_core::picture::{Backend, Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
+use glint_core::texture::Texture;
 use glint_core::wireframe::{Motion, Program, Step};
 use glint_model::{
     Clip, FieldSubject, Frame, MeshOptions, Object, Placement, Subject, WireframeSubject,
@@ -31,10 +32,10 @@ use crate::error::{ObjectError, SettingError};
 /// Name of the mesh that the start scene shows.
 pub const CUBE: &str = "cube";
 
-/// The name of a mesh.
+/// The name of a mesh or a texture.
 pub type Name = String<MAX_NAME>;
 
-/// Capabilities and meshes of the board that draws a scene.
+/// Capabilities, meshes and textures of the board that draws a scene.
 pub trait Board {
     /// Whether the board supports pictures of this size.
     fn has_size(&self, size: Size) -> bool;
@@ -47,9 +48,12 @@ pub trait Board {
 
     /// The mesh with this name, after [`has_mesh`](Self::has_mesh) has returned true for the name.
     fn mesh(&self, name: &str) -> Option<Mesh<'_>>;
+
+    /// Whether a texture with this name exists.
+    fn has_texture(&self, name: &str) -> bool;
 }
 
-/// A board without limits. Its meshes are loaded only when the scene is drawn.
+/// A board without limits. Its meshes and textures are loaded only when the scene is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyBoard;
 
@@ -68,6 +72,10 @@ impl Board for AnyBoard {
 
     fn mesh(&self, _: &str) -> Option<Mesh<'_>> {
         None
+    }
+
+    fn has_texture(&self, _: &str) -> bool {
+        true
     }
 }
 
@@ -204,13 +212,15 @@ impl fmt::Display for SceneSubject<'_> {
     }
 }
 
-/// The meshes and the wireframe program of a frame.
+/// The meshes, the texture and the wireframe program of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Assets<'a> {
     /// The mesh that is shown alone or in a field; `None` if no such mesh is shown.
     pub mesh: Option<Mesh<'a>>,
     /// The objects.
     pub objects: &'a [Object<'a>],
+    /// The texture that replaces those of the meshes.
+    pub texture: Option<Texture<'a>>,
     /// The wireframe program.
     pub program: Program<'a>,
 }
@@ -244,6 +254,8 @@ pub struct Scene {
     pub size: Size,
     /// The drawing options of all meshes.
     pub options: MeshOptions,
+    /// Name of the texture that replaces those of the meshes; `None` for their own textures.
+    pub texture: Option<Name>,
     /// Backend that draws the picture.
     pub backend: Backend,
     /// Whether text is written over the picture.
@@ -273,6 +285,7 @@ impl Scene {
             sphere,
             size: Size::default(),
             options: MeshOptions::default(),
+            texture: None,
             backend,
             overlay: false,
             animation: Animation::default(),
@@ -379,6 +392,12 @@ impl Scene {
             Setting::Shading { shading } => self.options.shading = shading,
             Setting::Cull { on } => self.options.cull = on,
             Setting::Textures { on } => self.options.textures = on,
+            Setting::Texture { texture } => {
+                if let Some(texture) = texture.filter(|texture| !board.has_texture(texture)) {
+                    return Err(SettingError::Texture(texture));
+                }
+                self.texture = texture.map(name);
+            }
             Setting::Clip { far } => {
                 self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
             }
@@ -590,6 +609,17 @@ impl Scene {
         }
     }
 
+    /// Whether a texture is set that no shown mesh can show, because no face has a texture. `find` returns a mesh by its name.
+    pub fn lacks_textured_faces<'m>(&self, find: impl Fn(&str) -> Option<Mesh<'m>>) -> bool {
+        let has_textures = |name: &str| find(name).is_some_and(|mesh| mesh.has_textures());
+        let shows = if self.shows_objects() {
+            self.objects.iter().any(|object| has_textures(&object.mesh))
+        } else {
+            self.shown_mesh().is_some_and(has_textures)
+        };
+        self.texture.is_some() && !shows
+    }
+
     /// Makes an object from a mesh and its placement.
     pub fn object<'a>(&self, place: &Place, mesh: Mesh<'a>) -> Object<'a> {
         Object {
@@ -624,6 +654,7 @@ impl Scene {
             }),
         };
         Frame {
+            texture: content.texture,
             stereo: self.stereo.filter(|_| STEREO.is_built),
             ..Frame::in_appearance(subject, self.view, self.size, &self.appearance)
         }
@@ -674,7 +705,7 @@ impl Scene {
     }
 }
 
-/// The name of a mesh, which has at most [`MAX_NAME`] bytes.
-fn name(mesh: &str) -> Name {
-    Name::try_from(mesh).unwrap_or_default()
+/// The name of a mesh or a texture, which has at most [`MAX_NAME`] bytes.
+fn name(name: &str) -> Name {
+    Name::try_from(name).unwrap_or_default()
 }

@@ -3,7 +3,7 @@
 use core::fmt::{self, Display, Write};
 
 use glint_core::choice::{OrWord, switch_name};
-use glint_core::console::OptionName;
+use glint_core::console::{OWN, OptionName};
 use glint_core::feature::{ANIMATE, TEXTURE};
 use glint_core::fixed::{Turns, U4_28};
 use glint_core::light::{HexColour, Rgb};
@@ -174,6 +174,9 @@ impl Scene {
             OptionName::Cull => self.put(name, from, out, |scene| switch_name(scene.options.cull)),
             OptionName::Textures => TEXTURE.when_built(|| {
                 self.put(name, from, out, |scene| switch_name(scene.options.textures))
+            }),
+            OptionName::Texture => TEXTURE.when_built(|| {
+                self.put(name, from, out, |scene| OrWord(scene.texture.clone(), OWN))
             }),
             OptionName::Clip => self.put(name, from, out, |scene| match scene.options.clip {
                 Clip::Guard => or_off(None),

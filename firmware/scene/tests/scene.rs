@@ -10,7 +10,7 @@ use glint_core::words::Words;
 use glint_scene::{AnyBoard, Board, Kind, Reason, Scene};
 use proptest::prelude::*;
 
-/// A board that supports pictures up to 640×360, and has no engine and no mesh named `none`.
+/// A board that supports pictures up to 640×360, and has no engine, and no mesh and no texture named `none`.
 struct SmallBoard;
 
 impl Board for SmallBoard {
@@ -28,6 +28,10 @@ impl Board for SmallBoard {
 
     fn mesh(&self, _: &str) -> Option<Mesh<'_>> {
         None
+    }
+
+    fn has_texture(&self, name: &str) -> bool {
+        name != "none"
     }
 }
 
@@ -113,6 +117,8 @@ fn line() -> impl Strategy<Value = String> {
             "winding mesh",
             "shading smooth",
             "shading flat",
+            "texture own",
+            "texture wood.png",
             "backend cpu",
             "backend gateware",
             "size 320 180",
@@ -220,6 +226,10 @@ fn a_board_limits_the_scene() {
             "gateware: no triangle engine in this SoC",
         ),
         ("object add none", "object add `none`: expected a mesh"),
+        (
+            "texture none",
+            "texture `none`: expected own or an uploaded texture",
+        ),
         ("object show", "object: no objects"),
         ("object move 2 1,1,1", "object 2: no objects"),
         (

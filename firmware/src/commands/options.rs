@@ -2,6 +2,7 @@
 
 use glint_core::console::{Executor, ObjectAction, OptionName, Setting};
 use glint_core::feature::Feature;
+use glint_core::flash::Kind;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_scene::Board;
@@ -39,6 +40,10 @@ impl Board for ThisBoard<'_> {
     fn mesh(&self, name: &str) -> Option<Mesh<'_>> {
         self.models.known(name)
     }
+
+    fn has_texture(&self, name: &str) -> bool {
+        self.models.has_texture(name)
+    }
 }
 
 impl<'l> Executor<'l> for Machine {
@@ -49,10 +54,16 @@ impl<'l> Executor<'l> for Machine {
             match action {
                 ObjectAction::List => return self.show(OptionName::Object),
                 ObjectAction::Add { mesh, .. } => {
-                    upload::from_flash(self, mesh)?;
+                    upload::from_flash(self, Kind::Mesh, mesh)?;
                 }
                 ObjectAction::Show | ObjectAction::Change { .. } | ObjectAction::Remove(_) => {}
             }
+        }
+        if let Setting::Texture {
+            texture: Some(texture),
+        } = setting
+        {
+            upload::from_flash(self, Kind::Texture, texture)?;
         }
         let Self {
             scene,
@@ -63,6 +74,9 @@ impl<'l> Executor<'l> for Machine {
         scene.apply(&setting, &mut board(renderer, models))?;
         if let Some(note) = setting.note() {
             self.terminal.print(format_args!("note: {note}\n"));
+        }
+        if matches!(setting, Setting::Texture { .. }) {
+            self.note_texture();
         }
         Ok(Reply::Done)
     }

@@ -1,9 +1,9 @@
-//! Commands that upload meshes and wireframe programs and select what the scene shows: a mesh, a field, both, or a wireframe.
+//! Commands that upload meshes, textures and wireframe programs and select what the scene shows: a mesh, a field, both, or a wireframe.
 
 use glint_core::block::Block;
-use glint_core::console::{Command, OrbitCommands, SceneCommands, Setting};
+use glint_core::console::{Command, OWN, OrbitCommands, SceneCommands, Setting};
 use glint_core::feature::{GESTURE, MESH};
-use glint_core::flash::Kind;
+use glint_core::flash::{Item, Kind};
 use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
@@ -13,7 +13,7 @@ use super::{options, upload};
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, Orbit, Reply};
 use crate::machine::Machine;
-use crate::models::{MAX_MESHES, MODEL, NameError};
+use crate::models::{MAX_UPLOADS, MODEL, NameError};
 use crate::scenes::{BuiltIn, Content, DEFAULT, SCENES, SceneItem};
 use crate::sensor;
 use crate::transfer::Purpose;
@@ -33,12 +33,14 @@ impl<'l> SceneCommands<'l> for Machine {
         let name = name.unwrap_or(MODEL);
         let accepted = if name == DEFAULT || self.library.find(name).is_some() {
             Err(NameError::Scene)
+        } else if name == OWN {
+            Err(NameError::Own)
         } else {
             self.models.check_capacity(name)
         };
-        accepted.map_err(|error| CommandError::MeshName(name, error))?;
+        accepted.map_err(|error| CommandError::UploadName(name, error))?;
         // The parser limits names to the string's capacity, so the conversion does not fail.
-        let purpose = Purpose::Mesh(Name::try_from(name).unwrap_or_default());
+        let purpose = Purpose::Named(Name::try_from(name).unwrap_or_default());
         upload::begin(self, "load", purpose, upload)
     }
 
@@ -54,11 +56,12 @@ impl<'l> SceneCommands<'l> for Machine {
             terminal.print(format_args!(" {name}"));
         }
         terminal.print(format_args!("\n"));
-        for item in library.items().filter(|item| item.kind == Kind::Mesh) {
+        let is_upload = |item: &Item| matches!(item.kind, Kind::Mesh | Kind::Texture);
+        for item in library.items().filter(is_upload) {
             let (name, bytes) = (item.name, item.length());
             terminal.print(format_args!("flash {name} bytes {bytes}\n"));
         }
-        for (name, mesh) in models.uploads() {
+        for (name, mesh) in models.meshes() {
             let (vertices, triangles, bytes) = (
                 mesh.vertex_count(),
                 mesh.triangle_count(),
@@ -68,26 +71,34 @@ impl<'l> SceneCommands<'l> for Machine {
                 "mesh {name} vertices {vertices} triangles {triangles} bytes {bytes}\n"
             ));
         }
+        for (name, texture) in models.textures() {
+            let [width, height] = texture.size_log2().map(|side| 1 << side);
+            let bytes = texture.bytes().len();
+            terminal.print(format_args!(
+                "texture {name} size {width} {height} bytes {bytes}\n"
+            ));
+        }
         if let Some(program) = models.uploaded_program() {
             let (segments, bytes) = (program.segment_count(), program.bytes().len());
             terminal.print(format_args!("program segments {segments} bytes {bytes}\n"));
         }
-        let (count, free) = (models.uploads().count(), models.free());
+        let (count, free) = (models.upload_count(), models.free());
         terminal.print(format_args!(
-            "uploads {count} of {MAX_MESHES}\nfree {free} bytes\n"
+            "uploads {count} of {MAX_UPLOADS}\nfree {free} bytes\n"
         ));
         Ok(Reply::Done)
     }
 
     fn unload(&mut self, name: &'l str) -> CommandResult<'l> {
-        let object = self.scene.first_object_of(name);
-        let object = object.filter(|_| self.models.has_upload(name));
+        let is_mesh = self.models.has_mesh(name);
+        let object = self.scene.first_object_of(name).filter(|_| is_mesh);
         if object.is_some() || !self.models.remove(name) {
             return Err(CommandError::Unload(name, object));
         }
-        if self.scene.mesh == name {
+        if is_mesh && self.scene.mesh == name {
             self.scene.set_mesh(CUBE);
         }
+        self.scene.texture.take_if(|texture| texture == name);
         // From now on the staging memory is at another address, and the other uploads may have moved.
         self.replay = None;
         self.renderer.edges.clear();
@@ -137,10 +148,14 @@ fn list(machine: &mut Machine) {
         terminal.print(format_args!("scene {name} {state}\n"));
     };
     models.built_in().for_each(&mut print);
-    models.uploads().for_each(|(name, _)| print(name));
-    let loaded = |name: &str| models.has_upload(name);
+    models.meshes().for_each(|(name, _)| print(name));
     for item in library.items() {
-        if item.kind != Kind::Mesh || !loaded(item.name) {
+        let is_listed = match item.kind {
+            Kind::Mesh => !models.has_mesh(item.name),
+            Kind::Scene | Kind::List => true,
+            Kind::Texture => false,
+        };
+        if is_listed {
             terminal.print(format_args!("scene {} flash\n", item.name));
         }
     }
@@ -214,12 +229,16 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> C
     for line in lines(text) {
         let (_, line) = line.map_err(|error| CommandError::Line(name, error))?;
         if let Some(mesh) = line.mesh() {
-            let is_there = upload::from_flash(machine, mesh)? || machine.models.has(mesh);
+            let is_there =
+                upload::from_flash(machine, Kind::Mesh, mesh)? || machine.models.has(mesh);
             // The check of a large mesh is slow, and several meshes may follow.
             sensor::deliver(&mut machine.imu);
             if !is_there || !MESH.is_built || !machine.models.prepare(mesh) {
                 return Err(CommandError::NoMesh { name, mesh });
             }
+        }
+        if let Some(texture) = line.texture() {
+            upload::from_flash(machine, Kind::Texture, texture)?;
         }
         is_stated |= matches!(line, Line::Option(Setting::Backend { .. }));
         line.apply(
@@ -280,7 +299,7 @@ fn show_mesh<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandErro
     if !MESH.is_built {
         return Err(CommandError::Scene(name));
     }
-    upload::from_flash(machine, name)?;
+    upload::from_flash(machine, Kind::Mesh, name)?;
     if !machine.models.prepare(name) {
         return Err(CommandError::Scene(name));
     }

@@ -1,6 +1,7 @@
-//! Data for the staging memory: uploads from the host, and meshes of the flash.
+//! Data for the staging memory: uploads from the host, and meshes and textures of the flash.
 
 use glint_core::feature::{DEMO, MESH};
+use glint_core::flash::Kind;
 use glint_core::wire::Manifest;
 use litex_pac::cpu;
 
@@ -47,10 +48,15 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
             machine.give_back(memory);
             return Ok(Reply::Done);
         }
-        Purpose::Mesh(name) => {
+        Purpose::Named(name) => {
             let accepted = machine.models.accept(name, memory);
-            accepted.map_err(CommandError::Mesh)?;
-            machine.scene.show_mesh(name);
+            accepted.map_err(CommandError::Upload)?;
+            if machine.models.has_texture(name) {
+                machine.scene.texture = Some(name.clone());
+                machine.note_texture();
+            } else {
+                machine.scene.show_mesh(name);
+            }
             Reply::Done
         }
         Purpose::Program => {
@@ -65,28 +71,36 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
     Ok(reply)
 }
 
-/// Copies the mesh of this name from the flash to the uploads, unless an upload has this name. Returns whether the mesh exists.
+/// Copies the mesh or texture of this name from the flash to the uploads, unless it has been uploaded. Returns whether it exists.
 ///
 /// # Errors
-/// The mesh is damaged, or the free memory is too small.
-pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, CommandError<'l>> {
+/// The item is damaged, or the free memory is too small.
+pub fn from_flash<'l>(
+    machine: &mut Machine,
+    kind: Kind,
+    name: &'l str,
+) -> Result<bool, CommandError<'l>> {
     if !MESH.is_built || !DEMO.is_built {
         return Ok(false);
     }
-    if machine.models.has_upload(name) {
+    let is_there = match kind {
+        Kind::Texture => machine.models.has_texture(name),
+        Kind::Mesh | Kind::Scene | Kind::List => machine.models.has_mesh(name),
+    };
+    if is_there {
         return Ok(true);
     }
-    let Some(item) = machine.library.mesh(name) else {
+    let Some(item) = machine.library.item(kind, name) else {
         return Ok(false);
     };
     let bytes = item.checked();
     let bytes = bytes.map_err(|error| CommandError::Flash(name, error))?;
     let accepted = machine.models.check_capacity(name);
-    accepted.map_err(|error| CommandError::MeshName(name, error))?;
+    accepted.map_err(|error| CommandError::UploadName(name, error))?;
     let mut memory = lend(machine, name, bytes.len())?;
     memory.as_mut().copy_from_slice(bytes);
     let accepted = machine.models.accept(name, memory);
-    accepted.map_err(|error| CommandError::FlashMesh(name, error))?;
+    accepted.map_err(|error| CommandError::FlashItem(name, error))?;
     Ok(true)
 }
 

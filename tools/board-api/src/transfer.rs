@@ -3,7 +3,7 @@
 use crate::console::{self, Console, ConsoleError};
 use crate::line::{Board, BoardError};
 use glint_core::matrix::Axis;
-use glint_core::mesh::MeshHeader;
+use glint_core::mesh::{self, MeshHeader};
 use glint_core::wire::{
     Endpoint, Failure, MAX_FRAME, Manifest, Receiver, Role, Sender, State, Timing,
 };
@@ -49,7 +49,7 @@ const POLL_MS: u64 = 2;
 /// Longest time between two polls of the line that counts for the time-outs of a transfer, in milliseconds of the board's time.
 /// A longer time means that this program was stopped, and could not read the board's bytes.
 const MAX_STEP_MS: u64 = 500;
-/// Name of a mesh that is uploaded without a name.
+/// Name of an upload without a name.
 pub const MODEL: &str = "model";
 /// Maximum number of attempts at a transfer. A transfer is repeated only if it failed after this program had been stopped.
 const ATTEMPTS: u32 = 5;
@@ -57,21 +57,22 @@ const ATTEMPTS: u32 = 5;
 /// Number of triangles that every board can draw.
 const ANY_BOARD: u32 = 1 << 15;
 
-/// Uploads a mesh under a name, by default `model`, and draws it. A mesh with more triangles than
-/// the board can draw is refused before the transfer, which may take minutes.
+/// Uploads a mesh or a texture under a name, by default `model`, and draws it. A mesh with more triangles than the board can draw is
+/// refused before the transfer, which may take minutes. Returns the notes of the board.
 ///
 /// # Errors
-/// The mesh has too many triangles, the transfer fails or the firmware refuses the mesh; the board then still shows its last frame.
+/// The mesh has too many triangles, the transfer fails or the firmware refuses the upload; the board then still shows its last frame.
 pub fn upload<B: Board + ?Sized>(
     console: &mut Console<B>,
-    mesh: &[u8],
+    bytes: &[u8],
     name: Option<&str>,
     session: u8,
     progress: &mut Progress,
-) -> Result<(), TransferError> {
-    let found = mesh
+) -> Result<Vec<String>, TransferError> {
+    let header = bytes
         .first_chunk()
-        .map_or(0, |header| MeshHeader::from_bytes(header).triangles);
+        .filter(|_| bytes.starts_with(&mesh::MAGIC));
+    let found = header.map_or(0, |header| MeshHeader::from_bytes(header).triangles);
     if found > ANY_BOARD {
         let most = console.info("mesh_triangles")?;
         if let Ok(most) = most.parse()
@@ -80,11 +81,14 @@ pub fn upload<B: Board + ?Sized>(
             return Err(TransferError::Triangles { found, most });
         }
     }
-    let mut command = command_for("load", mesh);
+    let mut command = command_for("load", bytes);
     if let Some(name) = name {
         command = format!("{command} {name}");
     }
-    announce(console, &command, mesh, session, progress, &mut |_| {})
+    let mut notes = Vec::new();
+    let mut on_line = |line: &str| notes.extend(line.strip_prefix("note: ").map(str::to_owned));
+    announce(console, &command, bytes, session, progress, &mut on_line)?;
+    Ok(notes)
 }
 
 /// Shows the whole mesh `name` with the axis `up` pointing up on the screen. The rest of the scene

@@ -3,6 +3,7 @@
 use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
 use crate::scene;
+use crate::texture;
 use glint_core::deviation::Deviation;
 use glint_core::flash::{Contents, EncodeError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::{Mesh, is_name};
@@ -60,24 +61,35 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
     data.ok_or_else(|| damaged(rest, "the field e with all bytes up to the end of the file"))
 }
 
-/// The items of an image for these scenes: each mesh that is not built into the firmware, each
+/// The items of an image for these scenes: each mesh that is not built into the firmware, each texture, each
 /// scene, and the list of all scenes.
 ///
 /// # Errors
-/// A mesh cannot be read, or a name is invalid.
+/// A mesh or a texture cannot be read, or a name is invalid.
 pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
     let of = |scene: &SceneFile| match scene.scenes() {
         [] => vec![scene.clone()],
         parts => parts.to_vec(),
     };
-    let mut meshes: Vec<Piece> = Vec::new();
+    let is_new = |pieces: &[Piece], kind, name: &str| {
+        let mut known = pieces.iter();
+        known.all(|piece| (piece.kind, piece.name.as_str()) != (kind, name))
+    };
+    let mut uploads: Vec<Piece> = Vec::new();
     let (mut all, mut list): (Vec<Piece>, String) = Default::default();
     for scene in scenes.iter().flat_map(of) {
         for name in scene.meshes() {
-            if !is_built_in(name) && meshes.iter().all(|mesh| mesh.name != *name) {
+            if !is_built_in(name) && is_new(&uploads, Kind::Mesh, name) {
                 check_name(name)?;
-                meshes.push(piece(Kind::Mesh, name, scene::mesh(name, scene.folder())?));
+                uploads.push(piece(Kind::Mesh, name, scene::mesh(name, scene.folder())?));
             }
+        }
+        if let Some(name) = scene.texture()
+            && is_new(&uploads, Kind::Texture, name)
+        {
+            check_name(name)?;
+            let bytes = scene::texture(name, scene.folder())?;
+            uploads.push(piece(Kind::Texture, name, bytes));
         }
         list += &format!("{}\n", scene.name());
         if all.iter().all(|known| known.name != scene.name()) {
@@ -86,11 +98,11 @@ pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
             all.push(piece(Kind::Scene, scene.name(), lines.into_bytes()));
         }
     }
-    meshes.extend(all);
+    uploads.extend(all);
     if !list.is_empty() {
-        meshes.push(piece(Kind::List, START, list.into_bytes()));
+        uploads.push(piece(Kind::List, START, list.into_bytes()));
     }
-    Ok(meshes)
+    Ok(uploads)
 }
 
 fn piece(kind: Kind, name: &str, bytes: Vec<u8>) -> Piece {
@@ -132,7 +144,7 @@ pub fn make(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u
     Ok(image)
 }
 
-/// Checks an image: its parts, its checksums, the names of its items, its meshes, the commands of its scenes, and the names in its
+/// Checks an image: its parts, its checksums, the names of its items, its meshes and textures, the commands of its scenes, and the names in its
 /// lists.
 ///
 /// # Errors
@@ -159,6 +171,10 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
                 let bytes = item.checked().map_err(format_error)?;
                 glm::check(bytes).map_err(|error| in_item(&item, error))?;
             }
+            Kind::Texture => {
+                let bytes = item.checked().map_err(format_error)?;
+                texture::checked(bytes).map_err(|error| in_item(&item, error))?;
+            }
             Kind::Scene => {
                 let text = item.text().map_err(format_error)?;
                 check_scene(contents, text).map_err(|error| in_item(&item, error))?;
@@ -178,7 +194,7 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// The meshes of an image and of its firmware.
+/// The meshes and textures of an image, and the meshes of its firmware.
 struct ImageBoard<'i> {
     contents: &'i Contents<'i>,
     /// The meshes that the scene uses.
@@ -209,6 +225,10 @@ impl Board for ImageBoard<'_> {
 
     fn mesh(&self, name: &str) -> Option<Mesh<'_>> {
         Mesh::new_checked(self.meshes.get(name)?).ok()
+    }
+
+    fn has_texture(&self, name: &str) -> bool {
+        self.contents.find(Kind::Texture, name).is_some()
     }
 }
 

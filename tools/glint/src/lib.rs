@@ -36,4 +36,6 @@ pub mod web;
 pub mod wireframe;
 
 pub use glint_board_api::{console, transfer};
-pub use glint_mesh::{convert, error, formats, generate, model, normals, polygons, triangulate};
+pub use glint_mesh::{
+    convert, error, formats, generate, model, normals, polygons, texture, triangulate,
+};

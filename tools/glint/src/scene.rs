@@ -1,15 +1,17 @@
 //! Frames of scene files.
 
-use crate::convert::Options;
+use crate::convert::{Options, TextureOptions};
 use crate::error::{FormatError, InputError};
 use crate::generate;
 use crate::model;
+use crate::texture;
 use glint_core::colour::Shading;
 use glint_core::console::Setting;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::shape::{MAX_BYTES, Shape};
+use glint_core::texture::Texture;
 use glint_core::wireframe::{CUBE, Program};
 use glint_model::Frame;
 use glint_scene::{AnyBoard, Assets, Board};
@@ -54,6 +56,15 @@ pub fn mesh(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
     }
 }
 
+/// The texture of a scene: a file in the folder of the scene.
+///
+/// # Errors
+/// As for [`texture::load`].
+pub fn texture(name: &str, folder: &Path) -> Result<Vec<u8>, InputError> {
+    let converted = texture::load(&folder.join(name), &TextureOptions::default());
+    Ok(converted?.0)
+}
+
 /// The path of a scene's mesh in the folder of the scene; for a generator its name, unless a file
 /// has this name.
 pub fn path(name: &str, folder: &Path) -> String {
@@ -88,6 +99,10 @@ impl Board for Meshes<'_> {
         let known = self.names.iter().position(|known| known == name)?;
         self.meshes.get(known).copied()
     }
+
+    fn has_texture(&self, name: &str) -> bool {
+        AnyBoard.has_texture(name)
+    }
 }
 
 /// The wireframe program that is built into the firmware.
@@ -102,7 +117,7 @@ pub fn program() -> Result<Program<'static>, InputError> {
 /// Calls `draw` with the frame of a scene after `changes`.
 ///
 /// # Errors
-/// A mesh cannot be read, or no board can draw the scene, or no camera shows all meshes.
+/// A mesh or the texture cannot be read, or no board can draw the scene, or no camera shows all meshes.
 pub fn draw<T>(
     file: &SceneFile,
     changes: &Changes,
@@ -115,6 +130,10 @@ pub fn draw<T>(
     let meshes = bytes.iter().map(|bytes| Mesh::new_checked(bytes));
     let meshes = meshes.collect::<Result<Vec<_>, _>>();
     let meshes = meshes.map_err(|error| in_scene(refuse(error)))?;
+    let texture = file.texture().map(|name| texture(name, file.folder()));
+    let texture = texture.transpose()?;
+    let texture = texture.as_deref().map(Texture::new_checked).transpose();
+    let texture = texture.map_err(|error| in_scene(refuse(error)))?;
     let mut board = Meshes {
         names,
         meshes: &meshes,
@@ -137,6 +156,7 @@ pub fn draw<T>(
         // A scene without objects has at most one mesh.
         mesh: meshes.first().copied(),
         objects: &objects,
+        texture,
         program: program()?,
     })))
 }

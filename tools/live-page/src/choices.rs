@@ -52,6 +52,8 @@ pub struct Choices {
     scenes: Vec<Choice>,
     meshes: Vec<Choice>,
     fields: Vec<Choice>,
+    /// Names of the uploaded textures, for completion.
+    textures: Vec<String>,
 }
 
 impl Choices {
@@ -97,6 +99,10 @@ impl Choices {
             fields: kinds
                 .map(|(_, example)| field(example.field, example.look))
                 .collect(),
+            textures: models
+                .iter()
+                .filter_map(|line| texture_name(line))
+                .collect(),
         }
     }
 
@@ -127,9 +133,13 @@ impl Names for Choices {
         let lists = match list {
             NameList::Scenes => &[List::Meshes, List::Scenes][..],
             NameList::Meshes | NameList::Uploads => &[List::Meshes],
+            NameList::Textures => &[],
         };
         let choices = lists.iter().flat_map(|list| self.of(*list));
         choices.for_each(|choice| visit(&choice.name));
+        if matches!(list, NameList::Textures | NameList::Uploads) {
+            self.textures.iter().for_each(|name| visit(name));
+        }
     }
 }
 
@@ -145,6 +155,12 @@ fn mesh_names(models: &[String]) -> Vec<&str> {
         }
     }
     names
+}
+
+/// The name of an uploaded texture in a line of a reply to `models`.
+fn texture_name(line: &str) -> Option<String> {
+    let name = line.strip_prefix("texture ")?.split(' ').next()?;
+    Some(name.to_owned())
 }
 
 /// The choice of a field.
@@ -173,6 +189,7 @@ fn field(text: &str, look: &[&str]) -> Choice {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glint_core::console::complete;
 
     fn lines(text: &str) -> Vec<String> {
         text.lines().map(str::to_owned).collect()
@@ -183,7 +200,9 @@ mod tests {
         let choices = Choices::new(
             &|name| Some(format!("fit {name}")),
             &lines("scene cube there\nscene hull flash\nscene cubes there\nscene default there"),
-            &lines("built-in cube\nflash hull bytes 7\nuploads 0 of 16\nfree 1 bytes"),
+            &lines(
+                "built-in cube\nflash hull bytes 7\ntexture wood size 8 8 bytes 9\nuploads 1 of 16\nfree 1 bytes",
+            ),
             &lines(
                 "field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X",
             ),
@@ -195,6 +214,11 @@ mod tests {
         assert_eq!(names(List::Scenes), ["cubes", "default"]);
         assert_eq!(names(List::Meshes), ["cube", "hull"]);
         assert_eq!(names(List::Fields), ["menger", "moving"]);
+        for (line, expected) in [("texture w", "wood"), ("unload w", "wood"), ("scene w", "")] {
+            let mut words = String::new();
+            complete(line, &choices, &mut |word, _| words += word);
+            assert_eq!(words, expected, "{line}");
+        }
         let hull = choices.find(List::Meshes, "hull").unwrap();
         assert_eq!(hull.commands, ["scene default", "scene hull", "fit hull"]);
         let menger = choices.find(List::Fields, "menger").unwrap();

@@ -16,4 +16,5 @@ pub mod generate;
 pub mod model;
 pub mod normals;
 pub mod polygons;
+pub mod texture;
 pub mod triangulate;

@@ -5,9 +5,10 @@ use crate::error::{FormatError, InputError};
 use crate::formats::{self, Beside, Format, STDIN, glm};
 use crate::generate::{self, NAMES};
 use crate::polygons::Polygons;
+use crate::texture::is_texture;
 use glint_core::framing::upright;
 use glint_core::matrix::Axis;
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{MAX_NAME, Mesh};
 use std::path::Path;
 
 /// A mesh for boards, with the report of its conversion.
@@ -65,6 +66,20 @@ fn is_inside_out(mesh: &Mesh) -> bool {
         }
     }
     area == [0; 3] && volume < 0
+}
+
+/// The name on a board of a file that is uploaded: that of a texture file without folder, or of a mesh file without folder and
+/// extension, with `-` in place of characters that a name cannot contain. `None` for a generator.
+pub fn board_name(file: &str) -> Option<String> {
+    let path = Path::new(file);
+    let name = if is_texture(file) {
+        path.file_name()?
+    } else {
+        path.extension().and(path.file_stem())?
+    };
+    let visible = |c: char| if c.is_ascii_graphic() { c } else { '-' };
+    let name = name.to_string_lossy();
+    Some(name.chars().map(visible).take(MAX_NAME).collect())
 }
 
 /// Whether `name` selects a generator. A file with the name of a generator has precedence.

@@ -138,6 +138,7 @@ impl SceneFile {
         if !meshes
             .iter()
             .all(|mesh| Shape::NAMES.contains(&mesh.as_str()))
+            || scene.texture.is_some()
         {
             features.insert(UPLOAD);
         }

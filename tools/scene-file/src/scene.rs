@@ -50,7 +50,7 @@ pub type Budget = Vec<(&'static str, f64)>;
 pub struct SceneFile {
     name: String,
     title: String,
-    /// The folder of the file, which contains its meshes.
+    /// The folder of the file, which contains its meshes and its texture.
     folder: PathBuf,
     /// Console commands that set the picture.
     settings: Vec<String>,
@@ -325,7 +325,12 @@ impl SceneFile {
         self.scenes.first().map_or(&self.meshes, Self::meshes)
     }
 
-    /// The folder that contains the meshes; for a list of scenes, that of the first scene.
+    /// Name of the texture that replaces those of the meshes; for a list of scenes, that of the first scene.
+    pub fn texture(&self) -> Option<&str> {
+        self.scene().texture.as_deref()
+    }
+
+    /// The folder that contains the meshes and the texture; for a list of scenes, that of the first scene.
     pub fn folder(&self) -> &Path {
         self.scenes.first().map_or(&self.folder, Self::folder)
     }

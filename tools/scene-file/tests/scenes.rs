@@ -384,6 +384,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         model = "torus"; geometry = false → cpu mesh view
         model = "torus"; background = "sky"; field = "menger:1" → field mesh mesh-in-field sky view
         model = "cow.obj"; textures = false → mesh texture upload view
+        model = "crate"; texture = "wood.png" → mesh texture upload view
         model = "torus"; backend = "cpu" → cpu mesh view
         model = "torus"; clip = 3 → cpu mesh view
         model = "torus"; edges = "over" → edges mesh view

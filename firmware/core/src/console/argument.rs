@@ -249,6 +249,16 @@ impl Keyword for Default {
     const WORD: &'static str = "default";
 }
 
+/// The keyword `own`.
+pub struct Own;
+
+impl Keyword for Own {
+    const WORD: &'static str = OWN;
+}
+
+/// The word that stands for the own textures of meshes.
+pub const OWN: &str = "own";
+
 /// An argument that is either the keyword `K`, whose value is `None`, or a word of type `T`.
 pub struct Or<K, T>(PhantomData<(K, T)>);
 

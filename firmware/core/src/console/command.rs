@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::animate::Animate;
-use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
+use super::argument::{Argument, Default, Flag, Off, Or, Own, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
 use super::forms::{FIELD, LIT, MESHES, Order, Row, key, option, switch};
 use super::object::Object;
@@ -11,7 +11,7 @@ use super::syntax::{Parameter, Shape, Syntax, WordKind};
 use super::table::{commands, part, shows};
 use super::values::{
     Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName,
-    Mounting, Name, SceneName, Sensitivity, Size, Upload, UploadName, View, Whole,
+    Mounting, Name, SceneName, Sensitivity, Size, TextureName, Upload, UploadName, View, Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
@@ -56,9 +56,9 @@ commands! {
     SceneCommands {
         scene Scene(name: Option<SceneName>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
             => key(Order::Subject, "teapot").named("model").without(&["object", "program"]);
-        load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh (binary) under a name (default model) and show it";
-        models Models() in UPLOAD: "list the meshes and the memory for uploads";
-        unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh";
+        load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh or a texture (binary) under a name (default model) and show it";
+        models Models() in UPLOAD: "list the meshes, the textures and the memory for uploads";
+        unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh or texture";
         program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; without arguments, show the last one"
             => key(Order::Subject, "cube");
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
@@ -184,6 +184,8 @@ commands! {
         textures Textures(on: bool) in TEXTURE: "turn textures of meshes on or off"
             => key(Order::Option, "off").with(MESHES)
                 .host(switch("no-textures", "off", "Draw meshes without their textures"));
+        texture Texture(texture: Or<Own, TextureName>) or show in TEXTURE: "show or set the uploaded texture that faces show in place of their own; own shows those of the mesh"
+            => key(Order::Option, "wood.png").with(MESHES);
         edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh: hidden (only edges that no face hides) or over (on the shaded faces)"
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));

@@ -72,7 +72,9 @@ pub enum NameList {
     Scenes,
     /// Meshes.
     Meshes,
-    /// Uploaded meshes.
+    /// Uploaded textures.
+    Textures,
+    /// Uploaded meshes and textures.
     Uploads,
 }
 

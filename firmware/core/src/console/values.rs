@@ -33,7 +33,7 @@ impl WordArgument for Name {
     }
 }
 
-/// The name of a mesh.
+/// The name of a mesh, or of an upload.
 pub struct MeshName;
 
 impl WordArgument for MeshName {
@@ -47,7 +47,19 @@ impl WordArgument for MeshName {
 
 const MESH_NAME: &str = "a name of at most 24 visible characters of ASCII";
 
-/// The name of an uploaded mesh.
+/// The name of an uploaded texture.
+pub struct TextureName;
+
+impl WordArgument for TextureName {
+    type Value<'a> = &'a str;
+    const KIND: WordKind = WordKind::Name(NameList::Textures, &MESH_NAME);
+
+    fn parse(text: &str) -> Option<&str> {
+        MeshName::parse(text)
+    }
+}
+
+/// The name of an uploaded mesh or texture.
 pub struct UploadName;
 
 impl WordArgument for UploadName {

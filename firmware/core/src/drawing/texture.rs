@@ -215,6 +215,18 @@ impl<'a> Texture<'a> {
         Ok(Self { bytes, ..texture })
     }
 
+    /// Checks a texture as [`new_checked`](Self::new_checked) does, and that no other bytes follow.
+    ///
+    /// # Errors
+    /// The first deviation from the format, with its position.
+    pub fn new_alone(bytes: &'a [u8]) -> Result<Self, Deviation> {
+        let texture = Self::new_checked(bytes)?;
+        let length = Exactly("bytes in all", texture.bytes.len() as u32);
+        let found = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        deviation::Format::Texture.expect(0, length, found)?;
+        Ok(texture)
+    }
+
     /// All bytes of the texture, including its header.
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes

@@ -1,23 +1,26 @@
 //! `glint flash` and `glint upload`.
 
-use super::common::{Baud, LineArguments};
+use super::common::{Baud, LineArguments, bad_value};
 use super::config::BoardChoice;
 use super::convert::load;
 use super::messages::{note, print_json, say, warn};
 use super::progress::{advance, bar, show_simulation, spinner};
-use super::texture::{MeshTextureArguments, print_textures};
+use super::texture::{MeshTextureArguments, load_texture, print_textures};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{self, Board, SerialBoard};
 use glint::console::Console;
-use glint::convert::Options;
+use glint::convert::{Options, TextureReport};
 use glint::flash;
 use glint::formats::read_up_to;
 use glint::image;
+use glint::model::board_name;
 use glint::program;
 use glint::render::BoardRenderer;
+use glint::texture::is_texture;
 use glint::transfer;
 use glint_core::flash::FIRMWARE;
+use glint_core::matrix::Axis;
 use glint_core::mesh::{MAX_NAME, is_name};
 use std::io::{self, Write};
 use std::ops::RangeInclusive;
@@ -57,13 +60,15 @@ pub struct FlashArguments {
     json: bool,
 }
 
-/// Upload a model to a board under a name and show it; other models stay on the board.
+/// Upload a model or a texture to a board under a name and show it; other uploads stay on the board.
+///
+/// Faces with a texture show an uploaded texture in place of their own; the rest of the scene stays.
 #[derive(Args)]
 pub struct UploadArguments {
-    /// Mesh file, or name of a generator.
+    /// Mesh file, name of a generator, or texture: a PNG, JPEG or .glt file.
     model: String,
-    /// Name of the model on the board, at most 24 visible characters of ASCII [default: the file's name without its extension, or
-    /// `model` for a generator].
+    /// Name on the board, at most 24 visible characters of ASCII [default: a mesh file's name without its extension, a texture file's
+    /// name, or `model` for a generator].
     #[arg(long, value_parser = mesh_name)]
     name: Option<String>,
     #[command(flatten)]
@@ -87,15 +92,6 @@ pub struct UploadArguments {
 fn mesh_name(text: &str) -> Result<String, String> {
     let expected = format!("expected 1 to {MAX_NAME} visible characters of ASCII");
     is_name(text).then(|| text.to_owned()).ok_or(expected)
-}
-
-/// The name of a model on the board: the file's name without folder and extension, with `-` in place of characters that a name
-/// cannot contain. `None` for a generator.
-fn default_name(model: &str) -> Option<String> {
-    let path = Path::new(model);
-    let stem = path.extension().and(path.file_stem())?.to_string_lossy();
-    let visible = |c: char| if c.is_ascii_graphic() { c } else { '-' };
-    Some(stem.chars().map(visible).take(MAX_NAME).collect())
 }
 
 /// Addresses of main memory on every board.
@@ -198,15 +194,7 @@ fn write_flash(path: &Path) -> anyhow::Result<()> {
 
 impl UploadArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let options = Options {
-            keep_scale: self.keep_scale,
-            textures: self.textures.options(),
-            ..Options::default()
-        };
-        let model = load(&self.model, options)?;
-        if let Some(remark) = model.inside_out() {
-            warn(format_args!("{}: {remark}", self.model.escape_debug()));
-        }
+        let (bytes, up, textures) = self.load()?;
         let board = self.board.name()?;
         if board.is_simulated() {
             note(
@@ -214,31 +202,60 @@ impl UploadArguments {
             );
         }
         let mut board = self.line.board(&board)?;
-        let name = self.name.or_else(|| default_name(&self.model));
+        let name = self.name.or_else(|| board_name(&self.model));
         let start = board.now_ms();
-        let bar = bar("mesh");
+        let bar = bar("upload");
         let mut renderer =
             BoardRenderer::new(Console::new(&mut *board)).with_progress(advance(&bar));
-        renderer.upload(&model.mesh, name.as_deref())?;
-        if !self.keep_scene {
+        let notes = renderer.upload(&bytes, name.as_deref())?;
+        if let Some(up) = up.filter(|_| !self.keep_scene) {
             let name = name.as_deref().unwrap_or(transfer::MODEL);
-            transfer::show(renderer.console(), name, model.up)?;
+            transfer::show(renderer.console(), name, up)?;
         }
         drop(renderer);
         bar.finish();
         let milliseconds = board.now_ms() - start;
+        notes.iter().for_each(note);
         if self.json {
             let mut report =
-                serde_json::json!({ "bytes": model.mesh.len(), "milliseconds": milliseconds });
-            if !model.textures().is_empty() {
-                report["textures"] = serde_json::to_value(model.textures())?;
+                serde_json::json!({ "bytes": bytes.len(), "milliseconds": milliseconds });
+            if !textures.is_empty() {
+                report["textures"] = serde_json::to_value(textures)?;
             }
             return print_json(&report);
         }
-        print_textures(model.textures())?;
+        print_textures(&textures)?;
         say(format_args!(
             "{} bytes in {milliseconds} ms of the board's time",
-            model.mesh.len()
+            bytes.len()
         ))
+    }
+
+    /// The mesh or texture for the board, the axis of a mesh that points up, and reports on the converted textures.
+    fn load(&self) -> anyhow::Result<(Vec<u8>, Option<Axis>, Vec<TextureReport>)> {
+        let textures = self.textures.options();
+        if is_texture(&self.model) {
+            for (is_given, option) in [
+                (self.keep_scale, "--keep-scale"),
+                (textures.left_out, "--no-textures"),
+            ] {
+                if is_given {
+                    return Err(bad_value(option, "a mesh", "a texture").into());
+                }
+            }
+            let (bytes, report) = load_texture(Path::new(&self.model), &textures)?;
+            return Ok((bytes, None, vec![report]));
+        }
+        let options = Options {
+            keep_scale: self.keep_scale,
+            textures,
+            ..Options::default()
+        };
+        let model = load(&self.model, options)?;
+        if let Some(remark) = model.inside_out() {
+            warn(format_args!("{}: {remark}", self.model.escape_debug()));
+        }
+        let textures = model.textures().to_vec();
+        Ok((model.mesh, Some(model.up), textures))
     }
 }

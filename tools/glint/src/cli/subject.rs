@@ -5,7 +5,7 @@ use super::common::{SizeArguments, bad_value};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::heading;
-use super::texture::TexelArguments;
+use super::texture::{TexelArguments, load_texture};
 use clap::Args;
 use glint::convert::{Options, TextureOptions};
 use glint::error::InputError;
@@ -15,6 +15,7 @@ use glint::scene;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::object::{MAX_OBJECTS, Place};
+use glint_core::texture::Texture;
 use glint_scene::{Assets, Kind, Scene};
 use glint_scene_file::SceneFile;
 use std::path::PathBuf;
@@ -30,6 +31,9 @@ pub struct SubjectArguments {
     pub scene: Option<String>,
     #[command(flatten)]
     pub field: FieldArguments,
+    /// A texture that faces with a texture show in place of their own: a PNG, JPEG or .glt file.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "textures"], help_heading = heading::APPEARANCE)]
+    texture: Option<PathBuf>,
     #[command(flatten, next_help_heading = heading::APPEARANCE)]
     texels: TexelArguments,
     #[command(flatten, next_help_heading = heading::CAMERA)]
@@ -68,8 +72,14 @@ impl SubjectArguments {
         let mut scene = self.field.scene(&self.size)?;
         if model.is_none() && others.is_empty() {
             self.texels.refuse("a model", "none")?;
+            if self.texture.is_some() {
+                return Err(bad_value("--texture", "a model", "none").into());
+            }
         }
         let options = self.options(&scene, keep_scale)?;
+        let texture = self.texture.as_deref();
+        let texture = texture.map(|path| load_texture(path, &options.textures));
+        let texture = texture.transpose()?;
         let loaded = model.map(|name| load(name, options)).transpose()?;
         let mesh = loaded.as_ref().map(|model| Mesh::new_checked(&model.mesh));
         let mesh = mesh.transpose()?;
@@ -106,10 +116,16 @@ impl SubjectArguments {
         let frame = scene.frame(Assets {
             mesh,
             objects: &objects,
+            texture: match &texture {
+                Some((bytes, _)) => Some(Texture::new_checked(bytes)?),
+                None => None,
+            },
             program: scene::program()?,
         });
         let textures = loaded.iter().chain(&models);
-        let textures: Vec<_> = textures.flat_map(Model::textures).cloned().collect();
+        let textures = textures.flat_map(Model::textures).cloned();
+        let report = texture.as_ref().map(|(_, report)| report.clone());
+        let textures: Vec<_> = textures.chain(report).collect();
         draw(&CameraSubject {
             frame: &frame,
             model,
@@ -157,7 +173,9 @@ impl SubjectArguments {
             let meshes = scene.meshes().iter();
             meshes.map(|name| scene::path(name, scene.folder()).into())
         });
+        let texture = scene.and_then(|scene| Some(scene.folder().join(scene.texture()?)));
+        let textures = [self.texture.clone(), texture].into_iter().flatten();
         let camera = self.camera.file().map(PathBuf::from);
-        names.chain(meshes).chain(camera).collect()
+        names.chain(meshes).chain(textures).chain(camera).collect()
     }
 }

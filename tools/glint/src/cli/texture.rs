@@ -5,13 +5,11 @@ use super::messages::{print_json, say};
 use super::output::{Output, STDOUT, TEXTURE};
 use clap::{Args, ValueEnum};
 use glint::convert::{TextureOptions, TextureReport};
-use glint::error::{FormatError, InputError};
+use glint::error::{FormatError, InputError, quote};
 use glint::formats::read_file;
-use glint_core::texture::{self, Blend, Filter, Format, MAGIC, Sampler, Wrap, checksum};
-use glint_texture::convert::{self, Report};
-use glint_texture::error::PictureError;
-use glint_texture::options::{MAX_SIDE, MIN_SIDE, Options, blend_name, filter_name, wrap_name};
-use glint_texture::picture::Picture;
+use glint::texture::{self, CUTOFF};
+use glint_core::texture::{Blend, Filter, Format, Wrap};
+use glint_texture::options::{MAX_SIDE, MIN_SIDE, blend_name, filter_name, wrap_name};
 use glint_texture::sheet::sheet;
 use std::path::{Path, PathBuf};
 
@@ -87,7 +85,17 @@ impl MeshTextureArguments {
     }
 }
 
-/// Prints a line for each texture of a mesh that was converted: sizes, bytes and errors.
+/// Reads a texture file, and converts it with these options.
+pub fn load_texture(
+    path: &Path,
+    options: &TextureOptions,
+) -> Result<(Vec<u8>, TextureReport), InputError> {
+    let (bytes, report) = texture::load(path, options)?;
+    let name = quote(path.as_os_str().as_encoded_bytes());
+    Ok((bytes, TextureReport { name, report }))
+}
+
+/// Prints a line for each texture that was converted: sizes, bytes and errors.
 pub fn print_textures(textures: &[TextureReport]) -> anyhow::Result<()> {
     textures.iter().try_for_each(|texture| {
         say(format_args!(
@@ -129,7 +137,7 @@ pub struct TextureArguments {
     #[arg(long, value_name = "repeat|mirror|clamp", num_args = 1, value_delimiter = ',', value_parser = named(Wrap::ALL, wrap_name))]
     wrap: Vec<Wrap>,
     /// Opacity, 0 to 1, below which texels are transparent. With 0 no texel is transparent.
-    #[arg(long, value_name = "0..1", default_value_t = 0.5)]
+    #[arg(long, value_name = "0..1", default_value_t = CUTOFF)]
     cutoff: f32,
     /// Print the report as JSON.
     #[arg(long)]
@@ -171,9 +179,13 @@ impl TextureArguments {
             }
         };
         let file = read_file(&self.input)?;
-        let (bytes, report) = self
-            .converted(&file)
-            .map_err(|error| error.in_path(&self.input))?;
+        let wrap = match self.wrap[..] {
+            [] => None,
+            [both] => Some([both; 2]),
+            [across, down, ..] => Some([across, down]),
+        };
+        let converted = texture::of_bytes(&file, &self.texels.options(), wrap, self.cutoff);
+        let (bytes, report) = converted.map_err(|error| error.in_path(&self.input))?;
         let bytes = match to {
             To::Glt => bytes,
             To::Png => shown(&bytes).map_err(|error| error.in_path(&self.input))?,
@@ -185,70 +197,10 @@ impl TextureArguments {
             say(report)
         }
     }
-
-    fn converted(&self, file: &[u8]) -> Result<(Vec<u8>, Report), FormatError> {
-        let TexelArguments {
-            palette,
-            texture_size,
-            filter,
-            blend,
-        } = self.texels;
-        let texture_size = texture_size.unwrap_or(MAX_SIDE);
-        let sampler = |of_file: Sampler| Sampler {
-            wrap: match self.wrap[..] {
-                [] => of_file.wrap,
-                [both] => [both; 2],
-                [across, down, ..] => [across, down],
-            },
-            filter: filter.unwrap_or(of_file.filter),
-        };
-        if file.starts_with(&MAGIC) {
-            let texture = checked(file)?;
-            let sampler = sampler(texture.sampler());
-            let again = convert::again(&texture, palette, texture_size, sampler, blend);
-            return again.map_err(of_picture);
-        }
-        let picture = Picture::decode(file).map_err(of_picture)?;
-        let options = Options {
-            format: palette.unwrap_or_default(),
-            largest_side: texture_size,
-            sampler: sampler(Sampler {
-                filter: Filter::Bilinear,
-                ..Sampler::default()
-            }),
-            cutoff: Some(self.cutoff),
-            blend: blend.unwrap_or_default(),
-        };
-        convert::convert(&picture, &options).map_err(of_picture)
-    }
-}
-
-/// The texture of a .glt file.
-fn checked(file: &[u8]) -> Result<texture::Texture<'_>, FormatError> {
-    let texture = texture::Texture::new_checked(file)
-        .map_err(|error| FormatError::whole("a valid texture", error.to_string()))?;
-    let (length, needed) = (texture.bytes().len(), checksum(texture.bytes()));
-    let stated = texture::TextureHeader::CHECKSUM;
-    let stated = file.get(stated).and_then(|bytes| bytes.try_into().ok());
-    let stated = stated.map_or(0, u32::from_le_bytes);
-    if stated != needed {
-        let expected = format!("the CRC-32 {needed:08x} of the other bytes");
-        let found = format!("{stated:08x}: the file is damaged");
-        return Err(FormatError::whole(expected, found));
-    }
-    if file.len() != length {
-        let found = file.len().to_string();
-        return Err(FormatError::whole(format!("{length} bytes"), found));
-    }
-    Ok(texture)
 }
 
 /// The levels of a texture as a PNG file.
 fn shown(bytes: &[u8]) -> Result<Vec<u8>, FormatError> {
-    let texture = checked(bytes)?;
-    sheet(&texture).png().map_err(of_picture)
-}
-
-fn of_picture(error: PictureError) -> FormatError {
-    FormatError::whole(error.expected, error.found)
+    let texture = texture::checked(bytes)?;
+    sheet(&texture).png().map_err(texture::of_picture)
 }

@@ -21,7 +21,7 @@ pub fn run(input: &[u8]) -> bool {
         for item in contents.items() {
             assert!(contents.find(item.kind, item.name).is_some());
             match item.kind {
-                Kind::Mesh => drop(item.checked()),
+                Kind::Mesh | Kind::Texture => drop(item.checked()),
                 Kind::Scene => drop(item.text().map(run_scene)),
                 Kind::List => drop(item.text().map(run_list)),
             }
@@ -43,7 +43,9 @@ fn run_scene(text: &str) {
     for line in lines(text) {
         match line {
             Ok((_, line)) => {
-                assert!(line.mesh().is_none_or(|mesh| text.contains(mesh)));
+                for name in [line.mesh(), line.texture()] {
+                    assert!(name.is_none_or(|name| text.contains(name)));
+                }
                 if let Err(error) = line.apply(&mut scene, &mut AnyBoard) {
                     rejected(&error.to_string());
                 }

@@ -141,7 +141,7 @@ fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn s
             serde_json::to_string(&stats)?;
             renderer.look(&view)?;
         }
-        2 => upload(console, &upload_data(LENGTH), None, SESSION, quiet)?,
+        2 => drop(upload(console, &upload_data(LENGTH), None, SESSION, quiet)?),
         3 => {
             let data = download(console, "frame", LENGTH, quiet)?;
             assert_eq!(data.len(), LENGTH);

@@ -1,6 +1,6 @@
 //! A renderer that draws frames on a board, by console commands.
 
-use super::commands::{commands, size_command, view_command};
+use super::commands::{TEXTURE, commands, size_command, view_command};
 use super::rendered::{Error, Parts, Rendered};
 use super::stats::{Stats, stats_of};
 use crate::board::{Board, Route};
@@ -82,8 +82,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         &mut self.console
     }
 
-    /// Draws a frame on the board: uploads its meshes, if any, and waits until the frame is drawn. All objects of a frame use the
-    /// options of the first object.
+    /// Draws a frame on the board: uploads its meshes and its texture, if any, and waits until the frame is drawn. All objects of a
+    /// frame use the options of the first object.
     ///
     /// # Errors
     /// The firmware refuses a command, or an upload fails.
@@ -109,7 +109,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.render_after(&lines, frame.size, parts)
     }
 
-    /// Uploads the meshes of a frame, and returns the commands that show it.
+    /// Uploads the meshes and the texture of a frame, and returns the commands that show it.
     fn load_subject(&mut self, frame: &Frame) -> Result<Vec<String>, Error> {
         const MESH: &str = "model";
         if let Some(subject) = frame.subject.mesh_part() {
@@ -129,16 +129,22 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
                 self.upload(mesh.bytes(), Some(&name(number)))?;
             }
         }
+        if let Some(texture) = frame.texture {
+            self.upload(texture.bytes(), Some(TEXTURE))?;
+        }
         Ok(commands(frame, MESH, name)?)
     }
 
-    /// Uploads the meshes of a scene that are not built into the firmware, and returns the commands that show the scene with camera,
-    /// quality and size of `frame`, without motion.
+    /// Uploads the meshes of a scene that are not built into the firmware, and its texture. Returns the commands that show the scene
+    /// with camera, quality and size of `frame`, without motion.
     fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
             if !scene::is_shape(name) {
                 self.upload(&scene::mesh(name, scene.folder())?, Some(name))?;
             }
+        }
+        if let Some(name) = scene.texture() {
+            self.upload(&scene::texture(name, scene.folder())?, Some(name))?;
         }
         let mut lines = vec!["scene default".to_owned()];
         // The frame already has the camera that shows all meshes, and shows the start of an
@@ -201,14 +207,14 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(Rendered { image, stats })
     }
 
-    /// Uploads a mesh under a name, by default `model`, and draws it.
+    /// Uploads a mesh or a texture under a name, by default `model`, and draws it. Returns the notes of the board.
     ///
     /// # Errors
     /// The upload fails, or the board does not offer the route.
-    pub fn upload(&mut self, mesh: &[u8], name: Option<&str>) -> Result<(), Error> {
-        let session = self.stage(mesh)?;
+    pub fn upload(&mut self, bytes: &[u8], name: Option<&str>) -> Result<Vec<String>, Error> {
+        let session = self.stage(bytes)?;
         let (console, progress) = (&mut self.console, &mut *self.progress);
-        Ok(transfer::upload(console, mesh, name, session, progress)?)
+        Ok(transfer::upload(console, bytes, name, session, progress)?)
     }
 
     /// Writes the data of an upload to the board's memory, if the route is the memory. Returns the

@@ -9,6 +9,9 @@ use glint_core::picture::{Backend, Size};
 use glint_model::{Frame, MeshOptions, Object, Subject};
 use glint_scene::{Kind, Name, PlacedMesh, Scene};
 
+/// Name of a frame's texture on the board.
+pub const TEXTURE: &str = "texture";
+
 /// The console command that sets the picture's size.
 pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
@@ -20,9 +23,9 @@ pub fn view_command(view: &View) -> String {
     format!("view {view}")
 }
 
-/// The console commands that make a board draw a frame; the frame's mesh has the name `mesh` on the board, and the mesh of object
-/// number `n` the name `object(n)`. All objects use the options of the first object. For a wireframe, the commands draw the
-/// board's current program without its motion.
+/// The console commands that make a board draw a frame; the frame's mesh has the name `mesh` on the board, the mesh of object number
+/// `n` the name `object(n)`, and the texture the name [`TEXTURE`]. All objects use the options of the first object. For a wireframe,
+/// the commands draw the board's current program without its motion.
 ///
 /// # Errors
 /// The initial camera is out of range.
@@ -47,6 +50,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
         view: frame.view,
         size: frame.size,
         stereo: frame.stereo,
+        texture: frame.texture.map(|_| name(TEXTURE)),
         ..start.clone()
     };
     if let Some(options) = frame.subject.meshes().next() {

@@ -12,6 +12,7 @@ use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 use glint_core::flash::{CONTENTS, Kind, Piece, encode};
+use glint_core::texture::{self, Source};
 use glint_scene_file::SceneFile;
 use virtual_board::virtual_flash::Flash;
 
@@ -92,6 +93,37 @@ fn a_board_with_a_list_runs_alone() {
         assert_has(&answer, &format!("scene {line}\r\n"));
     }
     assert_eq!(answer.matches("scene cubes ").count(), 1, "{answer}");
+}
+
+/// A texture of the flash is copied to the uploads when a scene or a command names it.
+#[test]
+fn a_scene_has_its_texture_from_the_flash() {
+    let texture = texture::encode(&Source {
+        size_log2: [3, 3],
+        levels: vec![vec![0xF800; 64]],
+        ..Source::default()
+    });
+    let flash = flash(&[
+        piece(Kind::Texture, "red", texture.unwrap()),
+        piece(Kind::Texture, "bad", vec![0; 64]),
+        piece(Kind::Scene, "box", "scene crate\ntexture red\n"),
+        piece(Kind::Scene, "broken", "scene crate\ntexture bad\n"),
+    ]);
+    let (mut board, _) = powered_up(flash, |_| ());
+    assert_has(&command(&mut board, "models"), "flash red bytes 160\r\n");
+    command(&mut board, "scene box");
+    assert_has(&command(&mut board, "texture"), "texture red\r\n");
+    assert_has(
+        &command(&mut board, "models"),
+        "texture red size 8 8 bytes 160\r\n",
+    );
+    let answer = command(&mut board, "scene broken");
+    assert_has(&answer, "bad of the flash: mesh byte 0: expected ");
+    assert_has(&command(&mut board, "texture"), "texture red\r\n");
+    command(&mut board, "unload red");
+    assert_has(&command(&mut board, "texture"), "texture own\r\n");
+    command(&mut board, "texture red");
+    assert_has(&command(&mut board, "texture"), "texture red\r\n");
 }
 
 /// For a scene without a camera, a board computes the same camera from the mesh in its flash as the
@@ -244,7 +276,7 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
         (
             vec![missing, damaged],
             4,
-            "mesh gear of the flash: mesh byte 0: expected ",
+            "gear of the flash: mesh byte 0: expected ",
         ),
         (vec![scene("frobnicate\n")], 7, no_command),
         (vec![scene("fov 60\nreboot\n")], 7, no_picture),

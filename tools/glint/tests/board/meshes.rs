@@ -1,7 +1,7 @@
 //! Pictures and depths of meshes are bit-identical to the model's: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
-    assert_has, drawn_alike, emulator, emulator_with, mesh, mesh_frame, plain, renderer,
+    assert_has, drawn_alike, emulator, emulator_with, mesh, mesh_frame, object, plain, renderer,
     running_board, sky, timeless,
 };
 use glint::board::{Board, SimulatedBoard, Simulation};
@@ -12,7 +12,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::fixed::{U4_28, U8_28};
 use glint_core::light::{Light, MeshLighting};
 use glint_core::picture::{Backend, Size};
-use glint_core::texture::{self, Blend, Filter, Sampler, Source};
+use glint_core::texture::{self, Blend, Filter, Sampler, Source, Texture};
 use glint_vectors::meshes::textured_layers;
 use std::path::Path;
 use std::process::Command;
@@ -104,6 +104,49 @@ fn textures_are_the_models_on_every_backend() {
         assert_eq!(stats.backend.as_deref(), Some(by), "{notes:#?}");
         let found = notes.iter().find(|line| line.starts_with("fallback "));
         assert_eq!(found.map(String::as_str), fallback, "{notes:#?}");
+    }
+}
+
+/// Gateware and soft core draw a texture in place of those of all meshes, also on clipped triangles, and name it once.
+#[test]
+fn a_texture_in_place_of_others_is_the_models() {
+    let texture = |colour: u16, blend| {
+        let texture = texture::encode(&Source {
+            size_log2: [4, 4],
+            blend,
+            levels: vec![(0..256).map(|i| i * colour).collect()],
+            ..Source::default()
+        });
+        texture.unwrap()
+    };
+    let layers = |count: u16| {
+        let own: Vec<_> = (0..count).map(|i| texture(i, Blend::Opaque)).collect();
+        textured_layers(&own, 0.5, 0.1)
+    };
+    let (few, more) = (layers(2), layers(7));
+    let mut board = emulator();
+    let mut renderer = renderer(&mut board);
+    for blend in [Blend::Opaque, Blend::Additive] {
+        let other = texture(0x101, blend);
+        let other = Some(Texture::new_checked(&other).unwrap());
+        for backend in [Backend::Gateware, Backend::Cpu] {
+            renderer.set_backend(backend);
+            let view = view::spherical("2,30,60").unwrap();
+            let frame = Frame {
+                texture: other,
+                ..Frame::new(Subject::Mesh(plain(&few)), view, Size::W320)
+            };
+            drawn_alike(&mut renderer, &frame, "a texture on a mesh");
+            let objects = [object(&few, "move 0.5,0.5,0.5"), object(&more, "scale 0.4")];
+            let objects = Frame {
+                subject: Subject::Objects(&objects),
+                ..frame
+            };
+            let [Rendered { stats, .. }, _] =
+                drawn_alike(&mut renderer, &objects, "a texture on objects");
+            assert!(stats.triangles().triangles_clipped > 0);
+            assert_eq!(stats.backend, Some(backend.to_string()));
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Uploads of meshes over a faulty line, and uploads of invalid meshes.
+//! Uploads of meshes over a faulty line, of invalid meshes, and of textures.
 
 use crate::common::{
     address, console, emulator, emulator_with, info, mesh, read, renderer, running_board,
@@ -9,6 +9,7 @@ use glint::fuzz::Random;
 use glint::transfer::{self, TransferError};
 use glint_core::colour::Shading;
 use glint_core::mesh::{IndexedTriangle, Vertex, encode};
+use glint_core::texture::{self, Source};
 use glint_core::wire::{Failure, Manifest, Reason};
 
 /// A faulty line: in both directions it drops, flips or repeats one byte in a hundred.
@@ -192,7 +193,10 @@ fn a_bad_upload_leaves_the_old_model() {
         damaged[at] ^= 0x80;
         let refused = transfer::upload(&mut console, &damaged, None, number, quiet);
         let refused = refused.unwrap_err().to_string();
-        assert!(refused.contains("mesh refused"), "byte {at}: {refused}");
+        assert!(
+            refused.contains("refused, previous uploads kept"),
+            "byte {at}: {refused}"
+        );
     }
     assert_eq!(info::<u32>(&mut console, "triangles"), 12);
     assert!(frame(&mut console) == shown);
@@ -201,4 +205,121 @@ fn a_bad_upload_leaves_the_old_model() {
     transfer::upload(&mut console, &other, None, 5, quiet).unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
     assert!(frame(&mut console) != shown);
+}
+
+/// A texture of 8×8 texels of a colour.
+fn texture(colour: u16) -> Vec<u8> {
+    let texture = texture::encode(&Source {
+        size_log2: [3, 3],
+        levels: vec![vec![colour; 64]],
+        ..Source::default()
+    });
+    texture.unwrap()
+}
+
+/// A texture has a name beside those of meshes. It replaces the textures of the shown meshes until another is selected, or until it is
+/// removed.
+#[test]
+fn a_texture_is_uploaded_under_a_name() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    let mut session = 0;
+    let mut upload = |console: &mut Console<_>, bytes: &[u8], name| {
+        session += 1;
+        transfer::upload(console, bytes, Some(name), session, quiet)
+    };
+    let said = |console: &mut Console<_>, line: &str| match console.command(line) {
+        Ok(lines) => lines.join("\n"),
+        Err(error) => error.to_string(),
+    };
+    // The cube has no textures.
+    let note = "texture: no shown mesh has faces with a texture, so the picture does not change; `scene crate` shows one";
+    assert_eq!(
+        upload(&mut console, &texture(0xF800), "red").unwrap(),
+        [note]
+    );
+    assert_eq!(said(&mut console, "texture red"), format!("note: {note}"));
+    assert_eq!(said(&mut console, "texture own"), "");
+    console.command("scene crate").unwrap();
+    let own = frame(&mut console);
+    assert_eq!(said(&mut console, "texture red"), "");
+    let red = frame(&mut console);
+    assert!(red != own);
+    let green = upload(&mut console, &texture(0x07E0), "green").unwrap();
+    assert!(green.is_empty(), "{green:?}");
+    assert_eq!(said(&mut console, "texture"), "texture green");
+    let green = frame(&mut console);
+    assert!(green != own && green != red);
+    let models = said(&mut console, "models");
+    for line in [
+        "texture red size 8 8 bytes 160",
+        "texture green size 8 8 bytes 160",
+        "uploads 2 of 16",
+    ] {
+        assert!(models.contains(line), "{models}");
+    }
+    // A texture is no mesh, and the other way around.
+    for (line, error) in [
+        ("scene red", "scene `red`: expected cube or "),
+        ("object add red", "object add `red`: expected a mesh"),
+        (
+            "texture crate",
+            "texture `crate`: expected own or an uploaded texture",
+        ),
+        (
+            "load 160 0 own",
+            "load `own`: the word for own textures, expected another name",
+        ),
+    ] {
+        let found = said(&mut console, line);
+        assert!(found.contains(error), "{found}");
+    }
+    let refused = upload(&mut console, &mesh("cube"), "red").unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .contains("a mesh and a texture of one name"),
+        "{refused}"
+    );
+
+    // Bytes that are no texture keep the picture.
+    let good = texture(0xFFFF);
+    let long = [&good[..], &[0; 16]].concat();
+    let mut damaged = good.clone();
+    damaged[12] = 0;
+    for (bytes, error) in [
+        (&good[..20], "texture byte 0: expected 32 bytes, found 20"),
+        (&good[..96], "texture byte 0: expected 160 bytes, found 96"),
+        (
+            &long,
+            "texture byte 0: expected 160 bytes in all, found 176",
+        ),
+        (
+            &damaged,
+            "texture byte 12: expected 3 to 10, the logarithm of a side, found 0",
+        ),
+        (
+            b"GLT2 is no texture, and no mesh.",
+            "mesh byte 0: expected \"GLM2\", found \"GLT2\"",
+        ),
+    ] {
+        let refused = upload(&mut console, bytes, "red").unwrap_err().to_string();
+        let expected = format!("load: refused, previous uploads kept: {error}");
+        assert!(refused.contains(&expected), "{refused}");
+    }
+    assert_eq!(said(&mut console, "texture"), "texture green");
+    assert!(frame(&mut console) == green);
+
+    // The removal of another upload moves the shown one.
+    console.command("unload red").unwrap();
+    assert!(frame(&mut console) == green);
+    console.command("unload green").unwrap();
+    assert_eq!(said(&mut console, "texture"), "texture own");
+    assert!(frame(&mut console) == own);
+    // A texture with the name of the shown built-in mesh is another thing.
+    upload(&mut console, &texture(0xFFFF), "crate").unwrap();
+    assert!(frame(&mut console) != own);
+    console.command("unload crate").unwrap();
+    assert!(frame(&mut console) == own);
 }

@@ -2,6 +2,7 @@
 
 use crate::common::{assert_has, folder, glint, refused, report, succeed};
 use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind, Piece, encode};
+use glint_texture::example::small_png;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -17,7 +18,9 @@ fn make(folder: &Path, scenes: &str) -> String {
 #[test]
 fn an_image_has_scenes_in_order_and_their_meshes() {
     let folder = folder("image");
-    let gears = "title = \"A gear\"\nmodel = \"gear\"\ncamera = \"2.5 40 65\"\n";
+    let gears =
+        "title = \"A gear\"\nmodel = \"gear\"\ntexture = \"a.png\"\ncamera = \"2.5 40 65\"\n";
+    fs::write(folder.join("a.png"), small_png()).unwrap();
     fs::write(folder.join("gears.toml"), gears).unwrap();
     assert!(make(&folder, "menger,gears.toml,demo").starts_with("board.bin: "));
     let valid = succeed(&folder, "image check board.bin");
@@ -39,6 +42,7 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     let list = succeed(&folder, "image list board.bin");
     assert!(list.starts_with("firmware "), "{list}");
     assert_has(&list, "mesh      gear  ");
+    assert_has(&list, "texture   a.png  ");
     let checked = report(&folder, "image check board.bin");
     assert_eq!(checked, serde_json::json!(["board.bin"]));
     let parts = report(&folder, "image list board.bin");

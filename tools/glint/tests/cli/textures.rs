@@ -1,12 +1,13 @@
 //! `glint texture`, and textures of `glint convert`.
 
 use crate::common::{
-    SQUARE, all_refused, assert_has, files_refused, folder, glint, report, said, succeed,
+    SQUARE, all_refused, assert_has, drawn, files_refused, folder, glint, report, said, succeed,
 };
 use glint_texture::example::{repair_png, small_png};
 use glint_texture::picture::Picture;
 use std::fs;
 use std::os::unix::fs::symlink;
+use std::path::Path;
 
 /// A square with a material that has a texture.
 const TEXTURED: &str = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
@@ -57,7 +58,12 @@ fn bad_pictures_and_options() {
     let damaged = "expected a PNG file without damage, found…";
     files_refused(
         &folder,
-        ["texture FILE out.glt", "texture FILE out.png"],
+        [
+            "texture FILE out.glt",
+            "texture FILE out.png",
+            "upload FILE",
+            "render cube --texture FILE --out out.png",
+        ],
         &[
             ("empty.png", vec![]),
             ("text.jpg", b"a text".to_vec()),
@@ -101,6 +107,12 @@ fn bad_pictures_and_options() {
             gone.png: expected a file to read, found…
         texture wrong.glt out.glt
             wrong.glt: expected the CRC-32…
+        upload wrong.glt
+            wrong.glt: expected the CRC-32…
+        upload a.png --keep-scale
+            --keep-scale: expected a mesh, found a texture
+        upload a.png --no-textures
+            --no-textures: expected a mesh, found a texture
         ",
     );
     assert!(!folder.join("out.glt").exists());
@@ -200,6 +212,62 @@ fn textures_where_a_model_is_taken() {
             --filter: expected a model, found --scene
         ",
     );
+}
+
+/// `--texture`, and the key of a scene file, draw what a material with this texture draws.
+#[test]
+fn a_texture_in_place_of_those_of_a_mesh() {
+    let folder = folder("textures-replaced");
+    // The material is red.
+    let picture = |name: &str, red: u8| {
+        let picture = Picture::drawn([32, 64], |x, y| [red + (x * y / 16) as u8, 0, 0, 255]);
+        fs::write(folder.join(name), picture.png().unwrap()).unwrap();
+    };
+    picture("a.png", 0);
+    picture("b.png", 99);
+    fs::write(folder.join("a.obj"), TEXTURED).unwrap();
+    let draw = |material: &str, arguments: &str| {
+        fs::write(folder.join("a.mtl"), mtl(material)).unwrap();
+        drawn(&folder, &format!("render {arguments}"))
+    };
+    let own = draw("a.png", "a.obj --up y");
+    let other = draw("b.png", "a.obj --up y");
+    assert!(own != other);
+    for board in ["", "--board emulated"] {
+        let replaced = format!("a.obj --up y --texture b.png {board}");
+        assert!(draw("a.png", &replaced) == other, "{board}");
+    }
+    succeed(&folder, "texture b.png b.glt");
+    assert!(draw("a.png", "a.obj --up y --texture b.glt") == other);
+    let scene = "title = \"A square\"\nmodel = \"a.obj\"\ntextures = true\nsize = \"640 360\"\n";
+    let own = draw("b.png", &scene_of(&folder, scene));
+    let scene = format!("{scene}texture = \"b.png\"\n");
+    for board in ["", " --board emulated"] {
+        let replaced = scene_of(&folder, &scene) + board;
+        assert!(draw("a.png", &replaced) == own, "{board}");
+    }
+    let [text, _] = said(
+        &folder,
+        "render a.obj --texture b.png --palette 16 --out p.png",
+    );
+    assert_has(&text, "texture    'b.png': 32×64, palette 16");
+    let [_, warning] = said(&folder, "render cube --texture b.png --out q.png");
+    assert_has(&warning, "no face has a texture");
+    all_refused(
+        &folder,
+        "
+        render --field menger:2 --texture b.png --out r.png
+            --texture: expected a model, found none
+        render a.obj --up y --texture b.png --out b.png --force
+            b.png: expected another file to write, found the input b.png
+        ",
+    );
+}
+
+/// Writes a scene file, and returns the argument for it.
+fn scene_of(folder: &Path, text: &str) -> String {
+    fs::write(folder.join("a.toml"), text).unwrap();
+    "--scene a.toml".to_owned()
 }
 
 #[test]

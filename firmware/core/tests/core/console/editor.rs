@@ -3,20 +3,22 @@
 use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor, NameList, Names};
 use proptest::prelude::*;
 
-/// The names of a machine with two uploads.
+/// The names of a machine with three uploads.
 struct Known;
 
 impl Names for Known {
     fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
-        let [uploads, built_in, scenes] = [
+        let [meshes, textures, built_in, scenes] = [
             &["hull", "hull-2"][..],
+            &["wood"],
             &["cube", "torus"],
             &["cubes", "menger"],
         ];
         let names = match list {
-            NameList::Scenes => [built_in, uploads, scenes].concat(),
-            NameList::Meshes => [built_in, uploads].concat(),
-            NameList::Uploads => uploads.to_vec(),
+            NameList::Scenes => [built_in, meshes, scenes].concat(),
+            NameList::Meshes => [built_in, meshes].concat(),
+            NameList::Textures => textures.to_vec(),
+            NameList::Uploads => [meshes, textures].concat(),
         };
         names.into_iter().for_each(visit);
     }
@@ -199,7 +201,8 @@ fn tab_completes_names() {
     assert_lines(b"scene cu\ts\r", &["scene cubes"]);
     assert_lines(b"scene cubes\t\r", &["scene cubes "]);
     assert_lines(b"object a\tto\t\r", &["object add torus "]);
-    assert_lines(b"unload \t\t\r", &["unload hull"]);
+    assert_lines(b"unload h\t\t\r", &["unload hull"]);
+    assert_lines(b"unload w\t\r", &["unload wood "]);
     assert_lines(b"load 1 0 t\t\r", &["load 1 0 torus "]);
     assert_lines(b"field men\t4\r", &["field menger:4"]);
     assert_lines(b"field of\t\r", &["field off "]);
@@ -207,6 +210,8 @@ fn tab_completes_names() {
     assert_lines(b"edges o\tv\t\r", &["edges over "]);
     let listed = |line: &[u8]| type_in(line).1.lines[1].clone();
     assert_eq!(listed(b"edges \t\r"), "off hidden over ");
+    assert_eq!(listed(b"texture \t\r"), "own wood ");
+    assert_eq!(listed(b"unload \t\r"), "hull hull-2 wood ");
     assert_eq!(
         listed(b"scene \t\r"),
         "cube torus hull hull-2 cubes menger "

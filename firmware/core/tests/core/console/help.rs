@@ -37,7 +37,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 58);
+    assert_eq!(list.lines().count(), 59);
     for (command, usage) in [
         ("object", "object [ACTION [OBJECT [PLACE]]]\n"),
         ("animate", "animate [off|PART [RATE]]\n"),
@@ -47,6 +47,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
         ("quality", "quality [fast|balanced|exact]\n"),
         ("size", "size W H\n"),
         ("stats", "stats [json]\n"),
+        ("texture", "texture [own|TEXTURE]\n"),
         ("light", "light [default|LIGHT]\n"),
         ("lookat", "lookat EX EY EZ GX GY GZ [UX UY UZ]\n"),
         ("shading", "shading [flat|smooth]\n"),

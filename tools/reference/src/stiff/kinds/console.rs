@@ -157,7 +157,7 @@ fn uploaded(input: Upload) -> Result<Outcome> {
     let mut board = board_after(input.sensor, &input.before, input.wait)?;
     let mut console = Console::new(&mut board);
     let refusal = match upload(&mut console, &bytes, None, 1, &mut |_, _| {}) {
-        Ok(()) => "accepted".to_owned(),
+        Ok(_) => "accepted".to_owned(),
         Err(TransferError::Console(ConsoleError::Refused { reason, .. })) => reason,
         Err(error) => error.to_string(),
     };
