@@ -28,17 +28,19 @@ pub enum Request {
     Help(String),
     /// Downloads the picture over the console.
     Picture,
-    /// Uploads a mesh, and shows it.
+    /// Uploads a mesh or a texture, and shows it.
     Upload(Upload),
 }
 
-/// A mesh to upload.
+/// A mesh or a texture to upload.
 #[derive(Debug)]
 pub struct Upload {
-    /// The mesh in the board's memory layout.
-    pub mesh: Vec<u8>,
-    /// The axis that points up.
-    pub up: Axis,
+    /// Its name on the board.
+    pub name: String,
+    /// The mesh or the texture in the board's memory layout.
+    pub bytes: Vec<u8>,
+    /// The axis of a mesh that points up; `None` for a texture.
+    pub up: Option<Axis>,
     /// The remarks on the file.
     pub remarks: Vec<String>,
 }

@@ -214,11 +214,11 @@ impl<'a> Session<'a> {
             Some(Request::Help(command)) => {
                 self.ask(|console, hub| send_help(console, hub, command))
             }
-            Some(Request::Upload(model)) => {
+            Some(Request::Upload(file)) => {
                 self.uploads = self.uploads.wrapping_add(1);
                 let session = self.uploads;
-                self.up = model.up;
-                self.ask(|console, hub| upload(console, hub, &model, session))?;
+                self.up = file.up.unwrap_or(self.up);
+                self.ask(|console, hub| upload(console, hub, &file, session))?;
                 self.update_lists()
             }
             Some(Request::Picture) => self.ask(send_picture),
@@ -527,21 +527,32 @@ fn reporter(hub: &Hub) -> impl FnMut(u64, u64) {
 fn upload(
     console: &mut Console<Watched>,
     hub: &Hub,
-    model: &Upload,
+    file: &Upload,
     session: u8,
 ) -> Result<(), TransferError> {
+    let Upload {
+        name,
+        bytes,
+        up,
+        remarks,
+    } = file;
     if console.board().memory().is_some() {
-        transfer::stage(console, &model.mesh)?;
+        transfer::stage(console, bytes)?;
     }
-    transfer::upload(console, &model.mesh, None, session, &mut reporter(hub))?;
-    transfer::show(console, MODEL, model.up)?;
-    let size = model.mesh.len() as u64;
+    let notes = transfer::upload(console, bytes, Some(name), session, &mut reporter(hub))?;
+    let size = bytes.len() as u64;
+    let mut text = match up {
+        Some(up) => {
+            transfer::show(console, name, *up)?;
+            format!("the model is shown: {size} bytes")
+        }
+        None => format!("the texture {name} is uploaded: {size} bytes"),
+    };
     hub.send(&ToPage::Progress {
         done: size,
         all: size,
     });
-    let mut text = format!("the model is shown: {size} bytes");
-    for remark in &model.remarks {
+    for remark in remarks.iter().chain(&notes) {
         text = format!("{text}; {remark}");
     }
     hub.notify(text, false);

@@ -5,9 +5,11 @@ use crate::channels::{Channels, Request, Upload};
 use crate::hub::{Hub, Id};
 use crate::message::{FileHead, FromPage, ToPage};
 use crate::orbit::Drag;
+use glint_board_api::transfer::MODEL;
 use glint_core::console::{LINE_MAX, complete};
-use glint_mesh::convert::Options;
-use glint_mesh::model;
+use glint_mesh::convert::{Options, TextureOptions};
+use glint_mesh::model::{self, board_name};
+use glint_mesh::texture::{self, CUTOFF};
 
 /// Maximum total size in bytes of the files of an upload.
 const MAX_UPLOAD: usize = 64 << 20;
@@ -22,9 +24,9 @@ const MAX_NAME: usize = 100;
 /// The reason to close a page's connection.
 pub type Reason = &'static str;
 
-/// A mesh file and its auxiliary files, which the page is sending.
+/// A mesh file with its auxiliary files, or a texture file, which the page is sending.
 struct Sent {
-    /// The files; the first one is the mesh.
+    /// The files; the first one is the mesh or the texture.
     files: Vec<FileHead>,
     /// Size of all files.
     bytes: usize,
@@ -45,7 +47,7 @@ impl Sent {
         is_accepted.then_some(Self { files, bytes, data })
     }
 
-    /// Converts the mesh of a complete upload.
+    /// Converts the mesh or texture of a complete upload.
     ///
     /// # Errors
     /// A file violates its format, or a buffer is missing. The error is one line for the user.
@@ -56,6 +58,17 @@ impl Sent {
             (file.name, std::mem::replace(&mut rest, after))
         });
         let (name, mesh) = files.next().unwrap_or_default();
+        if texture::is_texture(&name) {
+            let converted = texture::of_bytes(&mesh, &TextureOptions::default(), None, CUTOFF);
+            let converted = converted.map_err(|error| error.in_path(name.as_ref()).to_string());
+            let (bytes, report) = converted?;
+            return Ok(Upload {
+                name: board_name(&name).unwrap_or_default(),
+                bytes,
+                up: None,
+                remarks: report.remarks,
+            });
+        }
         let mut beside = Beside::new(&name, files);
         let options = Options::default();
         let model = model::of_file(&name, mesh, options, &mut |name| beside.read(name));
@@ -68,8 +81,9 @@ impl Sent {
         let inside_out = model.inside_out().map(str::to_owned);
         Ok(Upload {
             remarks: remarks.chain(hint).chain(inside_out).collect(),
-            up: model.up,
-            mesh: model.mesh,
+            name: MODEL.to_owned(),
+            bytes: model.mesh,
+            up: Some(model.up),
         })
     }
 }
@@ -335,7 +349,7 @@ mod tests {
         let triangle = ["v 0 0 0\nv 1 0 0\n", "v 0 1 0\nf 1 2 3\n"];
         send("a.obj", &triangle);
         assert!(
-            matches!(queue.try_recv(), Ok(Request::Upload(upload)) if upload.mesh.starts_with(b"GLM"))
+            matches!(queue.try_recv(), Ok(Request::Upload(upload)) if upload.bytes.starts_with(b"GLM"))
         );
         send("a.ply", &triangle);
         send("../../etc/passwd", &triangle);
@@ -364,16 +378,40 @@ mod tests {
             }
         };
         let (grey, red) = (send(&[]), send(&[mtl]));
-        assert_eq!((grey.up, red.up), (Axis::Y, Axis::Y));
+        assert_eq!([grey.up, red.up], [Some(Axis::Y); 2]);
         assert!(grey.remarks.iter().any(|remark| remark.contains("a.mtl")));
         assert!(red.remarks.is_empty());
         let colour = |upload: &Upload| {
-            let mesh = Mesh::new_checked(&upload.mesh).unwrap();
+            let mesh = Mesh::new_checked(&upload.bytes).unwrap();
             let mut triangles = mesh.chunks().flat_map(|chunk| chunk.triangles());
             triangles.next().unwrap().colour
         };
         assert_eq!(colour(&red).0, 0xF800);
         assert_ne!(colour(&grey).0, 0xF800);
+    }
+
+    #[test]
+    fn a_texture_comes_under_its_name() {
+        let (channels, queue) = Channels::to_board(Some(Arc::default()));
+        let mut viewer = Viewer::join(&channels).unwrap();
+        let mut send = |name: &str, file: &[u8]| {
+            let head = json!({ "type": "upload", "name": name, "bytes": file.len() });
+            viewer.receive_text(&head.to_string(), &channels).unwrap();
+            viewer.receive_bytes(file, &channels).unwrap();
+        };
+        send("old/a wood.png", &glint_texture::example::small_png());
+        let Ok(Request::Upload(upload)) = queue.try_recv() else {
+            panic!("no upload");
+        };
+        assert!(upload.bytes.starts_with(b"GLT"));
+        assert_eq!((upload.name.as_str(), upload.up), ("a-wood.png", None));
+        send("a.glt", b"GLT1");
+        assert!(queue.try_recv().is_err());
+        assert!(is_told(
+            &viewer,
+            &channels,
+            "a.glt: expected a valid texture"
+        ));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-// Uploads a model that the user drops on the page or chooses, as files or as a folder.
+// Uploads a model or a single texture that the user drops on the page or chooses, as files or as a folder.
 const CHUNK = 64 << 10;
 const MAX_BYTES = 64 << 20;
 // Maximum number of auxiliary files and maximum length of a name that the receiver accepts.
@@ -9,6 +9,7 @@ const MAX_NAME = 100;
 const MAX_ENTRIES = 20000;
 // Auxiliary files of a mesh: materials of an OBJ, buffers of a glTF, pictures of textures.
 const BESIDE = [".mtl", ".bin", ".png", ".jpg", ".jpeg"];
+const TEXTURES = [".glt", ".png", ".jpg", ".jpeg"];
 
 const extension = (path) => path.slice(path.lastIndexOf(".")).toLowerCase();
 const depth = (path) => path.split("/").length;
@@ -46,22 +47,25 @@ function withoutCommonFolders(files) {
 export function startUpload(send, sendBytes, notify) {
   const bar = document.getElementById("progress");
   const inputs = { files: document.getElementById("file"), folder: document.getElementById("folder") };
-  const MESHES = inputs.files.accept.split(",").filter((name) => !BESIDE.includes(name));
+  const MESHES = inputs.files.accept.split(",").filter((name) => ![...BESIDE, ...TEXTURES].includes(name));
 
-  // The mesh nearest to the top folder, and its auxiliary files.
+  // The mesh nearest to the top folder, and its auxiliary files; or the only file, a texture.
   function modelOf(found) {
     const sorted = found.sort(order);
-    const mesh = sorted.find(({ path }) => MESHES.includes(extension(path)));
-    if (!mesh) {
+    const nearest = (extensions) => sorted.find(({ path }) => extensions.includes(extension(path)));
+    const mesh = nearest(MESHES);
+    const main = mesh ?? (sorted.length === 1 ? nearest(TEXTURES) : undefined);
+    if (!main) {
       const names = sorted.slice(0, 3).map(({ path }) => path).join(", ");
-      throw new Error(`expected a model (${MESHES.join(", ")}) and the files that it names, found ${names || "no file"}`);
+      throw new Error(`expected a model (${MESHES.join(", ")}) and the files that it names, or a single texture (${TEXTURES.join(", ")}), found ${names || "no file"}`);
     }
-    const files = withoutCommonFolders([mesh, ...sorted.filter(({ path }) => BESIDE.includes(extension(path)))]);
+    const beside = mesh ? sorted.filter(({ path }) => BESIDE.includes(extension(path))) : [];
+    const files = withoutCommonFolders([main, ...beside]);
     const size = files.reduce((sum, { file }) => sum + file.size, 0);
     const instead = "drop only the model and the files that it names";
-    if (mesh.file.size === 0) throw new Error(`${mesh.path}: expected a model, found an empty file`);
+    if (main.file.size === 0) throw new Error(`${main.path}: expected a model or a texture, found an empty file`);
     if (files.length > MAX_BESIDE + 1) throw new Error(`expected at most ${MAX_BESIDE} materials, buffers and pictures, found ${files.length - 1}: ${instead}`);
-    if (size > MAX_BYTES) throw new Error(`${mesh.path}: expected files of at most 64 MiB together, found ${size} bytes: ${instead}`);
+    if (size > MAX_BYTES) throw new Error(`${main.path}: expected files of at most 64 MiB together, found ${size} bytes: ${instead}`);
     return files;
   }
 

@@ -265,7 +265,7 @@ fn a_dropped_model_has_its_textures() {
         (
             &gltf[1..],
             "expected a model (.obj, .stl, .ply, .gltf, .glb, .glm) and the files that it names, \
-             found square a.bin, squares.png"
+             or a single texture (.glt, .png, .jpg, .jpeg), found square a.bin, squares.png"
                 .into(),
         ),
     ] {
@@ -275,7 +275,7 @@ fn a_dropped_model_has_its_textures() {
     }
 }
 
-/// The model of docs/first-steps.md. With the environment variable `GLINT_UPDATE`, its screenshot is replaced.
+/// The model of docs/first-steps.md, and then with another texture. With the environment variable `GLINT_UPDATE`, its screenshot is replaced.
 #[test]
 fn the_model_of_the_first_steps_can_be_dropped() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
@@ -301,6 +301,13 @@ fn the_model_of_the_first_steps_can_be_dropped() {
     if std::env::var_os("GLINT_UPDATE").is_some() {
         std::fs::write(docs.join("pictures/first-page.png"), browser.picture(&page)).unwrap();
     }
+    std::fs::write(folder.path().join("squares.png"), squares()).unwrap();
+    drop_files(&mut browser, &page, &[("squares.png", squares())]);
+    let notice = wait_for_notice(&mut browser, &page, "the texture squares.png is uploaded: ");
+    assert!(!notice.contains("no shown mesh"), "{notice}");
+    let replaced = rendered(folder.path(), &["box.obj", "--texture", "squares.png"]);
+    assert!(replaced != textured);
+    wait_for_pixels(&mut browser, &page, &replaced);
 }
 
 /// `glint upload` shows the whole mesh too, or keeps the scene.
