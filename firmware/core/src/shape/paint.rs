@@ -52,6 +52,7 @@ const fn picture(size_log2: [u8; 2], texel: fn([u32; 2]) -> Option<Rgb565>) -> P
     Picture {
         size_log2,
         is_cut_out: false,
+        is_atlas: false,
         blend: Blend::Opaque,
         texel,
     }

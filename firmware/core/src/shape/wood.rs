@@ -11,6 +11,7 @@ const SIDE: u32 = 1 << SIDE_LOG2;
 pub const PICTURE: Picture = Picture {
     size_log2: [SIDE_LOG2 + 1, SIDE_LOG2],
     is_cut_out: false,
+    is_atlas: false,
     blend: Blend::Opaque,
     texel,
 };

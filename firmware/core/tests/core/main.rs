@@ -12,6 +12,7 @@ mod cordic;
 mod field;
 mod fixed;
 mod flash;
+mod font;
 mod framing;
 mod gesture;
 mod gesture_colours;

@@ -16,35 +16,43 @@ pub struct Picture {
     pub size_log2: [u8; 2],
     /// Whether some texels are transparent.
     pub is_cut_out: bool,
+    /// Whether rectangles show parts of it: it then has one level and is sampled at the nearest texel. Otherwise it has all mip levels and is
+    /// sampled bilinearly.
+    pub is_atlas: bool,
     /// How it is blended with the picture behind it.
     pub blend: Blend,
     /// Returns the colour of a texel of the largest level; `None` if it is transparent.
     pub texel: fn([u32; 2]) -> Option<Rgb565>,
 }
 
-/// Writes a texture in RGB565 with all mip levels, which is repeated and sampled bilinearly. Texels of smaller
-/// levels are averages. Returns the length in bytes; `None` if `memory` is too short.
+/// Writes a texture in RGB565, which is repeated. Texels of smaller levels are averages. Returns the length in bytes; `None` if `memory` is
+/// too short.
 pub fn draw(memory: &mut [u8], picture: &Picture) -> Option<usize> {
     let [width_log2, height_log2] = picture.size_log2;
+    let (levels, filter) = if picture.is_atlas {
+        (1, Filter::Nearest)
+    } else {
+        (1 + u32::from(width_log2.max(height_log2)), Filter::Bilinear)
+    };
     let layout = Texture {
         bytes: &[],
         format: Format::Rgb565,
         size_log2: picture.size_log2.map(u32::from),
-        levels: 1 + u32::from(width_log2.max(height_log2)),
+        levels,
         sampler: Default::default(),
         key: None,
         blend: Default::default(),
     };
-    let length = layout.level_start(layout.levels);
+    let length = layout.level_start(levels);
     let memory = memory.get_mut(..length)?;
     let header = TextureHeader {
         magic: MAGIC,
         length: length as u32,
         width_log2,
         height_log2,
-        levels: layout.levels as u8,
+        levels: levels as u8,
         format: Format::Rgb565 as u8,
-        filter: Filter::Bilinear as u8,
+        filter: filter as u8,
         cut_out: picture.is_cut_out.into(),
         key: if picture.is_cut_out { KEY } else { 0 },
         blend: picture.blend.number(),
@@ -57,7 +65,7 @@ pub fn draw(memory: &mut [u8], picture: &Picture) -> Option<usize> {
     let key = picture.is_cut_out.then_some(KEY);
     let mut start = 0;
     let mut larger = None;
-    for level in 0..layout.levels {
+    for level in 0..levels {
         let [across, _] = layout.blocks_log2(level);
         let here = Level { start, across };
         let [width, height] = layout.level_log2(level).map(|side| 1 << side);
