@@ -6,6 +6,7 @@
 mod constants;
 mod description;
 mod edges;
+mod rectangles;
 
 use glint_core::feature::WIREFRAME;
 
@@ -91,8 +92,9 @@ impl Frame<'_> {
         set_up_parts(&mut part, size, scratch, emit)
     }
 
-    /// Draws the frame into `buffer` from the frame's `constants`, with `scratch` as memory for projected vertices. Calls
-    /// `progress` at short intervals.
+    /// Draws the frame into `buffer` from the frame's `constants`, with `scratch` as memory for projected vertices. The edges of
+    /// [`Subject::Edges`], and the rectangles in front of them, are left to [`draw_edges`](Self::draw_edges). Calls `progress` at short
+    /// intervals.
     ///
     /// # Errors
     /// [`RenderError`] for a buffer or scratch memory of the wrong size.
@@ -108,7 +110,6 @@ impl Frame<'_> {
             && let Subject::Wireframe(subject) = &self.subject
         {
             stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
-            return Ok(stats);
         }
         // A field covers every pixel. Meshes are drawn over it, so that what they blend with the picture may be in front of it.
         let field = constants.field();
@@ -141,6 +142,9 @@ impl Frame<'_> {
                 scratch,
                 &mut show,
             )?);
+        }
+        if !matches!(self.subject, Subject::Edges(..)) {
+            self.draw_rectangles(buffer, progress, &mut stats);
         }
         Ok(stats)
     }

@@ -1,6 +1,6 @@
 //! Stereo: the frames of two eyes, and the composition of their pictures (docs/formats/camera.md, "Stereo").
 //!
-//! For a field without a mesh, one frame casts the rays of both eyes. Other subjects are drawn as two frames of one eye each.
+//! For a field without a mesh and rectangles, one frame casts the rays of both eyes. Other frames are drawn as two frames of one eye each.
 
 use core::iter;
 use core::ops::Add;
@@ -30,7 +30,14 @@ pub struct Eyes<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// The frames of both eyes; `None` for a frame with one eye or with only a field, which is drawn as one frame.
+    /// Whether each eye has a frame of its own.
+    #[inline(always)]
+    pub(crate) const fn is_pair(&self) -> bool {
+        self.stereo.is_some()
+            && (!matches!(self.subject, Subject::Field(_)) || !self.rectangles().is_empty())
+    }
+
+    /// The frames of both eyes; `None` for a frame that is drawn as one frame.
     ///
     /// # Errors
     /// [`RenderError::Stereo`] for a wireframe, and [`RenderError::Orthographic`].
@@ -38,11 +45,12 @@ impl<'a> Frame<'a> {
         if !(STEREO.is_built && MESH.is_built) {
             return Ok(None);
         }
-        let stereo = match (&self.stereo, &self.subject) {
-            (None, _) | (_, Subject::Field(_)) => return Ok(None),
-            (_, Subject::Wireframe(_)) => return Err(RenderError::Stereo),
-            (Some(stereo), _) => stereo,
+        let Some(stereo) = self.stereo.filter(|_| self.is_pair()) else {
+            return Ok(None);
         };
+        if let Subject::Wireframe(_) = self.subject {
+            return Err(RenderError::Stereo);
+        }
         if self.view.projection() == Projection::Orthographic {
             return Err(RenderError::Orthographic);
         }

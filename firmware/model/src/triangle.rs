@@ -16,6 +16,7 @@ mod primitive;
 pub mod quotient;
 pub mod raster;
 pub mod reciprocal;
+pub mod rectangle;
 mod render;
 pub(crate) mod rounding;
 pub mod setup;

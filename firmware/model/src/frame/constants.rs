@@ -163,7 +163,7 @@ impl FrameConstants {
     fn compute(&mut self, frame: &Frame) -> Result<(), RenderError> {
         (self.light, self.field) = (None, None);
         let (view, size) = (&frame.view, frame.size.pixels().into());
-        if frame.stereo.is_some() && !matches!(frame.subject, Subject::Field(_)) {
+        if frame.is_pair() {
             return Err(RenderError::Stereo);
         }
         match &frame.subject {

@@ -12,6 +12,7 @@ use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Size};
 use glint_core::quality::Quality;
+use glint_core::rectangle::Rectangle;
 use glint_core::stereo::Stereo;
 use glint_core::texture::Texture;
 
@@ -41,6 +42,8 @@ pub struct Frame<'a> {
     pub texture: Option<Texture<'a>>,
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
+    /// Rectangles in front of everything else, which are drawn in their order.
+    pub rectangles: &'a [Rectangle<'a>],
 }
 
 /// The subject of a frame.
@@ -242,7 +245,7 @@ impl FieldSubject<'_> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame with one eye, a black background, and white light at the camera for its meshes.
+    /// A frame with one eye, a black background, white light at the camera for its meshes, and no rectangles.
     pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
         Self {
             subject,
@@ -254,6 +257,18 @@ impl<'a> Frame<'a> {
             lighting: MeshLighting::CAMERA,
             texture: None,
             stereo: None,
+            rectangles: &[],
+        }
+    }
+
+    /// The rectangles, if this build draws textures.
+    // Inlined, as other conditions on rectangles, so that other builds have no code for them.
+    #[inline(always)]
+    pub const fn rectangles(&self) -> &'a [Rectangle<'a>] {
+        if TEXTURE.is_built {
+            self.rectangles
+        } else {
+            &[]
         }
     }
 

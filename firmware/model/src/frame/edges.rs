@@ -10,8 +10,8 @@ use crate::line::Segment;
 use crate::triangle::Projected;
 
 impl Frame<'_> {
-    /// Draws the edges of the mesh of [`Subject::Edges`] over the faces drawn by [`draw`](Self::draw), and adds the counts of the edges to
-    /// the counts of the faces. Other subjects have no edges. Calls `progress` at short intervals.
+    /// Draws the edges of the mesh of [`Subject::Edges`] over the faces drawn by [`draw`](Self::draw), and then the rectangles, and adds their
+    /// counts to the counts of the faces. Other subjects have no edges. Calls `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError`] for a buffer or memory of the wrong size.
@@ -40,6 +40,7 @@ impl Frame<'_> {
             mesh.pixels_covered += covered;
             mesh.pixels_drawn += drawn;
         }
+        self.draw_rectangles(buffer, progress, stats);
         Ok(())
     }
 }

@@ -17,7 +17,7 @@ use crate::triangle::primitive::{
     Options, Placed, TexturedCorner, clip_fan, clip_textured_fan, lit_corners, texture_on,
     vertex_light,
 };
-use crate::triangle::raster;
+use crate::triangle::raster::{self, Coverage};
 use crate::triangle::setup::Setup;
 use crate::triangle::shade::{Light, Lit};
 use crate::triangle::textured::{MeshTextures, Textured};
@@ -59,6 +59,15 @@ impl Stats {
             .map(|(a, b)| a + b);
         self.pixels_covered += other.pixels_covered;
         self.pixels_drawn += other.pixels_drawn;
+    }
+
+    /// Adds the pixels of a triangle or rectangle.
+    pub(crate) fn add_pixels(&mut self, coverage: &Coverage) {
+        self.pixels_tested = self
+            .pixels_tested
+            .map(|tested| tested + u64::from(coverage.tested));
+        self.pixels_covered += u64::from(coverage.covered);
+        self.pixels_drawn += u64::from(coverage.drawn);
     }
 }
 
@@ -174,8 +183,10 @@ pub fn draw_parts<'a>(
 ) -> Result<Stats, RenderError> {
     target.check()?;
     let size = (target.width, target.height);
-    let mut pixels = Stats::default();
-    let mut tested = 0;
+    let mut pixels = Stats {
+        pixels_tested: Some(0),
+        ..Stats::default()
+    };
     let mut draw = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
         if let Some(clear) = clear.take() {
             target.clear(clear);
@@ -190,16 +201,14 @@ pub fn draw_parts<'a>(
             }
             _ => raster::draw(setup, triangle.colour, target),
         };
-        tested += u64::from(coverage.tested);
-        pixels.pixels_covered += u64::from(coverage.covered);
-        pixels.pixels_drawn += u64::from(coverage.drawn);
+        pixels.add_pixels(&coverage);
     };
     let stats = set_up_parts(part, size, scratch, &mut draw)?;
     if let Some(clear) = clear {
         target.clear(clear);
     }
     Ok(Stats {
-        pixels_tested: Some(tested),
+        pixels_tested: pixels.pixels_tested,
         pixels_covered: pixels.pixels_covered,
         pixels_drawn: pixels.pixels_drawn,
         ..stats

@@ -13,7 +13,7 @@ pub const GUARD: i32 = 2047 << 8;
 /// Positions saturate at this distance from the centre: 4096 pixels, 12 fraction bits.
 const LIMIT: i64 = 1 << 24;
 /// The largest depth code, u18.6.
-const LARGEST_DEPTH: u32 = ((1 << 18) - 1) * 64;
+pub(super) const LARGEST_DEPTH: u32 = ((1 << 18) - 1) * 64;
 
 /// A vertex in camera coordinates, before the perspective division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -16,6 +16,7 @@ mod orthographic;
 mod palette;
 mod projection;
 mod reciprocal;
+mod rectangles;
 mod render;
 mod selftest;
 mod sky;

@@ -150,6 +150,7 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
         },
         texture: None,
         stereo: None,
+        rectangles: &[],
     }
 }
 

@@ -29,7 +29,7 @@ use super::fields::{bands, send_bands};
 use super::generated;
 
 /// A texture of random texels with all mip levels.
-fn texture(random: &mut Pcg64Mcg) -> Source {
+pub fn texture(random: &mut Pcg64Mcg) -> Source {
     let format = Format::ALL[random.random_range(0..3)];
     let size_log2 = [(); 2].map(|()| random.random_range(3..=7));
     let [width, height] = size_log2;
@@ -68,18 +68,18 @@ fn texture(random: &mut Pcg64Mcg) -> Source {
 }
 
 /// Offset of the mesh's texture numbers, which begin at 1, in the table of textures.
-const BEFORE: u8 = 4;
+pub const BEFORE: u8 = 4;
 
 /// A frame of a mesh with textures.
-struct Shown {
-    mesh: Vec<u8>,
-    expected: Expected,
+pub struct Shown {
+    pub mesh: Vec<u8>,
+    pub expected: Expected,
     /// The triangles that need no clipping.
-    whole: Vec<(Descriptor, Bounds)>,
+    pub whole: Vec<(Descriptor, Bounds)>,
     /// The clipped triangles.
-    clipped: Vec<(Descriptor, Bounds)>,
+    pub clipped: Vec<(Descriptor, Bounds)>,
     /// The pixels of each band of the field around it.
-    bands: Vec<Vec<Pixel>>,
+    pub bands: Vec<Vec<Pixel>>,
 }
 
 /// The view of a camera at `eye`, which looks along the square.
@@ -93,13 +93,13 @@ impl Shown {
     }
 
     /// As [`new`](Self::new), in orthographic projection.
-    fn orthographic(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
+    pub fn orthographic(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
         let view = looking(eye).with_projection(Projection::Orthographic);
         Self::seen(bytes, view, Size::W320, None, None, 0.0)
     }
 
     /// A mesh in a field, or before a sky, in fog of a density per world unit.
-    fn before(
+    pub fn before(
         bytes: Vec<u8>,
         eye: [f64; 3],
         field: Option<&FieldSubject>,
@@ -139,6 +139,7 @@ impl Shown {
             },
             texture: None,
             stereo: None,
+            rectangles: &[],
         };
         let mut constants = FrameConstants::default();
         constants.update(&frame).unwrap();

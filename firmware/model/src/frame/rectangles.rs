@@ -1,0 +1,32 @@
+//! Drawing of a frame's rectangles by the model.
+
+use super::FrameStats;
+use super::description::Frame;
+use crate::frame_buffer::FrameBuffer;
+use crate::triangle::raster::draw_textured;
+use crate::triangle::rectangle::set_up;
+
+impl Frame<'_> {
+    /// Draws the rectangles over the picture in `buffer`, and adds their pixels to the counts of the mesh or wireframe, if there is one.
+    /// Calls `progress` before each rectangle.
+    pub(super) fn draw_rectangles(
+        &self,
+        buffer: &mut FrameBuffer,
+        progress: &mut dyn FnMut(),
+        stats: &mut FrameStats,
+    ) {
+        for rectangle in self.rectangles() {
+            progress();
+            let Some((setup, textured)) = set_up(rectangle, [buffer.width, buffer.height]) else {
+                continue;
+            };
+            let coverage = draw_textured(&setup, &textured, buffer);
+            if let Some(mesh) = &mut stats.mesh {
+                mesh.add_pixels(&coverage);
+            }
+            if let Some(wireframe) = &mut stats.wireframe {
+                wireframe.pixels += u64::from(coverage.drawn);
+            }
+        }
+    }
+}

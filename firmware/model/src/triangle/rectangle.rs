@@ -1,0 +1,103 @@
+//! Rectangles of the screen (docs/formats/texture.md, "Rectangles"), as input of the walker.
+
+use glint_core::rectangle::Rectangle;
+
+use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
+use crate::triangle::textured::{Axis, Textured, flat_light, weight};
+use crate::triangle::vertex::LARGEST_DEPTH;
+
+/// Base-2 logarithm of the range of a coordinate: a part ends at 1 at most, which only the range of two repeats contains.
+const RANGE_LOG2: u32 = 1;
+/// Value of an accumulator at the end of the range, base-2 logarithm.
+const ACCUMULATOR_LOG2: u32 = 31;
+
+/// The visible part of a rectangle in a picture of this width and height, as the setup of a triangle: two of its edges are the left and the
+/// right side, every pixel passes the third edge, and the bounds limit the rows. `None` if no pixel is visible.
+pub fn set_up<'a>(rectangle: &Rectangle<'a>, picture: [u32; 2]) -> Option<(Setup, Textured<'a>)> {
+    let [x, y] = [0, 1].map(|axis: usize| Span::new(rectangle, axis, picture[axis]));
+    let ([x, y], white) = ([x?, y?], [1 << 8; 3]);
+    let edge = |start: i32, step_x| Edge {
+        start: start.into(),
+        step_x,
+        step_y: 0,
+    };
+    let setup = Setup {
+        bounds: Bounds {
+            left: x.first,
+            right: x.end,
+            top: y.first,
+            bottom: y.end,
+        },
+        start_column: x.first,
+        edges: [edge(0, 1), edge(x.end - 1 - x.first, -1), edge(0, 0)],
+        depth: Plane {
+            start: LARGEST_DEPTH << 8,
+            ..Plane::default()
+        },
+        light: None,
+        weight: None,
+        narrow: true,
+    };
+    let axis = |start, step_x, step_y| Axis {
+        plane: Plane {
+            start,
+            step_x,
+            step_y,
+        },
+        range_log2: RANGE_LOG2,
+        periods: 0,
+    };
+    let textured = Textured {
+        texture: rectangle.texture,
+        axes: [axis(x.start, x.step, 0), axis(y.start, 0, y.step)],
+        light: flat_light(rectangle.colour, white),
+        weight: weight(true),
+    };
+    Some((setup, textured))
+}
+
+/// The visible columns or rows of a rectangle, and the accumulator of their texture coordinate.
+struct Span {
+    /// The first visible column or row, and one past the last one.
+    first: i32,
+    end: i32,
+    /// The accumulator at the first visible pixel.
+    start: u32,
+    /// The step from a pixel to the next.
+    step: u32,
+}
+
+impl Span {
+    fn new(rectangle: &Rectangle, axis: usize, picture: u32) -> Option<Self> {
+        let (place, size) = (i32::from(rectangle.place[axis]), rectangle.size[axis]);
+        let (first, end) = (place.max(0), (place + i32::from(size)).min(picture as i32));
+        let side_log2 = rectangle.texture.size_log2()[axis];
+        let from = u32::from(rectangle.part.place[axis]);
+        let to = from + u32::from(rectangle.part.size[axis]);
+        if first >= end || from == to || to > 1 << side_log2 {
+            return None;
+        }
+        let [low, high] = [from, to].map(|texel| side(texel, side_log2));
+        // Rounded down, so that no pixel is beyond the part.
+        let step = (high - low) / u32::from(size);
+        let passed = step * (first - place) as u32 + step / 2;
+        let (start, step) = if rectangle.is_mirrored[axis] {
+            (high - passed, step.wrapping_neg())
+        } else {
+            (low + passed, step)
+        };
+        Some(Self {
+            first,
+            end,
+            start,
+            step,
+        })
+    }
+}
+
+/// An accumulator whose position is at the left or upper side of a texel, and from which lower accumulators have positions before this side.
+/// The inverse of the weight is 1 − 2^−18, and the lowest eight bits of an accumulator are not used.
+const fn side(texel: u32, side_log2: u32) -> u32 {
+    let exact = texel << (ACCUMULATOR_LOG2 - RANGE_LOG2 - side_log2);
+    exact + (((exact >> 26) + 1) << 8)
+}
