@@ -3,7 +3,7 @@
 //! ```text
 //! renderer (with its parts lines: wireframes and edges of meshes, and repeat: benchmark loops)
 //!    ├── geometry (passes of the meshes, clipping)
-//!    ├── buffers (memory of the passes)
+//!    ├── buffers (memory of the passes, and rectangles)
 //!    ├── watchdog (progress of the engine)
 //!    ├── rendered (result and cost of a frame)
 //!    └── fallback (reasons to draw, or to make descriptors, by the CPU)
@@ -15,6 +15,7 @@ mod eyes;
 mod fallback;
 #[allow(unsafe_code)] // Memory that the geometry passes read and write.
 mod geometry;
+mod rectangles;
 mod rendered;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
 mod renderer;

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use glint_core::feature::TEXTURE;
 use glint_engines::raymarch::Missing;
 use glint_hal::triangle::{EngineError, Error};
 use glint_model::RenderError;
@@ -23,6 +24,8 @@ pub enum Fallback {
     NoFog,
     /// The triangle engine has fog in perspective only.
     OrthographicFog,
+    /// The fog of the triangle engine would cover rectangles.
+    RectanglesInFog,
     /// The triangle engine draws textures under flat light only.
     SmoothTextures,
     /// The frame has more textures than the triangle engine can number.
@@ -64,6 +67,7 @@ impl Fallback {
             | Self::Eye
             | Self::Orthographic
             | Self::OrthographicFog
+            | Self::RectanglesInFog
             | Self::Descriptors(_) => None,
         }
     }
@@ -122,6 +126,9 @@ impl fmt::Display for Fallback {
             Self::OrthographicFog => {
                 f.write_str("triangle engine: no fog in orthographic projection")?;
             }
+            Self::RectanglesInFog => TEXTURE.when_built(|| {
+                f.write_str("triangle engine: no rectangles in front of fog")
+            })?,
             Self::SmoothTextures => f.write_str(
                 "triangle engine: no textures with smooth shading, expected `shading flat` or `textures off`",
             )?,

@@ -96,9 +96,6 @@ impl GeometryPasses {
     /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
     pub fn prepare(&mut self, job: &mut Job) -> Result<(), Fallback> {
         self.prepared = None;
-        if TEXTURE.is_built {
-            job.buffers.textures.clear();
-        }
         if !MESH.is_built {
             return Ok(());
         }

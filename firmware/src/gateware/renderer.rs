@@ -5,7 +5,7 @@ mod repeat;
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::feature::{EDGES, WIREFRAME};
+use glint_core::feature::{EDGES, TEXTURE, WIREFRAME};
 use glint_core::picture::Size;
 use glint_engines::raymarch::{ray_counts, set_field, tables};
 use glint_engines::triangle::{fog, layout, size_code, sky as sky_of};
@@ -295,10 +295,10 @@ impl GatewareRenderer {
     ) -> Result<(), Fallback> {
         self.stage = next.map_err(|error| self.cancel(output, error))?;
         if self.stage == Stage::Raster {
-            self.start_raster(frame, output, 0);
-        } else {
-            self.pass_start = cpu::cycles_low();
+            let started = self.start_raster(frame, output, 0);
+            return started.map_err(|error| self.cancel(output, error));
         }
+        self.pass_start = cpu::cycles_low();
         Ok(())
     }
 
@@ -420,7 +420,8 @@ impl GatewareRenderer {
         geometry.advance(&mut job)
     }
 
-    /// Computes the constants of a frame into `self.constants[place]`. Returns an error if the engine cannot draw the frame.
+    /// Computes the constants of a frame into `self.constants[place]`, and removes the textures of the previous frame. Returns an error if
+    /// the engine cannot draw the frame.
     fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         let has_lines = matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..));
         if has_lines && !self.draws_lines {
@@ -445,6 +446,13 @@ impl GatewareRenderer {
                 return Err(Fallback::Orthographic);
             }
         }
+        let has_rectangles = !frame.rectangles().is_empty();
+        if has_rectangles && !self.layout.is_textured {
+            return Err(Fallback::NoTextures);
+        }
+        if TEXTURE.is_built {
+            self.buffers[place].textures.clear();
+        }
         self.constants[place].update(frame)?;
         if self.constants[place].sky().is_some() && !self.draws_sky {
             return Err(Fallback::NoSky);
@@ -452,6 +460,7 @@ impl GatewareRenderer {
         match self.constants[place].fog() {
             Some(_) if !self.has_fog => return Err(Fallback::NoFog),
             Some(fog) if !fog.is_in_perspective() => return Err(Fallback::OrthographicFog),
+            Some(_) if has_rectangles => return Err(Fallback::RectanglesInFog),
             Some(_) | None => {}
         }
         Ok(())
@@ -477,8 +486,24 @@ impl GatewareRenderer {
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(tables(&field.palette)))
     }
 
+    /// Adds the frame's rectangles to the lists in `self.buffers[place]`, and starts their raster pass.
+    // Inlined, so that a build without rectangles has no code for their errors.
+    #[inline(always)]
+    fn start_raster(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        place: usize,
+    ) -> Result<(), Fallback> {
+        if !frame.rectangles().is_empty() {
+            self.buffers[place].put_rectangles(frame, self.layout)?;
+        }
+        self.start_lists(frame, output, place);
+        Ok(())
+    }
+
     /// Starts the raster pass of the lists in `self.buffers[place]`.
-    fn start_raster(&mut self, frame: &Frame, output: &mut Output, place: usize) {
+    fn start_lists(&mut self, frame: &Frame, output: &mut Output, place: usize) {
         let buffers = &self.buffers[place];
         let slot = self.slot(output.colour);
         let drawn = &mut self.drawn[usize::from(slot)];

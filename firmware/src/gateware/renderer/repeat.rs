@@ -79,7 +79,8 @@ impl GatewareRenderer {
             if frame.subject.field_part().is_some() {
                 self.set_field(now, false)?;
             }
-            self.start_raster(frame, output, now);
+            let started = self.start_raster(frame, output, now);
+            self.check(started, output)?;
             (now, next) = (next, now);
         }
         Ok(self.rendered(frame, now))
@@ -108,12 +109,13 @@ impl GatewareRenderer {
         count: u32,
     ) -> Result<Rendered, Fallback> {
         self.update_constants(frame, 0)?;
-        self.buffers[0].clear();
         let mut has_tables = false;
         self.start_measurement(frame);
         for _ in 0..count {
+            self.buffers[0].clear();
             self.set_field(0, has_tables)?;
-            self.start_raster(frame, output, 0);
+            let started = self.start_raster(frame, output, 0);
+            self.check(started, output)?;
             self.update_constants(frame, 0)?;
             has_tables = self.has_tables(0);
             self.wait(TriangleEngine::raster, output)?;
@@ -144,7 +146,8 @@ impl GatewareRenderer {
             self.start_edges(frame.size);
             self.wait(TriangleEngine::geometry, output)?;
             self.take_lines(frame, 0);
-            self.start_raster(frame, output, 0);
+            let started = self.start_raster(frame, output, 0);
+            self.check(started, output)?;
             self.wait(TriangleEngine::raster, output)?;
         }
         Ok(self.rendered(frame, 0))
@@ -172,7 +175,8 @@ impl GatewareRenderer {
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
             }
-            self.start_raster(frame, output, now);
+            let started = self.start_raster(frame, output, now);
+            self.check(started, output)?;
             (now, next) = (next, now);
         }
         if count > 0 {
