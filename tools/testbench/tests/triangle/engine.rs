@@ -9,6 +9,7 @@ mod gathered;
 mod light;
 mod lines;
 mod objects;
+mod rectangles;
 mod textured;
 
 use bench::Bench;
