@@ -7,15 +7,17 @@ mod checksums;
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
-use glint_core::colour::Shading;
-use glint_core::feature::{FIELD, MESH, SPHERES, STEREO, WIREFRAME};
+use glint_core::colour::{Rgb565, Shading};
+use glint_core::feature::{FIELD, MESH, SPHERES, STEREO, TEXTURE, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
+use glint_core::rectangle::{Part, Rectangle};
 use glint_core::shape::Shape;
 use glint_core::stereo::{Stereo, Tint};
+use glint_core::texture::{self, Blend, Picture, Texture};
 use glint_core::wireframe::{CUBE, Motion, Program};
 
 use crate::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
@@ -27,6 +29,8 @@ pub enum TestPicture {
     Triangle,
     /// The torus with smooth shading.
     Smooth,
+    /// The torus behind rectangles: textures.
+    Texture,
     /// The cube of the wireframe simulator: the line engine.
     Line,
     /// A sponge of three levels: the raymarcher.
@@ -44,9 +48,10 @@ pub const MESH_SHAPE: Shape = Shape::Torus;
 
 impl TestPicture {
     /// All pictures, in the order of their definition.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Triangle,
         Self::Smooth,
+        Self::Texture,
         Self::Line,
         Self::Sponge,
         Self::Cubes,
@@ -59,6 +64,7 @@ impl TestPicture {
         match self {
             Self::Triangle => "triangle flat",
             Self::Smooth => "triangle smooth",
+            Self::Texture => "triangle texture",
             Self::Line => "line",
             Self::Sponge => "raymarch sponge",
             Self::Cubes => "raymarch cubes",
@@ -71,6 +77,7 @@ impl TestPicture {
     pub const fn is_built(self) -> bool {
         match self {
             Self::Triangle | Self::Smooth => MESH.is_built,
+            Self::Texture => TEXTURE.is_built,
             Self::Line => WIREFRAME.is_built,
             Self::Sponge | Self::Cubes => FIELD.is_built,
             Self::Spheres => SPHERES.is_built,
@@ -93,11 +100,24 @@ impl TestPicture {
         draw: &mut dyn FnMut(&Frame),
     ) -> Result<(), ViewError> {
         let degrees = |degrees| Turns::from_degrees(Q32_32::from_num(degrees));
-        let view = View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?;
+        let view = match self {
+            // From within the torus, so that triangles are clipped.
+            Self::Texture => {
+                let (zero, up) = (Q32_32::ZERO, Q32_32::lit("0.3"));
+                View::look([zero, zero, up], degrees(0), degrees(10), degrees(0))?
+            }
+            _ => View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?,
+        };
         let stereo = (self == Self::Stereo).then_some(EYES);
+        let mut memory = Aligned([0; _]);
+        let rectangles = match self {
+            Self::Texture if TEXTURE.is_built => rectangles(&mut memory.0),
+            _ => None,
+        };
         let mut draw = |subject| {
             draw(&Frame {
                 stereo,
+                rectangles: rectangles.as_ref().map_or(&[], |all| all),
                 ..Frame::new(subject, view, Size::W320)
             });
         };
@@ -130,7 +150,7 @@ impl TestPicture {
 
     const fn shading(self) -> Option<Shading> {
         match self {
-            Self::Triangle => Some(Shading::Flat),
+            Self::Triangle | Self::Texture => Some(Shading::Flat),
             Self::Smooth => Some(Shading::Smooth),
             Self::Line | Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => None,
         }
@@ -142,9 +162,39 @@ impl TestPicture {
             Self::Sponge => Some("menger:3"),
             Self::Cubes | Self::Stereo => Some("cubes:2,0.4"),
             Self::Spheres => Some("spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35"),
-            Self::Triangle | Self::Smooth | Self::Line => None,
+            Self::Triangle | Self::Smooth | Self::Texture | Self::Line => None,
         }
     }
+}
+
+/// The texture of [`TestPicture::Texture`]: 8×8 texels with transparent corners.
+const PICTURE: Picture = Picture {
+    size_log2: [3; 2],
+    is_cut_out: true,
+    is_atlas: true,
+    blend: Blend::ALL[5],
+    texel: |[x, y]| ((x + y) % 7 != 0).then_some(Rgb565((x * 0x1F03 + y * 0x0841) as u16)),
+};
+
+/// Memory of a texture for the engine.
+#[repr(align(16))]
+struct Aligned([u8; 160]);
+
+/// The rectangles of [`TestPicture::Texture`], whose texture is drawn in `memory`: one with a texel on each pixel, and a mirrored and
+/// enlarged part that leaves the picture.
+fn rectangles(memory: &mut [u8]) -> Option<[Rectangle<'_>; 2]> {
+    texture::draw(memory, &PICTURE)?;
+    let texture = Texture::new_checked(memory).ok()?;
+    let part = |place, size| Part { place, size };
+    let small = Rectangle::new(texture, part([0; 2], [8; 2]), [150, 80]);
+    let large = Rectangle {
+        place: [170, 60],
+        size: [301, 77],
+        part: part([1, 2], [6, 5]),
+        is_mirrored: [true, false],
+        ..small
+    };
+    Some([small, large])
 }
 
 /// The eyes of [`TestPicture::Stereo`].

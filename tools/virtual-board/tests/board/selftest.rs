@@ -13,7 +13,7 @@ use virtual_board::virtual_mpu6050::{Fault, State};
 use virtual_board::{Simulation, Uart};
 
 /// All parts.
-const PARTS: [&str; 17] = [
+const PARTS: [&str; 18] = [
     "identity",
     "clock",
     "cycle counter",
@@ -25,6 +25,7 @@ const PARTS: [&str; 17] = [
     "scan-out",
     "triangle flat",
     "triangle smooth",
+    "triangle texture",
     "line",
     "raymarch sponge",
     "raymarch cubes",
