@@ -45,11 +45,11 @@ SIZES = Enumeration("size", "Sizes of a picture.", {size.name: size.text for siz
 class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
-    `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
+    `readers` are four native 128-bit LiteDRAM read ports (triangles, vertices, raster, texels), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
-    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures (they
-    exclude each other), `has_sky` adds the sky behind triangles, `has_fog` adds fog on triangles, `fields` adds the input `field` for a raymarcher, and `lines` adds the
-    line engine. Without `triangles` the engine draws only lines and fields, and does not use the port of the vertices; with neither
+    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures, which
+    use the port of texels (they exclude each other), `has_sky` adds the sky behind triangles, `has_fog` adds fog on triangles, `fields`
+    adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine draws only lines and fields, and does not use the port of the vertices; with neither
     triangles nor lines it uses only the last two writers. The registers are the same. A build without `triangles` may also omit `depths`,
     the memory for the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from the firmware's
     lists, and does not use the ports of mesh, vertices, descriptors and lists.

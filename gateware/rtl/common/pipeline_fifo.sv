@@ -20,7 +20,7 @@ module pipeline_fifo #(
     parameter int unsigned WIDTH  = 8,
     parameter int unsigned DEPTH  = 16,
     parameter int unsigned FLIGHT = 4,
-    // BLOCK: the FIFO is in block RAM; by default a clock without an item follows each item, as in `fifo`.
+    // The FIFO is in block RAM. By default a clock without an item then follows each item.
     parameter bit          BLOCK  = 1'b0,
     parameter bit          PAUSE  = BLOCK,
     // No output register, as in `fifo`.

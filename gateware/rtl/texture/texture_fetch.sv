@@ -38,7 +38,7 @@ module texture_fetch #(
     logic                 step_valid, step_room, step_gone, room, sends, second;
     logic [3:0]           missed, done, left, next, level;
 
-    // Without the lowest bit of each place: it is the parity, or not used. So a step has 36 bits, the width of half a block RAM.
+    // The places lack their lowest bit, which is the parity or is not used. A step thus has 36 bits, the width of half a block RAM.
     logic [1:0][1:0][7:1] in_places, places;
 
     for (genvar axis = 0; axis < 2; axis++) begin : shortened

@@ -5,10 +5,10 @@
 //   places ─▶ block RAM ─┼──▶ head: fill clocks, then one that reads
 //   misses ─▶ FIFO ──────┘
 //
-// The parts of a step arrive at different times, each in the order of the steps; it is in the queue when its misses have come, after the
-// other parts. `room` is high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks, throughput a step a clock.
-// Outputs: in a clock with `fills` or `reads`, the step at the head. After `out_room` has fallen, at most two steps leave: one at once, and
-// the one that is being filled.
+// The parts of a step arrive at different times, each in the order of the steps. Its misses must not come before its other parts; then it is
+// in the queue. `room` is high while steps may come, and depends on the number of steps a clock ago. Latency from the misses 2 clocks,
+// throughput a step a clock. Outputs: in a clock with `fills` or `reads`, the step at the head. After `out_room` has fallen, at most two
+// steps leave: one at once, and the one that is being filled.
 
 `default_nettype none
 

@@ -11,10 +11,10 @@
 // in the order of the quads. The colours of memory are read as they are; `sampler` may have any value, and no value stops the unit.
 //
 // Throughput a step a clock without misses; each missed block stops the steps for 2 clocks, and its words are asked for up to 250
-// steps ahead. Latency 18 clocks without misses. Quads come from a pipeline that cannot be stopped: `sent` is high for a clock for each item of
-// texture_wrap that enters it, as texture_choice explains. Steps have no ready: they leave the queue while `out_room` is high, and at most
-// nine come after it has fallen. `idle` is high while no quad is in the pipeline or inside; `sampler` and `number`, the texture's, hold
-// while it is low. `forget` (one clock while `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a
+// steps ahead. Latency 18 clocks without misses. Quads come from a pipeline that cannot be stopped: `sent` is high for a clock for each
+// item of texture_wrap that enters it, as texture_choice explains. Steps have no ready: they leave the queue while `out_room` is high, and
+// at most nine come after it has fallen. `idle` is high while no quad is in the pipeline or inside; `sampler` and `number`, the texture's,
+// hold while it is low. `forget` (one clock while `idle` is high) invalidates the cache in 128 clocks, in which quads wait; it is needed when a
 // texture's bytes have changed, or another texture has got its number. The palette may be written while `idle` is high, and the addresses
 // of the levels too.
 //

@@ -5,9 +5,9 @@
 //              └───────────────┘                        └─────────────┘
 //                                firmware's lists ──────────▲
 //
-// Three native read ports of the memory serve triangles, vertices, and the raster unit. LiteDRAM only lets a port switch to another memory
-// bank when the previous bank is idle, four clocks later, so each of these streams has its own port. There are four write ports: one for
-// descriptors, one for lists, one for the frame's words in even memory banks, and one for its words in odd memory banks. `cancel` (one
+// Native read ports of the memory serve triangles, vertices, the raster unit and, with TEXTURE, texels. LiteDRAM only lets a port switch to
+// another memory bank when the previous bank is idle, four clocks later, so each of these streams has its own port. There are four write
+// ports: one for descriptors, one for lists, one for the frame's words in even memory banks, and one for its words in odd ones. `cancel` (one
 // clock, at any time) ends both passes. After it, `status.ready` rises when no read is outstanding, memory has taken all words, and the
 // band buffer is clear; then either unit may start. geometry_unit and raster_unit explain their parameters and results. `events` holds the
 // increment of each counter, some clocks late.
@@ -17,7 +17,7 @@
 // have twice the words.
 //
 // TEXTURE builds textures: descriptors have two more words, a second client of the vertex port reads texture coordinates, and a fourth
-// client of the raster port reads textures. TEXTURE and SMOOTH exclude each other.
+// read port reads textures. TEXTURE and SMOOTH exclude each other.
 //
 // SKY builds the sky behind triangles (band_sky), for frames with the flag `sky` of the raster pass; FOG builds the fog on triangles
 // (group_fog), for frames with its flag `fog`.
@@ -172,7 +172,7 @@ module triangle_engine #(
         wire _unused = &{1'b0, drop, raster_read_answer, ask_valid[5:3], ask_addr[6*ADDRESS_BITS-1:3*ADDRESS_BITS], data_ready[5:3]};
     end
 
-    // Texels have a port of their own: behind lists and descriptors they would come later than the queue of the sampler can wait.
+    // Texels have a port of their own: the queue of the sampler hides their latency, but not the time behind lists and descriptors too.
     if (TEXTURE && (TRIANGLES || LINES)) begin : texels
         read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(1'b1)) texture_read (
             .clk, .rst, .drop, .idle(ports_idle[3]),

@@ -24,7 +24,7 @@ pub fn view_command(view: &View) -> String {
 }
 
 /// The console commands that make a board draw a frame; the frame's mesh has the name `mesh` on the board, the mesh of object number
-/// `n` the name `object(n)`, and the texture the name [`TEXTURE`]. All objects use the options of the first object. For a wireframe,
+/// `n` the name `object(n)`, and the texture the name `texture`. All objects use the options of the first object. For a wireframe,
 /// the commands draw the board's current program without its motion.
 ///
 /// # Errors
