@@ -174,7 +174,7 @@ module triangle_engine #(
 
     // Texels have a port of their own: the queue of the sampler hides their latency, but not the time behind lists and descriptors too.
     if (TEXTURE && (TRIANGLES || LINES)) begin : texels
-        read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(1'b1)) texture_read (
+        read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) texture_read (
             .clk, .rst, .drop, .idle(ports_idle[3]),
             .ask_valid(ask_valid[6]), .ask_ready(ask_ready[6]), .ask_addr(ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS]),
             .data_valid(data_valid[6]), .data_ready(data_ready[6]), .data(data[7*128-1:6*128]),
