@@ -63,9 +63,11 @@ impl<'a> Font<'a> {
         let [left, top] = place;
         // Columns beyond the largest place are outside of every picture.
         let columns = (i32::from(left)..=i16::MAX.into()).step_by(width.max(1).into());
+        // Exact: both ends of the range are in 16 bits.
         let places = columns.map(move |column| [column as i16, top]);
         let shown = text.chars().zip(places).filter(|&(shown, _)| shown != ' ');
         shown.map(move |(shown, place)| {
+            // Exact: an ASCII character has 7 bits.
             let number =
                 if shown.is_ascii_graphic() { shown } else { '?' } as u16 - u16::from(b' ');
             let part = Part {
