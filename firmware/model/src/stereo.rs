@@ -34,7 +34,7 @@ impl<'a> Frame<'a> {
     #[inline(always)]
     pub(crate) const fn is_pair(&self) -> bool {
         self.stereo.is_some()
-            && (!matches!(self.subject, Subject::Field(_)) || !self.rectangles().is_empty())
+            && (!matches!(self.subject, Subject::Field(_)) || !self.drawn_rectangles().is_empty())
     }
 
     /// The frames of both eyes; `None` for a frame that is drawn as one frame.

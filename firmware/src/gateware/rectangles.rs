@@ -33,7 +33,7 @@ impl Buffers {
             list_shift,
             layout,
         );
-        for rectangle in frame.rectangles() {
+        for rectangle in frame.drawn_rectangles() {
             if let Some((setup, textured)) = set_up(rectangle, frame.size.pixels()) {
                 let number = self.textures.number(&textured.texture);
                 let texture = textured.numbered(number.ok_or(Fallback::TooManyTextures)?);

@@ -446,7 +446,7 @@ impl GatewareRenderer {
                 return Err(Fallback::Orthographic);
             }
         }
-        let has_rectangles = !frame.rectangles().is_empty();
+        let has_rectangles = !frame.drawn_rectangles().is_empty();
         if has_rectangles && !self.layout.is_textured {
             return Err(Fallback::NoTextures);
         }
@@ -495,7 +495,7 @@ impl GatewareRenderer {
         output: &mut Output,
         place: usize,
     ) -> Result<(), Fallback> {
-        if !frame.rectangles().is_empty() {
+        if !frame.drawn_rectangles().is_empty() {
             self.buffers[place].put_rectangles(frame, self.layout)?;
         }
         self.start_lists(frame, output, place);

@@ -264,7 +264,7 @@ impl<'a> Frame<'a> {
     /// The rectangles, if this build draws textures.
     // Inlined, as other conditions on rectangles, so that other builds have no code for them.
     #[inline(always)]
-    pub const fn rectangles(&self) -> &'a [Rectangle<'a>] {
+    pub const fn drawn_rectangles(&self) -> &'a [Rectangle<'a>] {
         if TEXTURE.is_built {
             self.rectangles
         } else {

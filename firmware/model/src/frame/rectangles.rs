@@ -15,7 +15,7 @@ impl Frame<'_> {
         progress: &mut dyn FnMut(),
         stats: &mut FrameStats,
     ) {
-        for rectangle in self.rectangles() {
+        for rectangle in self.drawn_rectangles() {
             progress();
             let Some((setup, textured)) = set_up(rectangle, [buffer.width, buffer.height]) else {
                 continue;
