@@ -243,9 +243,14 @@ impl Renderer {
     /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
     /// gateware has no triangle engine, or while no frame buffer is free.
     pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
-        self.off_screen(|gateware, _, output, cpu| {
+        self.off_screen(|gateware, right, output, cpu| {
+            let eyes = frame.eyes()?;
             let drawn = loop {
-                if let Some(drawn) = gateware.advance(frame, output, cpu) {
+                let advanced = match &eyes {
+                    Some(eyes) => right.advance(gateware, eyes, output, cpu),
+                    None => gateware.advance(frame, output, cpu),
+                };
+                if let Some(drawn) = advanced {
                     break drawn;
                 }
             };

@@ -8,11 +8,11 @@ mod checksums;
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::feature::{FIELD, MESH, SPHERES, STEREO, TEXTURE, WIREFRAME};
+use glint_core::feature::{EDGES, FIELD, MESH, SPHERES, STEREO, TEXTURE, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
-use glint_core::picture::Size;
+use glint_core::picture::{Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::rectangle::{Part, Rectangle};
 use glint_core::shape::Shape;
@@ -41,6 +41,10 @@ pub enum TestPicture {
     Spheres,
     /// Repeated cubes for two eyes.
     Stereo,
+    /// The hidden edges of the torus behind rectangles: textures after lines.
+    TextureLine,
+    /// Repeated cubes for two eyes behind rectangles: textures after a field.
+    TextureStereo,
 }
 
 /// The mesh of all pictures with a mesh.
@@ -48,7 +52,7 @@ pub const MESH_SHAPE: Shape = Shape::Torus;
 
 impl TestPicture {
     /// All pictures, in the order of their definition.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Triangle,
         Self::Smooth,
         Self::Texture,
@@ -57,6 +61,8 @@ impl TestPicture {
         Self::Cubes,
         Self::Spheres,
         Self::Stereo,
+        Self::TextureLine,
+        Self::TextureStereo,
     ];
 
     /// Name for messages: the gateware block, and the feature of the block that the picture needs.
@@ -70,6 +76,8 @@ impl TestPicture {
             Self::Cubes => "raymarch cubes",
             Self::Spheres => "raymarch spheres",
             Self::Stereo => "raymarch stereo",
+            Self::TextureLine => "line texture",
+            Self::TextureStereo => "raymarch texture",
         }
     }
 
@@ -82,6 +90,9 @@ impl TestPicture {
             Self::Sponge | Self::Cubes => FIELD.is_built,
             Self::Spheres => SPHERES.is_built,
             Self::Stereo => STEREO.is_built,
+            Self::TextureLine => TEXTURE.is_built && EDGES.is_built,
+            // A build without meshes draws no pair of frames.
+            Self::TextureStereo => TEXTURE.is_built && STEREO.is_built && MESH.is_built,
         }
     }
 
@@ -108,10 +119,12 @@ impl TestPicture {
             }
             _ => View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?,
         };
-        let stereo = (self == Self::Stereo).then_some(EYES);
+        let stereo = matches!(self, Self::Stereo | Self::TextureStereo).then_some(EYES);
         let mut memory = Aligned([0; _]);
         let rectangles = match self {
-            Self::Texture if TEXTURE.is_built => rectangles(&mut memory.0),
+            Self::Texture | Self::TextureLine | Self::TextureStereo if TEXTURE.is_built => {
+                rectangles(&mut memory.0)
+            }
             _ => None,
         };
         let mut draw = |subject| {
@@ -124,10 +137,15 @@ impl TestPicture {
         if MESH.is_built
             && let (Some(shading), Some(mesh)) = (self.shading(), mesh)
         {
-            draw(Subject::Mesh(MeshSubject {
+            let mesh = MeshSubject {
                 shading,
                 ..MeshSubject::new(mesh)
-            }));
+            };
+            draw(if EDGES.is_built && self == Self::TextureLine {
+                Subject::edges(mesh, Edges::Hidden)
+            } else {
+                Subject::Mesh(mesh)
+            });
         }
         if WIREFRAME.is_built
             && self == Self::Line
@@ -150,9 +168,14 @@ impl TestPicture {
 
     const fn shading(self) -> Option<Shading> {
         match self {
-            Self::Triangle | Self::Texture => Some(Shading::Flat),
+            Self::Triangle | Self::Texture | Self::TextureLine => Some(Shading::Flat),
             Self::Smooth => Some(Shading::Smooth),
-            Self::Line | Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => None,
+            Self::Line
+            | Self::Sponge
+            | Self::Cubes
+            | Self::Spheres
+            | Self::Stereo
+            | Self::TextureStereo => None,
         }
     }
 
@@ -160,14 +183,14 @@ impl TestPicture {
     const fn field(self) -> Option<&'static str> {
         match self {
             Self::Sponge => Some("menger:3"),
-            Self::Cubes | Self::Stereo => Some("cubes:2,0.4"),
+            Self::Cubes | Self::Stereo | Self::TextureStereo => Some("cubes:2,0.4"),
             Self::Spheres => Some("spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35"),
-            Self::Triangle | Self::Smooth | Self::Texture | Self::Line => None,
+            Self::Triangle | Self::Smooth | Self::Texture | Self::Line | Self::TextureLine => None,
         }
     }
 }
 
-/// The texture of [`TestPicture::Texture`]: 8×8 texels, transparent in the corners and on a diagonal.
+/// The texture of all rectangles: 8×8 texels, transparent in the corners and on a diagonal.
 const PICTURE: Picture = Picture {
     size_log2: [3; 2],
     is_cut_out: true,
@@ -181,7 +204,7 @@ const PICTURE: Picture = Picture {
 #[repr(align(16))]
 struct Aligned([u8; 160]);
 
-/// The rectangles of [`TestPicture::Texture`], whose texture is drawn in `memory`: one with a texel on each pixel, and a mirrored and
+/// The rectangles of all pictures with textures, whose texture is drawn in `memory`: one with a texel on each pixel, and a mirrored and
 /// enlarged part that leaves the picture.
 fn rectangles(memory: &mut [u8]) -> Option<[Rectangle<'_>; 2]> {
     texture::draw(memory, &PICTURE)?;
@@ -198,7 +221,7 @@ fn rectangles(memory: &mut [u8]) -> Option<[Rectangle<'_>; 2]> {
     Some([small, large])
 }
 
-/// The eyes of [`TestPicture::Stereo`].
+/// The eyes of all stereo pictures.
 const EYES: Stereo = Stereo {
     half_separation: Q32_32::lit("0.05"),
     zero_parallax: Q32_32::lit("2.5"),

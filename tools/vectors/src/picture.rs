@@ -2,7 +2,8 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::{DrawnTriangle, Frame, FrameBuffer, Options, Projected, Stats, trace};
+use glint_model::edges::EdgeList;
+use glint_model::{DrawnTriangle, Frame, FrameBuffer, Options, Projected, Stats, Subject, trace};
 
 use crate::model::Model;
 
@@ -101,8 +102,17 @@ impl Picture {
         picture.depth.fill(0xDEAD);
         let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
         let constants = frame.constants().unwrap();
-        let stats = frame.draw(&constants, &mut picture.target(), &mut scratch, &mut || {});
-        picture.stats = stats.unwrap().mesh.unwrap_or_default();
+        let target = &mut picture.target();
+        let stats = frame.draw(&constants, target, &mut scratch, &mut || {});
+        let mut stats = stats.unwrap();
+        if let Subject::Edges(subject, _) = &frame.subject {
+            let mut memory = vec![0; EdgeList::words(&subject.mesh)];
+            let list = &mut EdgeList::new(&mut memory);
+            let (scratch, stats) = (&mut scratch, &mut stats);
+            let drawn = frame.draw_edges(&constants, list, target, scratch, &mut || {}, stats);
+            drawn.unwrap();
+        }
+        picture.stats = stats.mesh.unwrap_or_default();
         picture
     }
 

@@ -389,34 +389,10 @@ fn edges_are_drawn_before_rectangles() {
         [130, 60],
     );
     let draw = |rectangles: &[Rectangle]| {
-        let mut picture = Picture::blank((320, 180));
-        let frame = Frame {
+        Picture::of_frame(&Frame {
             rectangles,
             ..scene(Subject::edges(MeshSubject::new(cube()), Edges::Hidden))
-        };
-        let mut scratch = vec![glint_model::Projected::Behind; frame.scratch_vertices()];
-        let constants = frame.constants().unwrap();
-        let mut memory = vec![0; 1 << 12];
-        let mut list = glint_model::edges::EdgeList::new(&mut memory);
-        let Subject::Edges(subject, _) = &frame.subject else {
-            unreachable!()
-        };
-        list.make(&subject.mesh, &mut || {}).unwrap();
-        let target = &mut picture.target();
-        let mut stats = frame
-            .draw(&constants, target, &mut scratch, &mut || {})
-            .unwrap();
-        frame
-            .draw_edges(
-                &constants,
-                &mut list,
-                target,
-                &mut scratch,
-                &mut || {},
-                &mut stats,
-            )
-            .unwrap();
-        picture
+        })
     };
     let (behind, found) = (draw(&[]), draw(&[rectangle]));
     let mut edges = 0;

@@ -13,7 +13,7 @@ use virtual_board::virtual_mpu6050::{Fault, State};
 use virtual_board::{Simulation, Uart};
 
 /// All parts.
-const PARTS: [&str; 18] = [
+const PARTS: [&str; 20] = [
     "identity",
     "clock",
     "cycle counter",
@@ -31,6 +31,8 @@ const PARTS: [&str; 18] = [
     "raymarch cubes",
     "raymarch spheres",
     "raymarch stereo",
+    "line texture",
+    "raymarch texture",
     "underflow",
 ];
 
