@@ -53,20 +53,21 @@ impl Bits {
     }
 
     /// Sets the field, which must contain 0, to the lowest bits of `value`. Bits beyond the end of `words` are dropped.
-    #[inline]
+    // Inlined, because little code remains where the field is a constant.
+    #[inline(always)]
     pub fn put(self, words: &mut [u32], value: i64) {
-        let (mut value, mut at, mut left) = (value, self.at, self.width);
-        while left > 0 {
-            let shift = at % 32;
-            let count = left.min(32 - shift);
-            // Mask of the field's bits in one word: `count` ones from bit `shift` on.
-            let mask = u32::MAX >> (32 - count) << shift;
-            if let Some(word) = words.get_mut(at / 32) {
-                *word |= (value as u32) << shift & mask;
+        let value = value as u64 & ((1 << self.width) - 1);
+        let (first, shift) = (self.at / 32, self.at % 32);
+        // A field of 34 bits may span three words.
+        let parts = [
+            value << shift,
+            value >> 1 >> (31 - shift),
+            value >> 1 >> (63 - shift),
+        ];
+        for (number, part) in parts.into_iter().enumerate() {
+            if let Some(word) = words.get_mut(first + number) {
+                *word |= part as u32;
             }
-            value >>= count;
-            left -= count;
-            at += count;
         }
     }
 }

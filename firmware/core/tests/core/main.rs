@@ -4,6 +4,7 @@
 
 mod allocator;
 mod animation;
+mod bits;
 mod calibration;
 mod camera;
 mod colour;

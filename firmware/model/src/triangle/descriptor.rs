@@ -13,8 +13,8 @@ use glint_core::records::{
 };
 
 use crate::line::Piece;
-use crate::triangle::setup::{Plane, Setup};
-use crate::triangle::textured::OfTexture;
+use crate::triangle::setup::{Edge, Plane, Setup};
+use crate::triangle::textured::{Axis, OfTexture};
 
 pub use contents::Contents;
 
@@ -134,27 +134,22 @@ impl Descriptor {
         let group_start = setup.start_column / GROUP;
         let back = setup.start_column - GROUP * group_start;
         let mut words = [0; WORDS];
-        for (k, edge) in setup.edges.iter().enumerate() {
-            let start = edge.start - i64::from(back) * i64::from(edge.step_x);
-            descriptor::START.element(k).put(&mut words, start);
-            (descriptor::STEPS_X.element(k)).put(&mut words, edge.step_x.into());
-            (descriptor::STEPS_Y.element(k)).put(&mut words, edge.step_y.into());
-        }
+        let [first, second, third] = &setup.edges;
+        put_edge(&mut words, 0, first, back);
+        put_edge(&mut words, 1, second, back);
+        put_edge(&mut words, 2, third, back);
         put_plane(&mut words, DEPTH, &setup.depth, back);
-        for (field, value) in [
-            (descriptor::TOP, bounds.top),
-            (descriptor::BOTTOM, bounds.bottom),
-            (descriptor::GROUP_LEFT, bounds.left / GROUP),
-            (descriptor::GROUP_RIGHT, (bounds.right - 1) / GROUP),
-            (descriptor::GROUP_START, group_start),
-            (descriptor::COLOUR, colour.0.into()),
-        ] {
-            field.put(&mut words, value.into());
-        }
-        if let Some(planes) = &setup.light {
-            for (channel, plane) in planes.iter().enumerate() {
-                put_plane(&mut words, light(channel), plane, back);
-            }
+        let mut put = |field: Bits, value: i32| field.put(&mut words, value.into());
+        put(descriptor::TOP, bounds.top);
+        put(descriptor::BOTTOM, bounds.bottom);
+        put(descriptor::GROUP_LEFT, bounds.left / GROUP);
+        put(descriptor::GROUP_RIGHT, (bounds.right - 1) / GROUP);
+        put(descriptor::GROUP_START, group_start);
+        put(descriptor::COLOUR, colour.0.into());
+        if let Some([red, green, blue]) = &setup.light {
+            put_plane(&mut words, light(0), red, back);
+            put_plane(&mut words, light(1), green, back);
+            put_plane(&mut words, light(2), blue, back);
             SMOOTH.put(&mut words, 1);
         }
         if let Some(texture) = texture {
@@ -219,30 +214,50 @@ impl Descriptor {
 ///
 /// Not inlined, because few triangles have one.
 #[inline(never)]
-fn put_texture(words: &mut [u32], texture: &OfTexture, back: i32) {
-    for (axis, of_axis) in texture.axes.iter().enumerate() {
-        put_plane(words, coordinate(axis), &of_axis.plane, back);
-        let range = in_texture(texture_planes::RANGE).element(axis);
-        range.put(words, of_axis.range_log2.into());
-        let periods = in_texture(texture_planes::PERIODS).element(axis);
-        periods.put(words, of_axis.periods.into());
-    }
-    for (channel, light) in texture.light.into_iter().enumerate() {
-        let field = in_texture(texture_planes::LIGHT).element(channel);
-        field.put(words, light.into());
-    }
+fn put_texture(words: &mut [u32; WORDS], texture: &OfTexture, back: i32) {
+    let [across, down] = &texture.axes;
+    put_axis(words, 0, across, back);
+    put_axis(words, 1, down, back);
+    let [red, green, blue] = texture.light;
+    let light = in_texture(texture_planes::LIGHT);
+    light.element(0).put(words, red.into());
+    light.element(1).put(words, green.into());
+    light.element(2).put(words, blue.into());
     in_texture(texture_planes::TEXTURE).put(words, texture.number.into());
     in_texture(texture_planes::LINEAR).put(words, texture.weight.is_some().into());
 }
 
+// The functions below are inlined, so that the positions of all fields are constants: no loop over fields, and no shift by a variable.
+
+/// Writes the coordinate of a texture along the axis with the index `number`.
+#[inline(always)]
+fn put_axis(words: &mut [u32; WORDS], number: usize, axis: &Axis, back: i32) {
+    put_plane(words, coordinate(number), &axis.plane, back);
+    let range = in_texture(texture_planes::RANGE).element(number);
+    range.put(words, axis.range_log2.into());
+    let periods = in_texture(texture_planes::PERIODS).element(number);
+    periods.put(words, axis.periods.into());
+}
+
+/// Writes the edge with the index `number`, its start moved `back` columns to the left.
+#[inline(always)]
+fn put_edge(words: &mut [u32; WORDS], number: usize, edge: &Edge, back: i32) {
+    let start = edge.start - i64::from(back) * i64::from(edge.step_x);
+    descriptor::START.element(number).put(words, start);
+    (descriptor::STEPS_X.element(number)).put(words, edge.step_x.into());
+    (descriptor::STEPS_Y.element(number)).put(words, edge.step_y.into());
+}
+
 /// Writes a plane with its start moved `back` columns to the left.
-fn put_plane(words: &mut [u32], fields: PlaneFields, plane: &Plane, back: i32) {
+#[inline(always)]
+fn put_plane(words: &mut [u32; WORDS], fields: PlaneFields, plane: &Plane, back: i32) {
     let start = plane
         .start
         .wrapping_sub(plane.step_x.wrapping_mul(back as u32));
-    for (field, value) in fields.iter().zip([start, plane.step_x, plane.step_y]) {
-        field.put(words, value.into());
-    }
+    let [at_start, at_step_x, at_step_y] = fields;
+    at_start.put(words, start.into());
+    at_step_x.put(words, plane.step_x.into());
+    at_step_y.put(words, plane.step_y.into());
 }
 
 /// Start of a band's list, in 16-byte words from the start of the set of lists. A list holds up to 4 << `shift` entries. The gap between
