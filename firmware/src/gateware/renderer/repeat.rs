@@ -161,7 +161,9 @@ impl GatewareRenderer {
         output: &mut Output,
         count: u32,
     ) -> Result<Rendered, Fallback> {
-        self.update_constants(frame, 0)?;
+        for place in [0, 1] {
+            self.update_constants(frame, place)?;
+        }
         self.set_field(0, false)?;
         self.start_measurement(frame);
         let (mut now, mut next) = (0, 1);

@@ -209,3 +209,24 @@ fn a_script_of_keys() {
     let counts = drawn.stats.wireframe.unwrap();
     assert_eq!((counts.segments, counts.lines), (12, 12));
 }
+
+/// Repeated frames of a wireframe have no sky and no fog, which the frames of a mesh before them had.
+#[test]
+fn repeated_frames_after_a_sky() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    for line in [
+        "size 320 180",
+        "background sky",
+        "fog 0.3",
+        "bench triangle 2",
+        "scene wireframe",
+        "size 320 180",
+        // The second frame uses the memory of the mesh's second frame.
+        "bench triangle 2",
+    ] {
+        console.command(line).unwrap();
+    }
+    let [_, repeated] = shown(&mut console);
+    assert!(repeated == picture(&cube(), &Motion::default()));
+}
