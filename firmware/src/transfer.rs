@@ -27,7 +27,7 @@ const TIMING: Timing = Timing::CONSOLE;
 /// The purpose of a transfer.
 pub enum Purpose {
     /// An upload of a mesh or a texture under this name.
-    Named(Name),
+    Upload(Name),
     /// An upload of a wireframe program.
     Program,
     /// An upload of a log of sensor samples.

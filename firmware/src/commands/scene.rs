@@ -40,7 +40,7 @@ impl<'l> SceneCommands<'l> for Machine {
         };
         accepted.map_err(|error| CommandError::UploadName(name, error))?;
         // The parser limits names to the string's capacity, so the conversion does not fail.
-        let purpose = Purpose::Named(Name::try_from(name).unwrap_or_default());
+        let purpose = Purpose::Upload(Name::try_from(name).unwrap_or_default());
         upload::begin(self, "load", purpose, upload)
     }
 

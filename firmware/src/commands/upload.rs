@@ -48,7 +48,7 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
             machine.give_back(memory);
             return Ok(Reply::Done);
         }
-        Purpose::Named(name) => {
+        Purpose::Upload(name) => {
             let accepted = machine.models.accept(name, memory);
             accepted.map_err(CommandError::Upload)?;
             if machine.models.has_texture(name) {
