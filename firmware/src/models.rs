@@ -355,6 +355,7 @@ impl Models {
             return false;
         };
         let removed = self.uploads.remove(position);
+        self.revise();
         self.arena.release(removed.region);
         self.compact();
         true
