@@ -6,7 +6,8 @@ use glint_core::block::Block;
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
 use glint_core::deviation::Deviation;
-use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD, WIREFRAME};
+use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, TEXTURE, UPLOAD, WIREFRAME};
+use glint_core::flash::Kind;
 use glint_core::gesture::ColourError;
 use glint_core::orientation::log::LogError;
 use glint_core::wire::Failure;
@@ -47,8 +48,8 @@ pub enum CommandError<'l> {
         /// The mesh.
         mesh: &'l str,
     },
-    /// The mesh or texture of this name in the flash is refused.
-    FlashItem(&'l str, UploadError),
+    /// The item of this kind and name in the flash, a mesh or a texture, is refused.
+    FlashItem(Kind, &'l str, UploadError),
     /// The gateware lacks these blocks, one bit each, which the scene of this name needs.
     Blocks(&'l str, u32),
     /// This build lacks parts of the firmware that this scene needs.
@@ -201,9 +202,9 @@ impl Display for CommandError<'_> {
                 f,
                 "scene {name}: no mesh `{mesh}`, expected a built-in one, or one of the flash"
             ),
-            Self::FlashItem(name, error) => {
-                DEMO.when_built(|| write!(f, "{name} of the flash: {error}"))
-            }
+            Self::FlashItem(kind, name, error) => DEMO.when_built(|| {
+                write!(f, "{} {name} of the flash: {error}", kind.name())
+            }),
             Self::Blocks(name, lacks) => {
                 write!(f, "scene {name}: this gateware lacks")?;
                 let mut lacks = Block::of_bits(*lacks);
@@ -234,6 +235,10 @@ impl Display for CommandError<'_> {
                 match error {
                     NameError::Scene => f.write_str("the name of a scene, expected another name"),
                     NameError::Own => f.write_str("the word for own textures, expected another name"),
+                    NameError::OtherKind => TEXTURE.when_built(|| write!(
+                        f,
+                        "the name of an upload of the other kind; `unload {name}` removes it"
+                    )),
                     NameError::Full => write!(
                         f,
                         "{MAX_UPLOADS} uploads, expected at most {MAX_UPLOADS}; `unload NAME` removes one"
@@ -246,7 +251,8 @@ impl Display for CommandError<'_> {
             ),
             Self::Unload(name, Some(number)) => write!(
                 f,
-                "unload `{name}`: the mesh of object {number}, expected `object remove {number}` first"
+                "unload `{name}`: {}",
+                UploadError::Object(*number)
             ),
             Self::Transfer(error) => error.fmt(f),
             Self::Upload(error) => UPLOAD.when_built(|| write!(f, "load: refused, previous uploads kept: {error}")),

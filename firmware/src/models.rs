@@ -6,12 +6,13 @@ use core::{fmt, mem, slice};
 use glint_core::allocator::Region;
 use glint_core::deviation::Deviation;
 use glint_core::feature::TEXTURE;
+use glint_core::flash::Kind;
 use glint_core::mesh::Mesh;
 use glint_core::shape::Shape;
 use glint_core::texture::{self, Texture};
 use glint_core::wireframe::{Program, ProgramError};
 use glint_model::Frame;
-use glint_scene::{Assets, Name, Scene};
+use glint_scene::{Assets, CUBE, Name, Scene};
 use heapless::Vec;
 
 use crate::arena::{Arena, Loan};
@@ -38,9 +39,22 @@ enum Content {
 }
 
 impl Content {
-    /// Checks an upload. Its first bytes state whether it is a texture.
-    fn new_checked(bytes: &'static [u8], most_triangles: u32) -> Result<Self, Deviation> {
-        if TEXTURE.is_built && bytes.starts_with(&texture::MAGIC) {
+    /// The kind that the first bytes of an upload state: a texture, or else a mesh.
+    fn stated_kind(bytes: &[u8]) -> Kind {
+        if bytes.starts_with(&texture::MAGIC) {
+            Kind::Texture
+        } else {
+            Kind::Mesh
+        }
+    }
+
+    /// Checks an upload as a texture, or as a mesh for any other kind.
+    fn new_checked(
+        kind: Kind,
+        bytes: &'static [u8],
+        most_triangles: u32,
+    ) -> Result<Self, Deviation> {
+        if TEXTURE.is_built && kind == Kind::Texture {
             return Texture::new_alone(bytes).map(Self::Texture);
         }
         let mesh = Mesh::new_checked(bytes)?.with_at_most(most_triangles)?;
@@ -62,6 +76,8 @@ pub enum NameError {
     Scene,
     /// The name is the word for the own textures of meshes.
     Own,
+    /// The name is the name of an upload of the other kind.
+    OtherKind,
     /// There are [`MAX_UPLOADS`] uploads with other names.
     Full,
 }
@@ -71,19 +87,18 @@ pub enum NameError {
 pub enum UploadError {
     /// The data are not a mesh or a texture, or a mesh of too many triangles.
     Content(Deviation),
-    /// A texture has the name of a mesh, or a mesh that of a texture.
-    OtherKind,
+    /// The mesh of this name, which a texture would replace, is the mesh of the object with this number, from 1.
+    Object(u32),
 }
 
 impl fmt::Display for UploadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Content(error) => error.fmt(f),
-            Self::OtherKind => TEXTURE.when_built(|| {
-                f.write_str(
-                    "a mesh and a texture of one name, expected another name; `models` lists the names",
-                )
-            }),
+            Self::Object(number) => write!(
+                f,
+                "the mesh of object {number}, expected `object remove {number}` first"
+            ),
         }
     }
 }
@@ -264,6 +279,18 @@ impl Models {
         Ok(())
     }
 
+    /// Checks that a mesh or a texture of the flash, which is not an upload, can become an upload with this name. The demo also copies, so
+    /// that, unlike an upload, a copy replaces nothing.
+    ///
+    /// # Errors
+    /// [`NameError::OtherKind`] or [`NameError::Full`].
+    pub fn check_copy(&self, name: &str) -> Result<(), NameError> {
+        if TEXTURE.is_built && of_name(&self.uploads, name).is_some() {
+            return Err(NameError::OtherKind);
+        }
+        self.check_capacity(name)
+    }
+
     /// Lends the first `length` bytes of the staging memory; `None` if the free memory is smaller. This may move uploads, so no frame may
     /// be in progress.
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
@@ -279,20 +306,34 @@ impl Models {
         self.arena.give_back(loan);
     }
 
-    /// Checks lent memory as a mesh or a texture, and keeps it under `name`; it replaces an earlier one of this name. No frame may be in
-    /// progress.
+    /// The number of the first object of `scene`, from 1, whose mesh is the upload with this name.
+    pub fn object_of(&self, name: &str, scene: &Scene) -> Option<u32> {
+        scene.first_object_of(name).filter(|_| self.has_mesh(name))
+    }
+
+    /// Checks lent memory as an upload of this kind, or `None` for the kind that its first bytes state, and keeps it under `name`. It
+    /// replaces an earlier upload of this name; `scene` then no longer shows one of the other kind. No frame may be in progress.
     ///
     /// # Errors
     /// [`UploadError`]; then nothing changes, and the memory is given back.
-    pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), UploadError> {
+    pub fn accept(
+        &mut self,
+        name: &str,
+        kind: Option<Kind>,
+        loan: Loan,
+        scene: &mut Scene,
+    ) -> Result<(), UploadError> {
         let length = loan.as_ref().len();
         let region = self.arena.keep_lent(loan);
-        let content = Content::new_checked(self.lasting(region, length), self.most_triangles);
+        let bytes = self.lasting(region, length);
+        let kind = kind.unwrap_or_else(|| Content::stated_kind(bytes));
+        let content = Content::new_checked(kind, bytes, self.most_triangles);
         let content = content.map_err(UploadError::Content).and_then(|content| {
-            let old = of_name(&self.uploads, name);
-            let is_same =
-                old.is_none_or(|old| discriminant(&old.content) == discriminant(&content));
-            is_same.then_some(content).ok_or(UploadError::OtherKind)
+            let is_texture = matches!(content, Content::Texture(_));
+            match self.object_of(name, scene).filter(|_| is_texture) {
+                Some(number) => Err(UploadError::Object(number)),
+                None => Ok(content),
+            }
         });
         let content = match content {
             Ok(content) => content,
@@ -310,6 +351,9 @@ impl Models {
         match self.uploads.iter_mut().find(|old| old.name == name) {
             Some(old) => {
                 let unused = mem::replace(old, new);
+                if TEXTURE.is_built && discriminant(&unused.content) != discriminant(&content) {
+                    unused.leave(scene);
+                }
                 self.arena.release(unused.region);
             }
             // The caller has checked that the list is not full.
@@ -349,12 +393,14 @@ impl Models {
         }
     }
 
-    /// Removes an upload, and closes the gap by moving other uploads, so no frame may be in progress. Returns whether the upload existed.
-    pub fn remove(&mut self, name: &str) -> bool {
+    /// Removes an upload, which `scene` then no longer shows, and closes the gap by moving other uploads, so no frame may be in progress.
+    /// Returns whether the upload existed.
+    pub fn remove(&mut self, name: &str, scene: &mut Scene) -> bool {
         let Some(position) = self.uploads.iter().position(|upload| upload.name == name) else {
             return false;
         };
         let removed = self.uploads.remove(position);
+        removed.leave(scene);
         self.revise();
         self.arena.release(removed.region);
         self.compact();
@@ -378,7 +424,8 @@ impl Models {
         for (index, length) in lengths.iter().enumerate() {
             let region = self.uploads.get(index).map(|upload| upload.region);
             let content = region.map(|region| {
-                Content::new_checked(self.lasting(region, *length), self.most_triangles)
+                let bytes = self.lasting(region, *length);
+                Content::new_checked(Content::stated_kind(bytes), bytes, self.most_triangles)
             });
             if let (Some(upload), Some(Ok(content))) = (self.uploads.get_mut(index), content) {
                 upload.content = content;
@@ -412,6 +459,17 @@ impl Upload {
         match self.content {
             Content::Texture(texture) => Some(texture),
             Content::Mesh(_) => None,
+        }
+    }
+
+    /// Shows the cube, or the own textures of meshes, if `scene` shows this upload.
+    fn leave(&self, scene: &mut Scene) {
+        match self.content {
+            Content::Mesh(_) if scene.mesh == self.name => scene.set_mesh(CUBE),
+            Content::Mesh(_) => {}
+            Content::Texture(_) => {
+                scene.texture.take_if(|texture| *texture == self.name);
+            }
         }
     }
 }

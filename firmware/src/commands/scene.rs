@@ -7,7 +7,7 @@ use glint_core::flash::{Item, Kind};
 use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
-use glint_scene::{CUBE, Line, Name, lines};
+use glint_scene::{Line, Name, lines};
 
 use super::{options, upload};
 use crate::error::CommandError;
@@ -90,15 +90,10 @@ impl<'l> SceneCommands<'l> for Machine {
     }
 
     fn unload(&mut self, name: &'l str) -> CommandResult<'l> {
-        let is_mesh = self.models.has_mesh(name);
-        let object = self.scene.first_object_of(name).filter(|_| is_mesh);
-        if object.is_some() || !self.models.remove(name) {
+        let object = self.models.object_of(name, &self.scene);
+        if object.is_some() || !self.models.remove(name, &mut self.scene) {
             return Err(CommandError::Unload(name, object));
         }
-        if is_mesh && self.scene.mesh == name {
-            self.scene.set_mesh(CUBE);
-        }
-        self.scene.texture.take_if(|texture| texture == name);
         // From now on the staging memory is at another address, and the other uploads may have moved.
         self.replay = None;
         self.renderer.edges.clear();

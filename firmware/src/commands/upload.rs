@@ -49,7 +49,9 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
             return Ok(Reply::Done);
         }
         Purpose::Upload(name) => {
-            let accepted = machine.models.accept(name, memory);
+            let accepted = machine
+                .models
+                .accept(name, None, memory, &mut machine.scene);
             accepted.map_err(CommandError::Upload)?;
             if machine.models.has_texture(name) {
                 machine.scene.texture = Some(name.clone());
@@ -74,7 +76,7 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> CommandResult<'
 /// Copies the mesh or texture of this name from the flash to the uploads, unless it has been uploaded. Returns whether it exists.
 ///
 /// # Errors
-/// The item is damaged, or the free memory is too small.
+/// The item is damaged, an upload of the other kind has its name, or the free memory is too small.
 pub fn from_flash<'l>(
     machine: &mut Machine,
     kind: Kind,
@@ -95,12 +97,14 @@ pub fn from_flash<'l>(
     };
     let bytes = item.checked();
     let bytes = bytes.map_err(|error| CommandError::Flash(name, error))?;
-    let accepted = machine.models.check_capacity(name);
+    let accepted = machine.models.check_copy(name);
     accepted.map_err(|error| CommandError::UploadName(name, error))?;
     let mut memory = lend(machine, name, bytes.len())?;
     memory.as_mut().copy_from_slice(bytes);
-    let accepted = machine.models.accept(name, memory);
-    accepted.map_err(|error| CommandError::FlashItem(name, error))?;
+    let accepted = machine
+        .models
+        .accept(name, Some(kind), memory, &mut machine.scene);
+    accepted.map_err(|error| CommandError::FlashItem(kind, name, error))?;
     Ok(true)
 }
 

@@ -118,7 +118,7 @@ fn a_scene_has_its_texture_from_the_flash() {
         "texture red size 8 8 bytes 160\r\n",
     );
     let answer = command(&mut board, "scene broken");
-    assert_has(&answer, "bad of the flash: mesh byte 0: expected ");
+    assert_has(&answer, "texture bad of the flash: texture byte 0: expected ");
     assert_has(&command(&mut board, "texture"), "texture red\r\n");
     command(&mut board, "unload red");
     assert_has(&command(&mut board, "texture"), "texture own\r\n");
@@ -276,7 +276,7 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
         (
             vec![missing, damaged],
             4,
-            "gear of the flash: mesh byte 0: expected ",
+            "mesh gear of the flash: mesh byte 0: expected ",
         ),
         (vec![scene("frobnicate\n")], 7, no_command),
         (vec![scene("fov 60\nreboot\n")], 7, no_picture),

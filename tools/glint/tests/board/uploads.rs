@@ -275,14 +275,6 @@ fn a_texture_is_uploaded_under_a_name() {
         let found = said(&mut console, line);
         assert!(found.contains(error), "{found}");
     }
-    let refused = upload(&mut console, &mesh("cube"), "red").unwrap_err();
-    assert!(
-        refused
-            .to_string()
-            .contains("a mesh and a texture of one name"),
-        "{refused}"
-    );
-
     // Bytes that are no texture keep the picture.
     let good = texture(0xFFFF);
     let long = [&good[..], &[0; 16]].concat();
@@ -322,4 +314,35 @@ fn a_texture_is_uploaded_under_a_name() {
     assert!(frame(&mut console) != own);
     console.command("unload crate").unwrap();
     assert!(frame(&mut console) == own);
+}
+
+/// An upload replaces one of the other kind with its name, unless an object uses it. The scene then shows the cube, or the own textures.
+#[test]
+fn an_upload_replaces_one_of_the_other_kind() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    let mut session = 0;
+    let mut upload = |console: &mut Console<_>, bytes: &[u8]| {
+        session += 1;
+        transfer::upload(console, bytes, None, session, quiet)
+    };
+    let (texture, mesh) = (texture(0xF800), mesh("icosphere:1"));
+    upload(&mut console, &texture).unwrap();
+    upload(&mut console, &mesh).unwrap();
+    assert_eq!(console.command("texture").unwrap(), ["texture own"]);
+    assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+    console.command("object add model").unwrap();
+    let refused = upload(&mut console, &texture).unwrap_err().to_string();
+    let error = "load: refused, previous uploads kept: the mesh of object 1, expected `object remove 1` first";
+    assert!(refused.contains(error), "{refused}");
+    console.command("object show").unwrap();
+    assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+    console.command("object remove 1").unwrap();
+    assert_eq!(info::<String>(&mut console, "scene"), "model");
+    upload(&mut console, &texture).unwrap();
+    assert_eq!(console.command("texture").unwrap(), ["texture model"]);
+    assert_eq!(info::<String>(&mut console, "scene"), "cube");
+    let models = console.command("models").unwrap();
+    assert!(models.contains(&"uploads 1 of 16".to_owned()), "{models:?}");
 }
