@@ -7,8 +7,10 @@ use core::slice;
 
 use glint_core::allocator::{Allocator, Region};
 
+use crate::models::MAX_UPLOADS;
+
 /// Largest number of uploads: meshes and textures, a program, and a new upload that is to replace one of them.
-const UPLOADS: usize = 18;
+const UPLOADS: usize = MAX_UPLOADS + 2;
 
 /// Memory that a task fills or sends over several turns. Until it is given back, no other reference to it exists.
 pub struct Loan {

@@ -255,7 +255,7 @@ fn a_texture_is_uploaded_under_a_name() {
     for line in [
         "texture red size 8 8 bytes 160",
         "texture green size 8 8 bytes 160",
-        "uploads 2 of 16",
+        "uploads 2 of 17",
     ] {
         assert!(models.contains(line), "{models}");
     }
@@ -344,5 +344,5 @@ fn an_upload_replaces_one_of_the_other_kind() {
     assert_eq!(console.command("texture").unwrap(), ["texture model"]);
     assert_eq!(info::<String>(&mut console, "scene"), "cube");
     let models = console.command("models").unwrap();
-    assert!(models.contains(&"uploads 1 of 16".to_owned()), "{models:?}");
+    assert!(models.contains(&"uploads 1 of 17".to_owned()), "{models:?}");
 }
