@@ -10,8 +10,8 @@ use super::object::Object;
 use super::syntax::{Parameter, Shape, Syntax, WordKind};
 use super::table::{commands, part, shows};
 use super::values::{
-    Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName,
-    Mounting, Name, SceneName, Sensitivity, Size, TextureName, Upload, UploadName, View, Whole,
+    Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, Mounting, Name,
+    SceneName, Sensitivity, Size, TextureName, Upload, UploadName, View, Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
@@ -56,7 +56,7 @@ commands! {
     SceneCommands {
         scene Scene(name: Option<SceneName>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
             => key(Order::Subject, "teapot").named("model").without(&["object", "program"]);
-        load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh or a texture (binary) under a name (default model) and show it";
+        load Load(upload: Upload, name: Option<UploadName>) in UPLOAD: "upload a mesh or a texture (binary) under a name (default model) and show it";
         models Models() in UPLOAD: "list the meshes, the textures and the memory for uploads";
         unload Unload(name: UploadName) in UPLOAD: "remove an uploaded mesh or texture";
         program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; without arguments, show the last one"

@@ -33,38 +33,38 @@ impl WordArgument for Name {
     }
 }
 
-/// The name of a mesh, or of an upload.
+/// The name of a mesh.
 pub struct MeshName;
 
 impl WordArgument for MeshName {
     type Value<'a> = &'a str;
-    const KIND: WordKind = WordKind::Name(NameList::Meshes, &MESH_NAME);
+    const KIND: WordKind = WordKind::Name(NameList::Meshes, &NAME_FORM);
 
     fn parse(text: &str) -> Option<&str> {
         Some(text).filter(|text| mesh::is_name(text))
     }
 }
 
-const MESH_NAME: &str = "a name of at most 24 visible characters of ASCII";
+const NAME_FORM: &str = "a name of at most 24 visible characters of ASCII";
 
 /// The name of an uploaded texture.
 pub struct TextureName;
 
 impl WordArgument for TextureName {
     type Value<'a> = &'a str;
-    const KIND: WordKind = WordKind::Name(NameList::Textures, &MESH_NAME);
+    const KIND: WordKind = WordKind::Name(NameList::Textures, &NAME_FORM);
 
     fn parse(text: &str) -> Option<&str> {
         MeshName::parse(text)
     }
 }
 
-/// The name of an uploaded mesh or texture.
+/// The name of an upload, a mesh or a texture.
 pub struct UploadName;
 
 impl WordArgument for UploadName {
     type Value<'a> = &'a str;
-    const KIND: WordKind = WordKind::Name(NameList::Uploads, &MESH_NAME);
+    const KIND: WordKind = WordKind::Name(NameList::Uploads, &NAME_FORM);
 
     fn parse(text: &str) -> Option<&str> {
         MeshName::parse(text)

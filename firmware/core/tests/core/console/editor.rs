@@ -203,7 +203,7 @@ fn tab_completes_names() {
     assert_lines(b"object a\tto\t\r", &["object add torus "]);
     assert_lines(b"unload h\t\t\r", &["unload hull"]);
     assert_lines(b"unload w\t\r", &["unload wood "]);
-    assert_lines(b"load 1 0 t\t\r", &["load 1 0 torus "]);
+    assert_lines(b"load 1 0 w\t\r", &["load 1 0 wood "]);
     assert_lines(b"field men\t4\r", &["field menger:4"]);
     assert_lines(b"field of\t\r", &["field off "]);
     assert_lines(b"edges h\t\r", &["edges hidden "]);
