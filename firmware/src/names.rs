@@ -13,8 +13,8 @@ use crate::shapes::Shapes;
 #[derive(Default)]
 pub struct MachineNames {
     library: Library,
-    meshes: Vec<Name, MAX_UPLOADS>,
-    textures: Vec<Name, MAX_UPLOADS>,
+    /// The uploaded meshes and textures.
+    uploads: Vec<(Name, Kind), MAX_UPLOADS>,
     /// [`Models::revision`] of the copies.
     revision: u32,
 }
@@ -24,8 +24,7 @@ impl MachineNames {
     pub const fn new(library: Library) -> Self {
         Self {
             library,
-            meshes: Vec::new(),
-            textures: Vec::new(),
+            uploads: Vec::new(),
             revision: 0,
         }
     }
@@ -34,47 +33,34 @@ impl MachineNames {
     pub fn update(&mut self, models: &Models) {
         if self.revision != models.revision() {
             self.revision = models.revision();
-            let copy = |name| Name::try_from(name).ok();
-            let meshes = models.meshes();
-            self.meshes = meshes.filter_map(|(name, _)| copy(name)).collect();
-            let textures = models.textures();
-            self.textures = textures.filter_map(|(name, _)| copy(name)).collect();
+            let meshes = models.meshes().map(|(name, _)| (name, Kind::Mesh));
+            let textures = models.textures().map(|(name, _)| (name, Kind::Texture));
+            let names = meshes.chain(textures);
+            let copies = names.filter_map(|(name, kind)| Some((Name::try_from(name).ok()?, kind)));
+            self.uploads = copies.collect();
         }
     }
 
-    /// Whether an uploaded mesh has this name.
-    fn is_uploaded(&self, name: &str) -> bool {
-        self.meshes.iter().any(|mesh| mesh == name)
+    /// Whether there is an upload of this kind and name.
+    fn is_uploaded(&self, kind: Kind, name: &str) -> bool {
+        let mut uploads = self.uploads.iter();
+        uploads.any(|(known, of)| *of == kind && known == name)
     }
 }
 
 impl Names for MachineNames {
     fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
         if matches!(list, NameList::Scenes | NameList::Meshes) {
-            let built_in = Shapes::names().filter(|name| !self.is_uploaded(name));
+            let built_in = Shapes::names().filter(|name| !self.is_uploaded(Kind::Mesh, name));
             built_in.for_each(&mut *visit);
         }
-        if list != NameList::Textures {
-            self.meshes.iter().for_each(|name| visit(name));
-        }
-        if matches!(list, NameList::Textures | NameList::Uploads) {
-            self.textures.iter().for_each(|name| visit(name));
+        for (name, kind) in &self.uploads {
+            if list == NameList::Uploads || is_listed(list, *kind) {
+                visit(name);
+            }
         }
         for item in self.library.items() {
-            let is_listed = match list {
-                NameList::Scenes => match item.kind {
-                    Kind::Mesh => !self.is_uploaded(item.name),
-                    Kind::Scene | Kind::List => true,
-                    Kind::Texture => false,
-                },
-                NameList::Meshes => item.kind == Kind::Mesh && !self.is_uploaded(item.name),
-                NameList::Textures => {
-                    item.kind == Kind::Texture
-                        && self.textures.iter().all(|texture| texture != item.name)
-                }
-                NameList::Uploads => false,
-            };
-            if is_listed {
+            if is_listed(list, item.kind) && !self.is_uploaded(item.kind, item.name) {
                 visit(item.name);
             }
         }
@@ -85,5 +71,15 @@ impl Names for MachineNames {
                 .for_each(&mut *visit);
             visit(DEFAULT);
         }
+    }
+}
+
+/// Whether a list has the items of the flash of this kind.
+fn is_listed(list: NameList, kind: Kind) -> bool {
+    match list {
+        NameList::Scenes => kind != Kind::Texture,
+        NameList::Meshes => kind == Kind::Mesh,
+        NameList::Textures => kind == Kind::Texture,
+        NameList::Uploads => false,
     }
 }
