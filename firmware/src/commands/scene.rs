@@ -15,7 +15,6 @@ use crate::job::{CommandResult, Job, Orbit, Reply};
 use crate::machine::Machine;
 use crate::models::{MAX_UPLOADS, MODEL, NameError};
 use crate::scenes::{BuiltIn, Content, DEFAULT, SCENES, SceneItem};
-use crate::sensor;
 use crate::transfer::Purpose;
 
 impl<'l> SceneCommands<'l> for Machine {
@@ -226,8 +225,6 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> C
         if let Some(mesh) = line.mesh() {
             let is_there =
                 upload::from_flash(machine, Kind::Mesh, mesh)? || machine.models.has(mesh);
-            // The check of a large mesh is slow, and several meshes may follow.
-            sensor::deliver(&mut machine.imu);
             if !is_there || !MESH.is_built || !machine.models.prepare(mesh) {
                 return Err(CommandError::NoMesh { name, mesh });
             }

@@ -10,6 +10,7 @@ use crate::arena::Loan;
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, Reply};
 use crate::machine::Machine;
+use crate::sensor;
 use crate::transfer::{Purpose, Transfer};
 
 /// Begins to receive the data that `manifest` announces into the staging memory. The reply has the line `ready`, or `present` if the
@@ -105,6 +106,8 @@ pub fn from_flash<'l>(
         .models
         .accept(name, Some(kind), memory, &mut machine.scene);
     accepted.map_err(|error| CommandError::FlashItem(kind, name, error))?;
+    // Copy and check of a large item are slow, and several items may follow.
+    sensor::deliver(&mut machine.imu);
     Ok(true)
 }
 
