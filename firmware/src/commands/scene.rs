@@ -3,7 +3,7 @@
 use glint_core::block::Block;
 use glint_core::console::{Command, OWN, OrbitCommands, SceneCommands, Setting};
 use glint_core::feature::{GESTURE, MESH};
-use glint_core::flash::{Item, Kind};
+use glint_core::flash::Kind;
 use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
@@ -55,10 +55,14 @@ impl<'l> SceneCommands<'l> for Machine {
             terminal.print(format_args!(" {name}"));
         }
         terminal.print(format_args!("\n"));
-        let is_upload = |item: &Item| matches!(item.kind, Kind::Mesh | Kind::Texture);
-        for item in library.items().filter(is_upload) {
+        for item in library.items() {
+            let kind = match item.kind {
+                Kind::Mesh => "",
+                Kind::Texture => "texture ",
+                Kind::Scene | Kind::List => continue,
+            };
             let (name, bytes) = (item.name, item.length());
-            terminal.print(format_args!("flash {name} bytes {bytes}\n"));
+            terminal.print(format_args!("flash {kind}{name} bytes {bytes}\n"));
         }
         for (name, mesh) in models.meshes() {
             let (vertices, triangles, bytes) = (

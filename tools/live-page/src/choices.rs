@@ -52,8 +52,10 @@ pub struct Choices {
     scenes: Vec<Choice>,
     meshes: Vec<Choice>,
     fields: Vec<Choice>,
-    /// Names of the uploaded textures, for completion.
+    /// Names of the textures, uploaded or in the flash, for completion.
     textures: Vec<String>,
+    /// Names of the uploads, for completion.
+    uploads: Vec<String>,
 }
 
 impl Choices {
@@ -99,10 +101,8 @@ impl Choices {
             fields: kinds
                 .map(|(_, example)| field(example.field, example.look))
                 .collect(),
-            textures: models
-                .iter()
-                .filter_map(|line| texture_name(line))
-                .collect(),
+            textures: texture_names(models),
+            uploads: upload_names(models),
         }
     }
 
@@ -130,16 +130,15 @@ fn is_drawn_by_engine(field: &str) -> bool {
 /// Provides the names for completion on the console.
 impl Names for Choices {
     fn visit(&self, list: NameList, visit: &mut dyn FnMut(&str)) {
-        let lists = match list {
-            NameList::Scenes => &[List::Meshes, List::Scenes][..],
-            NameList::Meshes | NameList::Uploads => &[List::Meshes],
-            NameList::Textures => &[],
+        let (lists, names) = match list {
+            NameList::Scenes => (&[List::Meshes, List::Scenes][..], &[][..]),
+            NameList::Meshes => (&[List::Meshes][..], &[][..]),
+            NameList::Textures => (&[][..], &self.textures[..]),
+            NameList::Uploads => (&[][..], &self.uploads[..]),
         };
         let choices = lists.iter().flat_map(|list| self.of(*list));
         choices.for_each(|choice| visit(&choice.name));
-        if matches!(list, NameList::Textures | NameList::Uploads) {
-            self.textures.iter().for_each(|name| visit(name));
-        }
+        names.iter().for_each(|name| visit(name));
     }
 }
 
@@ -147,20 +146,38 @@ impl Names for Choices {
 fn mesh_names(models: &[String]) -> Vec<&str> {
     let mut names = Vec::new();
     for line in models {
-        let mut words = line.split(' ');
-        match words.next() {
-            Some("built-in") => names.extend(words),
-            Some("flash" | "mesh") => names.extend(words.next()),
+        let words: Vec<_> = line.split(' ').collect();
+        match words[..] {
+            ["built-in", ..] => names.extend_from_slice(&words[1..]),
+            ["flash", name, "bytes", _] | ["mesh", name, ..] => names.push(name),
             _ => {}
         }
     }
     names
 }
 
-/// The name of an uploaded texture in a line of a reply to `models`.
-fn texture_name(line: &str) -> Option<String> {
-    let name = line.strip_prefix("texture ")?.split(' ').next()?;
-    Some(name.to_owned())
+/// The names of textures in a reply to `models`, each once: an uploaded texture may be a copy of one of the flash.
+fn texture_names(models: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for line in models {
+        let words: Vec<_> = line.split(' ').collect();
+        if let ["flash", "texture", name, "bytes", _] | ["texture", name, ..] = words[..]
+            && names.iter().all(|known| known != name)
+        {
+            names.push(name.to_owned());
+        }
+    }
+    names
+}
+
+/// The names of uploads in a reply to `models`.
+fn upload_names(models: &[String]) -> Vec<String> {
+    let name = |line: &String| {
+        let mut words = line.split(' ');
+        matches!(words.next(), Some("mesh" | "texture")).then_some(())?;
+        words.next().map(str::to_owned)
+    };
+    models.iter().filter_map(name).collect()
 }
 
 /// The choice of a field.
@@ -201,7 +218,8 @@ mod tests {
             &|name| Some(format!("fit {name}")),
             &lines("scene cube there\nscene hull flash\nscene cubes there\nscene default there"),
             &lines(
-                "built-in cube\nflash hull bytes 7\ntexture wood size 8 8 bytes 9\nuploads 1 of 16\nfree 1 bytes",
+                "built-in cube\nflash hull bytes 7\nflash texture wood bytes 9\nflash texture rust bytes 9\n\
+                 texture wood size 8 8 bytes 9\nuploads 1 of 17\nfree 1 bytes",
             ),
             &lines(
                 "field\n  show\n  off|FIELD: off or menger:DEPTH or moving:R,ORBIT[,DEGREES] or other:X",
@@ -214,7 +232,16 @@ mod tests {
         assert_eq!(names(List::Scenes), ["cubes", "default"]);
         assert_eq!(names(List::Meshes), ["cube", "hull"]);
         assert_eq!(names(List::Fields), ["menger", "moving"]);
-        for (line, expected) in [("texture w", "wood"), ("unload w", "wood"), ("scene w", "")] {
+        for (line, expected) in [
+            ("texture w", "wood"),
+            ("texture r", "rust"),
+            ("object add h", "hull"),
+            ("load 9 0 w", "wood"),
+            ("unload w", "wood"),
+            ("unload r", ""),
+            ("unload h", ""),
+            ("scene w", ""),
+        ] {
             let mut words = String::new();
             complete(line, &choices, &mut |word, _| words += word);
             assert_eq!(words, expected, "{line}");

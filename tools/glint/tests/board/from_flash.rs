@@ -110,7 +110,10 @@ fn a_scene_has_its_texture_from_the_flash() {
         piece(Kind::Scene, "broken", "scene crate\ntexture bad\n"),
     ]);
     let (mut board, _) = powered_up(flash, |_| ());
-    assert_has(&command(&mut board, "models"), "flash red bytes 160\r\n");
+    assert_has(
+        &command(&mut board, "models"),
+        "flash texture red bytes 160\r\n",
+    );
     command(&mut board, "scene box");
     assert_has(&command(&mut board, "texture"), "texture red\r\n");
     assert_has(
@@ -118,7 +121,10 @@ fn a_scene_has_its_texture_from_the_flash() {
         "texture red size 8 8 bytes 160\r\n",
     );
     let answer = command(&mut board, "scene broken");
-    assert_has(&answer, "texture bad of the flash: texture byte 0: expected ");
+    assert_has(
+        &answer,
+        "texture bad of the flash: texture byte 0: expected ",
+    );
     assert_has(&command(&mut board, "texture"), "texture red\r\n");
     command(&mut board, "unload red");
     assert_has(&command(&mut board, "texture"), "texture own\r\n");
