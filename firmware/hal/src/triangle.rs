@@ -380,7 +380,8 @@ impl TriangleEngine {
     /// Starts the prepared geometry pass.
     ///
     /// # Safety
-    /// Until the pass has ended, its mesh or segments must not be written and its output must not be accessed. The output is overwritten.
+    /// Until the pass has ended, its mesh with texture coordinates, or its segments, must not be written and its output must not be
+    /// accessed. The output is overwritten.
     pub unsafe fn start_geometry(&mut self, pass: Prepared) {
         // Writes of the CPU to memory must precede the start of the engine.
         compiler_fence(Ordering::SeqCst);
@@ -390,8 +391,8 @@ impl TriangleEngine {
     /// Starts a raster pass.
     ///
     /// # Safety
-    /// Until the pass has ended, lists and descriptors must not be written, and frame and depth codes must not be
-    /// accessed. Frame and depth codes are overwritten.
+    /// Until the pass has ended, lists, descriptors, the table of textures and the textures in it must not be written, and frame and depth
+    /// codes must not be accessed. Frame and depth codes are overwritten.
     pub unsafe fn start_raster(&mut self, pass: &Raster) {
         let registers = &self.registers;
         registers.frame().write(pass.frame);

@@ -165,7 +165,7 @@ impl GeometryPasses {
             return false;
         };
         // SAFETY: the buffers belong to the renderer, are not used by an earlier frame, and are read after the end of this pass; the
-        // mesh stays while the renderer is busy.
+        // mesh and its texture coordinates stay while the renderer is busy.
         unsafe { job.engine.start_geometry(pass) };
         true
     }

@@ -526,8 +526,8 @@ impl GatewareRenderer {
             },
         };
         *drawn = this;
-        // SAFETY: the lists belong to this renderer and stay until the end of the pass; the caller lends the memory of
-        // colours and depth codes until then.
+        // SAFETY: the lists and the table of textures belong to this renderer and stay until the end of the pass; textures, as
+        // meshes, stay while the renderer is busy; the caller lends the memory of colours and depth codes until the end of the pass.
         unsafe { self.engine.start_raster(&pass) };
         self.pass_start = cpu::cycles_low();
     }
