@@ -162,8 +162,17 @@ pub fn check(bytes: &[u8]) -> Result<Image<'_>, FormatError> {
 pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     let mut names = HashSet::new();
     for item in contents.items() {
-        if !names.insert((item.kind.name(), item.name)) {
-            let error = FormatError::whole("names that differ", "two items of this kind and name");
+        let list = match item.kind {
+            // A board copies both to its uploads, which have one list of names.
+            Kind::Mesh | Kind::Texture => "upload",
+            Kind::Scene | Kind::List => item.kind.name(),
+        };
+        if !names.insert((list, item.name)) {
+            let found = match list {
+                "upload" => "two meshes or textures of this name",
+                _ => "two items of this kind and name",
+            };
+            let error = FormatError::whole("names that differ", found);
             return Err(in_item(&item, error));
         }
         match item.kind {

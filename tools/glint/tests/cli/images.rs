@@ -2,6 +2,7 @@
 
 use crate::common::{assert_has, folder, glint, refused, report, succeed};
 use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind, Piece, encode};
+use glint_core::texture::{self, Source};
 use glint_texture::example::small_png;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -178,6 +179,23 @@ fn what_boards_cannot_show_is_refused() {
     let same = vec![scene("same", "fov 60\n".into()); 63];
     let expected = "expected scene same: names that differ, found two items of this kind and name";
     is_refused(&same, expected);
+    let item = |kind, bytes| Piece {
+        kind,
+        name: "same".to_owned(),
+        bytes,
+    };
+    let texture = texture::encode(&Source {
+        size_log2: [3, 3],
+        levels: vec![vec![0; 64]],
+        ..Source::default()
+    });
+    let upload = [
+        item(Kind::Texture, texture.unwrap()),
+        item(Kind::Mesh, Vec::new()),
+    ];
+    let expected =
+        "expected mesh same: names that differ, found two meshes or textures of this name";
+    is_refused(&upload, expected);
 }
 
 /// Runs `glint flash --spi board.bin` with `folder` as the program search path.
