@@ -78,7 +78,7 @@ pub struct UploadArguments {
     keep_scale: bool,
     #[command(flatten)]
     textures: MeshTextureArguments,
-    /// Keep camera, objects and all other settings of the scene. By default the default scene shows
+    /// Keep camera, objects and all other settings of the scene, as for a texture. By default the default scene shows
     /// the whole model, with the axis up that is usual in its format.
     #[arg(long)]
     keep_scene: bool,
@@ -238,6 +238,7 @@ impl UploadArguments {
             for (is_given, option) in [
                 (self.keep_scale, "--keep-scale"),
                 (textures.left_out, "--no-textures"),
+                (self.keep_scene, "--keep-scene"),
             ] {
                 if is_given {
                     return Err(bad_value(option, "a mesh", "a texture").into());

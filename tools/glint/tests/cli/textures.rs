@@ -113,6 +113,8 @@ fn bad_pictures_and_options() {
             --keep-scale: expected a mesh, found a texture
         upload a.png --no-textures
             --no-textures: expected a mesh, found a texture
+        upload a.png --keep-scene
+            --keep-scene: expected a mesh, found a texture
         ",
     );
     assert!(!folder.join("out.glt").exists());
