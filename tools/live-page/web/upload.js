@@ -8,8 +8,9 @@ const MAX_NAME = 100;
 // millions.
 const MAX_ENTRIES = 20000;
 // Auxiliary files of a mesh: materials of an OBJ, buffers of a glTF, pictures of textures.
-const BESIDE = [".mtl", ".bin", ".png", ".jpg", ".jpeg"];
-const TEXTURES = [".glt", ".png", ".jpg", ".jpeg"];
+const PICTURES = [".png", ".jpg", ".jpeg"];
+const BESIDE = [".mtl", ".bin", ...PICTURES];
+const TEXTURES = [".glt", ...PICTURES];
 
 const extension = (path) => path.slice(path.lastIndexOf(".")).toLowerCase();
 const depth = (path) => path.split("/").length;
