@@ -22,7 +22,7 @@ use crate::shapes::Shapes;
 
 /// Name of an upload without a name.
 pub const MODEL: &str = "model";
-/// Largest number of uploaded meshes and textures: a mesh for each object, and a texture in place of theirs.
+/// Largest number of uploaded meshes and textures: a mesh for each object, and a replacement texture.
 pub const MAX_UPLOADS: usize = MAX_OBJECTS + 1;
 
 /// A mesh or a texture, with its name and its memory.
@@ -119,8 +119,8 @@ pub struct Models {
     /// The mesh of the scene of the last [`update`](Models::update). The mesh is stored, because finding it
     /// by its name takes a thousand clock cycles, and every step of drawing a frame needs it.
     shown: Mesh<'static>,
-    /// The texture of this scene that replaces those of the meshes.
-    texture: Option<Texture<'static>>,
+    /// The replacement texture of this scene.
+    replacement_texture: Option<Texture<'static>>,
     revision: u32,
     /// Largest number of triangles of an uploaded mesh.
     most_triangles: u32,
@@ -145,7 +145,7 @@ impl Models {
             uploads: Vec::new(),
             program: None,
             shown: shapes.cube(),
-            texture: None,
+            replacement_texture: None,
             shapes,
             cube_program,
             objects: Objects::new(turned),
@@ -174,7 +174,7 @@ impl Models {
         scene.frame(Assets {
             mesh: Some(self.shown),
             objects: self.objects.all(),
-            texture: self.texture,
+            replacement_texture: self.replacement_texture,
             program: *self.program(),
         })
     }
@@ -184,7 +184,7 @@ impl Models {
         let mesh = known(&self.uploads, &self.shapes, &scene.mesh);
         self.shown = mesh.unwrap_or(self.shapes.cube());
         let texture = scene.texture.as_ref().filter(|_| TEXTURE.is_built);
-        self.texture = texture.and_then(|name| of_name(&self.uploads, name)?.texture());
+        self.replacement_texture = texture.and_then(|name| of_name(&self.uploads, name)?.texture());
         if scene.shows_objects() {
             let Self {
                 objects,
@@ -369,7 +369,7 @@ impl Models {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);
         self.shown = self.shapes.cube();
-        self.texture = None;
+        self.replacement_texture = None;
     }
 
     /// Checks lent memory as a wireframe program, and keeps the program; it replaces the last program. No frame may be in progress.
@@ -442,7 +442,7 @@ impl Models {
     fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
         let bytes = self.arena.bytes(region, length);
         // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `uploads`, `program`,
-        // `objects`, `shown` and `texture`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its
+        // `objects`, `shown` and `replacement_texture`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its
         // region, and `compact` before it moves the regions; the arena lends only gaps mutably.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }

@@ -219,8 +219,8 @@ pub struct Assets<'a> {
     pub mesh: Option<Mesh<'a>>,
     /// The objects.
     pub objects: &'a [Object<'a>],
-    /// The texture that replaces those of the meshes.
-    pub texture: Option<Texture<'a>>,
+    /// The replacement texture.
+    pub replacement_texture: Option<Texture<'a>>,
     /// The wireframe program.
     pub program: Program<'a>,
 }
@@ -254,7 +254,7 @@ pub struct Scene {
     pub size: Size,
     /// The drawing options of all meshes.
     pub options: MeshOptions,
-    /// Name of the texture that replaces those of the meshes; `None` for their own textures.
+    /// Name of the replacement texture; `None` for their own textures.
     pub texture: Option<Name>,
     /// Backend that draws the picture.
     pub backend: Backend,
@@ -654,7 +654,7 @@ impl Scene {
             }),
         };
         Frame {
-            texture: content.texture,
+            replacement_texture: content.replacement_texture,
             stereo: self.stereo.filter(|_| STEREO.is_built),
             ..Frame::in_appearance(subject, self.view, self.size, &self.appearance)
         }

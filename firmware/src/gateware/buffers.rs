@@ -182,26 +182,28 @@ impl TextureTable {
         (self.count, self.blends) = (0, false);
     }
 
-    /// Adds the textures of a mesh to the table if they are new, or as many entries of `other`, which is drawn in place of them. Returns
-    /// the textures for the geometry pass; `None` for a mesh without textures or coordinates.
+    /// Adds the textures of a mesh to the table if they are new, or as many entries of a replacement texture. Returns the textures for
+    /// the geometry pass; `None` for a mesh without textures or coordinates.
     ///
     /// # Errors
     /// The table is full.
     pub fn of_mesh<'a>(
         &mut self,
         mesh: &Mesh<'a>,
-        other: Option<&Texture>,
+        replacement: Option<&Texture>,
     ) -> Result<Option<Textures<'a>>, Fallback> {
         let coordinates = mesh.attribute(Attribute::TextureCoordinates);
         let Some((coordinates, first)) = coordinates.zip(mesh.textures().next()) else {
             return Ok(None);
         };
         // The textures of a mesh follow each other in the table.
-        let before = match other {
-            Some(other) => {
+        let before = match replacement {
+            Some(replacement) => {
                 // All meshes of the frame show this texture, so they share its entries.
                 let mut missing = mesh.textures().skip(self.count);
-                missing.all(|_| self.add(other).is_some()).then_some(0)
+                missing
+                    .all(|_| self.add(replacement).is_some())
+                    .then_some(0)
             }
             None => {
                 let first = self.number(&first);

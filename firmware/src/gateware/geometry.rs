@@ -121,7 +121,7 @@ impl GeometryPasses {
         let textures = if TEXTURE.is_built && subject.has_textures() {
             job.buffers
                 .textures
-                .of_mesh(&subject.mesh, job.frame.texture.as_ref())?
+                .of_mesh(&subject.mesh, job.frame.replacement_texture.as_ref())?
         } else {
             None
         };

@@ -156,7 +156,7 @@ pub fn draw<T>(
         // A scene without objects has at most one mesh.
         mesh: meshes.first().copied(),
         objects: &objects,
-        texture,
+        replacement_texture: texture,
         program: program()?,
     })))
 }

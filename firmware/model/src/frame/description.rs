@@ -38,8 +38,8 @@ pub struct Frame<'a> {
     pub fog: U4_28,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
-    /// A texture that all faces with a texture show in place of their own; `None` for their own textures.
-    pub texture: Option<Texture<'a>>,
+    /// The replacement texture, which all faces with a texture show in place of their own; `None` for their own textures.
+    pub replacement_texture: Option<Texture<'a>>,
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
     /// Rectangles in front of everything else, which are drawn in their order.
@@ -255,7 +255,7 @@ impl<'a> Frame<'a> {
             sky: None,
             fog: U4_28::ZERO,
             lighting: MeshLighting::CAMERA,
-            texture: None,
+            replacement_texture: None,
             stereo: None,
             rectangles: &[],
         }
@@ -317,7 +317,7 @@ impl<'a> Frame<'a> {
             colour,
             light,
             normals: placement.and_then(Placement::normals),
-            texture: self.texture.as_ref(),
+            replacement_texture: self.replacement_texture.as_ref(),
             lit_in_world: placement.is_some_and(Placement::has_normals_in_world),
             ..subject.options()
         };

@@ -36,8 +36,8 @@ pub struct Options<'a> {
     pub lit_in_world: bool,
     /// Whether the textures of the mesh are drawn.
     pub textures: bool,
-    /// A texture that is drawn in place of the textures of the mesh.
-    pub texture: Option<&'a Texture<'a>>,
+    /// The replacement texture, which is drawn in place of the textures of the mesh.
+    pub replacement_texture: Option<&'a Texture<'a>>,
 }
 
 impl Options<'_> {
@@ -80,7 +80,7 @@ impl Default for Options<'_> {
             normals: None,
             lit_in_world: false,
             textures: true,
-            texture: None,
+            replacement_texture: None,
         }
     }
 }

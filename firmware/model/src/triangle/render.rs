@@ -341,7 +341,7 @@ impl<'a, 'b> Renderer<'a, 'b> {
         Self {
             frame: *frame,
             options: *options,
-            textures: MeshTextures::new(mesh, options.textures, options.texture),
+            textures: MeshTextures::new(mesh, options.textures, options.replacement_texture),
             emit,
             stats: Stats::default(),
         }

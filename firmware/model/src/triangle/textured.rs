@@ -68,22 +68,26 @@ impl OfTexture {
 #[derive(Clone, Copy, Debug)]
 pub struct MeshTextures<'a> {
     mesh: Mesh<'a>,
-    /// The texture that is drawn in place of the textures of the mesh.
-    other: Option<&'a Texture<'a>>,
+    /// The replacement texture, drawn in place of the textures of the mesh.
+    replacement: Option<&'a Texture<'a>>,
     coordinates: &'a [u8],
 }
 
 impl<'a> MeshTextures<'a> {
-    /// The textures of a mesh, or `other` in place of each of them; `None` if the mesh has no textures or no texture coordinates, or if
-    /// textures are not drawn.
-    pub fn new(mesh: &Mesh<'a>, is_drawn: bool, other: Option<&'a Texture<'a>>) -> Option<Self> {
+    /// The textures of a mesh, or a replacement texture for each of them; `None` if the mesh has no textures or no texture coordinates, or
+    /// if textures are not drawn.
+    pub fn new(
+        mesh: &Mesh<'a>,
+        is_drawn: bool,
+        replacement: Option<&'a Texture<'a>>,
+    ) -> Option<Self> {
         if !(TEXTURE.is_built && is_drawn && mesh.has_textures()) {
             return None;
         }
         let coordinates = mesh.attribute(Attribute::TextureCoordinates)?;
         Some(Self {
             mesh: *mesh,
-            other,
+            replacement,
             coordinates,
         })
     }
@@ -92,7 +96,7 @@ impl<'a> MeshTextures<'a> {
     /// number in the mesh of the first vertex of the triangle's chunk.
     pub fn of(&self, first: usize, triangle: &Triangle) -> Option<(Texture<'a>, [[i32; 2]; 3])> {
         let number = usize::from(triangle.texture).checked_sub(1)?;
-        let texture = match self.other {
+        let texture = match self.replacement {
             Some(texture) => *texture,
             None => self.mesh.textures().nth(number)?,
         };

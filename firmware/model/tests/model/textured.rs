@@ -148,7 +148,7 @@ fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
             ambient: [0xFF; 3],
             light: Light::at_camera([0; 3]),
         },
-        texture: None,
+        replacement_texture: None,
         stereo: None,
         rectangles: &[],
     }
@@ -279,7 +279,7 @@ fn blended_texels_keep_the_depth_behind_them() {
     }
 }
 
-/// A texture in place of others gives the picture of a mesh with this texture. A face without a texture keeps its colour.
+/// A replacement texture gives the picture of a mesh with this texture. A face without a texture keeps its colour.
 #[test]
 fn a_texture_replaces_those_of_the_mesh() {
     let texture = |colour: u16, blend| {
@@ -308,7 +308,7 @@ fn a_texture_replaces_those_of_the_mesh() {
     let camera = Camera::looking([0.3, -1.9, 0.3], [0.2, 1.0, 0.0], 0.8, 0.02);
     for shading in [Shading::Flat, Shading::Smooth] {
         let replaced = Frame {
-            texture: Some(Texture::new_checked(&other).unwrap()),
+            replacement_texture: Some(Texture::new_checked(&other).unwrap()),
             ..frame(own, &camera, shading)
         };
         let [replaced, same, own] = [

@@ -116,7 +116,7 @@ impl SubjectArguments {
         let frame = scene.frame(Assets {
             mesh,
             objects: &objects,
-            texture: match &texture {
+            replacement_texture: match &texture {
                 Some((bytes, _)) => Some(Texture::new_checked(bytes)?),
                 None => None,
             },

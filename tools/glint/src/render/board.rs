@@ -82,7 +82,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         &mut self.console
     }
 
-    /// Draws a frame on the board: uploads its meshes and its texture, if any, and waits until the frame is drawn. All objects of a
+    /// Draws a frame on the board: uploads its meshes and its replacement texture, if any, and waits until the frame is drawn. All objects of a
     /// frame use the options of the first object.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.render_after(&lines, frame.size, parts)
     }
 
-    /// Uploads the meshes and the texture of a frame, and returns the commands that show it.
+    /// Uploads the meshes and the replacement texture of a frame, and returns the commands that show it.
     fn load_subject(&mut self, frame: &Frame) -> Result<Vec<String>, Error> {
         const MESH: &str = "model";
         if let Some(subject) = frame.subject.mesh_part() {
@@ -129,7 +129,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
                 self.upload(mesh.bytes(), Some(&name(number)))?;
             }
         }
-        if let Some(texture) = frame.texture {
+        if let Some(texture) = frame.replacement_texture {
             self.upload(texture.bytes(), Some(TEXTURE))?;
         }
         Ok(commands(frame, MESH, name)?)

@@ -50,7 +50,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
         view: frame.view,
         size: frame.size,
         stereo: frame.stereo,
-        texture: frame.texture.map(|_| name(TEXTURE)),
+        texture: frame.replacement_texture.map(|_| name(TEXTURE)),
         ..start.clone()
     };
     if let Some(options) = frame.subject.meshes().next() {

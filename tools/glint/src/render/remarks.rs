@@ -25,9 +25,9 @@ pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError>
              or choose another --field"
         ));
     }
-    if frame.texture.is_some() && !frame.subject.meshes().any(MeshSubject::has_textures) {
+    if frame.replacement_texture.is_some() && !frame.subject.meshes().any(MeshSubject::has_textures) {
         remarks.push(
-            "no face has a texture, so the texture in place of others is not shown: expected a mesh with texture coordinates and a texture"
+            "no face has a texture, so the replacement texture is not shown: expected a mesh with texture coordinates and a texture"
                 .to_owned(),
         );
     }

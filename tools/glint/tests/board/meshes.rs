@@ -107,9 +107,9 @@ fn textures_are_the_models_on_every_backend() {
     }
 }
 
-/// Gateware and soft core draw a texture in place of those of all meshes, also on clipped triangles, and name it once.
+/// Gateware and soft core draw a replacement texture, also on clipped triangles, and name it once.
 #[test]
-fn a_texture_in_place_of_others_is_the_models() {
+fn a_replacement_texture_is_the_models() {
     let texture = |colour: u16, blend| {
         let texture = texture::encode(&Source {
             size_log2: [4, 4],
@@ -133,7 +133,7 @@ fn a_texture_in_place_of_others_is_the_models() {
             renderer.set_backend(backend);
             let view = view::spherical("2,30,60").unwrap();
             let frame = Frame {
-                texture: other,
+                replacement_texture: other,
                 ..Frame::new(Subject::Mesh(plain(&few)), view, Size::W320)
             };
             drawn_alike(&mut renderer, &frame, "a texture on a mesh");

@@ -137,7 +137,7 @@ impl Shown {
                 ambient: [0x60; 3],
                 light: Light::at_camera([0xA0; 3]),
             },
-            texture: None,
+            replacement_texture: None,
             stereo: None,
             rectangles: &[],
         };
