@@ -150,14 +150,22 @@ impl Machine {
         self.picture.is_outdated(&self.scene, &self.models)
     }
 
-    /// Prints a note if the scene has a texture that no face of the shown meshes can show.
+    /// Prints a note if the scene has a replacement texture that no shown mesh shows.
     pub fn note_texture(&mut self) {
-        let models = &self.models;
-        if TEXTURE.is_built && self.scene.lacks_textured_faces(|name| models.known(name)) {
-            self.terminal.print(format_args!(
-                "note: texture: no shown mesh has faces with a texture, so the picture does not change; `scene crate` shows one\n"
-            ));
+        let Self { scene, models, .. } = self;
+        if !TEXTURE.is_built
+            || scene.texture.is_none()
+            || scene.has_textures(|name| models.known(name))
+        {
+            return;
         }
+        let reason = if scene.options.textures {
+            "no shown mesh has faces with a texture, so the picture does not change; `scene crate` shows a mesh that has some"
+        } else {
+            "textures are off, so the picture does not change, expected `textures on`"
+        };
+        self.terminal
+            .print(format_args!("note: texture: {reason}\n"));
     }
 
     /// Takes back memory that was lent for a transfer or a replay.

@@ -609,15 +609,17 @@ impl Scene {
         }
     }
 
-    /// Whether a texture is set that no shown mesh can show, because no face has a texture. `find` returns a mesh by its name.
-    pub fn lacks_textured_faces<'m>(&self, find: impl Fn(&str) -> Option<Mesh<'m>>) -> bool {
-        let has_textures = |name: &str| find(name).is_some_and(|mesh| mesh.has_textures());
-        let shows = if self.shows_objects() {
+    /// Whether a shown mesh has textures that are drawn, as [`MeshSubject::has_textures`]. `find` returns a mesh by its name.
+    pub fn has_textures<'m>(&self, find: impl Fn(&str) -> Option<Mesh<'m>>) -> bool {
+        let has_textures = |name: &str| {
+            let mesh = find(name).map(|mesh| self.options.subject(mesh));
+            mesh.is_some_and(|mesh| mesh.has_textures())
+        };
+        if self.shows_objects() {
             self.objects.iter().any(|object| has_textures(&object.mesh))
         } else {
             self.shown_mesh().is_some_and(has_textures)
-        };
-        self.texture.is_some() && !shows
+        }
     }
 
     /// Makes an object from a mesh and its placement.

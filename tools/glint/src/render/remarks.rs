@@ -25,11 +25,16 @@ pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError>
              or choose another --field"
         ));
     }
-    if frame.replacement_texture.is_some() && !frame.subject.meshes().any(MeshSubject::has_textures) {
-        remarks.push(
+    if frame.replacement_texture.is_some() && !frame.subject.meshes().any(MeshSubject::has_textures)
+    {
+        let is_off = frame.subject.meshes().any(|mesh| !mesh.textures);
+        remarks.push(if is_off {
+            "textures are off, so the replacement texture is not shown: expected `textures = true` in the scene, or no --no-textures"
+                .to_owned()
+        } else {
             "no face has a texture, so the replacement texture is not shown: expected a mesh with texture coordinates and a texture"
-                .to_owned(),
-        );
+                .to_owned()
+        });
     }
     let culls = frame.subject.meshes().any(|mesh| mesh.culls());
     if let Some(counts) = &stats.mesh

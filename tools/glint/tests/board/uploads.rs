@@ -234,7 +234,7 @@ fn a_texture_is_uploaded_under_a_name() {
         Err(error) => error.to_string(),
     };
     // The cube has no textures.
-    let note = "texture: no shown mesh has faces with a texture, so the picture does not change; `scene crate` shows one";
+    let note = "texture: no shown mesh has faces with a texture, so the picture does not change; `scene crate` shows a mesh that has some";
     assert_eq!(
         upload(&mut console, &texture(0xF800), "red").unwrap(),
         [note]
@@ -246,6 +246,11 @@ fn a_texture_is_uploaded_under_a_name() {
     assert_eq!(said(&mut console, "texture red"), "");
     let red = frame(&mut console);
     assert!(red != own);
+    console.command("textures off").unwrap();
+    let off =
+        "note: texture: textures are off, so the picture does not change, expected `textures on`";
+    assert_eq!(said(&mut console, "texture red"), off);
+    console.command("textures on").unwrap();
     let green = upload(&mut console, &texture(0x07E0), "green").unwrap();
     assert!(green.is_empty(), "{green:?}");
     assert_eq!(said(&mut console, "texture"), "texture green");

@@ -255,6 +255,13 @@ fn a_texture_in_place_of_those_of_a_mesh() {
     assert_has(&text, "texture    'b.png': 32×64, palette 16");
     let [_, warning] = said(&folder, "render cube --texture b.png --out q.png");
     assert_has(&warning, "no face has a texture");
+    fs::write(
+        folder.join("off.toml"),
+        scene.replace("textures = true", "textures = false"),
+    )
+    .unwrap();
+    let [_, warning] = said(&folder, "render --scene off.toml --out s.png");
+    assert_has(&warning, "textures are off");
     all_refused(
         &folder,
         "
