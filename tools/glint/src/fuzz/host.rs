@@ -9,6 +9,7 @@ use crate::imu::{replay, sensor};
 use crate::render::BoardRenderer;
 use crate::transfer::{download, upload};
 use crate::{flash, gesture, view};
+use glint_core::mesh::MAGIC;
 use glint_core::orientation::Units;
 use glint_core::orientation::log::{self as image, HEADER_BYTES};
 
@@ -141,7 +142,7 @@ fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn s
             serde_json::to_string(&stats)?;
             renderer.look(&view)?;
         }
-        2 => drop(upload(console, &upload_data(LENGTH), None, SESSION, quiet)?),
+        2 => drop(upload(console, &mesh_data(), None, SESSION, quiet)?),
         3 => {
             let data = download(console, "frame", LENGTH, quiet)?;
             assert_eq!(data.len(), LENGTH);
@@ -173,6 +174,11 @@ fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn s
     Ok(())
 }
 
+/// Data that begin as a mesh, with so many triangles that the host asks for the limit of the board.
+fn mesh_data() -> Vec<u8> {
+    [&MAGIC, &upload_data(LENGTH)[MAGIC.len()..]].concat()
+}
+
 /// A log of four samples.
 fn log() -> Result<replay::Prepared, replay::Error> {
     let entries = [0, 1, 2, 3].map(|number| Entry {
@@ -200,7 +206,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
         // One byte per read ensures that a reply does not arrive before its command is sent.
         [&[kind, 1, 0], parts.concat().as_slice()].concat()
     };
-    let [_, acknowledged] = exchange(&upload_data(LENGTH), SESSION);
+    let [_, acknowledged] = exchange(&mesh_data(), SESSION);
     let [sent, _] = exchange(&upload_data(LENGTH), SESSION);
     let [mask, _] = exchange(&[0x5A; 16], SESSION);
     let stats = b"render\r\nbackend gateware\r\ncycles 29373\r\ntriangles_in 12\r\ntriangles_culled 6\r\ntriangles_clipped 0\r\ntriangles_drawn 6\r\npixels_covered 8744\r\npixels_drawn 8744\r\nrays 57600\r\nevaluations 90000\r\nhits 9\r\nmisses 8\r\nundecided 0\r\nclock 81250000\r\ncycles_busy 7\r\nok\r\n";
