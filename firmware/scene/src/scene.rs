@@ -609,7 +609,7 @@ impl Scene {
         }
     }
 
-    /// Whether a shown mesh has textures that are drawn, as [`MeshSubject::has_textures`]. `find` returns a mesh by its name.
+    /// Whether a shown mesh has textures that are drawn, as `MeshSubject::has_textures` states. `find` returns a mesh by its name.
     pub fn has_textures<'m>(&self, find: impl Fn(&str) -> Option<Mesh<'m>>) -> bool {
         let has_textures = |name: &str| {
             let mesh = find(name).map(|mesh| self.options.subject(mesh));
