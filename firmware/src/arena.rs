@@ -6,9 +6,10 @@ use core::ptr;
 use core::slice;
 
 use glint_core::allocator::{Allocator, Region};
+use glint_core::object::MAX_OBJECTS;
 
-use crate::models::MAX_UPLOADS;
-
+/// Largest number of uploaded meshes and textures: a mesh for each object, and a replacement texture.
+pub const MAX_UPLOADS: usize = MAX_OBJECTS + 1;
 /// Largest number of uploads: meshes and textures, a program, and a new upload that is to replace one of them.
 const UPLOADS: usize = MAX_UPLOADS + 2;
 

@@ -15,8 +15,9 @@ use glint_core::wireframe::ProgramError;
 use glint_engines::gesture::SetUpError;
 use glint_scene::{LineError, SettingError};
 
+use crate::arena::MAX_UPLOADS;
 use crate::gateware::Fallback;
-use crate::models::{MAX_UPLOADS, NameError, UploadError};
+use crate::models::{NameError, UploadError};
 use crate::picture::DrawError;
 use crate::scenes::{BuiltIn, DEFAULT, SCENES};
 use crate::sensor::{CalibrationError, SensorError};

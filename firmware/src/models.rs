@@ -8,7 +8,6 @@ use glint_core::deviation::Deviation;
 use glint_core::feature::TEXTURE;
 use glint_core::flash::Kind;
 use glint_core::mesh::Mesh;
-use glint_core::object::MAX_OBJECTS;
 use glint_core::shape::Shape;
 use glint_core::texture::{self, Texture};
 use glint_core::wireframe::{Program, ProgramError};
@@ -16,14 +15,12 @@ use glint_model::Frame;
 use glint_scene::{Assets, CUBE, Name, Scene};
 use heapless::Vec;
 
-use crate::arena::{Arena, Loan};
+use crate::arena::{Arena, Loan, MAX_UPLOADS};
 use crate::objects::Objects;
 use crate::shapes::Shapes;
 
 /// Name of an upload without a name.
 pub const MODEL: &str = "model";
-/// Largest number of uploaded meshes and textures: a mesh for each object, and a replacement texture.
-pub const MAX_UPLOADS: usize = MAX_OBJECTS + 1;
 
 /// A mesh or a texture, with its name and its memory.
 struct Upload {

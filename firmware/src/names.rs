@@ -5,7 +5,8 @@ use glint_core::flash::Kind;
 use glint_scene::Name;
 use heapless::Vec;
 
-use crate::models::{MAX_UPLOADS, Models};
+use crate::arena::MAX_UPLOADS;
+use crate::models::Models;
 use crate::scenes::{DEFAULT, Library, SCENES, SceneItem};
 use crate::shapes::Shapes;
 

@@ -10,10 +10,11 @@ use glint_core::wireframe::Key;
 use glint_scene::{Line, Name, lines};
 
 use super::{options, upload};
+use crate::arena::MAX_UPLOADS;
 use crate::error::CommandError;
 use crate::job::{CommandResult, Job, Orbit, Reply};
 use crate::machine::Machine;
-use crate::models::{MAX_UPLOADS, MODEL, NameError};
+use crate::models::{MODEL, NameError};
 use crate::scenes::{BuiltIn, Content, DEFAULT, SCENES, SceneItem};
 use crate::transfer::Purpose;
 
