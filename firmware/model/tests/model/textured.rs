@@ -229,6 +229,17 @@ fn cut_out_texels_leave_colour_and_depth() {
     assert!(green.abs_diff(clear) < 12_000, "{green} {clear}");
 }
 
+/// A texture of 8×8 texels of one colour.
+fn plain(colour: u16, blend: Blend) -> Vec<u8> {
+    let texture = encode(&Source {
+        size_log2: [3, 3],
+        blend,
+        levels: vec![vec![colour; 64]],
+        ..Source::default()
+    });
+    texture.unwrap()
+}
+
 /// Blending changes the colour of a pixel, but not its depth.
 #[test]
 fn blended_texels_keep_the_depth_behind_them() {
@@ -237,15 +248,7 @@ fn blended_texels_keep_the_depth_behind_them() {
     let draw = |layers: &[(u16, Blend)]| {
         let textures: Vec<_> = layers
             .iter()
-            .map(|&(colour, blend)| {
-                let texture = encode(&Source {
-                    size_log2: [3, 3],
-                    blend,
-                    levels: vec![vec![colour; 64]],
-                    ..Source::default()
-                });
-                texture.unwrap()
-            })
+            .map(|&(colour, blend)| plain(colour, blend))
             .collect();
         let bytes = textured_layers(&textures, 1.0, 0.0);
         let camera = Camera::looking([0.0, -3.0, 2.5], [0.0; 3], 0.7, 0.1);
@@ -282,20 +285,8 @@ fn blended_texels_keep_the_depth_behind_them() {
 /// A replacement texture gives the picture of a mesh with this texture. A face without a texture keeps its colour.
 #[test]
 fn a_texture_replaces_those_of_the_mesh() {
-    let texture = |colour: u16, blend| {
-        let texture = encode(&Source {
-            size_log2: [3, 3],
-            blend,
-            levels: vec![vec![colour; 64]],
-            ..Source::default()
-        });
-        texture.unwrap()
-    };
-    let other = texture(0x07E0, Blend::Opaque);
-    let own = [
-        texture(0xF800, Blend::Opaque),
-        texture(0x001F, Blend::Additive),
-    ];
+    let other = plain(0x07E0, Blend::Opaque);
+    let own = [plain(0xF800, Blend::Opaque), plain(0x001F, Blend::Additive)];
     // The first half of the first layer has no texture.
     let first = MeshHeader::BYTES + ChunkHeader::BYTES + 8 * Vertex::BYTES;
     let [own, same] = [&own[..], &[other.clone(), other.clone()]].map(|textures| {
