@@ -174,7 +174,7 @@ fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn s
     Ok(())
 }
 
-/// Data that begin as a mesh, with so many triangles that the host asks for the limit of the board.
+/// Data with the header of a mesh. The mesh has more triangles than every board can draw, so the host asks the board for its limit.
 fn mesh_data() -> Vec<u8> {
     [&MAGIC, &upload_data(LENGTH)[MAGIC.len()..]].concat()
 }
