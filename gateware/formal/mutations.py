@@ -129,23 +129,23 @@ MUTATIONS = {
         _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.valid_stays"),
         _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.payload_stable"),
         _flush("depth_words_base <= depth_base;", "depth_words_base <= base;", "in_their_places"),
-        _flush("{clear_row, 1'b1}", "{clear_row, 1'b0}", "in_their_places"),
+        _flush("{place_0, 1'b1}", "{place_0, 1'b0}", "in_their_places"),
         _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
         # Fault: a span begins where the previous span ended instead of at its own first row.
-        _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
+        _flush("row <= span_first;", "row <= row + 1'b1;", "in_their_places"),
         # Fault: the flush admits more words than fit the FIFO.
         _flush("in_span && places != '0 && (", "in_span && (", "words_in_order"),
         # Fault: the flush clears a row before it reads the row's depth.
         _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
         _flush("{18{written[lane]}}", "18'b0", "words_in_order"),
         # Fault: the flush takes a colour of the sky for each word of depths, too.
-        _flush("assign sky_ready   = issue && takes_sky && part == COLOUR;", "assign sky_ready = issue && takes_sky;", "sky_in_time"),
+        _flush("takes_sky && part == COLOUR && word_ends;", "takes_sky && word_ends;", "sky_in_time"),
         _flush("takes_sky ? sky_colour : clear_colours}", "sky_colour}", "words_in_order"),
         _flush("|| sky_valid);", "|| 1'b1);", "sky_in_time"),
-        _flush("&& row == last_row;", "&& row == '1;", "none_made_up"),
+        _flush("&& row == last_row &&", "&& row == '1 &&", "none_made_up"),
         _flush("if (part_ends)               row <= first_row;", "if (part_ends) row <= row;", "none_left_out"),
         _flush("COLOUR:     if (part_ends && depth_too)", "COLOUR: if (depth_too)", "colour_first"),
-        _flush("if (taken && !issue) ", "if (out_valid && !issue) ", "all_taken"),
+        _flush("if (taken && !asked) ", "if (out_valid && !asked) ", "all_taken"),
         _flush("last_row  <= span_last;", "last_row  <= span_first;", "none_left_out"),
         # Fault: the flush ends during a span, or before the last span has come.
         _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
@@ -159,6 +159,27 @@ MUTATIONS = {
         _flush("state  <= SWEEP;\n            row    <= '0;", "state  <= SWEEP;", "all_swept"),
         _flush("clears <= part == last_part;", "clears <= part == last_part && row != last_row;", "cleared_behind"),
         _flush("clear_row <= row;", "clear_row <= row + 1'b1;", "cleared_behind"),
+    ],
+    "band_flush of averages": [
+        # Fault: the threshold of a pixel depends on its column alone.
+        _flush("odd <= !odd;", "odd <= odd;", "words_in_order"),
+        _flush("colour_pkg::average(pair, previous, t0[i])", "colour_pkg::average(pair, pair, t0[i])", "words_in_order"),
+        # Fault: both halves of a word are those of its first two rows.
+        _flush("is_left  <= corner_word == 2'd1;", "is_left  <= corner_word == 2'd3;", "words_in_order"),
+        # Fault: the lower row of a word is read in the line of the upper one.
+        _flush("corner[0] ? back : down", "1'b1", "words_in_order"),
+        _flush("(span_ends ? ROW_BITS'(gap) : '0)", "ROW_BITS'(gap)", "in_their_places"),
+        _flush(".in(address), .out(address_sums)", ".in(address_2), .out(address_sums)", "in_their_places"),
+        # Fault: the flush begins after the first line of a pair.
+        _flush("&& (!averaging || paired);", ";", "words_in_order"),
+        _flush("if (!paired) row <= span_first;", "row <= span_first;", "words_in_order"),
+        # Fault: a colour of the sky serves one row, not a whole word.
+        _flush("takes_sky && part == COLOUR && word_ends;", "takes_sky && part == COLOUR;", "words_in_order"),
+        _flush("{sky_line[0], corner[0]}", "sky_line", "words_in_order"),
+        # Fault: each row of a word reserves a FIFO entry.
+        _flush("assign asked = issue && word_ends;", "assign asked = issue;", "ends"),
+        _flush("asked_0 <= issue && word_ends;", "asked_0 <= issue;", "none_made_up"),
+        _flush("clears <= part == last_part;", "clears <= part == last_part && word_ends;", "cleared_behind"),
     ],
     "ring_lane": [
         _ring("again || enter}", "again || in_valid}", "none_made_up"),

@@ -79,6 +79,7 @@ PROOFS = [
     Proof("line_raster", "line_raster_proof", 23),
     Proof("line_setup", "line_setup_proof", 47, ("any_product",)),
     Proof("band_flush", "band_flush_proof", 20),
+    Proof("band_flush of averages", "band_average_proof", 31),
     Proof("band_extents", "band_extents_proof", 26),
     Proof("ray_paint", "ray_paint_proof", 48, ("no_product", "any_tables")),
     Proof("ray_generator", "ray_generator_proof", 40, ("no_product", "any_tables")),

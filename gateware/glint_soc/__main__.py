@@ -36,6 +36,7 @@ def main():
     parser.add_argument("--texture", action="store_true", help="build textures into the triangle engine")
     parser.add_argument("--no-sky", dest="sky", action="store_false", help="omit the sky behind triangles")
     parser.add_argument("--fog", action="store_true", help="build fog into the triangle engine")
+    parser.add_argument("--no-antialiasing", dest="antialiasing", action="store_false", help="omit pictures with four samples a pixel")
     parser.add_argument("--no-geometry", dest="geometry", action="store_false",
                         help="omit the geometry pass of the triangle engine: the CPU makes the descriptors of meshes")
     parser.add_argument("--no-depths", dest="depths", action="store_false",
@@ -64,7 +65,8 @@ def main():
         fields = build(arguments.fields or ("all" if arguments.board == "virtual" else "faces"), arguments.lanes)
     except ValueError as error:
         parser.error(error)
-    options = {name: getattr(arguments, name) for name in ("smooth", "texture", "sky", "fog", "geometry", "depths", "cpu")} | {"fields": fields}
+    options = {name: getattr(arguments, name) for name in (
+        "smooth", "texture", "sky", "fog", "antialiasing", "geometry", "depths", "cpu")} | {"fields": fields}
     if arguments.clock:
         options["sys_clk_freq"] = arguments.clock * 1e6
     soc = make_soc(arguments.board, build_id, arguments.blocks, **options)

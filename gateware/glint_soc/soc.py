@@ -58,8 +58,9 @@ class GlintSoC(SoCCore):
     `triangle`, the parts of the engine that draw triangles are left out: with `line`, the parts for lines and all registers remain; with
     `raymarch` alone, the raster pass, the band buffer and all registers. `build_id` is the checksum of the register map of the full build
     (see `register_map.build_id`). `smooth` adds smooth shading to the triangle engine, `texture` adds textures, and `fog` adds fog. A
-    build with triangles may omit `sky`, the sky behind them. `geometry` is the geometry pass, which a build without lines may omit, and `depths` the
-    depth memory, which a build without triangles may omit.
+    build with triangles may omit `sky`, the sky behind them. Each build may omit `antialiasing`, pictures with four samples a pixel.
+    `geometry` is the geometry pass, which a build without lines may omit, and `depths` the depth memory, which a build without triangles
+    may omit.
     `fields` are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes. `cpu` is the
     variant of VexRiscv.
     """
@@ -70,8 +71,8 @@ class GlintSoC(SoCCore):
     default_blocks = possible_blocks
     """The default optional blocks of a build."""
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, texture=False, sky=True, fog=False, geometry=True,
-                 depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720, cpu=CPU_VARIANT):
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, texture=False, sky=True, fog=False,
+                 antialiasing=True, geometry=True, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720, cpu=CPU_VARIANT):
         unknown = set(blocks) - self.possible_blocks
         if unknown:
             raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
@@ -97,6 +98,7 @@ class GlintSoC(SoCCore):
         self.texture = texture
         self.sky = sky and self.draws_triangles
         self.fog = fog
+        self.antialiasing = antialiasing
         self.geometry = geometry
         self.depths = depths
         self.fields = fields or Fields()
@@ -208,7 +210,7 @@ class GlintSoC(SoCCore):
             lists = [self._port("write", main_ram, has_geometry) for _ in range(2)]
             frame = [self._port("write", main_ram) for _ in range(2)]
             self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
-                                           self.draws_triangles, self.smooth, self.texture, self.sky, self.fog,
+                                           self.draws_triangles, self.smooth, self.texture, self.sky, self.fog, self.antialiasing,
                                            "raymarch" in self.blocks, self.draws_lines, has_geometry, self.depths)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)

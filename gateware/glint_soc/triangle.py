@@ -42,21 +42,31 @@ ERRORS = Enumeration("error", "Results of a pass.", {
 SIZES = Enumeration("size", "Sizes of a picture.", {size.name: size.text for size in constants.SIZES})
 
 
+# Names of the fields that select a quarter of a picture.
+_QUARTER = ("quarter", "right", "lower")
+
+
+def _quarter(offset, description):
+    """The fields that select a quarter of a picture, from the bit `offset` on."""
+    texts = (description, "With `quarter`: the right one.", "With `quarter`: the lower one.")
+    return [CSRField(name, offset=offset + i, description=text) for i, (name, text) in enumerate(zip(_QUARTER, texts))]
+
+
 class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are four native 128-bit LiteDRAM read ports (triangles, vertices, raster, texels), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
     `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` adds smooth shading, `texture` adds textures, which
-    use the port of texels (they exclude each other), `has_sky` adds the sky behind triangles, `has_fog` adds fog on triangles, `fields`
-    adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine draws only lines and fields, and does not use the port of the vertices; with neither
+    use the port of texels (they exclude each other), `has_sky` adds the sky behind triangles, `has_fog` adds fog on triangles, `averages`
+    adds pictures with four samples a pixel, `fields` adds the input `field` for a raymarcher, and `lines` adds the line engine. Without `triangles` the engine draws only lines and fields, and does not use the port of the vertices; with neither
     triangles nor lines it uses only the last two writers. The registers are the same. A build without `triangles` may also omit `depths`,
     the memory for the depths of a band. Without `has_geometry`, for builds without lines, the engine draws triangles from the firmware's
     lists, and does not use the ports of mesh, vertices, descriptors and lists.
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, texture=False, has_sky=False,
-                 has_fog=False, fields=False, lines=False, has_geometry=True, depths=True):
+                 has_fog=False, averages=False, fields=False, lines=False, has_geometry=True, depths=True):
         has_geometry = has_geometry and (triangles or lines)
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
@@ -84,6 +94,7 @@ class TriangleEngine(LiteXModule):
                      f"{TEXTURE_BYTES} bytes longer."),
             CSRField("sky", offset=15, reset=int(has_sky), description="The sky behind triangles."),
             CSRField("fog", offset=16, reset=int(has_fog), description="Fog on triangles."),
+            CSRField("average", offset=17, reset=int(averages), description="Averages of four samples."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
             CSRField("cancel", offset=0, pulse=True, description="Write 1 to cancel both passes. A pass started afterwards waits "
@@ -120,6 +131,7 @@ class TriangleEngine(LiteXModule):
                      "are linear. Light between vertices is not: `smooth` must be 0."),
             CSRField("textures", offset=10, description="Draw the textures of the mesh, under flat light. No effect without `textures` in "
                      "`caps`, or with `smooth`."),
+            *_quarter(11, "`size` is that of a quarter of the picture. No effect without `average` in `caps`."),
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to "
             "`first_texture`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied.")
         address = "Byte address, a multiple of 16, of"
@@ -177,6 +189,9 @@ class TriangleEngine(LiteXModule):
             CSRField("sky_first", offset=9, description="With `sky`: draw the sky before the triangles of each band, as textures that are "
                      "blended with it require, instead of during the flush, which takes no time. No effect without `textures` in `caps`."),
             CSRField("fog", offset=10, description="Draw triangles in fog, in perspective. No effect without `fog` in `caps`."),
+            CSRField("average", offset=11, description="Draw four samples for each pixel: `size` is that of the picture of the samples, and the "
+                     "frame has half its width and height. Implies `whole`, and writes no depths. No effect without `average` in `caps`."),
+            *_quarter(12, "With `average`: the samples are those of a quarter of the frame, which has the width and height `size`."),
         ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those "
             "from `sky_above` on, must hold while it runs.")
         self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
@@ -287,7 +302,7 @@ class TriangleEngine(LiteXModule):
 
         geometry_flags = Struct("geometry_flags_t", "Flags of a geometry pass.", {
             name: getattr(self._geometry.fields, name) for name in (
-                "size", "cull", "smooth", "append", "mirror", "recolour", "lines", "orthographic", "textures")})
+                "size", "cull", "smooth", "append", "mirror", "recolour", "lines", "orthographic", "textures", *_QUARTER)})
         geometry = Struct("geometry_t", "Parameters of the geometry pass. Memory regions are given by byte addresses.", {
             "mesh": self._mesh.storage,
             "mesh_bytes": self._mesh_bytes.storage,
@@ -314,7 +329,7 @@ class TriangleEngine(LiteXModule):
         })
         raster_flags = Struct("raster_flags_t", "Flags of a raster pass.", {
             name: getattr(self._raster.fields, name) for name in (
-                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first", "fog")})
+                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first", "fog", "average", *_QUARTER)})
         raster = Struct("raster_t", "Parameters of the raster pass. Memory regions are given by byte addresses.", {
             "frame": self._frame.storage,
             "depth": self._depth.storage,
@@ -364,6 +379,7 @@ class TriangleEngine(LiteXModule):
             p_TEXTURE          = int(texture),
             p_LINES            = int(lines),
             p_GEOMETRY         = int(has_geometry),
+            p_AVERAGE          = int(averages),
             i_clk              = ClockSignal("sys"),
             i_rst              = ResetSignal("sys"),
             i_cancel           = cancel,
@@ -393,6 +409,7 @@ class TriangleEngine(LiteXModule):
             p_TEXTURE         = int(texture),
             p_SKY             = int(has_sky),
             p_FOG             = int(has_fog),
+            p_AVERAGE         = int(averages),
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
             p_GEOMETRY        = int(has_geometry),

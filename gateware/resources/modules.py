@@ -87,11 +87,11 @@ RTL_MODULES = [
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_texture": {"TEXTURE": 1}, "triangle_engine_fields": {"FIELDS": 1},
-                     "triangle_engine_texture_fields": {"TEXTURE": 1, "SKY": 1, "FOG": 1, "FIELDS": 1},
+                     "triangle_engine_texture_fields": {"TEXTURE": 1, "SKY": 1, "FOG": 1, "FIELDS": 1, "AVERAGE": 1},
                      "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_no_depths": _NO_DEPTHS,
                      "triangle_engine_lines": _LINES, "triangle_engine_lines_alone": _LINES_ALONE | {"DEPTHS": 0},
                      "triangle_engine_no_geometry": _NO_GEOMETRY,
-                     "triangle_engine_smooth_lines": _SMOOTH | _LINES | {"FOG": 1}},
+                     "triangle_engine_smooth_lines": _SMOOTH | _LINES | {"FOG": 1, "AVERAGE": 1}},
            measured=("triangle_engine_fields",)),
     Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),
     # In the build gesture_engine_hasty, the sensor's clock counts as stopped after 2^6 clocks.

@@ -2,7 +2,7 @@
 // fails if this file differs from the generator's output.
 
 /// CRC-32 of the SoC's pinned register map. A SoC with another value in `identity.build_id` has other registers.
-pub const BUILD_ID: u32 = 0x61af_1e28;
+pub const BUILD_ID: u32 = 0xfdc4_13d1;
 
 /// The interrupts. Their numbers are the bits in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3215,7 +3215,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5000) }
         }
 
-        /// `caps`, 17 bits: Capabilities of this build.
+        /// `caps`, 18 bits: Capabilities of this build.
         #[inline]
         #[must_use]
         pub const fn caps(&self) -> Register<Caps, ReadOnly> {
@@ -3263,7 +3263,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 11 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `first_texture`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
+        /// `geometry`, 14 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `first_texture`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -3503,7 +3503,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5090) }
         }
 
-        /// `raster`, 11 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
+        /// `raster`, 15 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -4216,6 +4216,20 @@ pub mod triangle {
         pub const fn with_fog(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 16) | (value as u32 & 0x1) << 16)
         }
+
+        /// `average`, bit 17: Averages of four samples.
+        #[inline]
+        #[must_use]
+        pub const fn average(self) -> bool {
+            (self.0 >> 17) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `average`.
+        #[inline]
+        #[must_use]
+        pub const fn with_average(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 17) | (value as u32 & 0x1) << 17)
+        }
     }
 
     /// A value of `control`.
@@ -4606,6 +4620,48 @@ pub mod triangle {
         pub const fn with_textures(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
         }
+
+        /// `quarter`, bit 11: `size` is that of a quarter of the picture. No effect without `average` in `caps`.
+        #[inline]
+        #[must_use]
+        pub const fn quarter(self) -> bool {
+            (self.0 >> 11) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `quarter`.
+        #[inline]
+        #[must_use]
+        pub const fn with_quarter(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+        }
+
+        /// `right`, bit 12: With `quarter`: the right one.
+        #[inline]
+        #[must_use]
+        pub const fn right(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `right`.
+        #[inline]
+        #[must_use]
+        pub const fn with_right(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
+
+        /// `lower`, bit 13: With `quarter`: the lower one.
+        #[inline]
+        #[must_use]
+        pub const fn lower(self) -> bool {
+            (self.0 >> 13) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `lower`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lower(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
+        }
     }
 
     /// A value of `depth_scale`.
@@ -4805,6 +4861,62 @@ pub mod triangle {
         #[must_use]
         pub const fn with_fog(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
+        }
+
+        /// `average`, bit 11: Draw four samples for each pixel: `size` is that of the picture of the samples, and the frame has half its width and height. Implies `whole`, and writes no depths. No effect without `average` in `caps`.
+        #[inline]
+        #[must_use]
+        pub const fn average(self) -> bool {
+            (self.0 >> 11) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `average`.
+        #[inline]
+        #[must_use]
+        pub const fn with_average(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+        }
+
+        /// `quarter`, bit 12: With `average`: the samples are those of a quarter of the frame, which has the width and height `size`.
+        #[inline]
+        #[must_use]
+        pub const fn quarter(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `quarter`.
+        #[inline]
+        #[must_use]
+        pub const fn with_quarter(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
+
+        /// `right`, bit 13: With `quarter`: the right one.
+        #[inline]
+        #[must_use]
+        pub const fn right(self) -> bool {
+            (self.0 >> 13) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `right`.
+        #[inline]
+        #[must_use]
+        pub const fn with_right(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
+        }
+
+        /// `lower`, bit 14: With `quarter`: the lower one.
+        #[inline]
+        #[must_use]
+        pub const fn lower(self) -> bool {
+            (self.0 >> 14) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `lower`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lower(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
     }
 

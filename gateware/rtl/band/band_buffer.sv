@@ -43,6 +43,9 @@
 // With SKY, a band with `band_sky` has, in place of the clear colour, a colour of the stream `sky_*` for each of its words, in the order of
 // the words. It must be `whole`.
 //
+// With AVERAGE, a band with `band_average` holds four samples for each pixel: its lines must be an even number of whole lines in memory, and
+// it must be `whole`. `band_gap` is the number of words in memory between its lines (band_flush).
+//
 // `with_depth` is for debugging: the depths of the whole band are also written to memory, as 32-bit words from `depth_base` on, and
 // `whole` is implied. The next band is drawn only after this flush, which writes three words per row.
 //
@@ -61,7 +64,8 @@ module band_buffer #(
     parameter bit          STEREO       = 1'b0,
     parameter bit          DEPTHS       = 1'b1,
     parameter bit          BLEND        = 1'b0,
-    parameter bit          SKY          = 1'b0
+    parameter bit          SKY          = 1'b0,
+    parameter bit          AVERAGE      = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -98,6 +102,8 @@ module band_buffer #(
     input  wire                     band_with_depth,
     input  wire  [15:0]             band_clear,
     input  wire  [1:0]              band_compose,
+    input  wire                     band_average,
+    input  wire  [7:0]              band_gap,
     input  wire                     band_sky,
     // Colours of the sky, one for each row of a band with `band_sky`.
     input  wire                     sky_valid,
@@ -164,10 +170,11 @@ module band_buffer #(
         .whole(band_whole || band_with_depth), .busy(spans_busy), .span_valid, .span_ready, .span_first, .span_last
     );
 
-    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS), .STEREO(STEREO), .SKY(SKY)) flush (
+    band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS), .STEREO(STEREO), .SKY(SKY), .AVERAGE(AVERAGE)) flush (
         .clk, .rst,
         .start(swap), .base(band_base), .depth_base(band_depth_base), .with_depth(band_with_depth),
-        .clear_colour(band_clear), .with_sky(band_sky), .compose(band_compose), .restart, .idle(flush_idle), .sweeping(clearing),
+        .clear_colour(band_clear), .with_sky(band_sky), .compose(band_compose), .average(band_average), .stride(band_stride),
+        .gap(band_gap), .restart, .idle(flush_idle), .sweeping(clearing),
         .reads_depth(flush_reads_depth), .waits(flush_waits),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),

@@ -13,9 +13,18 @@
 // `depth_base` + 2r + 1. Colour words are output in the order of their addresses, and so are depth words, so the DDR3 memory rarely has to
 // open another row.
 //
+// With `average` (AVERAGE only) the band holds four samples for each pixel, and a word is the average of four rows: of two rows side by
+// side in each of two lines. Spans come in pairs, of whole lines of `stride` rows. The first word is written to the address `base`; `gap`
+// addresses lie between the last word of a line and the first word of the next line. The sky has a colour for each word. There are no depths.
+// The sum of a channel is rounded by one of four thresholds, by the pixel's place (docs/formats/triangle.md, "Samples").
+//
+//   row of 8 samples ─▶ 4 pairs ─┬────────▶ sum of 4 ─▶ 4 pixels ─┬────────────▶ right half of a word
+//                                └▶ previous ──▲                  └▶ left half
+//
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
-// word per clock unless spans or memory are slower; the first word is output 6 clocks after the first span is taken.
+// row per clock unless spans or memory are slower; the first word is output 6 clocks after the first span is taken, and an average
+// 12 clocks after it.
 //
 // Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A FIFO entry is reserved before
 // a row is read, so `out_ready` may stay low for any time.
@@ -28,11 +37,13 @@
 module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
+    parameter int unsigned COLUMN_BITS  = 8,
     // Depth of the word FIFO, a power of two: the largest number of words that are requested and not yet taken. If words are taken at
     // once, an entry is free again 6 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
     parameter bit          STEREO       = 1'b0,
-    parameter bit          SKY          = 1'b0
+    parameter bit          SKY          = 1'b0,
+    parameter bit          AVERAGE      = 1'b0
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -44,6 +55,9 @@ module band_flush #(
     input  wire  [15:0]             clear_colour,
     input  wire                     with_sky,
     input  wire  [1:0]              compose,
+    input  wire                     average,
+    input  wire  [COLUMN_BITS-1:0]  stride,
+    input  wire  [COLUMN_BITS-1:0]  gap,
     input  wire                     restart,
     output logic                    idle,
     output logic                    sweeping,
@@ -82,7 +96,12 @@ module band_flush #(
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
     state_t                state;
     part_t                 part, last_part;
-    logic                  depth_too, in_span, issue, part_ends, span_ends, takes_sky;
+    logic                  depth_too, in_span, issue, part_ends, span_ends, takes_sky, averaging, paired;
+    // The row of a word that is read, of the four of an average: {right, lower}.
+    logic [1:0]            corner;
+    logic                  word_ends;
+    // Differences of row numbers: to the next row, and in an average from the upper to the lower row, and back to the next upper row.
+    logic [ROW_BITS-1:0]   step, down, back;
     logic [ROW_BITS-1:0]   first_row, last_row;
     logic [15:0]           clear;
     logic [1:0]            composing;
@@ -95,9 +114,11 @@ module band_flush #(
     assign reads_depth = state == FLUSH && depth_too;
     assign waits       = state == FLUSH && in_span && places == '0;
     assign issue       = state == FLUSH && in_span && places != '0 && (!takes_sky || part != COLOUR || sky_valid);
-    assign sky_ready   = issue && takes_sky && part == COLOUR;
+    assign sky_ready   = issue && takes_sky && part == COLOUR && word_ends;
     assign last_part   = depth_too ? DEPTH_RIGHT : COLOUR;
-    assign part_ends   = part != DEPTH_LEFT && row == last_row;
+    assign word_ends   = !averaging || corner == '1;
+    assign part_ends   = part != DEPTH_LEFT && row == last_row && word_ends;
+    assign step        = !averaging ? ROW_BITS'(1) : corner[0] ? back : down;
     assign span_ends   = issue && part_ends && part == last_part;
     assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
@@ -116,11 +137,11 @@ module band_flush #(
                         default:    part <= part_ends ? COLOUR : DEPTH_LEFT;
                     endcase
                     if (part_ends)               row <= first_row;
-                    else if (part != DEPTH_LEFT) row <= row + 1'b1;
+                    else if (part != DEPTH_LEFT) row <= row + step;
                 end
                 if (span_ready) begin
-                    in_span   <= span_valid;
-                    row       <= span_first;
+                    in_span   <= span_valid && (!averaging || paired);
+                    if (!paired) row <= span_first;
                     first_row <= span_first;
                     last_row  <= span_last;
                 end
@@ -137,7 +158,7 @@ module band_flush #(
                 in_span          <= 1'b0;
                 colour_base      <= base;
                 depth_words_base <= depth_base;
-                depth_too        <= with_depth;
+                depth_too        <= with_depth && !(AVERAGE && average);
                 clear            <= clear_colour;
                 takes_sky        <= SKY && with_sky;
                 composing        <= compose;
@@ -151,22 +172,51 @@ module band_flush #(
         end
     end
 
+    // Number of the requested word from the beginning of the band, and the parity of its line.
+    logic [ROW_BITS-1:0] place, place_0;
+    logic                odd;
+
+    if (AVERAGE) begin : averages
+        logic [ROW_BITS-1:0] word_place;
+
+        always_ff @(posedge clk) begin
+            if (issue) corner <= corner + 1'b1;
+            if (issue && word_ends) word_place <= word_place + 1'b1 + (span_ends ? ROW_BITS'(gap) : '0);
+            if (span_ends) odd <= !odd;
+            if (state == FLUSH && span_ready && span_valid && averaging) paired <= !paired;
+            if (state == IDLE) begin
+                averaging  <= average;
+                down       <= ROW_BITS'(stride);
+                back       <= ROW_BITS'(1) - ROW_BITS'(stride);
+                corner     <= '0;
+                word_place <= '0;
+                odd        <= 1'b0;
+                paired     <= 1'b0;
+            end
+        end
+        assign place = averaging ? word_place : row;
+    end else begin : rows_alone
+        assign {averaging, paired, corner, odd, down, back} = '0;
+        assign place = row;
+        wire _unused = &{1'b0, average, stride, gap, odd};
+    end
+
     // Delays the kind and the address of each requested word by the latency of the bank's read.
     logic  asked_0, asked_1, asked_2;
     part_t part_0, part_1, part_2;
     logic [ADDRESS_BITS-1:0] address_1, address_2, address;
 
     always_ff @(posedge clk) begin
-        // `clear_row` is here the row that was requested one clock ago.
+        place_0 <= place;
         case (part_0)
-            COLOUR:     address_1 <= colour_base + ADDRESS_BITS'(clear_row);
-            DEPTH_LEFT: address_1 <= depth_words_base + ADDRESS_BITS'({clear_row, 1'b0});
-            default:    address_1 <= depth_words_base + ADDRESS_BITS'({clear_row, 1'b1});
+            COLOUR:     address_1 <= colour_base + ADDRESS_BITS'(place_0);
+            DEPTH_LEFT: address_1 <= depth_words_base + ADDRESS_BITS'({place_0, 1'b0});
+            default:    address_1 <= depth_words_base + ADDRESS_BITS'({place_0, 1'b1});
         endcase
         address_2 <= address_1;
         address   <= address_2;
 
-        asked_0 <= issue;
+        asked_0 <= issue && word_ends;
         asked_1 <= asked_0;
         asked_2 <= asked_1;
         part_0  <= part;
@@ -180,18 +230,21 @@ module band_flush #(
         end
     end
 
-    logic         word_valid, word_ready, taken;
+    logic         word_valid, word_ready, taken, asked;
     logic [127:0] word, colour_word, depth_left_word, depth_right_word, backgrounds;
 
     if (SKY) begin : sky
         // The clear colour in the format of the sky, which no threshold changes.
         logic [23:0] clear_colours, seen_colour;
-        logic [1:0]  seen_line;
+        logic [1:0]  line, seen_line;
 
         assign clear_colours = {clear[4:0], 3'd0, clear[10:5], 2'd0, clear[15:11], 3'd0};
 
+        // The line of samples in an average.
+        assign line = averaging ? {sky_line[0], corner[0]} : sky_line;
+
         delay #(.WIDTH(26), .CLOCKS(3)) waits (
-            .clk, .enable(1'b1), .in({sky_line, takes_sky ? sky_colour : clear_colours}), .out({seen_line, seen_colour})
+            .clk, .enable(1'b1), .in({line, takes_sky ? sky_colour : clear_colours}), .out({seen_line, seen_colour})
         );
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes
@@ -226,18 +279,64 @@ module band_flush #(
         word <= part_2 == COLOUR ? colour_word : part_2 == DEPTH_LEFT ? depth_left_word : depth_right_word;
     end
 
+    logic                    sent_valid;
+    logic [127:0]            sent;
+    logic [ADDRESS_BITS-1:0] sent_address;
+
+    if (AVERAGE) begin : averaged
+        // The four rows of a word are requested in successive clocks, because a free FIFO entry and a colour of the sky stay until the last
+        // of them. The sums have the threshold 2·t1 + t0 of their pixel: t1 in each of both pairs, t0 in their sum.
+        logic       odd_word, is_left, was_left;
+        logic [3:0] t1, t0;
+        logic [63:0]      half, left_half;
+        logic [1:0]       corner_word;
+        logic             ends_pairs, ends_sums;
+        logic [ADDRESS_BITS-1:0] address_sums;
+
+        delay #(.WIDTH(3), .CLOCKS(4)) corners (.clk, .enable(1'b1), .in({odd, corner}), .out({odd_word, corner_word}));
+        delay #(.WIDTH(ADDRESS_BITS), .CLOCKS(2)) addresses (.clk, .enable(1'b1), .in(address), .out(address_sums));
+
+        for (genvar i = 0; i < 4; i++) begin : pixels
+            logic [18:0] pair, previous;
+
+            always_ff @(posedge clk) begin
+                pair             <= colour_pkg::pair(word[32*i +: 16], word[32*i+16 +: 16], t1[i]);
+                previous         <= pair;
+                half[16*i +: 16] <= colour_pkg::average(pair, previous, t0[i]);
+            end
+        end
+
+        assign t1 = {odd_word, !odd_word, !odd_word, odd_word};
+
+        always_ff @(posedge clk) begin
+            t0 <= {!odd_word, !odd_word, odd_word, odd_word};
+            is_left  <= corner_word == 2'd1;
+            was_left <= is_left;
+            if (was_left) left_half <= half;
+            ends_pairs <= word_valid && averaging && !rst;
+            ends_sums  <= ends_pairs && !rst;
+        end
+
+        assign sent_valid   = averaging ? ends_sums : word_valid;
+        assign sent_address = averaging ? address_sums : address;
+        assign sent         = averaging ? {half, left_half} : word;
+    end else begin : direct
+        assign {sent_valid, sent_address, sent} = {word_valid, address, word};
+    end
+
     // A FIFO entry is reserved for each requested word, so `word_ready` is high whenever a word arrives.
     fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS), .DIRECT(1'b1)) words (
         .clk, .rst,
-        .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),
+        .in_valid(sent_valid), .in_ready(word_ready), .in_data({sent_address, sent}),
         .out_valid, .out_ready, .out_data({out_addr, out_data})
     );
 
     assign taken = out_valid && out_ready;
+    assign asked = issue && word_ends;
 
     always_ff @(posedge clk) begin
-        if (taken && !issue)      places <= places + 1'b1;
-        else if (!taken && issue) places <= places - 1'b1;
+        if (taken && !asked)      places <= places + 1'b1;
+        else if (!taken && asked) places <= places - 1'b1;
 
         if (rst) places <= COUNT_BITS'(WORDS);
     end

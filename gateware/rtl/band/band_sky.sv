@@ -4,17 +4,21 @@
 //   height + across, or ─▶ magnitude ─▶ zenith or nadir, mixed with the horizon ─▶ fifo ─▶ colours
 //   line's height + down
 //
-// `start` (one clock) drops the rest of the previous picture and begins one with `stride` groups in a line. `sky` and `stride` must hold
-// until the last colour of the picture has been taken; after this colour, further colours have no meaning. The stream is valid/ready.
+// `start` (one clock) drops the rest of the previous picture and begins one with `stride` groups in a line. With `twice` (TWICE only) the
+// colours are those of groups of samples, two in each direction for a group of pixels. `sky`, `stride` and `twice` must hold until the last
+// colour of the picture has been taken; after this colour, further colours have no meaning. The stream is valid/ready.
 // Latency 8 clocks from `start`; throughput one colour per clock.
 
 `default_nettype none
 
-module band_sky (
+module band_sky #(
+    parameter bit TWICE = 1'b0
+) (
     input  wire         clk,
     input  wire         rst,
     input  wire         start,
     input  wire  [7:0]  stride,
+    input  wire         twice,
     input  wire triangle_registers_pkg::sky_t sky,
     output logic        out_valid,
     input  wire         out_ready,
@@ -33,7 +37,28 @@ module band_sky (
 
     assign clear = rst || start;
     assign sent  = running && credit;
-    assign next  = (ends ? line : height) + (ends ? sky.down : sky.across);
+    // High if the next group in a line, or the next line, has another height.
+    logic new_group, new_line;
+
+    if (TWICE) begin : samples
+        logic right, lower;
+
+        assign new_group = !twice || right;
+        assign new_line  = !twice || lower;
+
+        always_ff @(posedge clk) begin
+            if (!running || sent) begin
+                right <= !ends && !right;
+                if (ends) lower <= !lower;
+            end
+            if (start) lower <= 1'b1;
+        end
+    end else begin : pixels
+        assign {new_group, new_line} = '1;
+        wire _unused = &{1'b0, twice};
+    end
+
+    assign next = (ends ? line : height) + (ends ? new_line ? sky.down : '0 : new_group ? sky.across : '0);
 
     always_ff @(posedge clk) begin
         running <= 1'b1;

@@ -36,6 +36,27 @@ package colour_pkg;
         blue     = colour[2][2:0] > ~threshold ? colour[2][7:3] + 1'b1 : colour[2][7:3];
         dithered = {red, green, blue};
     endfunction
+
+    // Adds the channels of two pixels in RGB565, and `carry` to each sum: {red, green, blue}, each a bit wider than the channel.
+    function automatic logic [18:0] pair(input logic [15:0] a, input logic [15:0] b, input logic carry);
+        logic [5:0] red, blue;
+        logic [6:0] green;
+        red   = 6'(a[15:11]) + 6'(b[15:11]) + 6'(carry);
+        green = 7'(a[10:5]) + 7'(b[10:5]) + 7'(carry);
+        blue  = 6'(a[4:0]) + 6'(b[4:0]) + 6'(carry);
+        pair  = {red, green, blue};
+    endfunction
+
+    // The average of four pixels in RGB565, from the sums of two and two: adds `carry` to each sum of four, divides it by four, and rounds
+    // down.
+    function automatic logic [15:0] average(input logic [18:0] a, input logic [18:0] b, input logic carry);
+        logic [6:0] red, blue;
+        logic [7:0] green;
+        red     = 7'(a[18:13]) + 7'(b[18:13]) + 7'(carry);
+        green   = 8'(a[12:6]) + 8'(b[12:6]) + 8'(carry);
+        blue    = 7'(a[5:0]) + 7'(b[5:0]) + 7'(carry);
+        average = {red[6:2], green[7:2], blue[6:2]};
+    endfunction
     /* verilator lint_on UNUSEDSIGNAL */
 endpackage
 

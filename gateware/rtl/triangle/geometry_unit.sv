@@ -40,6 +40,7 @@ module geometry_unit #(
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          TEXTURE      = 1'b0,
     parameter  bit          LINES        = 1'b0,
+    parameter  bit          AVERAGE      = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
@@ -79,6 +80,18 @@ module geometry_unit #(
 
     assign width  = 11'(picture_pkg::WIDTH) << flags.size;
     assign height = 10'(picture_pkg::HEIGHT) << flags.size;
+
+    // The middle of the picture, counted from the beginning of the quarter that is drawn.
+    logic [10:0] middle_x, middle_y;
+
+    always_comb begin
+        middle_x = 11'(width[10:1]);
+        middle_y = 11'(height[9:1]);
+        if (AVERAGE && flags.quarter) begin
+            middle_x = flags.right ? '0 : width;
+            middle_y = flags.lower ? '0 : 11'(height);
+        end
+    end
 
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
@@ -262,11 +275,11 @@ module geometry_unit #(
         assign projected_valid = stage_valid && has_coordinates;
         assign stage_ready     = projected_ready && has_coordinates;
 
-        vertex_stage vertex_stage (
+        vertex_stage #(.AVERAGE(AVERAGE)) vertex_stage (
             .clk, .rst(rst || restart), .orthographic(flags.orthographic), .scale_shift(view.scale_shift),
             .row_u(view.row_u), .row_v(view.row_v), .row_n(view.row_n),
             .tx(view.tx), .ty(view.ty), .tz(view.tz), .near_z(view.near_z),
-            .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),
+            .centre_x(middle_x), .centre_y(middle_y),
             .depth_mantissa(view.depth_mantissa), .depth_exponent(view.depth_exponent),
             .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(vertex.position),
             .out_valid(stage_valid), .out_ready(stage_ready), .out_vertex(projected)

@@ -26,6 +26,10 @@
 //
 // With FOG, `flags.fog` draws triangles in fog.
 //
+// With AVERAGE, `flags.average` draws four samples for each pixel: the flush averages the samples of a picture of `flags.size` to a picture
+// of half the width and height. With `flags.quarter` this picture is a quarter, `flags.right` and `flags.lower`, of the frame, which has the
+// width and height `flags.size`. All words are written, and no depths.
+//
 // With TEXTURE, triangles may have textures, opaque or blended with the picture drawn so far. `parameters.textures` is the address of
 // their table (docs/textures.md, "Textures of a frame").
 //
@@ -54,6 +58,7 @@ module raster_unit #(
     parameter  bit          FIELDS       = 1'b0,
     parameter  bit          LINES        = 1'b0,
     parameter  bit          DEPTHS       = 1'b1,
+    parameter  bit          AVERAGE      = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
@@ -96,6 +101,30 @@ module raster_unit #(
     // `flags.size` must not change during a frame, nor in the clock before `start`.
     always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
+    // Words in memory from the beginning of the frame to that of its quarter, from a band to the next band, and between the lines of a band.
+    logic                    averages;
+    logic [ADDRESS_BITS-1:0] quarter_words;
+    logic [10:0]             band_words;
+    logic [7:0]              gap;
+
+    assign averages = AVERAGE && flags.average;
+
+    if (AVERAGE) begin : samples
+        localparam int unsigned LARGEST = picture_pkg::FRAME_WORDS << 4;
+        localparam int unsigned STRIDE  = picture_pkg::WIDTH / 2;
+
+        always_comb begin
+            band_words    = !flags.average ? words : flags.quarter ? words >> 1 : words >> 2;
+            gap           = flags.quarter ? stride >> 1 : '0;
+            quarter_words = !(flags.average && flags.quarter) ? '0
+                          : ADDRESS_BITS'((flags.lower ? LARGEST / 2 : 0) + (flags.right ? STRIDE / 2 : 0));
+        end
+    end else begin : pixels
+        assign quarter_words = '0;
+        assign band_words    = words;
+        assign gap           = '0;
+    end
+
     typedef enum logic [2:0] {IDLE, FIELD, SKY_FIRST, DRAW, HAND_OVER, FLUSH} state_t;
     state_t state;
 
@@ -111,7 +140,7 @@ module raster_unit #(
 
     always_ff @(posedge clk) begin
         if (state == IDLE) begin
-            all_words <= flags.whole || has_sky || !known[flags.slot];
+            all_words <= flags.whole || has_sky || averages || !known[flags.slot];
             if (start) known[flags.slot] <= 1'b0;
         end
         if (state == FLUSH && in_memory) known[flags.slot] <= 1'b1;
@@ -136,7 +165,7 @@ module raster_unit #(
             IDLE: begin
                 band            <= '0;
                 first_row       <= '0;
-                base            <= parameters.frame[4 +: ADDRESS_BITS];
+                base            <= parameters.frame[4 +: ADDRESS_BITS] + quarter_words;
                 band_depth_base <= parameters.depth[4 +: ADDRESS_BITS];
                 if (start) state <= first_state;
             end
@@ -146,7 +175,7 @@ module raster_unit #(
             HAND_OVER: if (band_ready) begin
                 band            <= band + 1'b1;
                 first_row       <= first_row + 10'(rows);
-                base            <= base + ADDRESS_BITS'(words);
+                base            <= base + ADDRESS_BITS'(band_words);
                 band_depth_base <= band_depth_base + (ADDRESS_BITS'(words) << 1);
                 state           <= band == last_band ? FLUSH : first_state;
             end
@@ -329,8 +358,8 @@ module raster_unit #(
     if (SKY) begin : with_sky
         logic sky_group_taken;
 
-        band_sky band_sky (
-            .clk, .rst, .start(begins), .stride, .sky,
+        band_sky #(.TWICE(AVERAGE && TEXTURE)) band_sky (
+            .clk, .rst, .start(begins), .stride(averages && !sky_first ? stride >> 1 : stride), .twice(averages && sky_first), .sky,
             .out_valid(sky_valid), .out_ready(sky_flushed || sky_group_taken), .out_line(sky_line), .out_colour(sky_colour)
         );
 
@@ -402,14 +431,14 @@ module raster_unit #(
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
-    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS), .BLEND(TRIANGLES && TEXTURE), .SKY(SKY)) band_buffer (
+    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS), .BLEND(TRIANGLES && TEXTURE), .SKY(SKY), .AVERAGE(AVERAGE)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
         .group_asks, .group_blended, .answer_valid, .answer_lanes, .behind_lane, .behind,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
         .band_first_line(first_row), .band_slot(flags.slot), .band_whole(all_words),
         .band_with_depth(flags.depth), .band_clear(parameters.clear), .band_compose(has_field ? field_source.compose : 2'd0),
-        .band_sky(has_sky && !sky_first), .sky_valid, .sky_ready(sky_flushed), .sky_line, .sky_colour,
+        .band_average(averages), .band_gap(gap), .band_sky(has_sky && !sky_first), .sky_valid, .sky_ready(sky_flushed), .sky_line, .sky_colour,
         .word_valid, .word_ready, .word_addr, .word_data,
         .events(band_events)
     );

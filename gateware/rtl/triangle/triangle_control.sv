@@ -31,6 +31,7 @@ module triangle_control #(
     parameter  bit          TEXTURE      = 1'b0,
     parameter  bit          LINES        = 1'b0,
     parameter  bit          GEOMETRY     = TRIANGLES || LINES,
+    parameter  bit          AVERAGE      = 1'b0,
     parameter  int unsigned MEMORY_BITS  = triangle_registers_pkg::ADDRESS_BITS,
     parameter  int unsigned SIZES        = 7, // picture sizes of this build: bit k for the size of code k
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
@@ -93,8 +94,8 @@ module triangle_control #(
 
     assign size = rastering ? raster_kept.size : geometry_kept.size;
 
-    // Code 3 is not a valid size in any build.
-    localparam logic [3:0] SUPPORTED = {1'b0, 3'(SIZES)};
+    // Code 3 is not a valid size in any build. The picture of the samples of a frame may have twice the width and height of the largest frame.
+    localparam logic [3:0] SUPPORTED = {1'b0, 3'(AVERAGE ? SIZES | SIZES << 1 : SIZES)};
 
     assign bands = band_pkg::bands(size);
 
@@ -125,7 +126,8 @@ module triangle_control #(
     assign mesh_words  = geometry.mesh_bytes[31:WORD_BITS+4] != '0 ? '1 : WORD_BITS'(geometry.mesh_bytes >> 4);
     assign list_words  = list_shift > LAST_SHIFT ? '1 : WORD_BITS'(list_pkg::TABLE_WORDS)
                       + (WORD_BITS'(bands) << list_shift) + WORD_BITS'(bands * list_pkg::BANK_WORDS);
-    assign frame_words = WORD_BITS'(picture_pkg::FRAME_WORDS) << {size, 1'b0};
+    assign frame_words = (WORD_BITS'(picture_pkg::FRAME_WORDS) << {size, 1'b0})
+                       >> (AVERAGE && raster_kept.average && !raster_kept.quarter ? 2 : 0);
 
     always_comb begin
         used = 1'b1;

@@ -22,6 +22,9 @@
 // SKY builds the sky behind triangles (band_sky), for frames with the flag `sky` of the raster pass; FOG builds the fog on triangles
 // (group_fog), for frames with its flag `fog`.
 //
+// AVERAGE builds pictures with four samples a pixel, for frames with the flag `average` of the raster pass, and the flag `quarter` of both
+// passes.
+//
 // LINES builds the line engine: the flag `lines` of the geometry pass selects a frame of segments instead of a mesh.
 //
 // FIELDS builds the link to a raymarcher.
@@ -40,6 +43,7 @@ module triangle_engine #(
     parameter bit TEXTURE   = 1'b0,
     parameter bit SKY       = 1'b0,
     parameter bit FOG       = 1'b0,
+    parameter bit AVERAGE   = 1'b0,
     parameter bit FIELDS    = 1'b0,
     parameter bit LINES     = 1'b0,
     parameter bit GEOMETRY  = TRIANGLES || LINES,
@@ -115,7 +119,7 @@ module triangle_engine #(
             .rdata_valid(mesh_read_answer.rdata_valid), .rdata(mesh_read_answer.rdata)
         );
 
-        geometry_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .LINES(LINES)) geometry_unit (
+        geometry_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .LINES(LINES), .AVERAGE(AVERAGE)) geometry_unit (
             .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
             .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
             .ask_valid(ask_valid[2:0]), .ask_ready(ask_ready[2:0]), .ask_addr(ask_addr[3*ADDRESS_BITS-1:0]),
@@ -188,7 +192,7 @@ module triangle_engine #(
         wire _unused = &{1'b0, texture_read_answer, ask_valid[6], ask_addr[7*ADDRESS_BITS-1:6*ADDRESS_BITS], data_ready[6]};
     end
 
-    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .SKY(SKY), .FOG(FOG), .FIELDS(FIELDS), .LINES(LINES),
+    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .SKY(SKY), .FOG(FOG), .AVERAGE(AVERAGE), .FIELDS(FIELDS), .LINES(LINES),
                   .DEPTHS(DEPTHS)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
         .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster), .sky, .fog,

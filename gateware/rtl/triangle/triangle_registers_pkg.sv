@@ -33,6 +33,9 @@ package triangle_registers_pkg;
         logic lines;
         logic orthographic;
         logic textures;
+        logic quarter;
+        logic right;
+        logic lower;
     } geometry_flags_t;
 
     // Parameters of the geometry pass. Memory regions are given by byte addresses.
@@ -78,6 +81,10 @@ package triangle_registers_pkg;
         logic sky;
         logic sky_first;
         logic fog;
+        logic average;
+        logic quarter;
+        logic right;
+        logic lower;
     } raster_flags_t;
 
     // Parameters of the raster pass. Memory regions are given by byte addresses.

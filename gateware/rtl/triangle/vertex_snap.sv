@@ -13,14 +13,17 @@
 
 `default_nettype none
 
-module vertex_snap (
+module vertex_snap #(
+    // Whether the centre may be up to 1280 pixels from the beginning of the window, instead of 640.
+    parameter bit AVERAGE = 1'b0
+) (
     input  wire               clk,
     input  wire               half,
     input  wire  [1:0]        element,
     // Frame.
     input  wire               orthographic,
-    input  wire  [9:0]        centre_x,
-    input  wire  [9:0]        centre_y,
+    input  wire  [10:0]        centre_x,
+    input  wire  [10:0]        centre_y,
     input  wire  [16:0]       depth_mantissa,
     input  wire  signed [3:0] depth_exponent,
     // Values of a vertex: leading zeros of Z in clock 7, `behind` in clock 8; X', Y' and the reciprocal of Z's mantissa from
@@ -46,10 +49,12 @@ module vertex_snap (
         if (!half && element == 2'd1) behinds <= {behinds[3:0], behind};
     end
 
-    logic signed [24:0] a;
-    logic signed [17:0] b;
-    logic signed [45:0] c, p;
-    logic signed [28:0] left;
+    localparam int unsigned BITS = AVERAGE ? 47 : 46;
+
+    logic signed [24:0]      a;
+    logic signed [17:0]      b;
+    logic signed [BITS-1:0]  c, p;
+    logic signed [BITS-18:0] left;
     logic        [1:0]  low;
 
     always_comb begin
@@ -62,15 +67,15 @@ module vertex_snap (
         if (orthographic && element != 2'd2) b = {11'b0, half, 6'b0};
     end
 
-    multiply_add #(.BITS(46)) multiply (.clk(clk), .enable(1'b1), .a(a), .b(b), .c(c), .p(p));
+    multiply_add #(.BITS(BITS)) multiply (.clk(clk), .enable(1'b1), .a(a), .b(b), .c(c), .p(p));
 
     always_ff @(posedge clk) begin
-        left <= p[45:17];
+        left <= p[BITS-1:17];
         case ({half, element})
-            3'b001:  c <= {1'b0, centre_x, 8'b0, 1'b1, 26'b0};
-            3'b010:  c <= {1'b0, centre_y, 8'b0, 1'b1, 26'b0};
+            3'b001:  c <= BITS'({1'b0, centre_x, 8'b0, 1'b1, 26'b0});
+            3'b010:  c <= BITS'({1'b0, centre_y, 8'b0, 1'b1, 26'b0});
             3'b100:  c <= '0;
-            default: c <= 46'(left);
+            default: c <= BITS'(left);
         endcase
         if (half && element == 2'd2) low <= p[16:15];
     end

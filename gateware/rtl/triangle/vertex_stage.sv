@@ -16,7 +16,10 @@
 
 `default_nettype none
 
-module vertex_stage (
+module vertex_stage #(
+    // See vertex_snap.
+    parameter bit AVERAGE = 1'b0
+) (
     input  wire                clk,
     input  wire                rst,
     // Frame constants.
@@ -29,8 +32,8 @@ module vertex_stage (
     input  wire  signed [43:0] ty,
     input  wire  signed [43:0] tz,
     input  wire  [38:0]        near_z,
-    input  wire  [9:0]         centre_x,
-    input  wire  [9:0]         centre_y,
+    input  wire  [10:0]         centre_x,
+    input  wire  [10:0]         centre_y,
     input  wire  [16:0]        depth_mantissa,
     input  wire  signed [3:0]  depth_exponent,
     // Positions, s2.14 each.
@@ -88,7 +91,7 @@ module vertex_stage (
     vertex_reciprocal reciprocal (
         .clk(clk), .half(half), .element(element), .orthographic(orthographic), .m(mantissa), .y(inverse));
 
-    vertex_snap snap (
+    vertex_snap #(.AVERAGE(AVERAGE)) snap (
         .clk(clk), .half(half), .element(element), .orthographic(orthographic), .centre_x(centre_x), .centre_y(centre_y),
         .depth_mantissa(depth_mantissa), .depth_exponent(depth_exponent), .zeros(zeros), .behind(behind), .x(x), .y(y),
         .inverse(inverse), .vertex(vertex));
