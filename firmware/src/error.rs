@@ -91,6 +91,8 @@ pub enum CommandError<'l> {
     Render(DrawError),
     /// No frame has been drawn yet.
     NoFrame,
+    /// A picture with four samples a pixel has no depth codes.
+    DepthsOfSamples,
     /// `bench` has no kernel of this name, but kernels of these names.
     Kernel(&'l str, &'static [&'static str]),
     /// The number of self-tests that failed.
@@ -148,6 +150,7 @@ impl CommandError<'_> {
             | Self::Reach
             | Self::Render(..)
             | Self::NoFrame
+            | Self::DepthsOfSamples
             | Self::Kernel(..)
             | Self::SelfTest(..)
             | Self::Calibration(..)
@@ -266,6 +269,9 @@ impl Display for CommandError<'_> {
             }
             Self::Render(error) => write!(f, "render: {error}"),
             Self::NoFrame => f.write_str("stats: no frame drawn, expected `render` first"),
+            Self::DepthsOfSamples => {
+                f.write_str("depth: none for pixels of several samples, expected `aa 1` first")
+            }
             Self::Kernel(name, expected) => {
                 write!(f, "bench `{name}`: expected one of")?;
                 expected

@@ -17,7 +17,9 @@ pub struct Memory {
     pub frames: [&'static mut [u16]; 2],
     /// The picture of the right eye: colours in RGB565, one per pixel.
     pub eye: &'static mut [u16],
-    /// Depth codes, one per pixel.
+    /// Samples of a picture with four of them a pixel, drawn by the CPU backend: colours in RGB565.
+    pub samples: &'static mut [u16],
+    /// Depth codes, one per pixel or sample.
     pub depth: &'static mut [u32],
     /// Memory for a copy of a picture during its download.
     pub copy: &'static mut [u8],
@@ -39,6 +41,8 @@ unsafe extern "C" {
     static mut _frame_a: u8;
     static mut _frame_b: u8;
     static _frame_size: u8;
+    static mut _sample_memory: u8;
+    static _sample_memory_size: u8;
     static mut _eye: u8;
     static _eye_size: u8;
     static mut _depth: u8;
@@ -100,6 +104,7 @@ impl Memory {
                 window!(_frame_b, _frame_size, u16),
             ],
             eye: window!(_eye, _eye_size, u16),
+            samples: window!(_sample_memory, _sample_memory_size, u16),
             depth: window!(_depth, _depth_size, u32),
             copy: window!(_copy, _copy_size, u8),
             scratch: Scratch {

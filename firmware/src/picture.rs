@@ -149,7 +149,7 @@ impl Picture {
     /// Whether a new frame is needed: the last frame shows another scene or other models, or does not have requested depth codes.
     pub fn is_outdated(&self, scene: &Scene, models: &Models) -> bool {
         let lacks_depth = matches!(&self.drawn, Some(Ok(drawn)) if !drawn.has_depth);
-        self.wants_depth && lacks_depth
+        self.wants_depth && lacks_depth && scene.has_depths()
             || self.content.as_ref().is_none_or(|content| {
                 content.marker != self.marker
                     || content.models != models.revision()

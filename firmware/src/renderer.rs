@@ -1,7 +1,7 @@
 //! Drawing of the scene's frames, by the gateware or by the CPU, into two frame buffers and one buffer of depth codes.
 
 use glint_core::feature::{CPU, EDGES};
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Samples, Size};
 use glint_core::wire::crc32;
 use glint_hal::frequency::Frequency;
 use glint_hal::scanout::Display;
@@ -20,7 +20,9 @@ use crate::picture::{DrawError, Drawn, Picture, RenderedBy};
 pub struct Renderer {
     /// Two frame buffers, one of which is shown.
     pub display: Display,
-    /// Depth codes of the last frame that was drawn with depth codes in memory, one per pixel.
+    /// Samples of a frame with four of them a pixel that the CPU draws.
+    pub samples: &'static mut [u16],
+    /// Depth codes of the last frame that was drawn with depth codes in memory, one per pixel or sample.
     pub depth: &'static mut [u32],
     /// The right eye's picture of a stereo picture that is being drawn.
     pub right: RightEye,
@@ -46,35 +48,31 @@ impl Renderer {
         mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, DrawError>> {
         let frame = models.frame(scene);
+        let wants_depth = picture.wants_depth && scene.has_depths();
         let eyes = match frame.eyes() {
             Ok(eyes) => eyes,
             Err(error) => return Some(Err(DrawError::Render(error))),
         };
         let eyes = eyes.as_ref();
-        let drawn = match self.draw_by_gateware(
-            &frame,
-            eyes,
-            scene.backend,
-            picture.wants_depth,
-            &mut progress,
-        )? {
-            Ok(gateware::Rendered {
-                cycles,
-                stats,
-                counters,
-                unsupported,
-                ..
-            }) => Ok(Drawn {
-                cycles,
-                stats,
-                by: RenderedBy::Gateware(counters, unsupported),
-                has_depth: picture.wants_depth,
-            }),
-            Err(fallback) if CPU.is_built => self
-                .draw_by_cpu(&frame, eyes, fallback, progress)?
-                .map_err(DrawError::Render),
-            Err(fallback) => Err(DrawError::NoCpu(fallback)),
-        };
+        let drawn =
+            match self.draw_by_gateware(&frame, eyes, scene.backend, wants_depth, &mut progress)? {
+                Ok(gateware::Rendered {
+                    cycles,
+                    stats,
+                    counters,
+                    unsupported,
+                    ..
+                }) => Ok(Drawn {
+                    cycles,
+                    stats,
+                    by: RenderedBy::Gateware(counters, unsupported),
+                    has_depth: wants_depth,
+                }),
+                Err(fallback) if CPU.is_built => self
+                    .draw_by_cpu(&frame, eyes, fallback, progress)?
+                    .map_err(DrawError::Render),
+                Err(fallback) => Err(DrawError::NoCpu(fallback)),
+            };
         if let Ok(drawn) = &drawn {
             self.draw_marker(scene, picture);
             self.draw_overlay(scene, drawn);
@@ -119,7 +117,7 @@ impl Renderer {
 
     /// Whether this board draws and shows pictures of this size.
     pub fn has_size(&self, size: Size) -> bool {
-        self.display.has_size(size.pixels()) && size.pixel_count() <= self.depth.len()
+        self.display.has_size(size.pixels()) && size.pixel_count() <= self.right.colour.len()
     }
 
     /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn.
@@ -188,23 +186,22 @@ impl Renderer {
         mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, RenderError>> {
         let progress: &mut dyn FnMut() = &mut progress;
-        let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
+        let pixels = frame.size.pixel_count();
         let back = self.display.back()?;
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);
         }
         let back = back.get_mut(..pixels).unwrap_or_default();
         let right = self.right.colour.get_mut(..pixels).unwrap_or_default();
-        let depth = self.depth.get_mut(..pixels).unwrap_or_default();
-        let scratch = self.scratch.vertices(frame.scratch_vertices());
+        let has_depth = frame.drawn_samples() == Samples::One;
+        let mut cpu = CpuMemory {
+            samples: self.samples,
+            depth: self.depth,
+            scratch: self.scratch.vertices(frame.scratch_vertices()),
+            edges: &mut self.edges,
+        };
         let mut draw = |frame: &Frame, colour: &mut [u16], progress: &mut dyn FnMut()| {
-            let mut buffer = FrameBuffer {
-                width,
-                height,
-                colour,
-                depth: &mut *depth,
-            };
-            draw(frame, &mut buffer, scratch, &mut self.edges, progress)
+            cpu.draw(frame, colour, progress)
         };
         let start = cpu::cycles();
         let stats = match eyes {
@@ -221,7 +218,7 @@ impl Renderer {
             cycles,
             stats,
             by: RenderedBy::Cpu(fallback),
-            has_depth: true,
+            has_depth,
         }))
     }
 
@@ -293,24 +290,65 @@ impl Renderer {
     }
 }
 
-/// Draws a frame by the CPU.
-fn draw(
-    frame: &Frame,
-    buffer: &mut FrameBuffer,
-    scratch: &mut [glint_model::Projected],
-    edges: &mut EdgeList,
-    progress: &mut dyn FnMut(),
-) -> Result<FrameStats, RenderError> {
-    let constants = frame.constants()?;
-    if EDGES.is_built
-        && let Subject::Edges(subject, _) = &frame.subject
-    {
-        // Comes first, because it rejects a mesh with too many edges.
-        edges.make(&subject.mesh, progress)?;
+/// The memory in which the CPU draws frames.
+struct CpuMemory<'m> {
+    samples: &'m mut [u16],
+    depth: &'m mut [u32],
+    scratch: &'m mut [glint_model::Projected],
+    edges: &'m mut EdgeList<'static>,
+}
+
+impl CpuMemory<'_> {
+    /// Draws a frame into a picture of its size.
+    fn draw(
+        &mut self,
+        frame: &Frame,
+        picture: &mut [u16],
+        progress: &mut dyn FnMut(),
+    ) -> Result<FrameStats, RenderError> {
+        if frame.drawn_samples() == Samples::One {
+            return self.draw_samples(frame, picture, progress);
+        }
+        let samples = core::mem::take(&mut self.samples);
+        let mut sum: Option<FrameStats> = None;
+        for part in frame.parts() {
+            let count = part.window().size.pixel_count();
+            let samples = samples.get_mut(..count).unwrap_or_default();
+            let stats = self.draw_samples(&part, samples, progress)?;
+            part.average(samples, picture, progress);
+            sum = Some(sum.map_or(stats, |sum| sum + stats));
+        }
+        self.samples = samples;
+        Ok(sum.unwrap_or_default())
     }
-    let mut stats = frame.draw(&constants, buffer, scratch, progress)?;
-    if EDGES.is_built {
-        frame.draw_edges(&constants, edges, buffer, scratch, progress, &mut stats)?;
+
+    /// Draws the samples of a frame's window.
+    fn draw_samples(
+        &mut self,
+        frame: &Frame,
+        colour: &mut [u16],
+        progress: &mut dyn FnMut(),
+    ) -> Result<FrameStats, RenderError> {
+        let size = frame.window().size;
+        let depth = self.depth.get_mut(..size.pixel_count());
+        let buffer = &mut FrameBuffer {
+            width: size.width(),
+            height: size.height(),
+            colour,
+            depth: depth.unwrap_or_default(),
+        };
+        let constants = frame.constants()?;
+        if EDGES.is_built
+            && let Subject::Edges(subject, _) = &frame.subject
+        {
+            // Comes first, because it rejects a mesh with too many edges.
+            self.edges.make(&subject.mesh, progress)?;
+        }
+        let mut stats = frame.draw(&constants, buffer, self.scratch, progress)?;
+        if EDGES.is_built {
+            let (edges, scratch) = (&mut *self.edges, &mut *self.scratch);
+            frame.draw_edges(&constants, edges, buffer, scratch, progress, &mut stats)?;
+        }
+        Ok(stats)
     }
-    Ok(stats)
 }

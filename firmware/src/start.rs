@@ -197,6 +197,7 @@ pub fn machine() -> Result<Machine, StartError> {
         .map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
+            samples: memory.samples,
             depth: memory.depth,
             right: RightEye::new(memory.eye),
             scratch: memory.scratch,

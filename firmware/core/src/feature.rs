@@ -75,6 +75,8 @@ features! {
     MESH_IN_FIELD = "mesh-in-field";
     /// Stereo pictures.
     STEREO = "stereo";
+    /// Pictures with four samples a pixel.
+    ANTIALIASING = "antialiasing";
     /// Lights other than the default lights.
     LIGHT = "light";
     /// Motion of the picture over time: `animate`.

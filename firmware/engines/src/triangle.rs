@@ -2,9 +2,9 @@
 
 use glint_core::camera::Projection;
 use glint_core::mesh::{Mesh, Rgb565};
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size, Window};
 use glint_hal::triangle::{
-    self, DepthScale, GeometryStart, Lists, Prepared, Textures, TriangleEngine,
+    self, Average, DepthScale, GeometryStart, Lists, Prepared, Quarter, Textures, TriangleEngine,
 };
 use glint_model::triangle::descriptor::Layout;
 use glint_model::{Fog, MeshLight, MeshSetup, Shading, Sky};
@@ -14,9 +14,9 @@ use glint_model::{Fog, MeshLight, MeshSetup, Shading, Sky};
 pub struct MeshPass<'a> {
     /// The mesh.
     pub mesh: &'a Mesh<'a>,
-    /// Size of the picture.
-    pub size: Size,
-    /// The frame constants of the mesh, for a picture of this size.
+    /// The part of the picture that is drawn.
+    pub window: Window,
+    /// The frame constants of the mesh, for this window.
     pub frame: &'a MeshSetup,
     /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. The direction of the light is in
     /// `frame`. With smooth shading and without `cull`, ambient light is not allowed.
@@ -38,18 +38,21 @@ impl MeshPass<'_> {
     /// Writes the registers of the pass with [`TriangleEngine::prepare_geometry`]. The previous pass must have ended, or have been
     /// started at least 128 clock cycles ago.
     pub fn prepare(&self, engine: &mut TriangleEngine) -> Prepared {
-        let frame = self.frame;
+        let (frame, quarter) = (self.frame, self.window.quarter);
         let light = self.light;
         let (light, ambient) =
             light.map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
         engine.prepare_geometry(&triangle::Geometry {
             mesh: self.mesh.records().as_flattened(),
             options: GeometryStart::default()
-                .with_size(size_code(self.size))
+                .with_size(size_code(self.window.size))
                 .with_cull(self.cull)
                 .with_smooth(self.shading == Shading::Smooth)
                 .with_orthographic(frame.projection == Projection::Orthographic)
-                .with_mirror(frame.mirrors),
+                .with_mirror(frame.mirrors)
+                .with_quarter(quarter.is_some())
+                .with_right(quarter.is_some_and(|quarter| quarter.is_right))
+                .with_lower(quarter.is_some_and(|quarter| quarter.is_lower)),
             scale_shift: frame.engine_shift() as u8,
             u: &frame.u,
             v: &frame.v,
@@ -80,6 +83,16 @@ pub const fn sky(sky: &Sky, is_first: bool) -> triangle::Sky {
         nadir: sky.nadir,
         is_first,
     }
+}
+
+/// The averages of a raster pass of a frame, which draws this window; `None` for one sample a pixel.
+#[must_use]
+pub fn average(samples: Samples, window: Window) -> Option<Average> {
+    let quarter = window.quarter.map(|quarter| Quarter {
+        is_right: quarter.is_right,
+        is_lower: quarter.is_lower,
+    });
+    (samples == Samples::Four).then_some(Average { quarter })
 }
 
 /// The fog of a raster pass.

@@ -147,8 +147,10 @@ pub struct Set {
 /// A raster pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
-    /// Size of the picture.
+    /// Size of the picture; with [`average`](Self::average) of the picture of the samples.
     pub size: Size,
+    /// Four samples a pixel; only for gateware that [averages them](TriangleEngine::averages).
+    pub average: Option<Average>,
     /// Address of the frame to write.
     pub frame: u32,
     /// The frame buffer that the pass writes: `false` for 0, `true` for 1.
@@ -167,6 +169,22 @@ pub struct Raster {
     pub list_shift: u8,
     /// Input of the pass.
     pub input: Input,
+}
+
+/// Four samples a pixel in a raster pass, which then writes every pixel and no depth codes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Average {
+    /// The quarter of the frame to which the samples belong; `None` for the whole frame.
+    pub quarter: Option<Quarter>,
+}
+
+/// A quarter of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Quarter {
+    /// Whether it is on the right side.
+    pub is_right: bool,
+    /// Whether it is at the bottom.
+    pub is_lower: bool,
 }
 
 /// The sky behind the triangles of a raster pass: heights, s8.23, and colours.
@@ -287,6 +305,12 @@ impl TriangleEngine {
     #[must_use]
     pub fn has_fog(&self) -> bool {
         self.registers.caps().read().fog()
+    }
+
+    /// Whether this gateware averages four samples a pixel.
+    #[must_use]
+    pub fn averages(&self) -> bool {
+        self.registers.caps().read().average()
     }
 
     /// Whether this gateware supports smooth shading, which makes descriptors longer.
@@ -420,6 +444,7 @@ impl TriangleEngine {
             registers.fog_offset().write(fog.offset as u16);
             registers.fog_colour().write(packed_colour(fog.colour));
         }
+        let quarter = pass.average.and_then(|average| average.quarter);
         compiler_fence(Ordering::SeqCst);
         registers.raster().write(
             RasterStart::default()
@@ -432,7 +457,11 @@ impl TriangleEngine {
                 .with_whole(pass.whole)
                 .with_sky(pass.sky.is_some())
                 .with_sky_first(pass.sky.is_some_and(|sky| sky.is_first))
-                .with_fog(pass.fog.is_some()),
+                .with_fog(pass.fog.is_some())
+                .with_average(pass.average.is_some())
+                .with_quarter(quarter.is_some())
+                .with_right(quarter.is_some_and(|quarter| quarter.is_right))
+                .with_lower(quarter.is_some_and(|quarter| quarter.is_lower)),
         );
     }
 

@@ -4,7 +4,7 @@ use core::fmt;
 
 use glint_core::fixed::{Q32_32, U4_28, U8_28};
 use glint_core::object::MAX_OBJECTS;
-use glint_core::picture::Size;
+use glint_core::picture::{Size, Window};
 
 /// The sizes of a picture: width and height in pixels.
 pub const SIZES: [(u32, u32); 3] = {
@@ -15,6 +15,15 @@ pub const SIZES: [(u32, u32); 3] = {
         (c.width(), c.height()),
     ]
 };
+
+/// The whole picture of this width and height.
+///
+/// # Errors
+/// [`RenderError::Size`] for a size that is not one of the [`SIZES`].
+pub(crate) fn whole_picture((width, height): (u32, u32)) -> Result<Window, RenderError> {
+    let size = Size::of(width, height).ok_or(RenderError::Size { width, height })?;
+    Ok(Window::whole(size))
+}
 
 /// Largest distance of the eye from the origin in a frame with a mesh, in world units. This bounds the translation in the mesh's frame
 /// constants, and thereby the bit widths of the vertex stage.

@@ -7,6 +7,7 @@ mod constants;
 mod description;
 mod edges;
 mod rectangles;
+mod samples;
 
 use glint_core::feature::WIREFRAME;
 
@@ -21,6 +22,7 @@ use crate::wireframe::{WireframeStats, render_wireframe};
 
 pub use constants::{FieldConstants, FrameConstants};
 pub use description::{FieldSubject, Frame, MeshSubject, Object, Subject};
+pub use samples::average_lines;
 
 /// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_PER_CALL: u32 = 32;
@@ -92,9 +94,9 @@ impl Frame<'_> {
         set_up_parts(&mut part, size, scratch, emit)
     }
 
-    /// Draws the frame into `buffer` from the frame's `constants`, with `scratch` as memory for projected vertices. The edges of
-    /// [`Subject::Edges`], and the rectangles in front of them, are left to [`draw_edges`](Self::draw_edges). Calls `progress` at short
-    /// intervals.
+    /// Draws the samples of the frame's [window](Self::window) into `buffer` from the frame's `constants`, with `scratch` as memory for
+    /// projected vertices. The edges of [`Subject::Edges`], and the rectangles in front of them, are left to
+    /// [`draw_edges`](Self::draw_edges). Calls `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError`] for a buffer or scratch memory of the wrong size.
@@ -109,7 +111,10 @@ impl Frame<'_> {
         if WIREFRAME.is_built
             && let Subject::Wireframe(subject) = &self.subject
         {
-            stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
+            let window = self.window();
+            stats.wireframe = Some(render_wireframe(
+                subject, self.clear, window, buffer, progress,
+            )?);
         }
         // A field covers every pixel. Meshes are drawn over it, so that what they blend with the picture may be in front of it.
         let field = constants.field();
@@ -123,7 +128,7 @@ impl Frame<'_> {
             stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
         }
         if let Some(sky) = constants.sky() {
-            sky.fill(buffer, progress)?;
+            sky.fill(self.drawn_samples(), buffer, progress)?;
         }
         if constants.mesh().is_some() {
             let mut part = |number| self.part(constants, number);

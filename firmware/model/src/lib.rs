@@ -35,6 +35,7 @@ pub use error::{Buffer, MAX_EYE, RenderError, SIZES};
 pub use fog::Fog;
 pub use frame::{
     FieldConstants, FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Object, Subject,
+    average_lines,
 };
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;

@@ -3,11 +3,13 @@
 use glint_core::camera::View;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
+use glint_core::picture::Window;
 
 use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
+use crate::triangle::mesh_setup::Scale;
 
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth codes for both.
 /// `options` must have one eye.
@@ -19,13 +21,14 @@ use crate::triangle::MeshSetup;
 /// The errors of [`MeshSetup::new`] and [`FieldSetup::new`].
 pub fn constants(
     view: &View,
-    size: (u32, u32),
+    window: Window,
     radius: u32,
     field: &Field,
     options: &FieldOptions,
 ) -> Result<(MeshSetup, FieldSetup), RenderError> {
-    let mut frame = MeshSetup::new(view, size.0, size.1, radius)?;
-    let mut setup = FieldSetup::new(field, view, size, options)?;
+    let mut frame = MeshSetup::default();
+    frame.update(view, window, radius, &mut Scale::default())?;
+    let mut setup = FieldSetup::in_window(field, view, window, options)?;
     let shared = shared(frame.depth, setup.world_depth, setup.scale);
     frame.depth = shared;
     setup.world_depth = shared;

@@ -3,6 +3,7 @@
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
 use glint_core::field::magnitude;
+use glint_core::picture::{Samples, Window};
 
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
@@ -68,6 +69,17 @@ impl Sky {
         }
     }
 
+    /// The sky in a window of a picture with this number of samples: its heights begin at the window's first pixel.
+    #[must_use]
+    pub fn in_window(self, window: Window, samples: Samples) -> Self {
+        let [column, line] = window.origin().map(|place| place / samples.across());
+        let above = self.height(column / GROUP as u32, line);
+        Self {
+            above: above.wrapping_sub(self.down),
+            ..self
+        }
+    }
+
     /// Height of the group in a column and a line, s8.23; modulo 2^32, as in the gateware, for constants that no camera has.
     pub fn height(&self, column: u32, line: u32) -> i32 {
         let right = (column as i32).wrapping_mul(self.across);
@@ -83,20 +95,23 @@ impl Sky {
         mixed(end, self.horizon, 255 - share)
     }
 
-    /// Fills a picture with the sky, and its depth codes with 0. Calls `progress` after each line.
+    /// Fills a picture of this number of samples a pixel with the sky, and its depth codes with 0. All samples of a group of pixels have
+    /// the group's colour before it is dithered. Calls `progress` after each line.
     ///
     /// # Errors
     /// [`RenderError`] for a frame buffer of the wrong size.
     pub fn fill(
         &self,
+        samples: Samples,
         target: &mut FrameBuffer,
         progress: &mut dyn FnMut(),
     ) -> Result<(), RenderError> {
         target.check()?;
         let lines = target.colour.chunks_exact_mut(target.width as usize);
+        let across = samples.across();
         for (y, line) in (0..).zip(lines) {
             for (x, group) in (0..).zip(line.as_chunks_mut::<GROUP>().0) {
-                let colour = self.colour(x, y);
+                let colour = self.colour(x / across, y / across);
                 for (lane, pixel) in (0..).zip(group) {
                     *pixel = Rgb565::dithered(colour, lane, y).0;
                 }

@@ -154,7 +154,7 @@ const fn shares(shift: u32, rounding: u16) -> [u16; 256] {
     shares
 }
 
-/// The sum of the counts for both eyes.
+/// The sum of the counts of both eyes, or of the parts of a frame.
 impl Add for FrameStats {
     type Output = Self;
 
@@ -164,6 +164,9 @@ impl Add for FrameStats {
         }
         if let (Some(field), Some(other)) = (&mut self.field, &other.field) {
             field.add(other);
+        }
+        if let (Some(wireframe), Some(other)) = (&mut self.wireframe, &other.wireframe) {
+            wireframe.add(other);
         }
         if let (Some(edges), Some(other)) = (&mut self.edges, &other.edges) {
             edges.add(other);

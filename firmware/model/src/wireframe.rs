@@ -1,7 +1,7 @@
 //! Pictures of the wireframe simulator: each segment of a program is transformed, projected, and drawn as a line (docs/wireframe.md).
 
 use glint_core::colour::Rgb565;
-use glint_core::picture::Size;
+use glint_core::picture::Window;
 use glint_core::wireframe::{Pose, Program, Projection, Segment};
 
 use crate::error::RenderError;
@@ -47,7 +47,16 @@ pub struct WireframeStats {
     pub pixels: u64,
 }
 
-/// Clears a picture to `clear` and draws a program into it. Pixels of lines have the largest depth code, all other pixels code 0. Calls
+impl WireframeStats {
+    /// Adds the counts of another frame.
+    pub const fn add(&mut self, other: &Self) {
+        self.segments += other.segments;
+        self.lines += other.lines;
+        self.pixels += other.pixels;
+    }
+}
+
+/// Clears the window of a picture to `clear` and draws a program into it. Pixels of lines have the largest depth code, all other pixels code 0. Calls
 /// `progress` at short intervals.
 ///
 /// # Errors
@@ -55,15 +64,15 @@ pub struct WireframeStats {
 pub fn render_wireframe(
     subject: &WireframeSubject,
     clear: Rgb565,
+    window: Window,
     target: &mut FrameBuffer,
     progress: &mut dyn FnMut(),
 ) -> Result<WireframeStats, RenderError> {
     target.check()?;
-    let &mut FrameBuffer { width, height, .. } = target;
-    let size = Size::of(width, height).ok_or(RenderError::Size { width, height })?;
+    target.check_size(window.size.pixels().into())?;
     target.colour.fill(clear.0);
     target.depth.fill(0);
-    let projection = Projection::new(subject.program.viewing(), size);
+    let projection = Projection::new(subject.program.viewing(), window);
     let mut stats = WireframeStats::default();
     for segment in subject.program.segments() {
         if stats.segments % SEGMENTS_PER_CALL == 0 {

@@ -8,7 +8,7 @@ use glint_core::block::Block;
 use glint_core::camera::{View, ViewError};
 use glint_core::console::{ObjectAction, Setting};
 use glint_core::feature::{
-    ANIMATE, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, SKY, STEREO, WIREFRAME,
+    ANIMATE, ANTIALIASING, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, SKY, STEREO, WIREFRAME,
 };
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns, U8_28, U32_32};
@@ -17,7 +17,7 @@ use glint_core::light::Background;
 use glint_core::matrix::{Axis, Matrix, MatrixError};
 use glint_core::mesh::{MAX_NAME, Mesh};
 use glint_core::object::{MAX_OBJECTS, Place};
-use glint_core::picture::{Backend, Edges, Size};
+use glint_core::picture::{Backend, Edges, Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use glint_core::texture::Texture;
@@ -252,6 +252,8 @@ pub struct Scene {
     pub sphere: Sphere,
     /// Size of the picture.
     pub size: Size,
+    /// Number of samples whose average is a pixel.
+    pub samples: Samples,
     /// The drawing options of all meshes.
     pub options: MeshOptions,
     /// Name of the replacement texture; `None` for their own textures.
@@ -284,6 +286,7 @@ impl Scene {
             view: sphere.view()?,
             sphere,
             size: Size::default(),
+            samples: Samples::default(),
             options: MeshOptions::default(),
             texture: None,
             backend,
@@ -383,6 +386,7 @@ impl Scene {
                 }
                 self.size = size;
             }
+            Setting::Antialiasing { samples } => self.samples = samples,
             Setting::Backend { backend } => {
                 if backend == Backend::Gateware && !board.has_engine() {
                     return Err(SettingError::NoEngine);
@@ -599,6 +603,11 @@ impl Scene {
         }
     }
 
+    /// Whether a picture of the scene has depth codes: one with a single sample a pixel.
+    pub fn has_depths(&self) -> bool {
+        self.samples == Samples::One || !ANTIALIASING.is_built
+    }
+
     /// Name of the mesh that is shown, alone or in a field.
     pub fn shown_mesh(&self) -> Option<&str> {
         match self.subject() {
@@ -658,6 +667,7 @@ impl Scene {
         Frame {
             replacement_texture: content.replacement_texture,
             stereo: self.stereo.filter(|_| STEREO.is_built),
+            samples: self.samples,
             ..Frame::in_appearance(subject, self.view, self.size, &self.appearance)
         }
     }

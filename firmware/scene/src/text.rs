@@ -169,6 +169,7 @@ impl Scene {
                 let from = from.filter(|from| from.quality == self.quality);
                 self.put(name, from, out, |scene| Pixels(scene.size))
             }
+            OptionName::Antialiasing => self.put(name, from, out, |scene| scene.samples),
             OptionName::Backend => self.put(name, from, out, |scene| scene.backend),
             OptionName::Shading => self.put(name, from, out, |scene| scene.options.shading),
             OptionName::Cull => self.put(name, from, out, |scene| switch_name(scene.options.cull)),

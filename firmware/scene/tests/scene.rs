@@ -98,6 +98,8 @@ fn line() -> impl Strategy<Value = String> {
             .prop_map(|(e, zero)| format!("stereo {e},{zero},red-cyan")),
         word(&[
             "stereo off",
+            "aa 1",
+            "aa 4",
             "edges over",
             "edges hidden",
             "edges off",

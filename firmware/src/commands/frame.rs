@@ -10,12 +10,14 @@ use crate::machine::Machine;
 
 impl<'l> FrameCommands<'l> for Machine {
     fn render(&mut self, depth: bool) -> CommandResult<'l> {
+        check_depth(self, depth)?;
         self.picture.request();
         self.picture.wants_depth = depth;
         Ok(Reply::After(Job::Render))
     }
 
     fn frame(&mut self, depth: bool) -> CommandResult<'l> {
+        check_depth(self, depth)?;
         self.picture.wants_depth = depth;
         Ok(Reply::After(Job::Frame { depth }))
     }
@@ -29,6 +31,14 @@ impl<'l> FrameCommands<'l> for Machine {
         bench::run(self, benchmark)?;
         Ok(Reply::Done)
     }
+}
+
+/// Checks that the picture has depth codes, if they are requested.
+fn check_depth(machine: &Machine, is_requested: bool) -> Result<(), CommandError<'static>> {
+    if is_requested && !machine.scene.has_depths() {
+        return Err(CommandError::DepthsOfSamples);
+    }
+    Ok(())
 }
 
 /// Begins to send a copy of the last frame to the host: its depth codes if `depth` is true, otherwise its colours. The display continues

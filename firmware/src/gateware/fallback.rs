@@ -22,6 +22,8 @@ pub enum Fallback {
     NoSky,
     /// This gateware is built without fog on meshes.
     NoFog,
+    /// This gateware is built without pictures of four samples a pixel.
+    NoAntialiasing,
     /// The triangle engine has fog in perspective only.
     OrthographicFog,
     /// The fog of the triangle engine would cover rectangles.
@@ -52,6 +54,7 @@ impl Fallback {
             Self::NoSmoothShading => Some("--smooth"),
             Self::NoTextures => Some("--texture"),
             Self::NoSky => Some("without --no-sky"),
+            Self::NoAntialiasing => Some("without --no-antialiasing"),
             Self::NoFog => Some("--fog"),
             Self::Field(_) => Some("--fields all"),
             Self::NoRaymarcher => Some("--blocks scanout triangle raymarch"),
@@ -123,6 +126,9 @@ impl fmt::Display for Fallback {
             )?,
             Self::NoSky => f.write_str("triangle engine: this gateware has no sky behind meshes")?,
             Self::NoFog => f.write_str("triangle engine: this gateware has no fog on meshes")?,
+            Self::NoAntialiasing => {
+                f.write_str("triangle engine: this gateware draws one sample a pixel")?;
+            }
             Self::OrthographicFog => {
                 f.write_str("triangle engine: no fog in orthographic projection")?;
             }

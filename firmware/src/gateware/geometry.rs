@@ -127,14 +127,14 @@ impl GeometryPasses {
         };
         let pass = MeshPass {
             mesh: &subject.mesh,
-            size: job.frame.size,
+            window: job.frame.window(),
             frame: setup.ok_or(EngineError::from(Error::Size))?,
             light: job.constants.light(),
             cull: subject.cull,
             shading: subject.shading,
             colour,
             textures,
-            lists: (number == 0).then(|| job.buffers.lists(self.layout, job.frame.size)),
+            lists: (number == 0).then(|| job.buffers.lists(self.layout, job.frame.window().size)),
         };
         self.prepared = Some(pass.prepare(job.engine));
         Ok(())
@@ -210,7 +210,7 @@ impl GeometryPasses {
         }
         let clipped = mem::replace(&mut buffers.stats.clipped, counts.exceptions);
         let listed = clipped as usize..counts.exceptions as usize;
-        let list_shift = buffers.list_shift(job.frame.size).into();
+        let list_shift = buffers.list_shift(job.frame.window().size).into();
         let exceptions = buffers.exceptions.get(listed).unwrap_or_default();
         let mut numbers = exceptions.iter().copied();
         let (descriptors, lists) = if joins {
@@ -271,9 +271,10 @@ impl GeometryPasses {
     fn set_up(&self, job: &mut Job, cpu: &mut Cpu) -> Result<(), Fallback> {
         let (constants, frame) = (job.constants, job.frame);
         constants.check_meshes(frame)?;
-        let width = frame.size.width();
+        let size = frame.window().size;
+        let width = size.width();
         let buffers = &mut *job.buffers;
-        let list_shift = buffers.list_shift(frame.size).into();
+        let list_shift = buffers.list_shift(size).into();
         let mut whole = ListCounts::EMPTY;
         buffers.clipped_counts = ListCounts::EMPTY;
         let mut whole = ListWriter::new(

@@ -24,17 +24,18 @@ impl Buffers {
                 ListCounts::of(self.clipped_lists, set.count)
             }
         };
-        let list_shift = self.list_shift(frame.size).into();
+        let window = frame.window();
+        let list_shift = self.list_shift(window.size).into();
         let mut writer = ListWriter::new(
             self.clipped_descriptors,
             self.clipped_lists,
             &mut self.clipped_counts,
-            frame.size.width(),
+            window.size.width(),
             list_shift,
             layout,
         );
         for rectangle in frame.drawn_rectangles() {
-            if let Some((setup, textured)) = set_up(rectangle, frame.size.pixels()) {
+            if let Some((setup, textured)) = set_up(rectangle, window, frame.drawn_samples()) {
                 let number = self.textures.number(&textured.texture);
                 let texture = textured.numbered(number.ok_or(Fallback::TooManyTextures)?);
                 writer.put(&setup, Rgb565::default(), Some(&texture));

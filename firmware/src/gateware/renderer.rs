@@ -3,12 +3,14 @@
 mod lines;
 mod repeat;
 
+use core::mem;
+
 use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, TEXTURE, WIREFRAME};
-use glint_core::picture::Size;
+use glint_core::picture::{Quarter, Samples, Size};
 use glint_engines::raymarch::{ray_counts, set_field, tables};
-use glint_engines::triangle::{fog, layout, size_code, sky as sky_of};
+use glint_engines::triangle::{average, fog, layout, size_code, sky as sky_of};
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{Counters, EngineError, Error, Input, Prepared, Raster, TriangleEngine};
@@ -43,6 +45,13 @@ enum Stage {
     Raster,
 }
 
+/// The quarters of a divided frame that have been drawn: their number, and their cost.
+#[derive(Default)]
+struct Quarters {
+    count: usize,
+    rendered: Option<Rendered>,
+}
+
 /// Time and counters at the start of a measurement.
 #[derive(Default)]
 struct Start {
@@ -61,6 +70,7 @@ pub struct GatewareRenderer {
     draws_lines: bool,
     draws_sky: bool,
     has_fog: bool,
+    averages: bool,
     /// Layout of the descriptors of this gateware.
     layout: Layout,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
@@ -72,9 +82,11 @@ pub struct GatewareRenderer {
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
     /// Size and background of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the
-    /// buffer since, or if the background was a sky.
+    /// buffer since, if the background was a sky, or if pixels are averages of samples.
     drawn: [Option<(Size, Rgb565)>; 2],
     stage: Stage,
+    /// The quarters of a divided frame that have been drawn.
+    quarters: Quarters,
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
     /// selects one of them, together with the buffers of the same index.
     constants: [FrameConstants; 2],
@@ -114,6 +126,7 @@ impl GatewareRenderer {
             draws_lines: engine.draws_lines(),
             draws_sky: engine.draws_sky(),
             has_fog: engine.has_fog(),
+            averages: engine.averages(),
             layout,
             engine,
             raymarcher,
@@ -126,6 +139,7 @@ impl GatewareRenderer {
             first_frame_buffer,
             drawn: [None; 2],
             stage: Stage::Idle,
+            quarters: Quarters::default(),
             constants: Default::default(),
             geometry: GeometryPasses::new(layout, has_geometry),
             watchdog: Watchdog::new(frequency),
@@ -162,7 +176,7 @@ impl GatewareRenderer {
 
     /// Whether a frame is in progress.
     pub fn is_busy(&self) -> bool {
-        self.stage != Stage::Idle
+        self.stage != Stage::Idle || self.quarters.count > 0
     }
 
     /// Whether the pass awaited by [`advance`](Self::advance) has ended.
@@ -195,6 +209,47 @@ impl GatewareRenderer {
     /// # Errors
     /// The gateware cannot draw the frame; the gateware is then idle.
     pub fn advance(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        cpu: &mut Cpu,
+    ) -> Option<Result<Rendered, Fallback>> {
+        if frame.is_divided() {
+            return self.advance_quarters(frame, output, cpu);
+        }
+        self.advance_part(frame, output, cpu)
+    }
+
+    /// Starts or continues the drawing of a divided frame, one quarter after the other.
+    // Not inlined, as it is rarely needed.
+    #[inline(never)]
+    fn advance_quarters(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        cpu: &mut Cpu,
+    ) -> Option<Result<Rendered, Fallback>> {
+        loop {
+            let quarter = *Quarter::ALL.get(self.quarters.count)?;
+            let drawn = self.advance_part(&Frame { quarter, ..*frame }, output, cpu)?;
+            let Quarters { count, rendered } = mem::take(&mut self.quarters);
+            let sum = match (drawn, rendered) {
+                (Err(fallback), _) => return Some(Err(fallback)),
+                (Ok(drawn), None) => drawn,
+                (Ok(drawn), Some(others)) => drawn.plus(others, 0),
+            };
+            if quarter == Quarter::ALL[Quarter::ALL.len() - 1] {
+                return Some(Ok(sum));
+            }
+            self.quarters = Quarters {
+                count: count + 1,
+                rendered: Some(sum),
+            };
+        }
+    }
+
+    /// Starts or continues the drawing of a frame, or of its quarter.
+    fn advance_part(
         &mut self,
         frame: &Frame,
         output: &mut Output,
@@ -237,10 +292,10 @@ impl GatewareRenderer {
         let next = match (self.stage, &frame.subject) {
             (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
             (Stage::Project, Subject::Wireframe(wireframe)) if WIREFRAME.is_built => {
-                match self.project(wireframe, frame.size, 0) {
+                match self.project(wireframe, frame.window(), 0) {
                     Ok(false) => return None,
                     Ok(true) => {
-                        let prepared = self.prepare_lines(frame.size, 0);
+                        let prepared = self.prepare_lines(frame.window().size, 0);
                         self.start_pass(prepared);
                         Ok(Stage::Lines)
                     }
@@ -280,7 +335,7 @@ impl GatewareRenderer {
         if EDGES.is_built
             && let Subject::Edges(..) = frame.subject
         {
-            self.start_edges(frame.size);
+            self.start_edges(frame.window().size);
             return Stage::Lines;
         }
         Stage::Raster
@@ -427,6 +482,9 @@ impl GatewareRenderer {
         if has_lines && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
+        if frame.drawn_samples() == Samples::Four && !self.averages {
+            return Err(Fallback::NoAntialiasing);
+        }
         for mesh in frame.subject.meshes() {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());
@@ -508,18 +566,22 @@ impl GatewareRenderer {
         let slot = self.slot(output.colour);
         let drawn = &mut self.drawn[usize::from(slot)];
         let sky = self.constants[place].sky();
-        let this = Some((frame.size, frame.clear)).filter(|_| sky.is_none());
+        let window = frame.window();
+        let samples = frame.drawn_samples();
+        let is_flat = sky.is_none() && samples == Samples::One;
+        let this = Some((frame.size, frame.clear)).filter(|_| is_flat);
         let pass = Raster {
-            size: size_code(frame.size),
+            size: size_code(window.size),
+            average: average(samples, window),
             frame: address(output.colour),
             slot,
-            // A pass with a sky always writes every pixel.
+            // A pass with a sky, or with averages, always writes every pixel.
             whole: *drawn != this,
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
             sky: sky.map(|constants| sky_of(constants, buffers.textures.blends())),
             fog: self.constants[place].fog().map(fog),
-            list_shift: buffers.list_shift(frame.size),
+            list_shift: buffers.list_shift(window.size),
             input: Input {
                 sets: buffers.sets,
                 textures: buffers.textures.address(),

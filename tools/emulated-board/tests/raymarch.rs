@@ -104,6 +104,7 @@ impl Bench {
     fn raster(&mut self, size: Size) -> (Vec<u16>, Vec<u32>) {
         let pass = Raster {
             size: size_code(size),
+            average: None,
             frame: FRAME,
             slot: false,
             whole: true,

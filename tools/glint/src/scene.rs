@@ -8,7 +8,7 @@ use crate::texture;
 use glint_core::colour::Shading;
 use glint_core::console::Setting;
 use glint_core::mesh::Mesh;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::shape::{MAX_BYTES, Shape};
 use glint_core::texture::Texture;
@@ -33,6 +33,8 @@ pub struct Changes {
     pub quality: Option<Quality>,
     /// Size of the picture; overrides the size of the quality.
     pub size: Option<Size>,
+    /// Number of samples of a pixel.
+    pub samples: Option<Samples>,
 }
 
 /// Whether `name` is the name of a shape that is built into the firmware.
@@ -146,6 +148,7 @@ pub fn draw<T>(
         set.map_err(|error| in_scene(refuse(error)))?;
     }
     scene.size = changes.size.unwrap_or(scene.size);
+    scene.samples = changes.samples.unwrap_or(scene.samples);
     let objects: Vec<_> = (scene.objects.iter())
         .flat_map(|placed| {
             let mesh = board.mesh(&placed.mesh);

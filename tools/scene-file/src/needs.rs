@@ -9,7 +9,7 @@ use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, 
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Material};
-use glint_core::picture::Backend;
+use glint_core::picture::{Backend, Samples};
 use glint_core::shape::Shape;
 use glint_model::{Clip, MeshOptions};
 use litex_pac::raymarch::Kind;
@@ -61,6 +61,8 @@ pub struct Needs {
     pub sky: bool,
     /// The fog on meshes in the triangle engine.
     pub fog: bool,
+    /// Pictures with four samples a pixel.
+    pub antialiasing: bool,
     /// The geometry pass of the triangle engine, which lines and most meshes require.
     pub geometry: bool,
     /// The depth buffer in memory, which triangles and depth codes require.
@@ -115,6 +117,7 @@ impl SceneFile {
             // A raymarcher draws the sky behind a field.
             sky: has_triangles && !has_fields && features.contains(&SKY),
             fog: has_triangles && scene.appearance.fog != U4_28::ZERO,
+            antialiasing: scene.samples == Samples::Four,
             // For other meshes the soft core computes the triangle descriptors.
             geometry: has(Block::Line)
                 || has_triangles
@@ -190,6 +193,7 @@ impl Needs {
             texture: self.texture || other.texture,
             sky: self.sky || other.sky,
             fog: self.fog || other.fog,
+            antialiasing: self.antialiasing || other.antialiasing,
             geometry: self.geometry || other.geometry,
             depths: self.depths || other.depths,
             fields: match (self.fields, other.fields) {
@@ -216,6 +220,10 @@ impl Needs {
         }
         if self.fog {
             options.push("--fog".to_owned());
+        }
+        let engine = [Block::Triangle, Block::Line, Block::Raymarch];
+        if engine.into_iter().any(has) && !self.antialiasing {
+            options.push("--no-antialiasing".to_owned());
         }
         if has(Block::Triangle) && !self.geometry {
             options.push("--no-geometry".to_owned());

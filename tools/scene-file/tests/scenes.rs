@@ -322,37 +322,39 @@ fn materials_of_meshes() {
 fn needs_follow_from_the_keys() {
     let options = |text: &str| with_camera(text).needs().options().join(" ");
     let table = r#"
-        model = "cube" → --blocks scanout triangle --no-sky
-        model = "cube"; background = "sky" → --blocks scanout triangle
-        model = "cube"; fog = 0.2 → --blocks scanout triangle --no-sky --fog
-        model = "cube"; geometry = false → --blocks scanout triangle --no-sky --no-geometry
-        model = "cube"; fog = "off" → --blocks scanout triangle --no-sky
+        model = "cube" → --blocks scanout triangle --no-sky --no-antialiasing
+        model = "cube"; background = "sky" → --blocks scanout triangle --no-antialiasing
+        model = "cube"; fog = 0.2 → --blocks scanout triangle --no-sky --fog --no-antialiasing
+        model = "cube"; geometry = false → --blocks scanout triangle --no-sky --no-antialiasing --no-geometry
+        model = "cube"; aa = 4 → --blocks scanout triangle --no-sky
+        field = "menger:3"; aa = 4 → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
+        model = "cube"; fog = "off" → --blocks scanout triangle --no-sky --no-antialiasing
         model = "cube"; backend = "cpu" → --blocks scanout
-        model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth --no-sky
-        model = "cube"; edges = "over" → --blocks scanout triangle line --no-sky
-        model = "cube"; steer = "gesture vga" → --blocks scanout triangle gesture --no-sky
-        model = "cube"; steer = "imu look" → --blocks scanout triangle i2c --no-sky
-        model = "cube"; clip = 10 → --blocks scanout triangle --no-sky --no-geometry
-        model = "cube"; winding = "screen" → --blocks scanout triangle --no-sky --no-geometry
-        model = "cube"; edges = "over"; clip = 10 → --blocks scanout triangle line --no-sky
-        field = "menger:3" → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
-        field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-depths --fields spheres,normals --lanes 1
-        field = "sphere:1"; material = "jade"; highlight = "0.5,9" → --blocks scanout raymarch --no-depths --fields spheres,highlight --lanes 2
-        field = "menger:3"; shadow = true; material = "ivory" → --blocks scanout raymarch --no-depths --fields menger:3,shadow --lanes 2
-        field = "menger:3"; shadow = true → --blocks scanout raymarch --no-depths --fields menger:3 --lanes 2
-        field = "box:1,1,1"; shadow = true; material = "ivory" → --blocks scanout raymarch --no-depths --fields box --lanes 2
-        field = "menger:3"; depth = true → --blocks scanout raymarch --fields menger:3 --lanes 2
-        field = "planes:4"; prepass = true → --blocks scanout raymarch --no-depths --fields box --lanes 2
-        field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2
-        model = "cube"; stereo = "0.1,4" → --blocks scanout triangle --no-sky
-        model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --no-sky --fields octahedron --lanes 2
-        field = "lattice:2,0.5"; material = "sky" → --blocks scanout raymarch --no-depths --fields lattice --lanes 2
-        field = "cone:1,2"; material = "sky" → --blocks scanout raymarch --no-depths --fields spheres,cone --lanes 2
-        field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-depths --fields menger:3,spheres,normals --lanes 2
-        field = "smooth:0.3,box:1,1,0.2+sphere:1"; material = "sky" → --blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2
-        field = "menger:2"; fog = 0.1 → --blocks scanout raymarch --no-depths --fields menger:2 --lanes 2
-        field = "menger:2"; model = "cube"; fog = 0.1 → --blocks scanout triangle raymarch --no-sky --fog --fields menger:2 --lanes 2
-        field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --no-sky --fields menger:2 --lanes 2
+        model = "cube"; shading = "smooth" → --blocks scanout triangle --smooth --no-sky --no-antialiasing
+        model = "cube"; edges = "over" → --blocks scanout triangle line --no-sky --no-antialiasing
+        model = "cube"; steer = "gesture vga" → --blocks scanout triangle gesture --no-sky --no-antialiasing
+        model = "cube"; steer = "imu look" → --blocks scanout triangle i2c --no-sky --no-antialiasing
+        model = "cube"; clip = 10 → --blocks scanout triangle --no-sky --no-antialiasing --no-geometry
+        model = "cube"; winding = "screen" → --blocks scanout triangle --no-sky --no-antialiasing --no-geometry
+        model = "cube"; edges = "over"; clip = 10 → --blocks scanout triangle line --no-sky --no-antialiasing
+        field = "menger:3" → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:3 --lanes 2
+        field = "sphere:1"; lanes = 1 → --blocks scanout raymarch --no-antialiasing --no-depths --fields spheres,normals --lanes 1
+        field = "sphere:1"; material = "jade"; highlight = "0.5,9" → --blocks scanout raymarch --no-antialiasing --no-depths --fields spheres,highlight --lanes 2
+        field = "menger:3"; shadow = true; material = "ivory" → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:3,shadow --lanes 2
+        field = "menger:3"; shadow = true → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:3 --lanes 2
+        field = "box:1,1,1"; shadow = true; material = "ivory" → --blocks scanout raymarch --no-antialiasing --no-depths --fields box --lanes 2
+        field = "menger:3"; depth = true → --blocks scanout raymarch --no-antialiasing --fields menger:3 --lanes 2
+        field = "planes:4"; prepass = true → --blocks scanout raymarch --no-antialiasing --no-depths --fields box --lanes 2
+        field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout raymarch --no-antialiasing --no-depths --fields octahedron,stereo --lanes 2
+        model = "cube"; stereo = "0.1,4" → --blocks scanout triangle --no-sky --no-antialiasing
+        model = "cube"; field = "octahedron:1"; stereo = "0.1,4" → --blocks scanout triangle raymarch --no-sky --no-antialiasing --fields octahedron --lanes 2
+        field = "lattice:2,0.5"; material = "sky" → --blocks scanout raymarch --no-antialiasing --no-depths --fields lattice --lanes 2
+        field = "cone:1,2"; material = "sky" → --blocks scanout raymarch --no-antialiasing --no-depths --fields spheres,cone --lanes 2
+        field = "union:menger:3+sphere:1" → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:3,spheres,normals --lanes 2
+        field = "smooth:0.3,box:1,1,0.2+sphere:1"; material = "sky" → --blocks scanout raymarch --no-antialiasing --no-depths --fields box,spheres,fillets --lanes 2
+        field = "menger:2"; fog = 0.1 → --blocks scanout raymarch --no-antialiasing --no-depths --fields menger:2 --lanes 2
+        field = "menger:2"; model = "cube"; fog = 0.1 → --blocks scanout triangle raymarch --no-sky --fog --no-antialiasing --fields menger:2 --lanes 2
+        field = "menger:2"; model = "cube" → --blocks scanout triangle raymarch --no-sky --no-antialiasing --fields menger:2 --lanes 2
     "#;
     for (text, expected) in rows(table) {
         assert_eq!(options(&text), expected, "{text}");
@@ -363,8 +365,14 @@ fn needs_follow_from_the_keys() {
         ));
         scene.unwrap().needs().options().join(" ")
     };
-    assert_eq!(program(""), "--blocks scanout line --no-depths");
-    assert_eq!(program("depth = true"), "--blocks scanout line");
+    assert_eq!(
+        program(""),
+        "--blocks scanout line --no-antialiasing --no-depths"
+    );
+    assert_eq!(
+        program("depth = true"),
+        "--blocks scanout line --no-antialiasing"
+    );
 }
 
 #[test]
@@ -381,6 +389,7 @@ fn parts_of_the_firmware_follow_from_the_commands() {
         model = "cow.obj"; textures = true; shading = "smooth" → cpu mesh texture upload view
         model = "torus"; background = "sky" → mesh sky view
         model = "torus"; fog = 0.1 → fog mesh view
+        model = "torus"; aa = 4 → antialiasing mesh view
         model = "torus"; geometry = false → cpu mesh view
         model = "torus"; background = "sky"; field = "menger:1" → field mesh mesh-in-field sky view
         model = "cow.obj"; textures = false → mesh texture upload view

@@ -97,7 +97,7 @@ impl Picture {
     /// # Panics
     /// If the renderer refuses the frame.
     pub fn of_frame(frame: &Frame) -> Self {
-        let [width, height] = frame.size.pixels();
+        let [width, height] = frame.window().size.pixels();
         let mut picture = Self::blank((width, height));
         picture.depth.fill(0xDEAD);
         let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];

@@ -160,29 +160,6 @@ impl Picture {
         Ok(frame)
     }
 
-    /// The picture reduced by `factor`: each pixel is the mean of a block of `factor`×`factor` pixels, rounded to nearest per channel.
-    /// Pixels beyond the last whole block are ignored.
-    #[must_use]
-    pub fn reduced(&self, factor: usize) -> Self {
-        let factor = factor.max(1);
-        let (width, height) = (self.width / factor, self.height / factor);
-        let count = (factor * factor) as u32;
-        let mut rgb = Vec::with_capacity(3 * width * height);
-        for y in 0..height {
-            for x in 0..width {
-                let mut sums = [0; 3];
-                for row in y * factor..(y + 1) * factor {
-                    for column in x * factor..(x + 1) * factor {
-                        let pixel = self.pixel(column, row);
-                        sums = std::array::from_fn(|i| sums[i] + u32::from(pixel[i]));
-                    }
-                }
-                rgb.extend(sums.map(|sum| ((sum + count / 2) / count) as u8));
-            }
-        }
-        Self::new(width, height, rgb)
-    }
-
     /// Writes the picture as a PNG file.
     ///
     /// # Errors
@@ -268,18 +245,5 @@ mod tests {
                 })
             );
         }
-    }
-
-    /// Blocks of 2×2 pixels: all black, all white, and one of four white.
-    #[test]
-    fn a_reduced_picture_has_the_means() {
-        let colours = [
-            0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, //
-            0, 0, 0xFFFF, 0xFFFF, 0, 0,
-        ];
-        let picture = Picture::from_rgb565(6, 2, &colours);
-        let rgb = [[0; 3], [255; 3], [64; 3]].concat();
-        assert_eq!(picture.reduced(2).rgb(), rgb);
-        assert_eq!(picture.reduced(1), picture);
     }
 }

@@ -67,7 +67,7 @@ impl Board {
 pub struct Options {
     /// Build exactly what these scenes need, with the SPI flash from which a board starts: names of built-in scenes, scene files, or
     /// `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_sky", "fog", "no_geometry", "no_depths", "fields", "lanes"])]
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "texture", "no_sky", "fog", "no_antialiasing", "no_geometry", "no_depths", "fields", "lanes"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
@@ -81,6 +81,9 @@ pub struct Options {
     /// Build the triangle engine with fog
     #[arg(long)]
     fog: bool,
+    /// Leave out pictures with four samples a pixel
+    #[arg(long)]
+    no_antialiasing: bool,
     /// Leave out the geometry pass of the triangle engine: the soft core makes the descriptors of meshes
     #[arg(long)]
     no_geometry: bool,
@@ -123,6 +126,7 @@ impl Options {
                 .blocks
                 .extend(Block::ALL.into_iter().filter(is_further));
             needs.sky |= is_further(&Block::Triangle);
+            needs.antialiasing |= is_further(&Block::Triangle);
             needs.geometry |= needs.blocks.contains(&Block::Line) || is_further(&Block::Triangle);
             needs.depths |= needs.blocks.contains(&Block::Triangle);
             arguments = needs.options();
@@ -138,6 +142,7 @@ impl Options {
             ("--texture", self.texture),
             ("--no-sky", self.no_sky),
             ("--fog", self.fog),
+            ("--no-antialiasing", self.no_antialiasing),
             ("--no-geometry", self.no_geometry),
             ("--no-depths", self.no_depths),
         ];

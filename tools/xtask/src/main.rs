@@ -48,7 +48,7 @@ enum Task {
         #[command(flatten)]
         options: gateware::Options,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["scene", "smooth", "texture", "no_sky", "fog", "no_depths", "fields", "lanes", "cpu", "clock", "blocks"])]
+        #[arg(long, conflicts_with_all = ["scene", "smooth", "texture", "no_sky", "fog", "no_antialiasing", "no_depths", "fields", "lanes", "cpu", "clock", "blocks"])]
         waveforms: bool,
     },
     /// Generate files from the gateware's descriptions: register access crate, register map, RTL packages, records

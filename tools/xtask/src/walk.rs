@@ -39,7 +39,7 @@ pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
 /// One command of each part of the firmware that has commands. Without `FIELD`, `field sphere:1` is refused before `SPHERES` is checked, and
 /// without `VIEW`, `background sky` before `SKY`.
-const COMMANDS: [(Feature, &str); 22] = [
+const COMMANDS: [(Feature, &str); 23] = [
     (feature::VIEW, "camera 3 0 90"),
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),
@@ -51,6 +51,7 @@ const COMMANDS: [(Feature, &str); 22] = [
     (feature::FIELD, "field"),
     (feature::SPHERES, "field sphere:1"),
     (feature::STEREO, "stereo"),
+    (feature::ANTIALIASING, "aa"),
     (feature::FOG, "fog"),
     (feature::MESH_IN_FIELD, "mesh"),
     (feature::LIGHT, "light"),

@@ -18,7 +18,7 @@ use crate::feature::Feature;
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 use crate::light::{self, Background, Highlight, Light, Material, Rgb};
-use crate::picture::{Backend, Edges};
+use crate::picture::{Backend, Edges, Samples};
 use crate::quality::Quality;
 use crate::stereo::{self, Stereo};
 use crate::wireframe::Key;
@@ -166,6 +166,8 @@ commands! {
             => key(Order::Size, "balanced");
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720"
             => key(Order::Size, "640 360");
+        aa Antialiasing(samples: Samples) or show in ANTIALIASING: "show or set the samples of a pixel: 4 against stair steps at edges, or 1"
+            => key(Order::Size, "4");
         backend Backend(backend: Backend) or show: "show or set the backend that draws frames"
             => key(Order::Size, "gateware");
         shading Shading(shading: Shading) or show in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)"

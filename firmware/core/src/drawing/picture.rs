@@ -1,4 +1,4 @@
-//! Sizes of a picture, the backends that draw pictures, and the edges of a mesh in pictures.
+//! Sizes and samples of a picture, the backends that draw pictures, and the edges of a mesh in pictures.
 
 use core::fmt;
 
@@ -26,6 +26,15 @@ impl Size {
         Self::ALL
             .into_iter()
             .find(|size| size.pixels() == [width, height])
+    }
+
+    /// The size of twice this width and height; `None` if there is no such size.
+    pub const fn doubled(self) -> Option<Self> {
+        match self {
+            Self::W320 => Some(Self::W640),
+            Self::W640 => Some(Self::W1280),
+            Self::W1280 => None,
+        }
     }
 
     const fn machine(self) -> Picture {
@@ -68,6 +77,108 @@ impl Size {
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}x{}", self.width(), self.height())
+    }
+}
+
+/// The number of samples whose average is a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Samples {
+    /// One, at the centre of the pixel.
+    #[default]
+    One,
+    /// Four, at the centres of the quarters of the pixel: the pixels of a picture of twice the width and height.
+    Four,
+}
+
+choices!(Samples {
+    One: "1",
+    Four: "4"
+});
+
+impl Samples {
+    /// Number of samples in a line of a pixel, which is also the number of lines.
+    pub const fn across(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Four => 2,
+        }
+    }
+}
+
+/// A quarter of a picture: half of its width, and half of its height.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Quarter {
+    /// Whether it is on the right side.
+    pub is_right: bool,
+    /// Whether it is at the bottom.
+    pub is_lower: bool,
+}
+
+impl Quarter {
+    /// All quarters, in the order in which they are drawn.
+    pub const ALL: [Self; 4] = {
+        const fn quarter(is_right: bool, is_lower: bool) -> Quarter {
+            Quarter { is_right, is_lower }
+        }
+        [
+            quarter(false, false),
+            quarter(true, false),
+            quarter(false, true),
+            quarter(true, true),
+        ]
+    };
+}
+
+/// The part of a picture that is drawn at once: a picture of one of the sizes, or a quarter of a picture of twice the width and height.
+/// Lengths are in samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Window {
+    /// Size of the part.
+    pub size: Size,
+    /// The quarter that is drawn; `None` for the whole picture.
+    pub quarter: Option<Quarter>,
+}
+
+impl Window {
+    /// A whole picture of this size.
+    pub const fn whole(size: Size) -> Self {
+        Self {
+            size,
+            quarter: None,
+        }
+    }
+
+    /// Width and height of the whole picture.
+    pub const fn picture(self) -> [u32; 2] {
+        let [width, height] = self.size.pixels();
+        match self.quarter {
+            Some(_) => [2 * width, 2 * height],
+            None => [width, height],
+        }
+    }
+
+    /// Column and line of the picture at which the part begins.
+    pub const fn origin(self) -> [u32; 2] {
+        let [width, height] = self.size.pixels();
+        match self.quarter {
+            Some(Quarter { is_right, is_lower }) => {
+                [width * is_right as u32, height * is_lower as u32]
+            }
+            None => [0; 2],
+        }
+    }
+
+    /// Column and line of the middle of the picture, counted from the beginning of the part.
+    pub const fn middle(self) -> [u32; 2] {
+        let ([width, height], [left, top]) = (self.picture(), self.origin());
+        [width / 2 - left, height / 2 - top]
+    }
+}
+
+/// The whole picture.
+impl From<Size> for Window {
+    fn from(size: Size) -> Self {
+        Self::whole(size)
     }
 }
 

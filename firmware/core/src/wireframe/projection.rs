@@ -14,7 +14,7 @@
 use super::program::Viewing;
 use crate::division::quotient;
 use crate::fixed::{Q5_11, Q12_20};
-use crate::picture::Size;
+use crate::picture::Window;
 
 /// A line on the screen: the distances of its two ends from the left and the top border, in units of 2^−8 pixels, within
 /// ±[`GUARD`].
@@ -49,17 +49,21 @@ struct Axis {
     /// Extent of the picture in units of 2^−8 pixels. The extent is negative for the downward axis, which is opposite to the
     /// world's y axis.
     extent: i64,
+    /// Beginning of the drawn part of the picture, in units of 2^−8 pixels.
+    origin: i64,
 }
 
 impl Projection {
-    /// Makes the projection from a program's viewing parameters to a picture.
-    pub fn new(viewing: &Viewing, size: Size) -> Self {
+    /// Makes the projection from a program's viewing parameters to a picture, or to a part of one.
+    pub fn new(viewing: &Viewing, window: impl Into<Window>) -> Self {
+        let window = window.into();
         let bits = |x: Q5_11| i64::from(x.to_bits());
         let [ex, ey, ez] = viewing.eye.map(bits);
         let [xl, yl] = viewing.window.low.map(bits);
         let [xh, yh] = viewing.window.high.map(bits);
         let plane = bits(viewing.plane);
-        let [width, height] = size.pixels().map(|pixels| i64::from(pixels) << 8);
+        let fine = |pixels: [u32; 2]| pixels.map(|pixels| i64::from(pixels) << 8);
+        let ([width, height], [left, top]) = (fine(window.picture()), fine(window.origin()));
         Self {
             eye: [ex, ey, ez].map(|x| x << 9),
             plane: plane << 9,
@@ -69,11 +73,13 @@ impl Projection {
                     offset: ex - xl,
                     span: xh - xl,
                     extent: width,
+                    origin: left,
                 },
                 Axis {
                     offset: ey - yh,
                     span: yh - yl,
                     extent: -height,
+                    origin: top,
                 },
             ],
         }
@@ -111,15 +117,19 @@ impl Projection {
     /// Computes the two screen coordinates, as quotients, of a point behind the view plane.
     ///
     /// With coordinates within ±56 and Q5.11 constants, each difference is below 2^16 units of 2^−11 or 72·2^20 units of 2^−20.
-    /// Therefore a denominator is below 2^42.2, a numerator for a picture 1280 pixels wide below 2^61.5, and numerator +
-    /// GUARD·denominator below 2^62.4.
+    /// Therefore a denominator is below 2^42.2, and a numerator below 2^62.5 for a picture 2560 pixels wide, or below 2^62.9 for a part
+    /// of it.
     fn fractions(&self, point: [i64; 3]) -> [Fraction; 2] {
         let ([x, y, z], [ex, ey, ez]) = (point, self.eye);
         let distance = ez - z;
         let [right, down] = self.axes;
-        [(right, ex - x), (down, ey - y)].map(|(axis, beside)| Fraction {
-            numerator: axis.extent * (axis.offset * distance - self.depth * beside),
-            denominator: axis.span * distance,
+        [(right, ex - x), (down, ey - y)].map(|(axis, beside)| {
+            let denominator = axis.span * distance;
+            let from_picture = axis.extent * (axis.offset * distance - self.depth * beside);
+            Fraction {
+                numerator: from_picture - axis.origin * denominator,
+                denominator,
+            }
         })
     }
 }
@@ -132,10 +142,15 @@ struct Fraction {
 }
 
 impl Fraction {
+    /// Whether the distance is within the guard band.
+    const fn is_inside(self) -> bool {
+        self.numerator.unsigned_abs() <= (GUARD as i64 * self.denominator).cast_unsigned()
+    }
+
     /// The distances from both sides of the guard band, times the denominator; negative outside.
-    const fn inside(self) -> [i64; 2] {
-        let guard = GUARD as i64 * self.denominator;
-        [guard + self.numerator, guard - self.numerator]
+    fn to_sides(self) -> [i128; 2] {
+        let guard = i128::from(GUARD) * i128::from(self.denominator);
+        [1, -1].map(|sign| guard + sign * i128::from(self.numerator))
     }
 
     /// Computes the quotient, rounded to nearest, of a fraction within the guard band.
@@ -150,7 +165,7 @@ impl Fraction {
 // Not inlined, as `enter`, so that the code for a line takes few lines of the instruction cache.
 #[inline(never)]
 fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
-    if a.iter().all(|axis| axis.inside().iter().all(|&d| d >= 0)) {
+    if a.iter().all(|axis| axis.is_inside()) {
         return Some(a.map(Fraction::value));
     }
     enter(a, b)
@@ -165,12 +180,12 @@ fn enter([ax, ay]: [Fraction; 2], [bx, by]: [Fraction; 2]) -> Option<[i32; 2]> {
     for (axis, (from, to), other) in [(0, (ax, bx), (ay, by)), (1, (ay, by), (ax, bx))] {
         for (side, (&out, &within)) in [-GUARD, GUARD]
             .iter()
-            .zip(from.inside().iter().zip(&to.inside()))
+            .zip(from.to_sides().iter().zip(&to.to_sides()))
         {
             if out >= 0 || within < 0 {
                 continue;
             }
-            let Some(across) = crossing(other, i128::from(within), i128::from(out)) else {
+            let Some(across) = crossing(other, within, out) else {
                 continue;
             };
             return Some(if axis == 0 {
@@ -186,7 +201,7 @@ fn enter([ax, ay]: [Fraction; 2], [bx, by]: [Fraction; 2]) -> Option<[i32; 2]> {
 /// Computes the position on one axis, rounded to nearest, at which a segment from `a` to `b` crosses a plane, from the ends'
 /// distances to the plane: `out` < 0 at `a` and `within` ≥ 0 at `b`. `None` outside the guard band.
 fn crossing((a, b): (Fraction, Fraction), within: i128, out: i128) -> Option<i32> {
-    // The point is (a·within − b·out)/(within − out). The common divisor cancels; both sums are below 2^125.
+    // The point is (a·within − b·out)/(within − out). The common divisor cancels; both sums are below 2^126.9.
     let blend = |a: i64, b: i64| i128::from(a) * within - i128::from(b) * out;
     let numerator = blend(a.numerator, b.numerator);
     let denominator = blend(a.denominator, b.denominator);

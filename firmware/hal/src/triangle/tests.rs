@@ -204,6 +204,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
     let mut engine = engine.unwrap();
     let pass = Raster {
         size: Size::W1280,
+        average: None,
         frame: 0x4100_0000,
         slot: true,
         whole: false,

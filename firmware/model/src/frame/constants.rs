@@ -162,27 +162,27 @@ impl FrameConstants {
 
     fn compute(&mut self, frame: &Frame) -> Result<(), RenderError> {
         (self.light, self.field) = (None, None);
-        let (view, size) = (&frame.view, frame.size.pixels().into());
+        let (view, window) = (&frame.view, frame.window());
         if frame.is_pair() {
             return Err(RenderError::Stereo);
         }
         match &frame.subject {
             Subject::Mesh(subject) | Subject::Edges(subject, _) if MESH.is_built => {
                 let mesh = self.mesh.get_or_insert_default();
-                mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
+                mesh.update(view, window, subject.mesh.radius(), &mut self.scale)?;
                 mesh.volume = mesh.volume_of(subject.clip)?;
             }
             Subject::Field(subject) if FIELD.is_built => {
                 self.mesh = None;
                 let options = subject.options(view, frame.stereo);
-                let setup = FieldSetup::new(subject.field, view, size, &options)?;
+                let setup = FieldSetup::in_window(subject.field, view, window, &options)?;
                 self.set_field(setup, &options);
             }
             Subject::MeshInField(mesh, subject) if MESH_IN_FIELD.is_built => {
                 let (radius, clip) = (mesh.mesh.radius(), mesh.clip);
                 let options = subject.options(view, None);
                 let (mesh, field) =
-                    mesh_in_field::constants(view, size, radius, subject.field, &options)?;
+                    mesh_in_field::constants(view, window, radius, subject.field, &options)?;
                 self.mesh = Some(mesh.with_clip(clip)?);
                 self.set_field(field, &options);
             }
@@ -191,7 +191,7 @@ impl FrameConstants {
             }
             Subject::Objects(objects) if OBJECT.is_built => {
                 let camera = self.mesh.get_or_insert_default();
-                camera.update(view, size, 0, &mut self.scale)?;
+                camera.update(view, window, 0, &mut self.scale)?;
                 camera.set_depths(depths(objects, camera));
             }
             // A wireframe, or a subject that this build does not support.
@@ -206,7 +206,10 @@ impl FrameConstants {
             let colours = frame
                 .sky
                 .filter(|_| self.mesh.is_some() && self.field.is_none());
-            self.sky = colours.map(|colours| Sky::new(view, frame.size.pixels(), colours));
+            self.sky = colours.map(|colours| {
+                let sky = Sky::new(view, frame.size.pixels(), colours);
+                sky.in_window(window, frame.drawn_samples())
+            });
         }
         if FOG.is_built {
             let (density, colour) = frame.mesh_fog();

@@ -3,14 +3,14 @@
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
+use glint_core::feature::{ANTIALIASING, FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::framing::BoundingSphere;
 use glint_core::light::{MeshLighting, Rgb};
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
-use glint_core::picture::{Edges, Size};
+use glint_core::picture::{Edges, Quarter, Samples, Size, Window};
 use glint_core::quality::Quality;
 use glint_core::rectangle::Rectangle;
 use glint_core::stereo::Stereo;
@@ -29,6 +29,10 @@ pub struct Frame<'a> {
     pub view: View,
     /// Size of the picture.
     pub size: Size,
+    /// Number of samples whose average is a pixel.
+    pub samples: Samples,
+    /// The quarter to draw, if the frame [is divided](Self::is_divided).
+    pub quarter: Quarter,
     /// Background: the colour of pixels without a triangle. A field covers every pixel.
     pub clear: Rgb565,
     /// Colours of a sky at zenith, horizon and nadir, which is drawn in place of `clear` behind meshes and their edges.
@@ -245,12 +249,14 @@ impl FieldSubject<'_> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame with one eye, a black background, white light at the camera for its meshes, and no rectangles.
+    /// A frame with one eye, one sample a pixel, a black background, white light at the camera for its meshes, and no rectangles.
     pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
         Self {
             subject,
             view,
             size,
+            samples: Samples::One,
+            quarter: Quarter::ALL[0],
             clear: Rgb565(0),
             sky: None,
             fog: U4_28::ZERO,
@@ -259,6 +265,47 @@ impl<'a> Frame<'a> {
             stereo: None,
             rectangles: &[],
         }
+    }
+
+    /// Whether a quarter of the frame is drawn at a time, because the picture of its samples is larger than the largest size.
+    #[inline(always)]
+    pub const fn is_divided(&self) -> bool {
+        self.window().quarter.is_some()
+    }
+
+    /// The part of the picture of the frame's samples that is drawn: the whole picture, or the quarter of a
+    /// [divided](Self::is_divided) frame.
+    #[inline(always)]
+    pub const fn window(&self) -> Window {
+        match (self.drawn_samples(), self.size.doubled()) {
+            (Samples::One, _) => Window::whole(self.size),
+            (Samples::Four, Some(size)) => Window::whole(size),
+            (Samples::Four, None) => Window {
+                size: self.size,
+                quarter: Some(self.quarter),
+            },
+        }
+    }
+
+    /// The number of samples of a pixel: one, if this build draws no more.
+    #[inline(always)]
+    pub const fn drawn_samples(&self) -> Samples {
+        if ANTIALIASING.is_built {
+            self.samples
+        } else {
+            Samples::One
+        }
+    }
+
+    /// The frames to draw one after the other for this frame: one for each quarter, or only this frame.
+    pub fn parts(&self) -> impl Iterator<Item = Self> {
+        let count = if self.is_divided() {
+            Quarter::ALL.len()
+        } else {
+            1
+        };
+        let quarters = Quarter::ALL.into_iter().take(count);
+        quarters.map(|quarter| Self { quarter, ..*self })
     }
 
     /// The rectangles, if this build draws textures.

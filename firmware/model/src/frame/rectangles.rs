@@ -17,7 +17,8 @@ impl Frame<'_> {
     ) {
         for rectangle in self.drawn_rectangles() {
             progress();
-            let Some((setup, textured)) = set_up(rectangle, [buffer.width, buffer.height]) else {
+            let visible = set_up(rectangle, self.window(), self.drawn_samples());
+            let Some((setup, textured)) = visible else {
                 continue;
             };
             let coverage = draw_textured(&setup, &textured, buffer);

@@ -2,13 +2,14 @@
 
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::Q2_23;
+use glint_core::picture::Window;
 
-use crate::error::{FIELD_HALF_WIDTH, RenderError, SIZES};
+use crate::error::{FIELD_HALF_WIDTH, RenderError};
 
 /// Directions of the pixels' rays with 51 fraction bits, scaled so that their component along the camera's forward axis n
 /// is 1. `narrow` converts them to the directions D of docs/formats/raymarch.md ("Rays").
 pub(super) struct Directions {
-    /// Direction of the first pixel's ray, for each eye.
+    /// Direction of the ray of the window's first pixel, for each eye.
     pub first: [[i64; 3]; 2],
     /// Change of the direction per pixel to the right.
     pub across: [i64; 3],
@@ -21,8 +22,8 @@ pub(super) struct Directions {
 
 impl Directions {
     /// Computes the directions for the cameras of two eyes, which differ only in position and shift, or for one camera given twice.
-    pub fn new(eyes: &[View; 2], width: u32, height: u32) -> Self {
-        let [view, _] = eyes;
+    pub fn new(eyes: &[View; 2], window: Window) -> Self {
+        let ([view, _], [width, height]) = (eyes, window.picture());
         let half_width = view.half_width().to_bits() as i64;
         // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
         let step = |row: [Q2_23; 3]| {
@@ -51,8 +52,11 @@ impl Directions {
         const ONE: i64 = (1 << 51) - (1 << 36);
         let largest = corners.flatten().max().unwrap_or(0);
         let exponent = (0..3).find(|&e| largest >> e < ONE).unwrap_or(3);
+        let [column, line] = window.origin().map(i64::from);
         Self {
-            first,
+            first: first.map(|first| {
+                [0, 1, 2].map(|i: usize| first[i] + column * across[i] + line * down[i])
+            }),
             across,
             down,
             exponent,
@@ -66,14 +70,11 @@ impl Directions {
     }
 }
 
-/// Checks that a field can be drawn with this camera, in a picture of this size.
+/// Checks that a field can be drawn with this camera.
 ///
 /// # Errors
-/// [`RenderError::Size`], [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.
-pub(super) fn check(view: &View, (width, height): (u32, u32)) -> Result<(), RenderError> {
-    if !SIZES.contains(&(width, height)) {
-        return Err(RenderError::Size { width, height });
-    }
+/// [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.
+pub(super) fn check(view: &View) -> Result<(), RenderError> {
     if view.projection() == Projection::Orthographic {
         return Err(RenderError::Orthographic);
     }

@@ -6,6 +6,7 @@ use glint_core::field::{
     Primitive, Solid, Union, units,
 };
 use glint_core::fixed::Q32_32;
+use glint_core::picture::Window;
 use glint_core::stereo::Stereo;
 
 use super::blend::{Beside, Blend};
@@ -34,20 +35,20 @@ pub struct Marching {
 }
 
 impl Marching {
-    /// Computes the constants for a union, its bounding box, a camera and a picture of one of the [`SIZES`](crate::SIZES).
+    /// Computes the constants for a union, its bounding box, a camera and a window of a picture.
     ///
     /// # Errors
-    /// Those of [`Exits::new`].
+    /// Those of [`Exits::in_window`].
     pub(super) fn new(
         union: &Union,
         half: [Q32_32; 3],
         view: &View,
-        size: (u32, u32),
+        window: Window,
         stereo: Option<Stereo>,
         tuning: Tuning,
     ) -> Result<Self, RenderError> {
         let bounds = Field::Primitive(Cuboid { half }.into());
-        let mut entry = Exits::new(&bounds, view, size, stereo, Words::CHOSEN)?;
+        let mut entry = Exits::in_window(&bounds, view, window, stereo, Words::CHOSEN)?;
         for eye in &mut entry.eyes {
             // Adds 2^−18 to D, so that truncation to 18 bits rounds to nearest.
             eye.first = eye.first.map(|part| part.wrapping_add(1 << 12));

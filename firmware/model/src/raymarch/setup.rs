@@ -4,6 +4,7 @@ use glint_core::camera::View;
 use glint_core::feature::{SPHERES, STEREO};
 use glint_core::field::{Field, FixedSpheres};
 use glint_core::fixed::Q32_32;
+use glint_core::picture::Window;
 use glint_core::stereo::Tint;
 
 use super::directions::check;
@@ -11,14 +12,14 @@ use super::exits::{Exits, Words};
 use super::marching::{Marching, extent};
 use super::options::FieldOptions;
 use crate::depth::DepthScale;
-use crate::error::RenderError;
+use crate::error::{RenderError, whole_picture};
 
 /// The constants of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldSetup {
-    /// Width of the picture in pixels.
+    /// Width of the window in pixels.
     pub width: u32,
-    /// Height of the picture in pixels.
+    /// Height of the window in pixels.
     pub height: u32,
     /// Field units per world unit: 2 to 256.
     pub scale: Q32_32,
@@ -56,10 +57,23 @@ impl FieldSetup {
     pub fn new(
         field: &Field,
         view: &View,
-        (width, height): (u32, u32),
+        size: (u32, u32),
         options: &FieldOptions,
     ) -> Result<Self, RenderError> {
-        check(view, (width, height))?;
+        Self::in_window(field, view, whole_picture(size)?, options)
+    }
+
+    /// Computes the constants for a window of a picture.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), but for the size.
+    pub(crate) fn in_window(
+        field: &Field,
+        view: &View,
+        window: Window,
+        options: &FieldOptions,
+    ) -> Result<Self, RenderError> {
+        check(view)?;
         let stereo = options.stereo.filter(|_| STEREO.is_built);
         let extent = match field {
             Field::Primitive(primitive) => primitive.placed().extent,
@@ -69,11 +83,11 @@ impl FieldSetup {
         let (form, exits) = match (field, extent) {
             (Field::Union(union), Some(half)) if SPHERES.is_built && !Exits::draws(field) => {
                 let tuning = options.tuning;
-                let marching = Marching::new(union, half, view, (width, height), stereo, tuning)?;
+                let marching = Marching::new(union, half, view, window, stereo, tuning)?;
                 (Form::Marching(marching), marching.entry)
             }
             _ => {
-                let exits = Exits::new(field, view, (width, height), stereo, Words::CHOSEN)?;
+                let exits = Exits::in_window(field, view, window, stereo, Words::CHOSEN)?;
                 let exits = match options.sun {
                     Some(direction) => exits.with_shadows(direction),
                     None => exits,
@@ -84,6 +98,7 @@ impl FieldSetup {
         let (scale, exponent) = (exits.scale, exits.exponent);
         let near = i64::from(view.near().to_bits()) << 9;
         let world_depth = DepthScale::from_nearest(nearest.max(near));
+        let [width, height] = window.size.pixels();
         Ok(Self {
             width,
             height,

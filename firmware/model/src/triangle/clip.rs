@@ -121,8 +121,9 @@ impl Plane {
     /// The exact signed distance of a vertex from the plane, times a positive factor that depends on the plane only;
     /// negative is outside.
     pub fn distance(self, frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
-        let [left, right] = frame.volume.sides(frame.width);
-        let [top, bottom] = frame.volume.sides(frame.height);
+        let ([width, height], [across, down]) = (frame.picture, frame.middle);
+        let [left, right] = frame.volume.sides(width, across);
+        let [top, bottom] = frame.volume.sides(height, down);
         match self {
             Self::Near => vertex.z - frame.near,
             Self::Far => match frame.volume {
@@ -199,27 +200,26 @@ const fn divisor(frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
 }
 
 /// Converts the camera coordinate X or Y of a vertex to half pixels at distance 1, with the fraction bits of Z. The result
-/// is below 2^58.7. `Plane::distance` adds multiples of Z to it, at most 5375·|Z|, which is below 2^53.1.
+/// is below 2^59.7. `Plane::distance` adds multiples of Z to it, at most 6655·|Z|, which is below 2^53.4.
 fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle lies wholly beyond one side of the picture. In perspective the plane through this side and the eye separates the
-/// triangle from the picture, so the test is also valid for vertices behind the eye.
+/// Whether a triangle lies wholly beyond one side of the window. In perspective the plane through this side and the eye separates the
+/// triangle from the window, so the test is also valid for vertices behind the eye.
 ///
 /// This fast test replaces the clipping of such a triangle, which would cover no pixel.
 pub fn off_picture<C: Cut>(frame: &MeshSetup, triangle: &[C; 3]) -> bool {
-    let off = |x: fn(&CameraVertex) -> i64, size: u32| {
+    let off = |x: fn(&CameraVertex) -> i64, size: u32, middle: u32| {
+        let [first, last] = [2 * middle, 2 * (size - middle)].map(i64::from);
         let places = triangle.each_ref().map(|corner| {
             let v = corner.vertex();
-            (
-                half_pixels(frame, x(v)),
-                i64::from(size) * divisor(frame, v),
-            )
+            (half_pixels(frame, x(v)), divisor(frame, v))
         });
-        places.iter().all(|(x, border)| *x < -border) || places.iter().all(|(x, border)| x > border)
+        places.iter().all(|(x, z)| *x < -first * z) || places.iter().all(|(x, z)| *x > last * z)
     };
-    off(|v| v.x, frame.width) || off(|v| v.y, frame.height)
+    let [across, down] = frame.middle;
+    off(|v| v.x, frame.width, across) || off(|v| v.y, frame.height, down)
 }
 
 /// Clips a triangle to the volume of the frame, starting with its first vertex.

@@ -2,9 +2,10 @@
 
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_core::picture::Window;
 
 use crate::depth::DepthScale;
-use crate::error::{MAX_EYE, RenderError, SIZES};
+use crate::error::{MAX_EYE, RenderError, whole_picture};
 use crate::triangle::rounding::nearest;
 use crate::triangle::volume::{Clip, Volume};
 
@@ -12,11 +13,15 @@ use crate::triangle::volume::{Clip, Volume};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshSetup {
-    /// Width of the picture in pixels.
+    /// Width of the window in pixels.
     pub width: u32,
-    /// Height of the picture in pixels.
+    /// Height of the window in pixels.
     pub height: u32,
-    /// Scale shift f: the number of fraction bits of `u` and `v`, 7 to 18.
+    /// Width and height of the picture in pixels.
+    pub picture: [u32; 2],
+    /// Column and line of the middle of the picture, counted from the beginning of the window.
+    pub middle: [u32; 2],
+    /// Scale shift f: the number of fraction bits of `u` and `v`, 6 to 18.
     pub scale_shift: u32,
     /// The projection.
     pub projection: Projection,
@@ -49,36 +54,34 @@ pub struct MeshSetup {
 }
 
 impl MeshSetup {
-    /// Computes the constants for a camera whose eye is within 8 world units of the origin, a picture of one of the [`SIZES`], and a
-    /// mesh with the given `radius` (14 fraction bits).
+    /// Computes the constants for a camera whose eye is within 8 world units of the origin, a picture of one of the
+    /// [`SIZES`](crate::SIZES), and a mesh with the given `radius` (14 fraction bits).
     ///
     /// # Errors
     /// [`RenderError::Size`], [`RenderError::Eye`] or [`RenderError::Near`].
     pub fn new(view: &View, width: u32, height: u32, radius: u32) -> Result<Self, RenderError> {
         let mut setup = Self::default();
-        setup.update(view, (width, height), radius, &mut Scale::default())?;
+        let window = whole_picture((width, height))?;
+        setup.update(view, window, radius, &mut Scale::default())?;
         Ok(setup)
     }
 
-    /// Computes the constants as [`new`](Self::new) does, in place, because copying them is slow on the soft core. `scale` is kept from
-    /// one frame to the next.
+    /// Computes the constants for a window of a picture as [`new`](Self::new) does, in place, because copying them is slow on the soft
+    /// core. `scale` is kept from one frame to the next.
     ///
     /// # Errors
     /// As [`new`](Self::new); the constants must then not be used.
     pub(crate) fn update(
         &mut self,
         view: &View,
-        (width, height): (u32, u32),
+        window: Window,
         radius: u32,
         scale: &mut Scale,
     ) -> Result<(), RenderError> {
-        if !SIZES.contains(&(width, height)) {
-            return Err(RenderError::Size { width, height });
-        }
         if !view.is_within(MAX_EYE) {
             return Err(RenderError::Eye(view.eye()));
         }
-        scale.update(width, view);
+        scale.update(window.picture()[0], view);
         let projection = view.projection();
         if projection == Projection::Perspective {
             // The vertex stage shifts X and Y right by at least 6 bits.
@@ -88,8 +91,8 @@ impl MeshSetup {
                 return Err(RenderError::Near { near, least });
             }
         }
-        self.width = width;
-        self.height = height;
+        [self.width, self.height] = window.size.pixels();
+        (self.picture, self.middle) = (window.picture(), window.middle());
         self.scale_shift = scale.shift;
         self.projection = projection;
         self.u = across(view).map(|r| scale.scaled(r));
@@ -151,7 +154,7 @@ impl MeshSetup {
     pub fn engine_shift(&self) -> u32 {
         match self.projection {
             Projection::Perspective => self.scale_shift,
-            // ke is in −6…5 for the engine, and f at least 7.
+            // ke is in −6…5 for the engine, and f at least 6.
             Projection::Orthographic => (self.scale_shift as i32 + 1 - self.depth.exponent) as u32,
         }
     }
@@ -216,7 +219,7 @@ impl Scale {
 
     /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24, where c is 1 + 2^−12, or √2·(1 + 2^−12) for a shifted picture.
     ///
-    /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12. With a shift of at
+    /// s is in [1.39, 147128], so f is in 6…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12. With a shift of at
     /// most 1, a component of u − shift·n is at most √2 times this bound.
     // Not inlined, because most frames reuse the scale of the previous frame.
     #[inline(never)]

@@ -1,5 +1,6 @@
 //! Rectangles of the screen (docs/formats/texture.md, "Rectangles"), as input of the walker.
 
+use glint_core::picture::{Samples, Window};
 use glint_core::rectangle::Rectangle;
 
 use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
@@ -11,10 +12,18 @@ const RANGE_LOG2: u32 = 1;
 /// Value of an accumulator at the end of the range, base-2 logarithm.
 const ACCUMULATOR_LOG2: u32 = 31;
 
-/// The visible part of a rectangle in a picture of this width and height, as the setup of a triangle: two of its edges are the left and the
-/// right side, every pixel passes the third edge, and the bounds limit the rows. `None` if no pixel is visible.
-pub fn set_up<'a>(rectangle: &Rectangle<'a>, picture: [u32; 2]) -> Option<(Setup, Textured<'a>)> {
-    let [x, y] = [0, 1].map(|axis: usize| Span::new(rectangle, axis, picture[axis]));
+/// The visible part of a rectangle in a window of a picture with this number of samples a pixel, as the setup of a triangle: two of its
+/// edges are the left and the right side, every sample passes the third edge, and the bounds limit the rows. `None` if no sample is
+/// visible.
+pub fn set_up<'a>(
+    rectangle: &Rectangle<'a>,
+    window: Window,
+    samples: Samples,
+) -> Option<(Setup, Textured<'a>)> {
+    let [x, y] = [0, 1].map(|axis: usize| {
+        let [origin, size] = [window.origin(), window.size.pixels()].map(|pair| pair[axis]);
+        Span::new(rectangle, axis, [origin, size], samples.across())
+    });
     let ([x, y], white) = ([x?, y?], [1 << 8; 3]);
     let edge = |start: i32, step_x| Edge {
         start: start.into(),
@@ -56,21 +65,28 @@ pub fn set_up<'a>(rectangle: &Rectangle<'a>, picture: [u32; 2]) -> Option<(Setup
     Some((setup, textured))
 }
 
-/// The visible columns or rows of a rectangle, and the accumulator of their texture coordinate.
+/// The visible columns or rows of samples of a rectangle, and the accumulator of their texture coordinate.
 struct Span {
     /// The first visible column or row, and one past the last one.
     first: i32,
     end: i32,
-    /// The accumulator at the first visible pixel.
+    /// The accumulator at the first visible sample.
     start: u32,
-    /// The step from a pixel to the next.
+    /// The step from a sample to the next.
     step: u32,
 }
 
 impl Span {
-    fn new(rectangle: &Rectangle, axis: usize, picture: u32) -> Option<Self> {
-        let (place, size) = (i32::from(rectangle.place[axis]), rectangle.size[axis]);
-        let (first, end) = (place.max(0), (place + i32::from(size)).min(picture as i32));
+    /// The span in a window from the sample `origin` on, with a number of `samples` in a pixel's width or height.
+    fn new(
+        rectangle: &Rectangle,
+        axis: usize,
+        [origin, window]: [u32; 2],
+        samples: u32,
+    ) -> Option<Self> {
+        let place = i32::from(rectangle.place[axis]) * samples as i32 - origin as i32;
+        let size = u32::from(rectangle.size[axis]) * samples;
+        let (first, end) = (place.max(0), (place + size as i32).min(window as i32));
         let side_log2 = rectangle.texture.size_log2()[axis];
         let from = u32::from(rectangle.part.place[axis]);
         let to = from + u32::from(rectangle.part.size[axis]);
@@ -78,8 +94,8 @@ impl Span {
             return None;
         }
         let [low, high] = [from, to].map(|texel| side(texel, side_log2));
-        // Rounded down, so that no pixel is beyond the part.
-        let step = (high - low) / u32::from(size);
+        // Rounded down, so that no sample is beyond the part.
+        let step = (high - low) / size;
         let passed = step * (first - place) as u32 + step / 2;
         let (start, step) = if rectangle.is_mirrored[axis] {
             (high - passed, step.wrapping_neg())

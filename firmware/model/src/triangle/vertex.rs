@@ -115,17 +115,17 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
         return snap_orthographic(frame, vertex);
     }
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
-    // Z is at least the distance of the near plane, so `lead` is in 30…40, and at least 40 − f. With f in 7…18 the shift is in
+    // Z is at least the distance of the near plane, so `lead` is in 30…40, and at least 40 − f. With f in 6…18 the shift is in
     // 6…24.
     let shift = frame.scale_shift + lead - 34;
-    let divide = |x: i64, size: u32| {
+    let divide = |x: i64, middle: u32| {
         // `normalised` is s14.11, and its product with the u24 number y is exact.
         let normalised = nearest(x, shift).clamp(-LIMIT, LIMIT - 1);
-        (128 * size) as i32 + nearest(normalised * i64::from(y), 27) as i32
+        (middle << 8) as i32 + nearest(normalised * i64::from(y), 27) as i32
     };
     ScreenVertex {
-        x: divide(vertex.x, frame.width),
-        y: divide(vertex.y, frame.height),
+        x: divide(vertex.x, frame.middle[0]),
+        y: divide(vertex.y, frame.middle[1]),
         w: depth(frame, y, lead),
     }
 }
@@ -136,15 +136,15 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
 #[inline(never)]
 fn snap_orthographic(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     const BITS: i64 = (1 << 24) - 1;
-    let place = |x: i64, size: u32| {
+    let place = |x: i64, middle: u32| {
         let normalised = nearest(x, frame.scale_shift + 2).clamp(-LIMIT, LIMIT - 1);
-        (128 * size) as i32 + nearest(normalised, 4) as i32
+        (middle << 8) as i32 + nearest(normalised, 4) as i32
     };
     // Z is below 2^(36 + ke), with ke in −6…5; other depths, of a mesh beyond its radius, wrap.
     let m = (vertex.z >> (12 + frame.depth.exponent)) & BITS;
     ScreenVertex {
-        x: place(vertex.x, frame.width),
-        y: place(vertex.y, frame.height),
+        x: place(vertex.x, frame.middle[0]),
+        y: place(vertex.y, frame.middle[1]),
         w: (-m & BITS).min(LARGEST_DEPTH.into()) as u32,
     }
 }

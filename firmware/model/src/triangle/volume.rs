@@ -30,13 +30,15 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// The distances in half pixels from the middle of the picture, `size` pixels wide or high, to its two sides.
-    pub fn sides(self, size: u32) -> [i64; 2] {
-        let size = i64::from(size);
+    /// The distances in half pixels from the middle of the picture, `picture` pixels wide or high, to the two sides of the volume.
+    /// `middle` is the place of the middle in the window.
+    pub fn sides(self, picture: u32, middle: u32) -> [i64; 2] {
+        let [picture, twice] = [picture, 2 * middle].map(i64::from);
+        // The guard band ends at ±2047.5 pixels from the first column.
+        let guard = [4095 + twice, 4095 - twice];
         match self {
-            // The guard band ends at ±2047.5 pixels from the first column.
-            Self::Guard => [4095 + size, 4095 - size],
-            Self::View { .. } => [size, size],
+            Self::Guard => guard,
+            Self::View { .. } => guard.map(|side| side.min(picture)),
         }
     }
 }

@@ -18,6 +18,7 @@ mod projection;
 mod reciprocal;
 mod rectangles;
 mod render;
+mod samples;
 mod selftest;
 mod sky;
 mod smooth;

@@ -3,6 +3,7 @@
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger};
 use glint_core::mesh::Mesh;
+use glint_core::picture::{Size, Window};
 use glint_model::raymarch::{FieldOptions, render_field};
 use glint_model::triangle::{PreparedMesh, draw_parts};
 use glint_model::{Options, Projected, RenderError, mesh_in_field};
@@ -11,13 +12,14 @@ use glint_vectors::{Camera, Model, Picture, Random};
 use crate::{cube, mesh_of};
 
 const SIZE: (u32, u32) = (320, 180);
+const WINDOW: Window = Window::whole(Size::W320);
 
 /// Draws three pictures with the same constants: the mesh, the field, and the mesh over the field.
 fn draw(mesh: &Mesh, field: &str, view: &View) -> [Picture; 3] {
     let field = Field::parse(field).unwrap();
     let options = FieldOptions::default();
     let (frame, setup) =
-        mesh_in_field::constants(view, SIZE, mesh.radius(), &field, &options).unwrap();
+        mesh_in_field::constants(view, WINDOW, mesh.radius(), &field, &options).unwrap();
     assert_eq!(frame.depth, setup.world_depth);
     let mut scratch = vec![Projected::Behind; mesh.vertex_count() as usize];
     let mut draw = |picture: &mut Picture, with_mesh: bool, with_field: bool| {
@@ -143,7 +145,7 @@ fn shared_constants_keep_their_ranges() {
         let radius = random.integer(0, 3 << 14) as u32;
         let options = FieldOptions::default();
         let (frame, setup) =
-            mesh_in_field::constants(&view, SIZE, radius, &field, &options).unwrap();
+            mesh_in_field::constants(&view, WINDOW, radius, &field, &options).unwrap();
         let scale = frame.depth;
         assert_eq!(scale, setup.world_depth);
         assert!((1 << 16..1 << 17).contains(&scale.mantissa) && (-5..=5).contains(&scale.exponent));
@@ -167,9 +169,10 @@ fn far_eyes_and_wide_cameras_are_refused() {
         ..Camera::of(&view)
     }
     .rounded();
-    let refused = mesh_in_field::constants(&wide, SIZE, 1 << 14, &field, &FieldOptions::default());
+    let refused =
+        mesh_in_field::constants(&wide, WINDOW, 1 << 14, &field, &FieldOptions::default());
     assert_eq!(refused, Err(RenderError::HalfWidth(wide.half_width())));
     let far = Camera::looking([0.0, -9.0, 0.0], [0.0; 3], 0.9, 0.1).rounded();
-    let refused = mesh_in_field::constants(&far, SIZE, 1 << 14, &field, &FieldOptions::default());
+    let refused = mesh_in_field::constants(&far, WINDOW, 1 << 14, &field, &FieldOptions::default());
     assert_eq!(refused, Err(RenderError::Eye(far.eye())));
 }

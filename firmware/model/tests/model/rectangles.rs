@@ -5,7 +5,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::Rgb565;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, U4_28};
-use glint_core::picture::{Edges, Size};
+use glint_core::picture::{Edges, Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::rectangle::{Part, Rectangle};
 use glint_core::stereo::{Stereo, Tint};
@@ -167,7 +167,7 @@ fn positions_are_those_of_pixel_centres() {
         let mut rectangle = random_rectangle(&mut random, texture, 1);
         rectangle.size = [width as u16, 8];
         rectangle.place = [random.integer((-width).max(-32_768), 1279) as i16, 0];
-        let Some((setup, textured)) = set_up(&rectangle, [1280, 720]) else {
+        let Some((setup, textured)) = set_up(&rectangle, Size::W1280.into(), Samples::One) else {
             continue;
         };
         let (first, last) = (setup.bounds.left, setup.bounds.right - 1);
@@ -242,7 +242,7 @@ fn invalid_rectangles_are_not_drawn() {
     let texture = Texture::new_checked(&bytes).unwrap();
     let part = |place, size| Part { place, size };
     let whole = Rectangle::new(texture, part([0; 2], [8; 2]), [0; 2]);
-    assert!(set_up(&whole, [320, 180]).is_some());
+    assert!(set_up(&whole, Size::W320.into(), Samples::One).is_some());
     for rectangle in [
         Rectangle {
             size: [0, 8],
@@ -281,7 +281,10 @@ fn invalid_rectangles_are_not_drawn() {
             ..whole
         },
     ] {
-        assert!(set_up(&rectangle, [320, 180]).is_none(), "{rectangle:?}");
+        assert!(
+            set_up(&rectangle, Size::W320.into(), Samples::One).is_none(),
+            "{rectangle:?}"
+        );
     }
 }
 

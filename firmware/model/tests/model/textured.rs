@@ -1,7 +1,6 @@
 //! Textures on triangles against exact perspective: positions in the texture, mip levels, and the colours of whole pictures.
 
 use glint_core::colour::{Rgb565, Shading};
-use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::{ChunkHeader, Mesh, MeshHeader, Triangle, Vertex};
 use glint_core::picture::Size;
@@ -134,23 +133,17 @@ fn positions_and_levels_are_those_of_exact_perspective() {
 
 /// A frame of a mesh in full light, without shading.
 fn frame<'a>(mesh: Mesh<'a>, camera: &Camera, shading: Shading) -> Frame<'a> {
+    let subject = Subject::Mesh(MeshSubject {
+        shading,
+        ..MeshSubject::new(mesh)
+    });
     Frame {
-        subject: Subject::Mesh(MeshSubject {
-            shading,
-            ..MeshSubject::new(mesh)
-        }),
-        view: camera.rounded(),
-        size: Size::W640,
         clear: Rgb565(0x001F),
-        sky: None,
-        fog: U4_28::ZERO,
         lighting: MeshLighting {
             ambient: [0xFF; 3],
             light: Light::at_camera([0; 3]),
         },
-        replacement_texture: None,
-        stereo: None,
-        rectangles: &[],
+        ..Frame::new(subject, camera.rounded(), Size::W640)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Wireframes, and the edges of meshes: the CPU makes segments, and the line engine draws them.
 
-use glint_core::picture::Size;
+use glint_core::picture::{Size, Window};
 use glint_core::wireframe::Projection;
 use glint_engines::triangle::size_code;
 use glint_hal::triangle::{EngineError, Error, Prepared};
@@ -22,11 +22,11 @@ impl GatewareRenderer {
     pub(super) fn project(
         &mut self,
         subject: &WireframeSubject,
-        size: Size,
+        window: Window,
         place: usize,
     ) -> Result<bool, EngineError> {
         let done = &mut self.projected;
-        let projection = Projection::new(subject.program.viewing(), size);
+        let projection = Projection::new(subject.program.viewing(), window);
         let records = self.buffers[place].segments_mut();
         let Some((header, records)) = records.split_first_mut() else {
             return Err(FULL);

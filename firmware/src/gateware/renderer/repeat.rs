@@ -1,7 +1,9 @@
 //! Benchmark: one frame drawn repeatedly, back to back.
 
-use glint_hal::triangle::{PassResult, TriangleEngine};
+use glint_core::picture::Quarter;
+use glint_hal::triangle::{EngineError, Error, PassResult, TriangleEngine};
 use glint_model::{Frame, Subject, WireframeSubject};
+use heapless::Vec;
 use litex_pac::cpu;
 
 use super::{GatewareRenderer, Output};
@@ -9,6 +11,18 @@ use crate::gateware::buffers::Projected;
 use crate::gateware::fallback::Fallback;
 use crate::gateware::geometry::Cpu;
 use crate::gateware::rendered::Rendered;
+
+/// The parts of a frame: its quarters, or the whole frame.
+type Parts<'a> = Vec<Frame<'a>, { Quarter::ALL.len() }>;
+
+/// The parts in turn after the first one, and the first one.
+fn first<'p, 'a>(
+    parts: &'p [Frame<'a>],
+) -> Result<(impl Iterator<Item = &'p Frame<'a>>, &'p Frame<'a>), Fallback> {
+    let mut parts = parts.iter().cycle();
+    let first = parts.next().ok_or(EngineError::from(Error::Size))?;
+    Ok((parts, first))
+}
 
 /// Number of polls for the end of a pass between two checks of progress.
 const POLLS: u32 = 1000;
@@ -27,25 +41,30 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
+        let parts: Parts = frame.parts().collect();
+        let count = count * parts.len() as u32;
         match (&frame.subject, frame.subject.meshes().next()) {
             (Subject::Wireframe(wireframe), _) => {
-                self.repeat_lines(wireframe, frame, output, count)
+                self.repeat_lines(wireframe, &parts, output, count)
             }
-            (Subject::Edges(..), _) => self.repeat_edges(frame, output, cpu, count),
-            (_, Some(_)) => self.repeat_meshes(frame, output, cpu, count),
-            (_, None) => self.repeat_field(frame, output, count),
+            (Subject::Edges(..), _) => self.repeat_edges(&parts, output, cpu, count),
+            (_, Some(_)) => self.repeat_meshes(&parts, output, cpu, count),
+            (_, None) => self.repeat_field(&parts, output, count),
         }
     }
+
+    // The functions below draw `count` of the `parts` of a frame, which follow each other in turn.
 
     // Not inlined, so that memory.x can place it beside the functions that it calls for each mesh.
     #[inline(never)]
     fn repeat_meshes(
         &mut self,
-        frame: &Frame,
+        parts: &[Frame],
         output: &mut Output,
         cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
+        let (mut parts, mut frame) = first(parts)?;
         self.start_measurement(frame);
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
@@ -57,11 +76,13 @@ impl GatewareRenderer {
             while runs && !self.geometry.is_last() {
                 runs = self.await_geometry(frame, now, output)?;
             }
+            let drawn = frame;
+            frame = parts.next().unwrap_or(frame);
             // Computes the constants for the next frame during the last geometry pass, because this code evicts the code of each mesh's
             // pass from the instruction cache.
             self.update_constants(frame, next)?;
             while runs {
-                runs = self.await_geometry(frame, now, output)?;
+                runs = self.await_geometry(drawn, now, output)?;
             }
             // A raster pass may still read the buffers at `next`. This call writes registers, and the same table of textures again: the
             // geometry pass, which overwrites these buffers, starts after the end of the raster pass.
@@ -76,10 +97,10 @@ impl GatewareRenderer {
                 break;
             }
             // The raymarcher uses its registers during a raster pass, so they are written between two raster passes.
-            if frame.subject.field_part().is_some() {
+            if drawn.subject.field_part().is_some() {
                 self.set_field(now, false)?;
             }
-            let started = self.start_raster(frame, output, now);
+            let started = self.start_raster(drawn, output, now);
             self.check(started, output)?;
             (now, next) = (next, now);
         }
@@ -104,10 +125,11 @@ impl GatewareRenderer {
     /// raymarcher's registers are in use during this pass, so they are written after it.
     fn repeat_field(
         &mut self,
-        frame: &Frame,
+        parts: &[Frame],
         output: &mut Output,
         count: u32,
     ) -> Result<Rendered, Fallback> {
+        let (mut parts, mut frame) = first(parts)?;
         self.update_constants(frame, 0)?;
         let mut has_tables = false;
         self.start_measurement(frame);
@@ -116,6 +138,7 @@ impl GatewareRenderer {
             self.set_field(0, has_tables)?;
             let started = self.start_raster(frame, output, 0);
             self.check(started, output)?;
+            frame = parts.next().unwrap_or(frame);
             self.update_constants(frame, 0)?;
             has_tables = self.has_tables(0);
             self.wait(TriangleEngine::raster, output)?;
@@ -126,11 +149,12 @@ impl GatewareRenderer {
     /// Draws the edges of a mesh `count` times, one frame after the other.
     fn repeat_edges(
         &mut self,
-        frame: &Frame,
+        parts: &[Frame],
         output: &mut Output,
         cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
+        let (mut parts, mut frame) = first(parts)?;
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
         self.start_measurement(frame);
@@ -143,12 +167,16 @@ impl GatewareRenderer {
                 self.wait(TriangleEngine::geometry, output)?;
                 runs = self.continue_geometry(frame, 0);
             }
-            self.start_edges(frame.size);
+            self.start_edges(frame.window().size);
             self.wait(TriangleEngine::geometry, output)?;
             self.take_lines(frame, 0);
             let started = self.start_raster(frame, output, 0);
             self.check(started, output)?;
             self.wait(TriangleEngine::raster, output)?;
+            if frame.is_divided() {
+                frame = parts.next().unwrap_or(frame);
+                self.update_constants(frame, 0)?;
+            }
         }
         Ok(self.rendered(frame, 0))
     }
@@ -157,10 +185,11 @@ impl GatewareRenderer {
     fn repeat_lines(
         &mut self,
         subject: &WireframeSubject,
-        frame: &Frame,
+        parts: &[Frame],
         output: &mut Output,
         count: u32,
     ) -> Result<Rendered, Fallback> {
+        let (mut parts, mut frame) = first(parts)?;
         for place in [0, 1] {
             self.update_constants(frame, place)?;
         }
@@ -169,8 +198,8 @@ impl GatewareRenderer {
         let (mut now, mut next) = (0, 1);
         for number in 0..count {
             self.projected = Projected::default();
-            while !self.project(subject, frame.size, now)? {}
-            let prepared = self.prepare_lines(frame.size, now);
+            while !self.project(subject, frame.window(), now)? {}
+            let prepared = self.prepare_lines(frame.window().size, now);
             self.start_pass(prepared);
             self.wait(TriangleEngine::geometry, output)?;
             self.take_lines(frame, now);
@@ -180,6 +209,7 @@ impl GatewareRenderer {
             let started = self.start_raster(frame, output, now);
             self.check(started, output)?;
             (now, next) = (next, now);
+            frame = parts.next().unwrap_or(frame);
         }
         if count > 0 {
             self.wait(TriangleEngine::raster, output)?;

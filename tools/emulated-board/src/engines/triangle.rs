@@ -266,6 +266,7 @@ impl Device for TriangleEngine {
                 .with_textures(self.layout.is_textured)
                 .with_sky(true)
                 .with_fog(true)
+                .with_average(true)
                 .with_depths(true)
                 .with_geometry(true)
                 .with_count_bits(COUNT_BITS as u8)

@@ -12,8 +12,9 @@ use glint::error::{FormatError, InputError, quote};
 use glint::program;
 use glint::render::BoardRenderer;
 use glint::scene::Changes;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Samples, Size};
 use glint_core::quality::Quality;
+use glint_scene::Scene;
 use std::path::PathBuf;
 
 /// Quality and size of pictures.
@@ -26,6 +27,9 @@ pub struct SizeArguments {
     /// Size of the picture: 320x180, 640x360 or 1280x720; overrides the size of the quality.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
+    /// Antialiasing: number of samples whose average is a pixel [default: the scene's; without a scene, 1].
+    #[arg(long, value_parser = named(Samples::ALL, Samples::name))]
+    aa: Option<Samples>,
 }
 
 impl SizeArguments {
@@ -34,49 +38,21 @@ impl SizeArguments {
         Ok(Changes {
             quality: self.quality,
             size: self.size.as_deref().map(size).transpose()?,
+            samples: self.aa,
             ..Changes::default()
         })
     }
 
-    /// Quality and size of a picture that does not come from a scene.
-    pub fn of_subject(&self) -> anyhow::Result<(Quality, Size)> {
+    /// The default scene with these options.
+    pub fn scene(&self) -> anyhow::Result<Scene> {
         let size = self.changes()?.size;
         let preset = self.quality.map(Quality::size);
-        Ok((
-            self.quality.unwrap_or_default(),
-            size.or(preset).unwrap_or_default(),
-        ))
-    }
-}
-
-/// Supersampling: pictures that are drawn larger than they are written.
-#[derive(clap::Args)]
-pub struct SamplingArguments {
-    /// Draw the picture with 2 or 4 times the width and height, and average 2×2 or 4×4 pixels for each output pixel; the larger
-    /// picture has at most 1280x720 pixels. Requires --board model. The counts are those of the larger picture.
-    #[arg(long, value_name = "2|4", value_parser = PossibleValuesParser::new(["2", "4"]))]
-    supersample: Option<String>,
-}
-
-impl SamplingArguments {
-    /// Returns the size to draw for a picture of the size `size`, and the number of drawn pixels
-    /// per output pixel in each direction.
-    pub fn of(&self, size: Size, board: &ModelOrBoard) -> Result<(Size, usize), InputError> {
-        let Some(text) = &self.supersample else {
-            return Ok((size, 1));
-        };
-        if *board != ModelOrBoard::Model {
-            let found = format!("--board {board}");
-            return Err(bad_value("--supersample", "--board model", found));
-        }
-        let factor = if text == "2" { 2 } else { 4 };
-        let mut sizes = Size::ALL.into_iter();
-        let drawn = sizes.find(|drawn| drawn.width() == factor * size.width());
-        let drawn = drawn.ok_or_else(|| {
-            let expected = "2 for 320x180 or 640x360, or 4 for 320x180";
-            bad_value("--supersample", expected, format!("{text} for {size}"))
-        });
-        Ok((drawn?, factor as usize))
+        Ok(Scene {
+            quality: self.quality.unwrap_or_default(),
+            size: size.or(preset).unwrap_or_default(),
+            samples: self.aa.unwrap_or_default(),
+            ..Scene::new(Backend::Gateware)?
+        })
     }
 }
 

@@ -9,7 +9,6 @@ use glint::field;
 use glint_core::colour::Rgb565;
 use glint_core::field::{Field, KINDS};
 use glint_core::light::Material;
-use glint_core::picture::Backend;
 use glint_scene::Scene;
 
 /// The options for a distance field and for the appearance of a scene.
@@ -32,7 +31,7 @@ impl FieldArguments {
         self.name().and_then(field::file)
     }
 
-    /// The default scene with these options and this size.
+    /// The default scene with these options, and with those for the size.
     pub fn scene(&self, size: &SizeArguments) -> anyhow::Result<Scene> {
         let parse = |text| {
             let text = field::with_files(text)?;
@@ -41,12 +40,9 @@ impl FieldArguments {
                 bad_value("--field", "a distance field", found)
             })
         };
-        let (quality, size) = size.of_subject()?;
         let mut scene = Scene {
-            quality,
-            size,
             field: self.name().map(parse).transpose()?,
-            ..Scene::new(Backend::Gateware)?
+            ..size.scene()?
         };
         self.options.apply(&mut scene)?;
         Ok(scene)

@@ -1,7 +1,7 @@
 //! `glint orbit`.
 
 use super::camera::CameraSubject;
-use super::common::{DrawingArguments, SamplingArguments, bad_value};
+use super::common::{DrawingArguments, bad_value};
 use super::heading;
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
@@ -40,8 +40,6 @@ pub struct OrbitArguments {
     /// Frames per second of the animation. The frame time of a GIF is a multiple of 1/100 s.
     #[arg(long, help_heading = heading::PICTURE, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=50))]
     rate: u16,
-    #[command(flatten, next_help_heading = heading::PICTURE)]
-    sampling: SamplingArguments,
     #[command(flatten, next_help_heading = heading::RENDERER)]
     drawing: DrawingArguments,
 }
@@ -84,14 +82,12 @@ impl OrbitArguments {
     /// Renders a frame for each camera, and writes the animation.
     fn write(&self, out: Output, shown: &CameraSubject, views: &[View]) -> anyhow::Result<()> {
         let CameraSubject { frame, scene, .. } = *shown;
-        let (size, factor) = self.sampling.of(frame.size, &self.drawing.board)?;
         let mut spool = out.spool()?;
         let mut drawn = Vec::new();
         let animation = self.animation(BufWriter::new(&spool), frame.size.pixels());
         let mut animation = animation.with_context(|| out.unwritable())?;
-        let large = Frame { size, ..*frame };
-        self.draw(&large, views, scene, &mut |Rendered { image, stats }| {
-            let picture = image.picture().reduced(factor);
+        self.draw(frame, views, scene, &mut |Rendered { image, stats }| {
+            let picture = image.picture();
             animation.add(&picture).with_context(|| out.unwritable())?;
             drawn.push(stats);
             Ok(())

@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::camera::CameraSubject;
-use super::common::{DrawingArguments, Opened, SamplingArguments};
+use super::common::{DrawingArguments, Opened, bad_value};
 use super::heading;
 use super::messages::{print_json, say, warn};
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
@@ -14,6 +14,7 @@ use glint::board::{Board, BoardName, ModelOrBoard};
 use glint::convert::TextureReport;
 use glint::object::Description;
 use glint::render::{Frame, Parts, RayCounts, Rendered, Stats, on_model, remarks};
+use glint_core::picture::Samples;
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -33,11 +34,9 @@ pub struct RenderArguments {
     /// Picture file to write; `-` is standard output.
     #[arg(long, value_name = "PICTURE.png", help_heading = heading::PICTURE)]
     out: PathBuf,
-    #[command(flatten, next_help_heading = heading::PICTURE)]
-    sampling: SamplingArguments,
     /// Write the distances along the camera's forward axis n in world units: one little-endian f32
-    /// for each pixel, +inf for a pixel without a surface.
-    #[arg(long, value_name = "DEPTH.f32", conflicts_with = "supersample", help_heading = heading::PICTURE)]
+    /// for each pixel, +inf for a pixel without a surface. Requires a picture with one sample a pixel.
+    #[arg(long, value_name = "DEPTH.f32", help_heading = heading::PICTURE)]
     depth: Option<PathBuf>,
     /// Write clock cycles, the clock frequency in Hz, and counts of triangles, pixels and rays as JSON.
     #[arg(long, value_name = "STATS.json", help_heading = heading::PICTURE)]
@@ -110,16 +109,13 @@ impl RenderArguments {
         let depth = depth.transpose()?;
         let statistics = self.stats.as_deref().map(|path| open(path, STATISTICS));
         let statistics = statistics.transpose()?;
-        let (drawn, factor) = self.sampling.of(frame.size, &self.drawing.board)?;
-        let Rendered { image, stats } = self.render(
-            &Frame {
-                size: drawn,
-                ..*frame
-            },
-            scene,
-        )?;
+        if depth.is_some() && frame.samples != Samples::One {
+            let found = format!("--aa {}", frame.samples);
+            return Err(bad_value("--depth", "a picture with --aa 1", found).into());
+        }
+        let Rendered { image, stats } = self.render(frame, scene)?;
         remarks(frame, &stats)?.iter().for_each(warn);
-        out.write(|out| image.picture().reduced(factor).write_png(out))?;
+        out.write(|out| image.picture().write_png(out))?;
         if let Some(out) = depth {
             let first = frame.drawn()?.next();
             let scale = first.map(|frame| frame.constants()).transpose()?;

@@ -136,7 +136,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     }
 
     /// Uploads the meshes of a scene that are not built into the firmware, and its texture. Returns the commands that show the scene
-    /// with camera, quality and size of `frame`, without motion.
+    /// with camera, quality, size and samples of `frame`, without motion.
     fn load_scene(&mut self, scene: &SceneFile, frame: &Frame) -> Result<Vec<String>, Error> {
         for name in scene.meshes() {
             if !scene::is_shape(name) {
@@ -159,6 +159,10 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         let field = frame.subject.field_part();
         lines.extend(field.map(|field| format!("quality {}", field.quality)));
         lines.push(size_command(frame.size));
+        // A firmware for scenes with one sample a pixel has no command for them.
+        if frame.samples != scene.scene().samples {
+            lines.push(format!("aa {}", frame.samples));
+        }
         // A wireframe program contains its eye, and a firmware for wireframes has no camera
         // commands.
         if !matches!(frame.subject, Subject::Wireframe(_)) {

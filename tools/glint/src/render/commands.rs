@@ -49,6 +49,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
     let mut scene = Scene {
         view: frame.view,
         size: frame.size,
+        samples: frame.samples,
         stereo: frame.stereo,
         texture: frame.replacement_texture.map(|_| name(TEXTURE)),
         ..start.clone()

@@ -2,6 +2,7 @@
 
 use super::rendered::{Error, Rendered};
 use crate::picture::Image;
+use glint_core::picture::Samples;
 use glint_model::edges::EdgeList;
 use glint_model::{Frame, FrameBuffer, FrameStats, Projected, RenderError, Subject};
 
@@ -39,44 +40,46 @@ fn picture(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
 
 /// Renders a frame for one eye.
 pub(super) fn picture_of_one(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
-    let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
+    if frame.samples == Samples::One {
+        return samples(frame);
+    }
     let mut image = Image {
-        width,
-        height,
+        colour: vec![0; frame.size.pixel_count()],
+        ..Image::empty(frame.size)
+    };
+    let mut sum: Option<FrameStats> = None;
+    for part in frame.parts() {
+        let (drawn, stats) = samples(&part)?;
+        part.average(&drawn.colour, &mut image.colour, &mut || {});
+        sum = Some(sum.map_or(stats, |sum| sum + stats));
+    }
+    Ok((image, sum.unwrap_or_default()))
+}
+
+/// Renders the samples of a frame's window.
+fn samples(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
+    let size = frame.window().size;
+    let pixels = size.pixel_count();
+    let mut image = Image {
         colour: vec![0; pixels],
         depth: vec![0; pixels],
+        ..Image::empty(size)
     };
-    let mut buffer = FrameBuffer {
-        width,
-        height,
+    let buffer = &mut FrameBuffer {
+        width: image.width,
+        height: image.height,
         colour: &mut image.colour,
         depth: &mut image.depth,
     };
-    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-    let stats = draw(frame, &mut buffer, &mut scratch)?;
-    Ok((image, stats))
-}
-
-fn draw(
-    frame: &Frame,
-    buffer: &mut FrameBuffer,
-    scratch: &mut [Projected],
-) -> Result<FrameStats, RenderError> {
-    let constants = frame.constants()?;
-    let mut stats = frame.draw(&constants, buffer, scratch, &mut || {})?;
+    let scratch = &mut vec![Projected::Behind; frame.scratch_vertices()];
+    let (constants, quiet) = (frame.constants()?, &mut || {});
+    let mut stats = frame.draw(&constants, buffer, scratch, quiet)?;
     if let Subject::Edges(subject, _) = &frame.subject {
         let mut memory = vec![0; EdgeList::words(&subject.mesh)];
-        let mut list = EdgeList::new(&mut memory);
-        frame.draw_edges(
-            &constants,
-            &mut list,
-            buffer,
-            scratch,
-            &mut || {},
-            &mut stats,
-        )?;
+        let list = &mut EdgeList::new(&mut memory);
+        frame.draw_edges(&constants, list, buffer, scratch, quiet, &mut stats)?;
     }
-    Ok(stats)
+    Ok((image, stats))
 }
 
 #[cfg(test)]

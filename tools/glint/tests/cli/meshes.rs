@@ -119,34 +119,33 @@ fn background_and_material_of_a_mesh() {
     );
 }
 
-/// A supersampled picture is the mean of a picture of twice the size, and contains mixed colours of the mesh.
+/// A pixel with four samples is the average of four pixels of a picture of twice the size, within a step of RGB565.
 #[test]
-fn supersampled_pictures() {
-    let folder = folder("supersampled");
+fn pictures_with_four_samples_a_pixel() {
+    let folder = folder("samples");
     let draw = |more: &str| drawn(&folder, &format!("render gear --camera 2,30,60 {more}"));
     let large = draw("--size 640x360");
-    let small = draw("--supersample 2");
+    let small = draw("--aa 4");
     assert_eq!(large.len(), 4 * small.len());
     for (at, &found) in small.iter().enumerate() {
         let (pixel, channel) = (at / 3, at % 3);
         let (x, y) = (pixel % 320, pixel / 320);
-        let of = |dx, dy| u32::from(large[3 * ((2 * y + dy) * 640 + 2 * x + dx) + channel]);
-        let sum = of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1);
-        assert_eq!(u32::from(found), (sum + 2) / 4);
+        let of = |dx, dy| f64::from(large[3 * ((2 * y + dy) * 640 + 2 * x + dx) + channel]);
+        let average = (of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1)) / 4.0;
+        assert!((f64::from(found) - average).abs() < 9.0);
     }
-    // A scene is supersampled by a factor of four.
-    let scene = "render --scene cubes --size 320x180 --supersample 4";
-    assert_eq!(drawn(&folder, scene).len(), 3 * 320 * 180);
+    // Of a picture 1280 pixels wide, a quarter is drawn at a time.
+    let scene = "render --scene cubes --size 1280x720 --aa 4";
+    assert_eq!(drawn(&folder, scene).len(), 3 * 1280 * 720);
     all_refused(
         &folder,
         "
-        render gear --supersample 4 --size 640x360 --out x.png
-            --supersample: expected 2 for 320x180 or 640x360, or 4 for 320x180, found 4 for 640x360
+        render gear --aa 3 --out x.png
+            --aa: expected 1 or 4, found 3
+        render gear --aa 4 --depth x.f32 --out x.png
+            --depth: expected a picture with --aa 1, found --aa 4
         ",
     );
-    let board = "render gear --supersample 2 --board emulated --out x.png";
-    let error = refused(&folder, board);
-    assert!(error.ends_with("expected --board model, found --board emulated"));
 }
 
 /// Frames that no board can draw are bad input.

@@ -180,7 +180,7 @@ fn manual_pages() {
         text.replace('\\', "")
     };
     assert!(page("glint.1").contains("glint-render(1)"));
-    assert!(page("glint-render.1").contains("--supersample"));
+    assert!(page("glint-render.1").contains("--aa"));
     assert!(page("glint-imu-replay.1").contains("--follow-bias"));
     // Manual pages follow the rules for output files.
     let again = glint(&folder, "man pages/man1");
@@ -268,7 +268,7 @@ fn the_help_has_groups() {
             ("Appearance", "shading"),
             ("Picture", "size"),
             ("Picture", "out"),
-            ("Picture", "supersample"),
+            ("Picture", "aa"),
             ("Renderer", "board"),
             ("Renderer", "baud"),
         ] {

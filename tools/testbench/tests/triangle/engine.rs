@@ -10,6 +10,7 @@ mod light;
 mod lines;
 mod objects;
 mod rectangles;
+mod samples;
 mod textured;
 
 use bench::Bench;

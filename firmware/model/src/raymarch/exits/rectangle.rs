@@ -3,6 +3,7 @@
 use glint_core::camera::View;
 use glint_core::field::{FRACTION, units};
 use glint_core::fixed::Q32_32;
+use glint_core::picture::Window;
 
 use super::vectors::{Scaled, product};
 
@@ -64,20 +65,20 @@ pub(super) struct Screen {
     half_width: i32,
     /// Shift of the picture along u at distance 1, s3.12.
     shift: i32,
-    /// Width and height in pixels.
-    size: [u32; 2],
+    /// The part of the picture that is drawn.
+    window: Window,
 }
 
 impl Screen {
-    /// The screen of a camera for pictures of this size. `scale` is the number of field units per world unit.
-    pub(super) fn new(view: &View, scale: Q32_32, size: [u32; 2]) -> Self {
+    /// The screen of a camera for a window of a picture. `scale` is the number of field units per world unit.
+    pub(super) fn new(view: &View, scale: Q32_32, window: Window) -> Self {
         let axes = [view.u(), view.v(), view.n()];
         Self {
             eye: view.eye().map(|x| units(x, scale) as i32),
             axes: axes.map(|axis| axis.map(|part| part.to_bits())),
             half_width: ((view.half_width().to_bits() >> 16) as i32).max(1),
             shift: view.shift().to_bits() >> 16,
-            size,
+            window,
         }
     }
 
@@ -95,7 +96,7 @@ impl Screen {
             // The sphere reaches the plane of the eye, or is behind it.
             return match depth < -radius {
                 true => Rectangle::NONE,
-                false => Rectangle::all(self.size),
+                false => Rectangle::all(self.window.size.pixels()),
             };
         }
         // Slopes of the two planes through the eye that touch the sphere, 12 fraction bits.
@@ -119,13 +120,13 @@ impl Screen {
                 if dividend < 0 { -slope } else { slope }
             })
         };
-        let [width, height] = self.size;
-        let range = |slopes: [i32; 2], count: u32| {
+        let [picture, _] = self.window.picture();
+        let range = |slopes: [i32; 2], count: u32, middle: u32| {
             let pixel = |slope: i32| {
-                (slope * width as i32 / 2).div_euclid(self.half_width) + (count / 2) as i32
+                (slope * (picture / 2) as i32).div_euclid(self.half_width) + middle as i32
             };
             // The margin covers the rounding of the slopes and of the camera's axes.
-            let margin = 2 + width as i32 / self.half_width;
+            let margin = 2 + picture as i32 / self.half_width;
             let [first, last] = slopes.map(pixel);
             let most = count as i32 - 1;
             let (first, last) = (first - margin, last + margin);
@@ -134,10 +135,11 @@ impl Screen {
                 false => [first.clamp(0, most) as u32, last.clamp(0, most) as u32],
             }
         };
-        let [first, last] = range(slopes(right).map(|slope| slope - self.shift), width);
+        let ([width, height], [column, row]) = (self.window.size.pixels(), self.window.middle());
+        let [first, last] = range(slopes(right).map(|slope| slope - self.shift), width, column);
         Rectangle {
             columns: [first / GROUP * GROUP, last | (GROUP - 1)],
-            rows: range(slopes(down), height),
+            rows: range(slopes(down), height, row),
         }
     }
 }

@@ -7,6 +7,7 @@ use glint_core::field::{
     cropped, units,
 };
 use glint_core::fixed::Q32_32;
+use glint_core::picture::Window;
 use glint_core::stereo::Stereo;
 
 use super::cones::{Cone, Cones, Sight};
@@ -15,7 +16,7 @@ use super::narrow::floor;
 use super::rectangle::{FAR, Rectangle, Screen};
 use super::sun::Sun;
 use super::words::Words;
-use crate::error::RenderError;
+use crate::error::{RenderError, whole_picture};
 use crate::raymarch::directions::{Directions, check};
 
 /// Largest number of spheres of a list, which rays meet in cones.
@@ -106,9 +107,9 @@ impl Eye {
 pub struct Exits {
     /// Word lengths.
     pub words: Words,
-    /// Width of the picture in pixels.
+    /// Width of the window in pixels.
     pub width: u32,
-    /// Height of the picture in pixels.
+    /// Height of the window in pixels.
     pub height: u32,
     /// Field units per world unit.
     pub scale: Q32_32,
@@ -149,11 +150,26 @@ impl Exits {
     pub fn new(
         field: &Field,
         view: &View,
-        (width, height): (u32, u32),
+        size: (u32, u32),
         stereo: Option<Stereo>,
         words: Words,
     ) -> Result<Self, RenderError> {
-        check(view, (width, height))?;
+        Self::in_window(field, view, whole_picture(size)?, stereo, words)
+    }
+
+    /// Computes the constants for a window of a picture.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), but for the size.
+    pub(in crate::raymarch) fn in_window(
+        field: &Field,
+        view: &View,
+        window: Window,
+        stereo: Option<Stereo>,
+        words: Words,
+    ) -> Result<Self, RenderError> {
+        check(view)?;
+        let [width, height] = window.size.pixels();
         let member = match field {
             Field::Primitive(primitive) => primitive,
             Field::Union(union) => union.first(),
@@ -161,7 +177,7 @@ impl Exits {
         let world = member.placed();
         let (solid, scale) = placed(member, &world);
         let views = stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
-        let rays = Directions::new(&views, width, height);
+        let rays = Directions::new(&views, window);
         let narrow = |direction: [i64; 3]| along(&solid, direction).map(|x| rays.narrow(x));
         let steps = [narrow(rays.across), narrow(rays.down)];
         let eye = |i: usize| {
@@ -215,7 +231,7 @@ impl Exits {
             {
                 exits.spheres.add(&list);
             }
-            exits.place_rectangles(&views[..eyes]);
+            exits.place_rectangles(&views[..eyes], window);
         }
         Ok(exits)
     }
@@ -244,11 +260,10 @@ impl Exits {
     /// Computes the rectangles of the spheres of a list. `views` are the cameras of the eyes.
     // Not inlined, so that a frame without spheres takes fewer lines of the instruction cache.
     #[inline(never)]
-    fn place_rectangles(&mut self, views: &[View]) {
+    fn place_rectangles(&mut self, views: &[View], window: Window) {
         let lattice = usize::from(self.spheres.repeated);
-        let size = [self.width, self.height];
         for (rectangles, view) in self.rectangles.iter_mut().zip(views) {
-            let screen = Screen::new(view, self.scale, size);
+            let screen = Screen::new(view, self.scale, window);
             let seen = rectangles.iter_mut().zip(&self.spheres.list);
             for (rectangle, sphere) in seen.take(self.spheres.count).skip(lattice) {
                 *rectangle = screen.around(sphere.centre, sphere.radius);

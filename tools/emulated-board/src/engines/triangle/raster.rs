@@ -1,13 +1,13 @@
 //! The raster pass: draws the descriptors of the band lists in memory into a frame in memory.
 
-use glint_core::picture::Size;
+use glint_core::picture::{Quarter, Samples, Size, Window};
 use glint_core::texture::{Blend, Filter, Texture};
 use glint_model::line::band_bounds;
 use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, Layout, list_word};
 use glint_model::triangle::raster::draw_groups;
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::textured::{OfTexture, Textured};
-use glint_model::{Fog, FrameBuffer, Sky};
+use glint_model::{Fog, FrameBuffer, Sky, average_lines};
 use litex_pac::triangle::{Counters, Error, Raster, offset};
 
 use super::region::{COUNT_BITS, Regions, WORD, entry, list_words, picture_size, record};
@@ -83,8 +83,11 @@ impl RasterUnit {
         let size = picture_size(flags.size()).ok_or(Error::Size)?;
         let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
         let frame = parameters.word(offset::FRAME);
-        let depth = flags.depth().then(|| parameters.word(offset::DEPTH));
-        let frame_words = (size.pixel_count() / GROUP as usize) as u64;
+        let averages = flags.average().then(|| Averages::of(flags, size));
+        let has_depth = flags.depth() && averages.is_none();
+        let depth = has_depth.then(|| parameters.word(offset::DEPTH));
+        let pixels = averages.as_ref().map_or(size, |averages| averages.frame);
+        let frame_words = (pixels.pixel_count() / GROUP as usize) as u64;
         let mut regions = Regions::default();
         regions.check(frame, frame_words);
         if let Some(depth) = depth {
@@ -120,7 +123,8 @@ impl RasterUnit {
         let slot = usize::from(flags.slot());
         let has_field = raymarcher.draws();
         let sky = (flags.sky() && !has_field).then(|| read_sky(parameters));
-        let is_whole = flags.whole() || flags.depth() || sky.is_some() || !self.known[slot];
+        let is_whole =
+            flags.whole() || has_depth || sky.is_some() || averages.is_some() || !self.known[slot];
         let table = parameters.word(offset::TEXTURES) / WORD;
         let mut drawing = self.begin(size, clear, layout, table);
         drawing.fog = flags.fog().then(|| read_fog(parameters));
@@ -129,7 +133,8 @@ impl RasterUnit {
         }
         let sky_first = layout.is_textured && flags.sky_first() && sky.is_some();
         if let Some(sky) = sky {
-            drawing.draw_sky(&sky, sky_first);
+            let samples = averages.as_ref().map_or(Samples::One, |_| Samples::Four);
+            drawing.draw_sky(&sky, samples, sky_first);
         }
         for band in 0..size.bands() {
             for set in sets.iter().flatten() {
@@ -146,7 +151,10 @@ impl RasterUnit {
             is_damaged,
             ..
         } = drawing;
-        let mut written = self.flush(size, slot, is_whole, frame, ram);
+        let mut written = match averages {
+            None => self.flush(size, slot, is_whole, frame, ram),
+            Some(averages) => self.flush_averages(size, &averages, frame, ram),
+        };
         if let Some(depth) = depth {
             written += self.flush_depth(size, depth, ram);
         }
@@ -230,6 +238,31 @@ impl RasterUnit {
         written
     }
 
+    /// Writes the averages of all samples. Returns the number of written words.
+    fn flush_averages(
+        &self,
+        size: Size,
+        averages: &Averages,
+        frame: u32,
+        ram: &mut MainMemory,
+    ) -> u32 {
+        let width = size.width() as usize;
+        let pairs = self.colour.chunks_exact(2 * width);
+        let lines = size.height() / 2;
+        let mut pixels = vec![0; width / 2];
+        for (y, pair) in (0..lines).zip(pairs) {
+            average_lines(pair.split_at(width).into(), y, &mut pixels);
+            let [left, top] = averages.origin;
+            let place = frame + 2 * ((top + y) * averages.frame.width() + left);
+            if let Some(bytes) = ram.bytes_mut(place, 2 * pixels.len()) {
+                for (bytes, pixel) in bytes.as_chunks_mut().0.iter_mut().zip(&pixels) {
+                    *bytes = pixel.to_le_bytes();
+                }
+            }
+        }
+        lines * size.width() / 2 / GROUP as u32
+    }
+
     /// Writes the depths of a frame. Returns the number of written words.
     fn flush_depth(&self, size: Size, place: u32, ram: &mut MainMemory) -> u32 {
         let depth = self.depth.get(..size.pixel_count()).unwrap_or_default();
@@ -239,6 +272,42 @@ impl RasterUnit {
             }
         }
         (depth.len() / 4) as u32
+    }
+}
+
+/// The pixels of a frame with four samples a pixel.
+struct Averages {
+    /// Size of the frame.
+    frame: Size,
+    /// Column and line of the frame at which the pixels begin.
+    origin: [u32; 2],
+}
+
+impl Averages {
+    /// The pixels for a picture of samples of this size.
+    fn of(flags: Raster, samples: Size) -> Self {
+        if flags.quarter() {
+            let quarter = Quarter {
+                is_right: flags.right(),
+                is_lower: flags.lower(),
+            };
+            let window = Window {
+                size: samples,
+                quarter: Some(quarter),
+            };
+            return Self {
+                frame: samples,
+                origin: window.origin().map(|place| place / 2),
+            };
+        }
+        // The smallest picture of samples stands for half of its width and height, which is no size of a picture.
+        let half = Size::ALL
+            .into_iter()
+            .find(|size| size.doubled() == Some(samples));
+        Self {
+            frame: half.unwrap_or(samples),
+            origin: [0; 2],
+        }
     }
 }
 
@@ -389,9 +458,9 @@ impl Drawing<'_> {
     }
 
     /// Draws the sky: with `is_first` in each band before its triangles, one group in a cycle, otherwise during the flush.
-    fn draw_sky(&mut self, sky: &Sky, is_first: bool) {
+    fn draw_sky(&mut self, sky: &Sky, samples: Samples, is_first: bool) {
         // The buffer has the size of the picture.
-        let _ = sky.fill(&mut self.target, &mut || {});
+        let _ = sky.fill(samples, &mut self.target, &mut || {});
         if is_first {
             let groups = self.size.pixel_count() as u64 / GROUP as u64;
             self.time.add_background(groups);

@@ -3,7 +3,7 @@
 use glint_core::camera::Projection;
 use glint_core::colour::Shading;
 use glint_core::mesh::Rgb565;
-use glint_core::picture::Size;
+use glint_core::picture::{Quarter, Size, Window};
 use glint_model::{DepthScale, MeshLight, MeshSetup};
 use litex_pac::register::Value;
 use litex_pac::triangle::{DepthScale as DepthScaleRegister, Geometry, offset};
@@ -30,16 +30,25 @@ impl Setup {
         let near = i64::from(parameters.unsigned(offset::NEAR_HIGH, 7)) << 32
             | i64::from(parameters.word(offset::NEAR_LOW));
         let mut frame = MeshSetup::default();
+        let quarter = Quarter {
+            is_right: flags.right(),
+            is_lower: flags.lower(),
+        };
+        let window = Window {
+            size,
+            quarter: flags.quarter().then_some(quarter),
+        };
         [frame.width, frame.height] = size.pixels();
+        (frame.picture, frame.middle) = (window.picture(), window.middle());
         if flags.orthographic() {
             frame.projection = Projection::Orthographic;
             let exponent = exponent.max(-6);
-            frame.scale_shift = (shift - 1 + exponent).clamp(7, 18) as u32;
+            frame.scale_shift = (shift - 1 + exponent).clamp(6, 18) as u32;
             frame.depth.exponent = exponent;
             frame.near = near;
         } else {
             let exponent = exponent.clamp(-5, 5);
-            frame.scale_shift = shift.clamp(7, 18) as u32;
+            frame.scale_shift = shift.clamp(6, 18) as u32;
             frame.depth.exponent = exponent;
             frame.near = near.max(1 << (40 - frame.scale_shift).max(30));
         }

@@ -80,6 +80,7 @@ fn draw(bytes: &[u8], size: Size) -> Result<WireframeStats> {
     Ok(render_wireframe(
         &subject,
         Rgb565(0),
+        size.into(),
         &mut picture.target(),
         &mut || {},
     )?)

@@ -2,6 +2,7 @@
 
 use glint_core::camera::Projection;
 use glint_core::mesh::{Attribute, Mesh};
+use glint_core::picture::Quarter;
 use glint_model::triangle::descriptor::{Descriptor, Layout, band_rows, list_word};
 use glint_model::triangle::setup::Bounds;
 use glint_model::triangle::vertex_cache;
@@ -290,6 +291,20 @@ impl Bench {
         ] {
             self.set(path, value);
         }
+        let averages = expected.averages.as_ref();
+        let quarter = averages.and_then(|averages| averages.quarter);
+        self.set("raster_flags.average", u64::from(averages.is_some()));
+        for flags in ["geometry_flags", "raster_flags"] {
+            let Quarter { is_right, is_lower } = quarter.unwrap_or_default();
+            let values = [
+                ("quarter", quarter.is_some()),
+                ("right", is_right),
+                ("lower", is_lower),
+            ];
+            for (name, value) in values {
+                self.set(&format!("{flags}.{name}"), u64::from(value));
+            }
+        }
         self.set("raster_flags.sky", u64::from(expected.sky.is_some()));
         if let Some(sky) = &expected.sky {
             drive_sky(&mut self.module, sky);
@@ -442,8 +457,8 @@ impl Bench {
     /// Waits for the end of the raster pass, and compares its frame with the expected frame. Returns the number of clocks.
     pub fn finish(&mut self, name: &str, expected: &Expected) -> u64 {
         let clocks = self.wait_for("status.raster_done");
-        // After a sky the next frame is written whole.
-        let size = if expected.sky.is_some() {
+        // After a sky, or an average, the next frame is written whole.
+        let size = if expected.sky.is_some() || expected.averages.is_some() {
             (0, 0)
         } else {
             expected.size
@@ -502,12 +517,16 @@ impl Bench {
 
     /// Compares the frame in memory with the expected frame.
     fn compare(&self, name: &str, expected: &Expected) {
+        let (width, _) = expected.frame_size();
         for i in 0..expected.colour.len() as u32 {
-            let (x, y) = (i % expected.size.0, i / expected.size.0);
+            let (x, y) = (i % width, i / width);
             let colour = self.memory.entry(FRAMES[self.slot], i / 2) >> (16 * (i % 2)) & 0xffff;
-            let (found, wanted) = (self.memory.entry(DEPTH, i), expected.depth[i as usize]);
-            let depth = if self.with_depth { found } else { wanted };
-            let wanted = (expected.colour[i as usize].into(), wanted);
+            let has_depth = self.with_depth && expected.averages.is_none();
+            let depth = has_depth.then(|| self.memory.entry(DEPTH, i));
+            let wanted = (
+                expected.colour[i as usize].into(),
+                has_depth.then(|| expected.depth[i as usize]),
+            );
             assert_eq!(
                 (colour, depth),
                 wanted,

@@ -3,6 +3,7 @@
 use glint_core::camera::View;
 use glint_core::fixed::U4_28;
 use glint_core::mesh::{Mesh, Rgb565};
+use glint_core::picture::Quarter;
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::{PreparedMesh, draw_parts};
 use glint_model::{
@@ -14,7 +15,10 @@ pub const CLEAR: u16 = 0x1234;
 
 /// A frame drawn by the model.
 pub struct Expected {
+    /// Size of the picture that is drawn: of the samples of a frame with four samples a pixel.
     pub size: (u32, u32),
+    /// The averages of a frame with four samples a pixel.
+    pub averages: Option<Averages>,
     /// Frame constants and options of the first or only mesh.
     pub frame: MeshSetup,
     pub options: Options<'static>,
@@ -27,6 +31,22 @@ pub struct Expected {
     /// Setups and colours of the clipped triangles.
     pub clipped: Vec<(Setup, Rgb565)>,
     pub stats: Stats,
+}
+
+/// The part of a frame with four samples a pixel that is drawn.
+pub struct Averages {
+    /// Size of the frame.
+    pub size: (u32, u32),
+    /// The quarter that is drawn; `None` for the whole frame.
+    pub quarter: Option<Quarter>,
+}
+
+impl Expected {
+    /// Size of the frame in memory.
+    pub fn frame_size(&self) -> (u32, u32) {
+        let averages = self.averages.as_ref();
+        averages.map_or(self.size, |averages| averages.size)
+    }
 }
 
 /// Draws a frame with the model.
@@ -133,6 +153,7 @@ fn expected_parts_in_fog(
         size,
         frame,
         options,
+        averages: None,
         sky: None,
         fog,
         colour,
@@ -162,6 +183,7 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
             clear: CLEAR,
             ..Options::default()
         },
+        averages: None,
         sky: None,
         fog: None,
         colour,

@@ -3,7 +3,7 @@
 use glint_core::colour::Rgb565;
 use glint_core::field::Field;
 use glint_core::font::Font;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size, Window};
 use glint_core::quality::Quality;
 use glint_core::rectangle::{Part, Rectangle};
 use glint_core::texture::{Blend, Filter, Sampler, Source, Texture, encode};
@@ -27,6 +27,7 @@ type Numbered<'a> = (Rectangle<'a>, usize);
 /// Draws rectangles over a frame, and returns their descriptors.
 fn draw_over(expected: &mut Expected, rectangles: &[Numbered]) -> Vec<(Descriptor, Bounds)> {
     let (width, height) = expected.size;
+    let window = Window::whole(Size::of(width, height).unwrap());
     let mut target = FrameBuffer {
         width,
         height,
@@ -34,7 +35,7 @@ fn draw_over(expected: &mut Expected, rectangles: &[Numbered]) -> Vec<(Descripto
         depth: &mut expected.depth,
     };
     let placed = rectangles.iter().filter_map(|(rectangle, number)| {
-        let (setup, textured) = set_up(rectangle, [width, height])?;
+        let (setup, textured) = set_up(rectangle, window, Samples::One)?;
         raster::draw_textured(&setup, &textured, &mut target);
         let texture = textured.numbered(BEFORE + 1 + *number as u8);
         let descriptor = Descriptor::new(&setup, Rgb565::default(), Some(&texture));

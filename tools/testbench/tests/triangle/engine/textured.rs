@@ -7,7 +7,7 @@ use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting, Rgb};
 use glint_core::mesh::Mesh;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::texture::{Blend, Filter, Format, Sampler, Source, Texture, Wrap, encode};
 use glint_model::triangle::descriptor::Descriptor;
@@ -24,7 +24,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use super::bench::Bench;
-use super::expected::Expected;
+use super::expected::{Averages, Expected};
 use super::fields::{bands, send_bands};
 use super::generated;
 
@@ -123,13 +123,11 @@ impl Shown {
             shading: Shading::Flat,
             ..MeshSubject::new(mesh)
         };
+        let subject = match field {
+            None => Subject::Mesh(subject),
+            Some(&field) => Subject::MeshInField(subject, field),
+        };
         let frame = Frame {
-            subject: match field {
-                None => Subject::Mesh(subject),
-                Some(&field) => Subject::MeshInField(subject, field),
-            },
-            view,
-            size,
             clear: Rgb565(0x001F),
             sky,
             fog: U4_28::from_num(fog),
@@ -137,12 +135,17 @@ impl Shown {
                 ambient: [0x60; 3],
                 light: Light::at_camera([0xA0; 3]),
             },
-            replacement_texture: None,
-            stereo: None,
-            rectangles: &[],
+            ..Frame::new(subject, view, size)
         };
+        Self::of(&bytes, &frame, vec![])
+    }
+
+    /// A frame of a mesh, whose `bytes` these are. With four samples a pixel, `before` is the content of the frame buffer.
+    pub fn of(bytes: &[u8], frame: &Frame, mut before: Vec<u16>) -> Self {
+        let mesh = Mesh::new_checked(bytes).unwrap();
+        let window = frame.window();
         let mut constants = FrameConstants::default();
-        constants.update(&frame).unwrap();
+        constants.update(frame).unwrap();
         let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
         let (mut whole, mut clipped) = (vec![], vec![]);
         let mut put = |triangle: &DrawnTriangle, setup: &Setup, textured: Option<&Textured>| {
@@ -166,9 +169,21 @@ impl Shown {
             .unwrap();
         let light = constants.light();
         let light = light.map(|&light| -> &MeshLight { Box::leak(Box::new(light)) });
-        let picture = Picture::of_frame(&frame);
+        let picture = Picture::of_frame(frame);
+        let averages = (frame.samples == Samples::Four).then(|| Averages {
+            size: frame.size.pixels().into(),
+            quarter: window.quarter,
+        });
+        let colour = match averages {
+            None => picture.colour,
+            Some(_) => {
+                frame.average(&picture.colour, &mut before, &mut || {});
+                before
+            }
+        };
         let expected = Expected {
-            size: size.pixels().into(),
+            size: window.size.pixels().into(),
+            averages,
             frame: *constants.mesh().unwrap(),
             options: Options {
                 clear: frame.clear.0,
@@ -178,14 +193,14 @@ impl Shown {
             },
             sky: constants.sky().copied(),
             fog: constants.fog().copied(),
-            colour: picture.colour,
+            colour,
             depth: picture.depth,
             clipped: vec![],
             stats: Stats::default(),
         };
         let bands = constants.field().map(|field| bands(field, 1));
         Self {
-            mesh: bytes,
+            mesh: bytes.to_vec(),
             expected,
             whole,
             clipped,
