@@ -132,7 +132,7 @@ MUTATIONS = {
         _flush("{place_0, 1'b1}", "{place_0, 1'b0}", "in_their_places"),
         _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
         # Fault: a span begins where the previous span ended instead of at its own first row.
-        _flush("row <= span_first;", "row <= row + 1'b1;", "in_their_places"),
+        _flush("if (!paired) row <= span_first;", "if (!paired) row <= row + 1'b1;", "in_their_places"),
         # Fault: the flush admits more words than fit the FIFO.
         _flush("in_span && places != '0 && (", "in_span && (", "words_in_order"),
         # Fault: the flush clears a row before it reads the row's depth.
@@ -168,7 +168,7 @@ MUTATIONS = {
         _flush("is_left  <= corner_word == 2'd1;", "is_left  <= corner_word == 2'd3;", "words_in_order"),
         # Fault: the lower row of a word is read in the line of the upper one.
         _flush("corner[0] ? back : down", "1'b1", "words_in_order"),
-        _flush("(span_ends ? ROW_BITS'(gap) : '0)", "ROW_BITS'(gap)", "in_their_places"),
+        _flush("(span_ends ? ROW_BITS'(gap) : '0)", "ROW_BITS'(0)", "in_their_places"),
         _flush(".in(address), .out(address_sums)", ".in(address_2), .out(address_sums)", "in_their_places"),
         # Fault: the flush begins after the first line of a pair.
         _flush("&& (!averaging || paired);", ";", "words_in_order"),
@@ -177,7 +177,13 @@ MUTATIONS = {
         _flush("takes_sky && part == COLOUR && word_ends;", "takes_sky && part == COLOUR;", "words_in_order"),
         _flush("{sky_line[0], corner[0]}", "sky_line", "words_in_order"),
         # Fault: each row of a word reserves a FIFO entry.
-        _flush("assign asked = issue && word_ends;", "assign asked = issue;", "ends"),
+        _flush("assign asked = issue && word_ends;", "assign asked = issue;", "no_standstill"),
+        _flush("places <= places + 1'b1;", "places <= places;", "ends"),
+        _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.valid_stays"),
+        _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.payload_stable"),
+        _flush("if (taken && !asked) ", "if (out_valid && !asked) ", "all_taken"),
+        _flush("if (!in_span && !spans_busy)", "if (!spans_busy)", "none_left_out"),
+        _flush("|| sky_valid);", "|| 1'b1);", "sky_in_time"),
         _flush("asked_0 <= issue && word_ends;", "asked_0 <= issue;", "none_made_up"),
         _flush("clears <= part == last_part;", "clears <= part == last_part && word_ends;", "cleared_behind"),
     ],
