@@ -336,6 +336,7 @@ impl CpuMemory<'_> {
             height: size.height(),
             colour,
             depth: depth.unwrap_or_default(),
+            rounding: frame.rounding,
         };
         let constants = frame.constants()?;
         if EDGES.is_built

@@ -41,7 +41,7 @@ module band_average_proof (
 
     band_flush #(.ADDRESS_BITS(6), .ROW_BITS(3), .COLUMN_BITS(2), .WORDS(2), .SKY(1), .AVERAGE(1)) dut (
         .clk, .rst, .start, .base, .depth_base('0), .with_depth(1'b1), .compose('0), .average(1'b1), .stride(2'd2), .gap,
-        .clear_colour(BACKGROUND), .with_sky, .restart,
+        .clear_colour(BACKGROUND), .with_sky, .dither(1'b1), .restart,
         .sky_valid, .sky_ready, .sky_line(sky_number), .sky_colour({16'd0, 3'd0, sky_number, 3'd3}),
         .idle, .sweeping, .reads_depth(), .waits(),
         .span_valid, .span_ready, .span_first, .span_last(span_first + 3'd1), .spans_busy(lines_left != '0),
@@ -120,7 +120,7 @@ module band_average_proof (
 
     // The rightmost sample of a line of samples, with the clear colour or the colour of the sky.
     function automatic logic [15:0] behind(input logic sky, input logic [1:0] number, input logic lower);
-        behind = sky ? colour_pkg::dithered({16'd0, 3'd0, number, 3'd3}, 2'd3, {number[0], lower}) : BACKGROUND;
+        behind = sky ? colour_pkg::rounded({16'd0, 3'd0, number, 3'd3}, colour_pkg::threshold(1'b1, 2'd3, {number[0], lower})) : BACKGROUND;
     endfunction
 
     // The colours of the rows of the expected word.

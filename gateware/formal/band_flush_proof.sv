@@ -48,7 +48,8 @@ module band_flush_proof (
     logic [2:0]       sky_number;
 
     band_flush #(.ADDRESS_BITS(6), .ROW_BITS(2), .COLUMN_BITS(2), .WORDS(4), .SKY(1)) dut (
-        .clk, .rst, .start, .base, .depth_base, .with_depth, .compose('0), .average(1'b0), .stride('0), .gap('0), .clear_colour(BACKGROUND), .with_sky, .restart,
+        .clk, .rst, .start, .base, .depth_base, .with_depth, .compose('0), .average(1'b0), .stride('0), .gap('0), .clear_colour(BACKGROUND),
+        .with_sky, .dither(1'b1), .restart,
         .sky_valid, .sky_ready, .sky_line(2'd0), .sky_colour({5'(sky_number), 3'd0, 16'd0}),
         .idle, .sweeping, .reads_depth(), .waits(),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,

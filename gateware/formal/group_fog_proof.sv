@@ -22,18 +22,19 @@ module group_fog_proof (
     logic [4:0]        unseen = '0;
     logic [1:0]        refused = '0;
     logic [7:0]        out_mask;
-    logic [7:0][15:0]  in_colours, out_colours;
+    logic [7:0][15:0]  out_colours;
+    logic [7:0][23:0]  in_colours;
     logic [7:0][17:0]  in_codes, out_codes;
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
-        assign in_colours[lane] = 16'({came, 3'(lane)});
+        assign in_colours[lane] = colour_pkg::fractions(16'({came, 3'(lane)}));
         assign in_codes[lane]   = 18'(came);
     end
 
     stream_checker #(.WIDTH(8), .GIVEN(1)) given (.clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_mask));
 
     group_fog #(.BESIDE_BITS(BITS), .GROUPS(4)) dut (
-        .clk, .rst, .enable(1'b0), .fog('0), .first_line('0), .idle,
+        .clk, .rst, .enable(1'b0), .dither(1'b1), .fog('0), .first_line('0), .idle,
         .in_valid, .in_ready, .in_beside(came), .in_line('0), .in_mask, .in_codes, .in_colours, .in_added(1'b0),
         .out_valid, .out_ready, .out_beside(number), .out_mask, .out_codes, .out_colours
     );

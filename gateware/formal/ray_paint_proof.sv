@@ -30,7 +30,7 @@ module ray_paint_proof (
     end
 
     ray_paint #(.PLACES(2)) dut (
-        .clk, .rst, .stereo(1'b0), .stride(8'd40), .depth_mantissa('0), .depth_exponent('0), .fog_shift('0),
+        .clk, .rst, .stereo(1'b0), .dither(1'b1), .first_line('0), .stride(8'd40), .depth_mantissa('0), .depth_exponent('0), .fog_shift('0),
         .palette('0), .horizon('0), .table_write(1'b0), .table_entry('0), .table_part('0),
         .in_valid, .in_ready, .in_end(ending), .in_colour('0),
         .out_valid, .out_ready, .out_eye(eye), .out_row(row), .out_line(line), .out_column(column), .out_mask(mask),

@@ -44,7 +44,7 @@ module smooth_shader_proof (
     end
 
     smooth_shader #(.GROUP_BITS($bits(group)), .FLIGHT(1), .GROUPS(4), .LATENCY(2)) dut (
-        .clk, .rst, .idle, .room, .in_valid(comes), .in_group(came), .in_mask(came.mask), .in_colour(16'(came.number)),
+        .clk, .rst, .dither(1'b1), .idle, .room, .in_valid(comes), .in_group(came), .in_mask(came.mask), .in_line('0), .in_colour(16'(came.number)),
         .in_smooth(came.smooth), .in_depth('0), .in_depth_step_x('0), .in_light({64'd0, 32'({came.number, 3'd0})}),
         .in_light_step_x({64'd0, 32'd1}), .out_valid, .out_ready, .out_group(group), .out_colours(colours)
     );

@@ -309,6 +309,7 @@ class Raymarcher(LiteXModule):
             i_start          = engine.field.start,
             o_busy           = busy,
             i_size           = engine.field.size,
+            i_dither         = engine.field.dither,
             i_stereo         = stereo != 0,
             i_first          = Cat(*_contents(first)),
             i_across         = Cat(*_contents(across)),

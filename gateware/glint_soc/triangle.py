@@ -189,9 +189,11 @@ class TriangleEngine(LiteXModule):
             CSRField("sky_first", offset=9, description="With `sky`: draw the sky before the triangles of each band, as textures that are "
                      "blended with it require, instead of during the flush, which takes no time. No effect without `textures` in `caps`."),
             CSRField("fog", offset=10, description="Draw triangles in fog, in perspective. No effect without `fog` in `caps`."),
-            CSRField("average", offset=11, description="Draw four samples for each pixel: `size` is that of the picture of the samples, and the "
+            CSRField("dither", offset=11, description="Dither the colours of smooth triangles, textures, field, sky and fog; 0 rounds them to "
+                     "nearest."),
+            CSRField("average", offset=12, description="Draw four samples for each pixel: `size` is that of the picture of the samples, and the "
                      "frame has half its width and height. Implies `whole`, and writes no depths. No effect without `average` in `caps`."),
-            *_quarter(12, "With `average`: the samples are those of a quarter of the frame, which has the width and height `size`."),
+            *_quarter(13, "With `average`: the samples are those of a quarter of the frame, which has the width and height `size`."),
         ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those "
             "from `sky_above` on, must hold while it runs.")
         self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
@@ -297,7 +299,7 @@ class TriangleEngine(LiteXModule):
 
         # Signals between the triangle engine and a raymarcher, explained in rtl/triangle/raster_unit.sv.
         self.field = field = Record([
-            ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
+            ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("dither", 1), ("open", 1), ("done", 1), ("next", 1),
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
 
         geometry_flags = Struct("geometry_flags_t", "Flags of a geometry pass.", {
@@ -329,7 +331,7 @@ class TriangleEngine(LiteXModule):
         })
         raster_flags = Struct("raster_flags_t", "Flags of a raster pass.", {
             name: getattr(self._raster.fields, name) for name in (
-                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first", "fog", "average", *_QUARTER)})
+                "size", "first", "second", "depth", "slot", "whole", "sky", "sky_first", "fog", "dither", "average", *_QUARTER)})
         raster = Struct("raster_t", "Parameters of the raster pass. Memory regions are given by byte addresses.", {
             "frame": self._frame.storage,
             "depth": self._depth.storage,
@@ -367,6 +369,7 @@ class TriangleEngine(LiteXModule):
         self.comb += [
             field.restart.eq(cancel),
             field.size.eq(raster_kept["size"]),
+            field.dither.eq(raster_kept["dither"]),
             *(port.rdata.ready.eq(1) for port in readers),
             *(port.cmd.we.eq(1) for port in writers),
         ]

@@ -165,6 +165,8 @@ pub struct Raster {
     pub sky: Option<Sky>,
     /// The fog on triangles; only for gateware that [has it](TriangleEngine::has_fog).
     pub fog: Option<Fog>,
+    /// Whether colours are dithered.
+    pub dither: bool,
     /// The capacity of a band list is 4 << `list_shift` entries; the next geometry pass must have an equal [`Lists::list_shift`].
     pub list_shift: u8,
     /// Input of the pass.
@@ -461,7 +463,8 @@ impl TriangleEngine {
                 .with_average(pass.average.is_some())
                 .with_quarter(quarter.is_some())
                 .with_right(quarter.is_some_and(|quarter| quarter.is_right))
-                .with_lower(quarter.is_some_and(|quarter| quarter.is_lower)),
+                .with_lower(quarter.is_some_and(|quarter| quarter.is_lower))
+                .with_dither(pass.dither),
         );
     }
 

@@ -2,7 +2,7 @@
 // fails if this file differs from the generator's output.
 
 /// CRC-32 of the SoC's pinned register map. A SoC with another value in `identity.build_id` has other registers.
-pub const BUILD_ID: u32 = 0xfdc4_13d1;
+pub const BUILD_ID: u32 = 0xfec4_6ff8;
 
 /// The interrupts. Their numbers are the bits in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3503,7 +3503,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5090) }
         }
 
-        /// `raster`, 15 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
+        /// `raster`, 16 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `textures`, and those from `sky_above` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -4863,60 +4863,74 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
         }
 
-        /// `average`, bit 11: Draw four samples for each pixel: `size` is that of the picture of the samples, and the frame has half its width and height. Implies `whole`, and writes no depths. No effect without `average` in `caps`.
+        /// `dither`, bit 11: Dither the colours of smooth triangles, textures, field, sky and fog; 0 rounds them to nearest.
+        #[inline]
+        #[must_use]
+        pub const fn dither(self) -> bool {
+            (self.0 >> 11) & 1 != 0
+        }
+
+        /// Returns this value with `value` in the field `dither`.
+        #[inline]
+        #[must_use]
+        pub const fn with_dither(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+        }
+
+        /// `average`, bit 12: Draw four samples for each pixel: `size` is that of the picture of the samples, and the frame has half its width and height. Implies `whole`, and writes no depths. No effect without `average` in `caps`.
         #[inline]
         #[must_use]
         pub const fn average(self) -> bool {
-            (self.0 >> 11) & 1 != 0
+            (self.0 >> 12) & 1 != 0
         }
 
         /// Returns this value with `value` in the field `average`.
         #[inline]
         #[must_use]
         pub const fn with_average(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
         }
 
-        /// `quarter`, bit 12: With `average`: the samples are those of a quarter of the frame, which has the width and height `size`.
+        /// `quarter`, bit 13: With `average`: the samples are those of a quarter of the frame, which has the width and height `size`.
         #[inline]
         #[must_use]
         pub const fn quarter(self) -> bool {
-            (self.0 >> 12) & 1 != 0
+            (self.0 >> 13) & 1 != 0
         }
 
         /// Returns this value with `value` in the field `quarter`.
         #[inline]
         #[must_use]
         pub const fn with_quarter(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+            Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
         }
 
-        /// `right`, bit 13: With `quarter`: the right one.
+        /// `right`, bit 14: With `quarter`: the right one.
         #[inline]
         #[must_use]
         pub const fn right(self) -> bool {
-            (self.0 >> 13) & 1 != 0
+            (self.0 >> 14) & 1 != 0
         }
 
         /// Returns this value with `value` in the field `right`.
         #[inline]
         #[must_use]
         pub const fn with_right(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 13) | (value as u32 & 0x1) << 13)
+            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
         }
 
-        /// `lower`, bit 14: With `quarter`: the lower one.
+        /// `lower`, bit 15: With `quarter`: the lower one.
         #[inline]
         #[must_use]
         pub const fn lower(self) -> bool {
-            (self.0 >> 14) & 1 != 0
+            (self.0 >> 15) & 1 != 0
         }
 
         /// Returns this value with `value` in the field `lower`.
         #[inline]
         #[must_use]
         pub const fn with_lower(self, value: bool) -> Self {
-            Self(self.0 & !(0x1 << 14) | (value as u32 & 0x1) << 14)
+            Self(self.0 & !(0x1 << 15) | (value as u32 & 0x1) << 15)
         }
     }
 

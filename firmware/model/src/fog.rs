@@ -71,12 +71,9 @@ impl Fog {
         SHARES.get(index.max(0) as usize).copied().unwrap_or(0)
     }
 
-    /// The colour of a pixel with the given depth code, in fog of this colour (as in [`colour`](Self::colour)), dithered for its column
-    /// and line.
-    pub fn over(&self, fog: [u8; 3], colour: Rgb565, code: u32, [x, y]: [u32; 2]) -> Rgb565 {
-        let [r, g, b] = colour.channels();
-        let mixed = mixed([r << 3, g << 2, b << 3], fog, self.share(code));
-        Rgb565::rounded_at(mixed, x, y)
+    /// The colour of a pixel with the given depth code, in fog of this colour; all colours have the format of [`colour`](Self::colour).
+    pub fn over(&self, fog: [u8; 3], colour: [u8; 3], code: u32) -> [u8; 3] {
+        mixed(colour, fog, self.share(code))
     }
 }
 

@@ -95,7 +95,7 @@ impl Frame<'_> {
     }
 
     /// Draws the samples of the frame's [window](Self::window) into `buffer` from the frame's `constants`, with `scratch` as memory for
-    /// projected vertices. The edges of [`Subject::Edges`], and the rectangles in front of them, are left to
+    /// projected vertices; sets the buffer's rounding. The edges of [`Subject::Edges`], and the rectangles in front of them, are left to
     /// [`draw_edges`](Self::draw_edges). Calls `progress` at short intervals.
     ///
     /// # Errors
@@ -108,6 +108,7 @@ impl Frame<'_> {
         progress: &mut dyn FnMut(),
     ) -> Result<FrameStats, RenderError> {
         let mut stats = FrameStats::default();
+        buffer.rounding = self.rounding;
         if WIREFRAME.is_built
             && let Subject::Wireframe(subject) = &self.subject
         {

@@ -1,5 +1,7 @@
 //! Frame buffers: the colours and depth codes of a picture.
 
+use glint_core::colour::Rounding;
+
 use crate::error::{Buffer, RenderError, SIZES};
 
 /// The memory of one picture. Rows follow each other from the top, without padding.
@@ -13,6 +15,8 @@ pub struct FrameBuffer<'a> {
     pub colour: &'a mut [u16],
     /// Depth codes, one per pixel: u18, larger is nearer, 0 for an empty pixel.
     pub depth: &'a mut [u32],
+    /// How colours are rounded to RGB565.
+    pub rounding: Rounding,
 }
 
 impl FrameBuffer<'_> {

@@ -30,6 +30,6 @@ pub(crate) use paint::mixed;
 pub use paint::paint;
 pub use palette::Palette;
 pub use ray::{Ray, RayResult};
-pub use render::{FieldStats, render_field, render_rows, rgb565};
+pub use render::{FieldStats, render_field, render_rows};
 pub use setup::{FieldSetup, Form};
 pub use tracer::Tracer;

@@ -1,4 +1,4 @@
-//! The sky behind meshes: a colour for each group of eight pixels in a line, dithered (docs/formats/triangle.md, "Sky").
+//! The sky behind meshes: a colour for each group of eight pixels in a line (docs/formats/triangle.md, "Sky").
 
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
@@ -107,13 +107,14 @@ impl Sky {
         progress: &mut dyn FnMut(),
     ) -> Result<(), RenderError> {
         target.check()?;
+        let rounding = target.rounding;
         let lines = target.colour.chunks_exact_mut(target.width as usize);
         let across = samples.across();
         for (y, line) in (0..).zip(lines) {
             for (x, group) in (0..).zip(line.as_chunks_mut::<GROUP>().0) {
-                let colour = self.colour(x / across, y / across);
+                let colour = Rgb565::with_fractions(self.colour(x / across, y / across));
                 for (lane, pixel) in (0..).zip(group) {
-                    *pixel = Rgb565::dithered(colour, lane, y).0;
+                    *pixel = Rgb565::rounded(colour, rounding, [lane, y]).0;
                 }
             }
             progress();

@@ -6,6 +6,7 @@ use glint_core::animation::{Animation, ObjectTurn, Rate};
 use glint_core::appearance::Appearance;
 use glint_core::block::Block;
 use glint_core::camera::{View, ViewError};
+use glint_core::colour::Rounding;
 use glint_core::console::{ObjectAction, Setting};
 use glint_core::feature::{
     ANIMATE, ANTIALIASING, FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, SKY, STEREO, WIREFRAME,
@@ -260,6 +261,8 @@ pub struct Scene {
     pub texture: Option<Name>,
     /// Backend that draws the picture.
     pub backend: Backend,
+    /// Whether colours are dithered, or else rounded to nearest.
+    pub dither: bool,
     /// Whether text is written over the picture.
     pub overlay: bool,
     /// The motion over time.
@@ -290,6 +293,7 @@ impl Scene {
             options: MeshOptions::default(),
             texture: None,
             backend,
+            dither: true,
             overlay: false,
             animation: Animation::default(),
         })
@@ -412,6 +416,7 @@ impl Scene {
                 }
                 self.edges = edges;
             }
+            Setting::Dither { on } => self.dither = on,
             Setting::Overlay { on } => self.overlay = on,
             Setting::Animate { animation } => {
                 if ANIMATE.is_built {
@@ -665,6 +670,7 @@ impl Scene {
             }),
         };
         Frame {
+            rounding: Rounding::new(self.dither),
             replacement_texture: content.replacement_texture,
             stereo: self.stereo.filter(|_| STEREO.is_built),
             samples: self.samples,

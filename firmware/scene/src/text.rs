@@ -185,6 +185,7 @@ impl Scene {
             }),
             OptionName::Winding => self.put(name, from, out, |scene| scene.options.winding),
             OptionName::Edges => self.put(name, from, out, |scene| or_off(scene.edges)),
+            OptionName::Dither => self.put(name, from, out, |scene| switch_name(scene.dither)),
             OptionName::Overlay => self.put(name, from, out, |scene| switch_name(scene.overlay)),
             OptionName::Animate => {
                 ANIMATE.when_built(|| self.put(name, from, out, |scene| scene.animation))

@@ -90,7 +90,14 @@ fn line() -> impl Strategy<Value = String> {
         )),
         number(-640, 640).prop_map(|x| format!("object move 1 {x},0,1")),
         (
-            word(&["mesh", "occlusion", "undecided", "cull", "overlay"]),
+            word(&[
+                "mesh",
+                "occlusion",
+                "undecided",
+                "cull",
+                "dither",
+                "overlay"
+            ]),
             word(&["on", "off"])
         )
             .prop_map(|(option, on)| format!("{option} {on}")),

@@ -6,7 +6,7 @@ mod repeat;
 use core::mem;
 
 use glint_core::camera::Projection;
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::feature::{EDGES, TEXTURE, WIREFRAME};
 use glint_core::picture::{Quarter, Samples, Size};
 use glint_engines::raymarch::{ray_counts, set_field, tables};
@@ -581,6 +581,7 @@ impl GatewareRenderer {
             clear: frame.clear.0,
             sky: sky.map(|constants| sky_of(constants, buffers.textures.blends())),
             fog: self.constants[place].fog().map(fog),
+            dither: frame.rounding == Rounding::Dithered,
             list_shift: buffers.list_shift(window.size),
             input: Input {
                 sets: buffers.sets,

@@ -105,6 +105,7 @@ module band_buffer #(
     input  wire                     band_average,
     input  wire  [7:0]              band_gap,
     input  wire                     band_sky,
+    input  wire                     band_dither,
     // Colours of the sky, one for each row of a band with `band_sky`.
     input  wire                     sky_valid,
     output logic                    sky_ready,
@@ -173,8 +174,8 @@ module band_buffer #(
     band_flush #(.ADDRESS_BITS(ADDRESS_BITS), .ROW_BITS(ROW_BITS), .STEREO(STEREO), .SKY(SKY), .AVERAGE(AVERAGE)) flush (
         .clk, .rst,
         .start(swap), .base(band_base), .depth_base(band_depth_base), .with_depth(band_with_depth),
-        .clear_colour(band_clear), .with_sky(band_sky), .compose(band_compose), .average(band_average), .stride(band_stride),
-        .gap(band_gap), .restart, .idle(flush_idle), .sweeping(clearing),
+        .clear_colour(band_clear), .with_sky(band_sky), .dither(band_dither), .compose(band_compose), .average(band_average),
+        .stride(band_stride), .gap(band_gap), .restart, .idle(flush_idle), .sweeping(clearing),
         .reads_depth(flush_reads_depth), .waits(flush_waits),
         .span_valid, .span_ready, .span_first, .span_last, .spans_busy,
         .row(flush_row), .colours(flushed_colours), .codes(stored_codes), .written(flushed_written),

@@ -5,8 +5,8 @@
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour for pixels that are not
-// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*`, dithered (band_sky). With `compose` other than 0
-// (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left luminance becomes red, the right
+// written, or, with `with_sky` (SKY only), with the next colour of the stream `sky_*` (band_sky). With `dither` colours of the sky, and
+// averages, are dithered, otherwise rounded to nearest. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left luminance becomes red, the right
 // luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the right luminance green and blue.
 // The colour word of row r is written to address `base` + r. With `with_depth`, the rows of a span are read again after its colours: the
 // depths of each row are two words of four 32-bit depths (0 for pixels that are not written), at the addresses `depth_base` + 2r and
@@ -16,7 +16,7 @@
 // With `average` (AVERAGE only) the band holds four samples for each pixel, and a word is the average of four rows: of two rows side by
 // side in each of two lines. Spans come in pairs, of whole lines of `stride` rows. The first word is written to the address `base`; `gap`
 // addresses lie between the last word of a line and the first word of the next line. The sky has a colour for each word. There are no depths.
-// The sum of a channel is rounded by one of four thresholds, by the pixel's place (docs/formats/triangle.md, "Samples").
+// The sum of a channel is rounded by one of four thresholds (docs/formats/triangle.md, "Samples").
 //
 //   row of 8 samples ─▶ 4 pairs ─┬────────▶ sum of 4 ─▶ 4 pixels ─┬────────────▶ right half of a word
 //                                └▶ previous ──▲                  └▶ left half
@@ -54,6 +54,7 @@ module band_flush #(
     input  wire                     with_depth,
     input  wire  [15:0]             clear_colour,
     input  wire                     with_sky,
+    input  wire                     dither,
     input  wire  [1:0]              compose,
     input  wire                     average,
     input  wire  [COLUMN_BITS-1:0]  stride,
@@ -96,7 +97,7 @@ module band_flush #(
     typedef enum logic [1:0] {IDLE, FLUSH, SWEEP} state_t;
     state_t                state;
     part_t                 part, last_part;
-    logic                  depth_too, in_span, issue, part_ends, span_ends, takes_sky, averaging, paired;
+    logic                  depth_too, in_span, issue, part_ends, span_ends, takes_sky, dithers, averaging, paired;
     // The row of a word that is read, of the four of an average: {right, lower}.
     logic [1:0]            corner;
     logic                  word_ends;
@@ -161,6 +162,7 @@ module band_flush #(
                 depth_too        <= with_depth && !(AVERAGE && average);
                 clear            <= clear_colour;
                 takes_sky        <= SKY && with_sky;
+                dithers          <= dither;
                 composing        <= compose;
             end
         endcase
@@ -238,7 +240,7 @@ module band_flush #(
         logic [23:0] clear_colours, seen_colour;
         logic [1:0]  line, seen_line;
 
-        assign clear_colours = {clear[4:0], 3'd0, clear[10:5], 2'd0, clear[15:11], 3'd0};
+        assign clear_colours = colour_pkg::fractions(clear);
 
         // The line of samples in an average.
         assign line = averaging ? {sky_line[0], corner[0]} : sky_line;
@@ -248,11 +250,11 @@ module band_flush #(
         );
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes
-            assign backgrounds[16*lane +: 16] = colour_pkg::dithered(seen_colour, 2'(lane), seen_line);
+            assign backgrounds[16*lane +: 16] = colour_pkg::rounded(seen_colour, colour_pkg::threshold(dithers, 2'(lane), seen_line));
         end
     end else begin : plain_clear
         assign backgrounds = {8{clear}};
-        wire _unused = &{1'b0, sky_line, sky_colour};
+        wire _unused = &{1'b0, dithers, sky_line, sky_colour};
     end
 
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
@@ -306,10 +308,10 @@ module band_flush #(
             end
         end
 
-        assign t1 = {odd_word, !odd_word, !odd_word, odd_word};
+        assign t1 = dithers ? {odd_word, !odd_word, !odd_word, odd_word} : '1;
 
         always_ff @(posedge clk) begin
-            t0 <= {!odd_word, !odd_word, odd_word, odd_word};
+            t0 <= dithers ? {!odd_word, !odd_word, odd_word, odd_word} : '0;
             is_left  <= corner_word == 2'd1;
             was_left <= is_left;
             if (was_left) left_half <= half;

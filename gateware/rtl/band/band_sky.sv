@@ -22,7 +22,7 @@ module band_sky #(
     input  wire triangle_registers_pkg::sky_t sky,
     output logic        out_valid,
     input  wire         out_ready,
-    // The lowest bits of the number of the line, and {blue, green, red} for colour_pkg::dithered.
+    // The lowest bits of the number of the line, and {blue, green, red} for colour_pkg::rounded.
     output logic [1:0]  out_line,
     output logic [23:0] out_colour
 );

@@ -4,37 +4,27 @@
 
 package colour_pkg;
     /* verilator lint_off UNUSEDSIGNAL */
-    // Converts {blue, green, red} to RGB565: rounds each channel to nearest, and saturates it.
-    function automatic logic [15:0] rgb565(input logic [2:0][7:0] colour);
-        logic [4:0] red, blue;
-        logic [5:0] green;
-        red    = colour[0][7:3] == '1 ? '1 : colour[0][7:3] + 5'(colour[0][2]);
-        green  = colour[1][7:2] == '1 ? '1 : colour[1][7:2] + 6'(colour[1][1]);
-        blue   = colour[2][7:3] == '1 ? '1 : colour[2][7:3] + 5'(colour[2][2]);
-        rgb565 = {red, green, blue};
+    // A threshold for `rounded`, of the pixel in column x and line y of a pattern of 4x4 pixels. Without `dither` it is half a step, which
+    // rounds to nearest.
+    function automatic logic [2:0] threshold(input logic dither, input logic [1:0] x, input logic [1:0] y);
+        threshold = dither ? {x[0] ^ y[0], y[0], x[1] ^ y[1]} : 3'd4;
     endfunction
 
-    // Converts {blue, green, red}, with 248 for full red and blue and 252 for full green, to RGB565 for the pixel in column x and line y
-    // of a pattern of 4x4 pixels: adds a threshold below one step to each channel, and rounds down. The next step of a channel is the same
-    // in all pixels, so only the choice between the steps is made for each pixel.
-    function automatic logic [15:0] dithered(input logic [2:0][7:0] colour, input logic [1:0] x, input logic [1:0] y);
-        logic [2:0] threshold;
+    // Converts {blue, green, red}, with 248 for full red and blue and 252 for full green, to RGB565: adds a threshold below one step, in
+    // eighths of a step (quarters for green), to each channel, and rounds down. The next step of a channel is the same for all thresholds,
+    // so only the choice between the steps is made for each pixel.
+    function automatic logic [15:0] rounded(input logic [2:0][7:0] colour, input logic [2:0] limit);
         logic [4:0] red, blue;
         logic [5:0] green;
-        case ({y, x})
-            4'd0, 4'd10:  threshold = 3'd0;
-            4'd2, 4'd8:   threshold = 3'd1;
-            4'd5, 4'd15:  threshold = 3'd2;
-            4'd7, 4'd13:  threshold = 3'd3;
-            4'd1, 4'd11:  threshold = 3'd4;
-            4'd3, 4'd9:   threshold = 3'd5;
-            4'd4, 4'd14:  threshold = 3'd6;
-            default:      threshold = 3'd7;
-        endcase
-        red      = colour[0][2:0] > ~threshold ? colour[0][7:3] + 1'b1 : colour[0][7:3];
-        green    = colour[1][1:0] > ~threshold[2:1] ? colour[1][7:2] + 1'b1 : colour[1][7:2];
-        blue     = colour[2][2:0] > ~threshold ? colour[2][7:3] + 1'b1 : colour[2][7:3];
-        dithered = {red, green, blue};
+        red     = colour[0][2:0] > ~limit ? colour[0][7:3] + 1'b1 : colour[0][7:3];
+        green   = colour[1][1:0] > ~limit[2:1] ? colour[1][7:2] + 1'b1 : colour[1][7:2];
+        blue    = colour[2][2:0] > ~limit ? colour[2][7:3] + 1'b1 : colour[2][7:3];
+        rounded = {red, green, blue};
+    endfunction
+
+    // Converts RGB565 to the format of the colours of `rounded`, whose fractions are then 0.
+    function automatic logic [23:0] fractions(input logic [15:0] colour);
+        fractions = {colour[4:0], 3'd0, colour[10:5], 2'd0, colour[15:11], 3'd0};
     endfunction
 
     // Adds the channels of two pixels in RGB565, and `carry` to each sum: {red, green, blue}, each a bit wider than the channel.

@@ -28,6 +28,9 @@ module ray_paint #(
     input  wire                     rst,
     // Frame.
     input  wire                     stereo,
+    // Whether colours are dithered, and the lowest bits of the number of the band's first line.
+    input  wire                     dither,
+    input  wire  [1:0]              first_line,
     // Number of groups of eight pixels in a line: 40, 80 or 160.
     input  wire  [7:0]              stride,
     input  wire  [16:0]             depth_mantissa,
@@ -184,14 +187,26 @@ module ray_paint #(
         wire _unused = &{1'b0, lit_13[25:16], lit_13[7:0], faded[25:16], faded[7:0]};
     end
 
-    // In clock 18 the colour is in the format of the frame buffer: RGB565, or with `stereo` two luminances.
-    logic [15:0] colour_18, colour_29;
+    // In clock 18 a full channel is 31 or 63 steps, with fraction bits; in clock 19 the colour is in the format of the frame buffer: RGB565,
+    // rounded by the place of the pixel, or with `stereo` two luminances.
+    logic [2:0][7:0] scaled_18;
+    logic [1:0]      line_17, column_17;
+    logic [2:0]      threshold_18;
+    logic [15:0]     colour_19, colour_29;
+
+    delay #(.WIDTH(4), .CLOCKS(17 - BEGIN)) corner_waits (
+        .clk, .enable(1'b1), .in({in_end.place.line[1:0], in_end.place.column[1:0]}), .out({line_17, column_17})
+    );
 
     always_ff @(posedge clk) begin
-        colour_18 <= stereo ? {faded_17[1], faded_17[1]} : colour_pkg::rgb565(faded_17);
+        scaled_18[0] <= faded_17[0] - 8'(faded_17[0][7:5]);
+        scaled_18[1] <= faded_17[1] - (stereo ? 8'd0 : 8'(faded_17[1][7:6]));
+        scaled_18[2] <= faded_17[2] - 8'(faded_17[2][7:5]);
+        threshold_18 <= colour_pkg::threshold(dither, column_17, line_17 + first_line);
+        colour_19    <= stereo ? {scaled_18[1], scaled_18[1]} : colour_pkg::rounded(scaled_18, threshold_18);
     end
 
-    delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable(1'b1), .in(colour_18), .out(colour_29));
+    delay #(.WIDTH(16), .CLOCKS(10)) colour_waits (.clk, .enable(1'b1), .in(colour_19), .out(colour_29));
 
     // In clock 29 the group is complete. The depth code is 0 for a ray without a hit.
     raymarch_pkg::place_t place_26, place_29;

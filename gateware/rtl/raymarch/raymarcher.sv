@@ -52,6 +52,8 @@ module raymarcher #(
     // Parameters of the frame. `size` is 0 for 320x180, 1 for 640x360 and 2 for 1280x720.
     input  wire  [1:0]                size,
     input  wire                       stereo,
+    // Whether colours are dithered.
+    input  wire                       dither,
     input  wire                       exits,
     // Rays of both eyes, the left eye first, and the limits of their parameters T.
     input  wire  [1:0][2:0][31:0]     first,
@@ -203,6 +205,11 @@ module raymarcher #(
         end
         if (reset) busy <= 1'b0;
     end
+
+    // The lowest bits of the number of the band's first line.
+    logic [1:0] first_line;
+
+    always_ff @(posedge clk) if (start || band_next) first_line <= start ? '0 : first_line + lines[1:0];
 
     // Sends a ray to the first lane that can accept a ray.
     logic [LANES-1:0] lane_ready, lane_valid, idles, evaluates, waits;
@@ -426,7 +433,7 @@ module raymarcher #(
     end
 
     ray_paint #(.ROUND(LIT), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0), .SHADOW(SHADOW)) paint (
-        .clk, .rst(reset), .stereo, .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
+        .clk, .rst(reset), .stereo, .dither, .first_line, .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
         .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),

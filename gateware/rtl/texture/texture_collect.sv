@@ -12,7 +12,9 @@
 module texture_collect #(
     // Groups, a power of two.
     parameter int unsigned DEPTH  = 32,
-    parameter int unsigned FLIGHT = 20
+    parameter int unsigned FLIGHT = 20,
+    // Width of a colour.
+    parameter int unsigned COLOUR_BITS = 16
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -22,13 +24,13 @@ module texture_collect #(
     input  wire              in_half,
     input  wire              in_last,
     input  wire  [3:0]       in_opaque,
-    input  wire  [3:0][15:0] in_colours,
+    input  wire  [3:0][COLOUR_BITS-1:0] in_colours,
     input  wire  [3:0]       in_blend,
     output logic             out_valid,
     input  wire              out_ready,
     output logic [3:0]       out_blend,
     output logic [7:0]       out_opaque,
-    output logic [7:0][15:0] out_colours
+    output logic [7:0][COLOUR_BITS-1:0] out_colours
 );
     localparam int unsigned PLACE_BITS = $clog2(DEPTH);
 
@@ -43,7 +45,7 @@ module texture_collect #(
     assign load     = !out_valid || out_ready;
 
     for (genvar i = 0; i < 8; i++) begin : lanes
-        (* ram_style = "distributed", no_rw_check *) logic [15:0] places [0:DEPTH-1];
+        (* ram_style = "distributed", no_rw_check *) logic [COLOUR_BITS-1:0] places [0:DEPTH-1];
         logic writes;
 
         assign writes   = in_valid && in_half == 1'(i / 4) && in_mask[i % 4];

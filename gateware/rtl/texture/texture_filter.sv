@@ -8,15 +8,23 @@
 // A step of a nearest texture has a texel for each of four lanes, one of a bilinear texture has the neighbours of the lanes 0 and 1, or 2
 // and 3. Two lerps therefore serve both kinds of texture.
 //
-// `in_bilinear` must be constant while steps are inside. `light` belongs to the step of LIGHT clocks before. The
+// Without FRACTIONS colours are rounded to RGB565, with `dither` by the place of the pixel. With FRACTIONS they have the format of
+// colour_pkg::rounded.
+//
+// `in_bilinear` and `dither` must be constant while steps are inside. `light` and `line`, the lowest bits of the
+// picture's line, belong to the step of LIGHT clocks before. The
 // colours come FILTER clocks after their step; those of lanes without a bit in `out_mask` have no meaning. Throughput one step per clock;
 // the pipeline cannot be stopped, and what follows always has room.
 
 `default_nettype none
 
-module texture_filter (
+module texture_filter #(
+    parameter  bit          FRACTIONS   = 1'b0,
+    localparam int unsigned COLOUR_BITS = FRACTIONS ? 24 : 16
+) (
     input  wire                       clk,
     input  wire                       rst,
+    input  wire                       dither,
     input  wire                       in_valid,
     input  wire  [3:0]                in_mask,       // lanes of this step
     input  wire                       in_half,
@@ -27,12 +35,13 @@ module texture_filter (
     input  wire  [1:0][3:0][15:0]     in_neighbours, // bilinear: of each pixel, (u, v), (u+1, v), (u, v+1), (u+1, v+1)
     input  wire  [1:0][1:0][3:0]      in_weights,    // of each pixel, across and down; u0.4
     input  wire  [2:0][7:0]           light,         // red in the lowest bits; u0.8, at most 248, green 252
+    input  wire  [1:0]                line,
     output logic                      out_valid,
     output logic [3:0]                out_mask,
     output logic                      out_half,
     output logic                      out_last,
     output logic [3:0]                out_opaque,
-    output logic [3:0][15:0]          out_colours
+    output logic [3:0][COLOUR_BITS-1:0] out_colours
 );
     localparam int unsigned FILTER = texture_pkg::FILTER;
 
@@ -47,7 +56,8 @@ module texture_filter (
     );
 
     logic [1:0][2:0][7:0] averages;
-    logic [1:0][15:0]     wide, late, narrow;
+    logic [1:0][15:0]     late;
+    logic [1:0][COLOUR_BITS-1:0] wide, narrow;
 
     for (genvar i = 0; i < 2; i++) begin : pixels
         texture_lerp lerp (
@@ -59,18 +69,33 @@ module texture_filter (
     // As long as a lerp.
     delay #(.WIDTH(32), .CLOCKS(6)) late_delay (.clk, .enable(1'b1), .in(in_texels[3:2]), .out(late));
 
+    // The thresholds of the lanes, for bilinear textures those of the two pixels, in the clock in which texture_light adds them.
+    logic [3:0][2:0] thresholds_8;
+    logic [1:0]      line_7;
+    logic            second_7;
+
+    delay #(.WIDTH(2), .CLOCKS(2)) line_delay (.clk, .enable(1'b1), .in(line), .out(line_7));
+    delay #(.WIDTH(1), .CLOCKS(7)) second_delay (.clk, .enable(1'b1), .in(in_bilinear && in_mask[1:0] == '0), .out(second_7));
+
+    always_ff @(posedge clk)
+        for (int lane = 0; lane < 4; lane++)
+            thresholds_8[lane] <= colour_pkg::threshold(dither, 2'(lane) | {lane < 2 && second_7, 1'b0}, line_7);
+
     for (genvar k = 0; k < 3; k++) begin : channels
         localparam int unsigned BITS = k == 1 ? 6 : 5;
         localparam int unsigned LOW  = k == 0 ? 11 : k == 1 ? 5 : 0;
-
         localparam int unsigned REST = 8 - BITS;
+        // Place of the channel in a colour.
+        localparam int unsigned AT   = FRACTIONS ? 8 * k : LOW;
+        localparam int unsigned SIZE = FRACTIONS ? 8 : BITS;
 
-        texture_light #(.CHANNEL(BITS)) light_wide (
-            .clk, .light(light[k]), .texels({averages[1][k], averages[0][k]}), .colours({wide[1][LOW +: BITS], wide[0][LOW +: BITS]})
+        texture_light #(.CHANNEL(BITS), .FRACTIONS(FRACTIONS)) light_wide (
+            .clk, .dither, .light(light[k]), .texels({averages[1][k], averages[0][k]}), .thresholds(thresholds_8[1:0]),
+            .colours({wide[1][AT +: SIZE], wide[0][AT +: SIZE]})
         );
-        texture_light #(.CHANNEL(BITS)) light_narrow (
-            .clk, .light(light[k]), .texels({late[1][LOW +: BITS], REST'(0), late[0][LOW +: BITS], REST'(0)}),
-            .colours({narrow[1][LOW +: BITS], narrow[0][LOW +: BITS]})
+        texture_light #(.CHANNEL(BITS), .FRACTIONS(FRACTIONS)) light_narrow (
+            .clk, .dither, .light(light[k]), .texels({late[1][LOW +: BITS], REST'(0), late[0][LOW +: BITS], REST'(0)}), .thresholds(thresholds_8[3:2]),
+            .colours({narrow[1][AT +: SIZE], narrow[0][AT +: SIZE]})
         );
     end
 

@@ -14,7 +14,9 @@
 // The source of the groups is a pipeline that cannot be stopped. The pipeline sends groups only while `room` is high; a group arrives
 // FLIGHT clocks after it is sent (see pipeline_fifo). Groups stay in order. A group without an opaque pixel is dropped. Output: a
 // valid/ready stream. `idle` is high while no group is inside. `forget` (one clock, while idle) forgets the texels and the texture of
-// earlier frames. `table_base` is the address of the table of the textures' addresses, in words of 16 bytes.
+// earlier frames. The colours of textures are rounded to RGB565, with
+// `dither` by the place of the pixel; `in_line` has the lowest bits of the picture's line. With FRACTIONS they are not rounded yet, and all
+// colours have the format of colour_pkg::rounded. `table_base` is the address of the table of the textures' addresses, in words of 16 bytes.
 
 `default_nettype none
 
@@ -23,17 +25,21 @@ module texture_shader #(
     parameter int unsigned GROUP_BITS   = 8,
     parameter int unsigned FLIGHT       = 5,
     // Most groups inside, a power of two. They fill the sampler's queue: each has one or two quads.
-    parameter int unsigned GROUPS       = 256
+    parameter int unsigned GROUPS       = 256,
+    parameter bit          FRACTIONS    = 1'b0,
+    localparam int unsigned COLOUR_BITS = FRACTIONS ? 24 : 16
 ) (
     input  wire                    clk,
     input  wire                    rst,
     input  wire                    forget,
+    input  wire                    dither,     // constant while groups are inside
     input  wire  [ADDRESS_BITS-1:0] table_base,
     output logic                   idle,
     output logic                   room,
     input  wire                    in_valid,
     input  wire  [GROUP_BITS-1:0]  in_group,
     input  wire  [7:0]             in_mask,
+    input  wire  [1:0]             in_line,
     input  wire  [15:0]            in_colour,  // of a triangle without a texture
     // Texture and planes of s and t, with the accumulators in lane 0.
     input  wire records_pkg::texture_planes_t in_texture,
@@ -49,14 +55,15 @@ module texture_shader #(
     input  wire                    out_ready,
     output logic [GROUP_BITS-1:0]  out_group,
     output logic [7:0]             out_opaque, // lanes that no transparent texel hides
-    output logic [7:0][15:0]       out_colours,
+    output logic [7:0][COLOUR_BITS-1:0] out_colours,
     output logic [3:0]             out_blend   // rule by which the group is blended with the picture, see texture_blend; 0 for none
 );
     // Groups that wait for their colours.
     logic             is_textured, group_valid, group_textured, group_gone, colours_valid, colours_room, groups_room, waiting_idle, waiting_room;
     logic [15:0]      group_colour;
     logic [7:0]       opaque;
-    logic [7:0][15:0] colours;
+    logic [7:0][COLOUR_BITS-1:0] colours;
+    logic [COLOUR_BITS-1:0]      flat_colour;
 
     assign is_textured = in_texture.texture != '0;
 
@@ -67,20 +74,27 @@ module texture_shader #(
 
     logic [3:0] blend;
 
+    if (FRACTIONS) begin : exact
+        assign flat_colour = colour_pkg::fractions(group_colour);
+    end else begin : rounding
+        assign flat_colour = group_colour;
+    end
+
     assign out_valid   = group_valid && (!group_textured || colours_valid && opaque != '0);
     assign group_gone  = !group_textured ? out_ready : colours_valid && (opaque == '0 || out_ready);
     assign out_opaque  = group_textured ? opaque : '1;
-    assign out_colours = group_textured ? colours : {8{group_colour}};
+    assign out_colours = group_textured ? colours : {8{flat_colour}};
     assign out_blend   = group_textured ? blend : '0;
 
     // Groups with a texture wait for their positions. The FIFO is wide, so it holds fewer groups than there may be inside.
     // The lowest bits of a plane's step down have no effect.
     localparam int unsigned PLANE_BITS   = 88;
     localparam int unsigned OTHER_BITS   = $bits(in_texture) - 2 * 96;
-    localparam int unsigned WAITING_BITS = 8 + 3 * PLANE_BITS + OTHER_BITS;
+    localparam int unsigned WAITING_BITS = 2 + 8 + 3 * PLANE_BITS + OTHER_BITS;
 
     logic                           waiting_valid, waiting_gone;
     logic [7:0]                     mask;
+    logic [1:0]                     line;
     logic [2:0][95:0]               in_planes, planes;
     logic [2:0][PLANE_BITS-1:0]     in_short, short;
     records_pkg::texture_planes_t   texture;
@@ -97,9 +111,9 @@ module texture_shader #(
 
     pipeline_fifo #(.WIDTH(WAITING_BITS), .DEPTH(32), .FLIGHT(FLIGHT)) waiting (
         .clk, .rst, .idle(waiting_idle), .room(waiting_room), .in_valid(in_valid && is_textured),
-        .in_data({in_mask, in_short, in_texture.linear, in_texture.texture, in_texture.periods, in_texture.range, in_texture.light}),
+        .in_data({in_line, in_mask, in_short, in_texture.linear, in_texture.texture, in_texture.periods, in_texture.range, in_texture.light}),
         .out_valid(waiting_valid), .out_ready(waiting_gone),
-        .out_data({mask, short, texture.linear, texture.texture, texture.periods, texture.range, texture.light})
+        .out_data({line, mask, short, texture.linear, texture.texture, texture.periods, texture.range, texture.light})
     );
 
     // Sends the quads of the first waiting group, one per clock, if its texture is the current one; otherwise changes the texture as soon as
@@ -191,27 +205,28 @@ module texture_shader #(
         .out_opaque(step_opaque), .out_texels(step_texels), .out_neighbours(step_neighbours), .out_weights(step_weights)
     );
 
-    // The light of the groups whose steps are in the filter. It waits from the group's first quad until its last step is lit.
+    // The light and the line of the groups whose steps are in the filter. They wait from the group's first quad until its last step is lit.
     logic [2:0][7:0] light;
+    logic [1:0]      light_line;
     logic            light_valid, light_room, light_gone;
 
     delay #(.WIDTH(1), .CLOCKS(texture_pkg::LIGHT)) light_delay (
         .clk, .enable(1'b1), .in(step_valid && step_last), .out(light_gone)
     );
 
-    fifo #(.WIDTH(24), .DEPTH(GROUPS), .BLOCK(1'b1)) lights (
-        .clk, .rst, .in_valid(sends && !second), .in_ready(light_room), .in_data(texture.light),
-        .out_valid(light_valid), .out_ready(light_gone), .out_data(light)
+    fifo #(.WIDTH(26), .DEPTH(GROUPS), .BLOCK(1'b1)) lights (
+        .clk, .rst, .in_valid(sends && !second), .in_ready(light_room), .in_data({line, texture.light}),
+        .out_valid(light_valid), .out_ready(light_gone), .out_data({light_line, light})
     );
 
     logic             lit_valid, lit_half, lit_last;
     logic [3:0]       lit_mask, lit_opaque;
-    logic [3:0][15:0] lit_colours;
+    logic [3:0][COLOUR_BITS-1:0] lit_colours;
 
-    texture_filter texture_filter (
-        .clk, .rst, .in_valid(step_valid), .in_mask(step_mask), .in_half(step_half), .in_last(step_last), .in_bilinear(step_bilinear),
+    texture_filter #(.FRACTIONS(FRACTIONS)) texture_filter (
+        .clk, .rst, .dither, .in_valid(step_valid), .in_mask(step_mask), .in_half(step_half), .in_last(step_last), .in_bilinear(step_bilinear),
         .in_opaque(step_opaque), .in_texels(step_texels), .in_neighbours(step_neighbours), .in_weights(step_weights),
-        .light,
+        .light, .line(light_line),
         .out_valid(lit_valid), .out_mask(lit_mask), .out_half(lit_half), .out_last(lit_last), .out_opaque(lit_opaque),
         .out_colours(lit_colours)
     );
@@ -223,7 +238,7 @@ module texture_shader #(
         .clk, .enable(1'b1), .in(sampler.blend), .out(lit_blend)
     );
 
-    texture_collect texture_collect (
+    texture_collect #(.COLOUR_BITS(COLOUR_BITS)) texture_collect (
         .clk, .rst, .room(colours_room), .in_valid(lit_valid), .in_mask(lit_mask), .in_half(lit_half), .in_last(lit_last),
         .in_opaque(lit_opaque), .in_colours(lit_colours), .in_blend(lit_blend),
         .out_valid(colours_valid), .out_ready(group_gone && group_textured), .out_blend(blend), .out_opaque(opaque), .out_colours(colours)

@@ -2,12 +2,13 @@
 //
 //             ┌─ fifo: groups ─────────────────────────────────────────────────────────────────────────────────┐
 //   group ──▶ ┤                                                                                                ├──▶ group
-//             └─ quads ─▶ log2 of the codes ─▶ table of shares ─▶ mix with the fog ─▶ dither ─▶ fifo: colours ─┘
+//             └─ quads ─▶ log2 of the codes ─▶ table of shares ─▶ mix with the fog ─▶ round  ─▶ fifo: colours ─┘
 //
 // A group takes one clock for each half with a pixel in its mask (a quad of four pixels). Streams are valid/ready; `in_ready` depends on
 // `in_mask`. Latency 14 clocks from the last quad of a group; throughput one quad per clock. The pipeline of quads cannot be stopped: a group enters only while the FIFO
-// of groups has a free place, and the FIFO of colours, which is as deep, never has more groups. Without `enable` colours stay as they are.
-// `enable`, `fog` and `first_line`, the place in the picture of the groups' line 0, must hold while groups are inside. `idle` is high while
+// of groups has a free place, and the FIFO of colours, which is as deep, never has more groups. Without `enable` there is no fog. Each
+// colour has the format of colour_pkg::rounded, and is rounded to RGB565, with `dither` by the place of its pixel. `enable`, `dither`, `fog`
+// and `first_line`, the place in the picture of the groups' line 0, must hold while groups are inside. `idle` is high while
 // no group is inside.
 
 `default_nettype none
@@ -21,6 +22,7 @@ module group_fog #(
     input  wire                    clk,
     input  wire                    rst,
     input  wire                    enable,
+    input  wire                    dither,
     input  wire triangle_registers_pkg::fog_t fog,
     input  wire  [1:0]             first_line,
     output logic                   idle,
@@ -30,7 +32,7 @@ module group_fog #(
     input  wire  [1:0]             in_line,    // the lowest bits
     input  wire  [7:0]             in_mask,
     input  wire  [7:0][17:0]       in_codes,
-    input  wire  [7:0][15:0]       in_colours,
+    input  wire  [7:0][23:0]       in_colours,
     input  wire                    in_added,   // the group is added to the picture, and the fog darkens it
     output logic                   out_valid,
     input  wire                    out_ready,
@@ -93,7 +95,7 @@ module group_fog #(
     for (genvar lane = 0; lane < 4; lane++) begin : lanes
         logic [17:0] code_1;
         // The complement of the colour.
-        logic [15:0] less_1, less_8, less_10, colour_10;
+        logic [23:0] less_1, less_8, less_10, colour_10;
 
         always_ff @(posedge clk) begin
             code_1   <= half ? in_codes[4 + lane] : in_codes[lane];
@@ -112,23 +114,23 @@ module group_fog #(
         logic [31:0]        sum_11;
         logic [15:0]        green_11;
 
-        delay #(.WIDTH(16), .CLOCKS(7)) colour_waits (.clk, .enable(1'b1), .in(less_1), .out(less_8));
-        delay #(.WIDTH(16), .CLOCKS(2)) colour_goes (.clk, .enable(1'b1), .in(less_8), .out(less_10));
+        delay #(.WIDTH(24), .CLOCKS(7)) colour_waits (.clk, .enable(1'b1), .in(less_1), .out(less_8));
+        delay #(.WIDTH(24), .CLOCKS(2)) colour_goes (.clk, .enable(1'b1), .in(less_8), .out(less_10));
 
         assign colour_10 = ~less_10;
 
         always_ff @(posedge clk) begin
-            difference_9       <= fog_8 + $signed({1'b1, less_8[4:0], 11'h7FF, less_8[15:11], 3'd7});
-            green_difference_9 <= green_fog_8 + $signed({1'b1, less_8[10:5], 2'd3});
+            difference_9       <= fog_8 + $signed({1'b1, less_8[23:16], 8'hFF, less_8[7:0]});
+            green_difference_9 <= green_fog_8 + $signed({1'b1, less_8[15:8]});
             share_9            <= {1'b0, share_8[lane]};
 
             product_10         <= difference_9 * share_9;
             green_product_10   <= green_difference_9 * share_9;
 
-            sum_11             <= product_10[31:0] + {colour_10[4:0], 3'd0, 8'd128, colour_10[15:11], 3'd0, 8'd128};
-            green_11           <= green_product_10[15:0] + {colour_10[10:5], 2'd0, 8'd128};
+            sum_11             <= product_10[31:0] + {colour_10[23:16], 8'd128, colour_10[7:0], 8'd128};
+            green_11           <= green_product_10[15:0] + {colour_10[15:8], 8'd128};
 
-            foggy_12[lane]     <= colour_pkg::dithered({sum_11[31:24], green_11[15:8], sum_11[15:8]}, 2'(lane), line_11);
+            foggy_12[lane]     <= colour_pkg::rounded({sum_11[31:24], green_11[15:8], sum_11[15:8]}, colour_pkg::threshold(dither, 2'(lane), line_11));
         end
 
         wire _unused = &{1'b0, sum_11[23:16], sum_11[7:0], green_11[7:0], product_10[34:32], green_product_10[18:16]};

@@ -1,20 +1,21 @@
 // Computes the colour of a pixel from its accumulators of depth and light: divides the light of each channel by the depth, with a table of
 // reciprocals (docs/formats/triangle.md, "Smooth shading").
 //
-//   clock   0          1           2               3                      4, 5, 6        7
+//   clock   0          1           2               3                      4, 5, 6        7, 8
 //           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐
-//           light ────────────────────────────────────────────────────┴▶ light·y + half ─▶ five or six bits, by the zeros
+//           light ────────────────────────────────────────────────────┴▶ light·y + half ─▶ eight bits, by the zeros
 //
-// `zeros` is the number of leading zeros of the depth, at most 11. The table takes half a RAMB36. Latency 7 clocks, throughput one pixel
+// A channel has the format of colour_pkg::rounded, and is at most full. `zeros` is the number of leading zeros of the depth, at most 11. The table takes half a RAMB36. Latency 8 clocks, throughput one pixel
 // per clock; the pipeline cannot be stopped.
 
 `default_nettype none
 
 module pixel_colour (
     input  wire              clk,
+    input  wire              dither, // whether a channel is rounded to its fraction, or else truncated
     input  wire  [31:0]      depth, // with half a depth code added
     input  wire  [2:0][31:0] light, // red in the lowest bits
-    output logic [15:0]      colour
+    output logic [2:0][7:0]  colour
 );
     // Entry i of the table is nearest(2^17/(1 + (i + 1/2)/1024)), which is nearest(2^28/(2049 + 2·i)).
     (* ram_style = "block" *) logic [16:0] inverses [0:1023];
@@ -47,7 +48,7 @@ module pixel_colour (
             2'd2: index <= by_4[10:1];
             2'd3: index <= by_4[9:0];
         endcase
-        half <= 42'd1 << (6'd34 - 6'(zeros_4));
+        half <= 42'(dither) << (6'd31 - 6'(zeros_4));
     end
 
     always_ff @(posedge clk) inverse <= inverses[index];
@@ -57,17 +58,16 @@ module pixel_colour (
 
     for (genvar k = 0; k < 3; k++) begin : channels
         localparam int unsigned BITS = k == 1 ? 6 : 5;
-        localparam int unsigned LOW  = k == 0 ? 11 : k == 1 ? 5 : 0;
         logic        [23:0]     light_3;
         logic signed [41:0]     product;
-        logic        [8:0]      window;
-        logic        [BITS-1:0] channel;
+        logic        [10:0]     window;
+        logic        [7:0]      channel;
         logic                   dark, dark_6;
 
         delay #(.WIDTH(24), .CLOCKS(3)) light_delay (.clk, .enable(1'b1), .in(light[k][31:8]), .out(light_3));
 
         multiply_add #(.BITS(42)) dsp (
-            .clk, .enable(1'b1), .a({1'b0, light_3}), .b({1'b0, inverse}), .c(half >> (BITS - 5)), .p(product)
+            .clk, .enable(1'b1), .a({1'b0, light_3}), .b({1'b0, inverse}), .c(half), .p(product)
         );
 
         // High if the light is negative, which rounding may cause if the exact light is 0. The channel is then 0.
@@ -77,25 +77,26 @@ module pixel_colour (
 
         always_comb begin
             case (zeros_6[3:2])
-                2'd0:    window = product[39:31];
-                2'd1:    window = product[35:27];
-                default: window = product[31:23];
+                2'd0:    window = product[39:29];
+                2'd1:    window = product[35:25];
+                default: window = product[31:21];
             endcase
         end
 
         always_ff @(posedge clk) begin
             case (zeros_6[1:0])
-                2'd0: channel <= window[8 -: BITS];
-                2'd1: channel <= window[7 -: BITS];
-                2'd2: channel <= window[6 -: BITS];
-                2'd3: channel <= window[5 -: BITS];
+                2'd0: channel <= window[10:3];
+                2'd1: channel <= window[9:2];
+                2'd2: channel <= window[8:1];
+                2'd3: channel <= window[7:0];
             endcase
             if (dark_6) channel <= '0;
+
+            // Full light may be rounded to slightly above the largest step.
+            colour[k] <= channel[7 -: BITS] == '1 ? {{BITS{1'b1}}, {(8 - BITS){1'b0}}} : channel;
         end
 
-        assign colour[LOW +: BITS] = channel;
-
-        wire _unused = &{1'b0, product[41:40], product[22:0], light[k][7:0], window[0]};
+        wire _unused = &{1'b0, product[41:40], product[20:0], light[k][7:0]};
     end
 
     wire _unused = &{1'b0, depth[9:0]};

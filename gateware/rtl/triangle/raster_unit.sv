@@ -26,6 +26,8 @@
 //
 // With FOG, `flags.fog` draws triangles in fog.
 //
+// With `flags.dither` the colours of smooth triangles, textures, sky and fog are dithered, otherwise rounded to nearest.
+//
 // With AVERAGE, `flags.average` draws four samples for each pixel: the flush averages the samples of a picture of `flags.size` to a picture
 // of half the width and height. With `flags.quarter` this picture is a quarter, `flags.right` and `flags.lower`, of the frame, which has the
 // width and height `flags.size`. All words are written, and no depths.
@@ -281,7 +283,7 @@ module raster_unit #(
             triangle_raster #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .FOG(FOG)) triangle_raster (
                 .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
                 .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
-                .triangle_planes(planes), .has_fog(flags.fog), .fog, .first_row(first_row[1:0]), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
+                .triangle_planes(planes), .has_fog(flags.fog), .fog, .dither(flags.dither), .first_row(first_row[1:0]), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
                 .ask_valid(ask_valid[3]), .ask_ready(ask_ready[3]), .ask_addr(ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS]),
                 .data_valid(data_valid[3]), .data_ready(data_ready[3]), .data(data[3*128 +: 128]),
                 .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
@@ -373,7 +375,7 @@ module raster_unit #(
             assign sky_group.colour = '0;
 
             for (genvar lane = 0; lane < 8; lane++) begin : lanes
-                assign sky_colours[16*lane +: 16] = colour_pkg::dithered(sky_colour, 2'(lane), sky_line);
+                assign sky_colours[16*lane +: 16] = colour_pkg::rounded(sky_colour, colour_pkg::threshold(flags.dither, 2'(lane), sky_line));
             end
 
             always_ff @(posedge clk) begin
@@ -438,7 +440,8 @@ module raster_unit #(
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),
         .band_first_line(first_row), .band_slot(flags.slot), .band_whole(all_words),
         .band_with_depth(flags.depth), .band_clear(parameters.clear), .band_compose(has_field ? field_source.compose : 2'd0),
-        .band_average(averages), .band_gap(gap), .band_sky(has_sky && !sky_first), .sky_valid, .sky_ready(sky_flushed), .sky_line, .sky_colour,
+        .band_average(averages), .band_gap(gap), .band_sky(has_sky && !sky_first), .band_dither(flags.dither),
+        .sky_valid, .sky_ready(sky_flushed), .sky_line, .sky_colour,
         .word_valid, .word_ready, .word_addr, .word_data,
         .events(band_events)
     );

@@ -49,9 +49,10 @@ module triangle_raster #(
     input  wire                            triangle_odd,
     input  wire records_pkg::descriptor_t triangle_descriptor,
     input  wire  [PLANES_BITS-1:0]         triangle_planes,
-    // Fog, and the number of the first row of the band that is drawn.
+    // Fog, whether colours are dithered, and the number of the first row of the band that is drawn.
     input  wire                            has_fog,
     input  wire triangle_registers_pkg::fog_t fog,
+    input  wire                            dither,
     input  wire  [1:0]                     first_row,
     // Textures: the address of their table, and the client of a read_port that reads them. texture_shader explains `forget`.
     input  wire                            forget,
@@ -149,7 +150,17 @@ module triangle_raster #(
     group_t     shaded;
     logic [7:0] opaque, foggy_mask;
     logic [3:0] blend, foggy_blend;
-    logic [8*16-1:0] shaded_colours, foggy_colours;
+    logic [8*16-1:0] foggy_colours;
+
+    // With FOG, colours become RGB565 only in the fog.
+    localparam int unsigned COLOUR_BITS = FOG ? 24 : 16;
+
+    logic [8*COLOUR_BITS-1:0] shaded_colours;
+
+    // The lowest bits of the line in the picture.
+    logic [1:0] found_line;
+
+    assign found_line = found.line[1:0] + first_row;
 
     if (TEXTURE) begin : textured
         records_pkg::plane_t found_depth;
@@ -158,9 +169,9 @@ module triangle_raster #(
             .clk, .enable(1'b1), .in({walked_late.depth_step_y, walked_late.depth_step_x, walked_late.depth}), .out(found_depth)
         );
 
-        texture_shader #(.ADDRESS_BITS(ADDRESS_BITS), .GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT)) texture_shader (
-            .clk, .rst, .forget, .table_base(texture_table), .idle(fifo_idle), .room,
-            .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_colour(found_colour),
+        texture_shader #(.ADDRESS_BITS(ADDRESS_BITS), .GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT), .FRACTIONS(FOG)) texture_shader (
+            .clk, .rst, .forget, .dither, .table_base(texture_table), .idle(fifo_idle), .room,
+            .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_line(found_line), .in_colour(found_colour),
             .in_texture(walked_planes), .in_depth(found_depth),
             .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
             .out_valid(shaded_valid), .out_ready(shaded_ready), .out_group(shaded), .out_opaque(opaque), .out_colours(shaded_colours),
@@ -191,8 +202,8 @@ module triangle_raster #(
             .clk, .enable(1'b1), .in({walked_late.depth_step_x, walked_late.depth}), .out(found_depth)
         );
 
-        smooth_shader #(.GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT)) smooth_shader (
-            .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_group(found), .in_mask(found.mask),
+        smooth_shader #(.GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT), .FRACTIONS(FOG)) smooth_shader (
+            .clk, .rst, .dither, .idle(fifo_idle), .room, .in_valid(found_valid), .in_group(found), .in_mask(found.mask), .in_line(found_line),
             .in_colour(found_colour), .in_smooth(walked_planes[288]),
             .in_depth(found_depth[31:0]), .in_depth_step_x(found_depth[63:32]),
             .in_light({walked_planes[192 +: 32], walked_planes[96 +: 32], walked_planes[0 +: 32]}),
@@ -210,10 +221,14 @@ module triangle_raster #(
             .out_valid(shaded_valid), .out_ready(shaded_ready), .out_data({shaded, colour})
         );
 
-        assign shaded_colours = {8{colour}};
+        if (FOG) begin : exact
+            assign shaded_colours = {8{colour_pkg::fractions(colour)}};
+        end else begin : rounding
+            assign shaded_colours = {8{colour}};
+        end
         assign opaque         = '1;
 
-        wire _unused = &{1'b0, walked_planes};
+        wire _unused = &{1'b0, walked_planes, found_line};
     end
 
     if (FOG) begin : in_fog
@@ -222,7 +237,7 @@ module triangle_raster #(
         logic [BESIDE_BITS-1:0] beside;
 
         group_fog #(.BESIDE_BITS(BESIDE_BITS)) group_fog (
-            .clk, .rst, .enable(has_fog), .fog, .first_line(first_row), .idle(fog_idle),
+            .clk, .rst, .enable(has_fog), .dither, .fog, .first_line(first_row), .idle(fog_idle),
             .in_valid(shaded_valid), .in_ready(shaded_ready), .in_beside(BESIDE_BITS'({blend, shaded.row, shaded.line, shaded.column})),
             .in_line(shaded.line[1:0]), .in_mask(shaded.mask & opaque), .in_codes(shaded.codes), .in_colours(shaded_colours),
             .in_added(TEXTURE && blend[3]),
@@ -243,7 +258,7 @@ module triangle_raster #(
         assign group_column  = shaded.column;
         assign group_codes   = shaded.codes;
 
-        wire _unused = &{1'b0, has_fog, fog, first_row};
+        wire _unused = &{1'b0, has_fog, fog, dither};
     end
 endmodule
 

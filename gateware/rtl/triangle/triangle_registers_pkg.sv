@@ -81,6 +81,7 @@ package triangle_registers_pkg;
         logic sky;
         logic sky_first;
         logic fog;
+        logic dither;
         logic average;
         logic quarter;
         logic right;

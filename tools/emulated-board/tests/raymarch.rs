@@ -112,6 +112,7 @@ impl Bench {
             clear: CLEAR,
             sky: None,
             fog: None,
+            dither: true,
             list_shift: 8,
             input: Input::default(),
         };

@@ -3,11 +3,12 @@
 //! marching rays.
 
 use crate::{Bits, Layout, Module, Record};
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::field::{FixedCone, Solid, Surface, magnitude};
 use glint_model::raymarch::exits::{Beam, Cone, Cones, Exit, Exits, Eye, Inverse, Rule, Side};
 use glint_model::raymarch::{
     FieldSetup, Form, Lights, MARCH_FRACTION, Marching, Palette, Ray, RayEnd, RayResult, State,
-    paint, rgb565,
+    paint,
 };
 
 /// Position of a pixel, as in the member `place` of a ray.
@@ -648,12 +649,22 @@ impl From<[u64; 7]> for Pixel {
     }
 }
 
-/// Computes the pixel expected from the paint module for the model's result of a ray.
-pub fn pixel(setup: &FieldSetup, palette: &Palette, place: RayPlace, end: &RayEnd) -> Pixel {
+/// Computes the pixel expected from the paint module for the model's result of a ray; `row` is the pixel's line in the picture.
+pub fn pixel(
+    setup: &FieldSetup,
+    palette: &Palette,
+    rounding: Rounding,
+    place: RayPlace,
+    row: u32,
+    end: &RayEnd,
+) -> Pixel {
     let colour = paint(setup, palette, end);
     let code = setup.depth_code(end);
     let colour = match setup.stereo {
-        None => rgb565(colour),
+        None => {
+            let colour = Rgb565::with_fractions(colour);
+            Rgb565::rounded(colour, rounding, [place.column, row]).0
+        }
         Some(_) => u16::from_le_bytes([colour[1]; 2]),
     };
     Pixel {

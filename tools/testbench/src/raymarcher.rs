@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use glint_core::colour::Rounding;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette};
 use glint_model::triangle::descriptor::band_rows;
 use glint_vectors::Random;
@@ -26,6 +27,8 @@ pub struct Raymarcher {
     module: Module,
     counters: Counters,
     counted: [u64; 8],
+    /// How the colours of the last frame are rounded; it alternates from frame to frame.
+    rounding: Rounding,
 }
 
 /// Cost of a frame.
@@ -54,6 +57,7 @@ impl Raymarcher {
             counters: Counters::new(&module, "events"),
             module,
             counted: [0; 8],
+            rounding: Rounding::Nearest,
         }
     }
 
@@ -96,6 +100,12 @@ impl Raymarcher {
         palette: &Palette,
     ) -> FrameCost {
         self.set(setup, palette);
+        self.rounding = match self.rounding {
+            Rounding::Dithered => Rounding::Nearest,
+            Rounding::Nearest => Rounding::Dithered,
+        };
+        let is_dithered = self.rounding == Rounding::Dithered;
+        self.module.drive("dither", is_dithered);
         let lines = band_rows(setup.width);
         let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
         let stalls = match &mut random {
@@ -117,11 +127,12 @@ impl Raymarcher {
                         column: x,
                         eye: eye as usize,
                     };
-                    let end = tracer.trace(place.eye, x, band * lines + y);
+                    let row = band * lines + y;
+                    let end = tracer.trace(place.eye, x, row);
                     stats.count(&end);
                     expected.insert(
                         (eye.into(), y.into(), x.into()),
-                        pixel(setup, palette, place, &end),
+                        pixel(setup, palette, self.rounding, place, row, &end),
                     );
                 }
             }

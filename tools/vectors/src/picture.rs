@@ -1,6 +1,7 @@
 //! Pictures drawn by the bit-exact model of the triangle engine.
 
 use glint_core::camera::View;
+use glint_core::colour::Rounding;
 use glint_core::mesh::Mesh;
 use glint_model::edges::EdgeList;
 use glint_model::{DrawnTriangle, Frame, FrameBuffer, Options, Projected, Stats, Subject, trace};
@@ -48,6 +49,7 @@ impl Picture {
             height: self.height,
             colour: &mut self.colour,
             depth: &mut self.depth,
+            rounding: Rounding::Dithered,
         }
     }
 

@@ -191,6 +191,9 @@ commands! {
         edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh: hidden (only edges that no face hides) or over (on the shaded faces)"
             => key(Order::Option, "over").with(&["model"]).without(FIELD)
                 .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
+        dither Dither(on: bool) or show in VIEW: "turn ordered dithering of colours on or off, or show the setting; off rounds to nearest"
+            => key(Order::Option, "off").with(LIT)
+                .host(switch("no-dither", "off", "Round colours to the nearest of RGB565 instead of dithering them"));
         overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";
         prepass Prepass(on: bool) in FIELD: "no effect: rays need no prepass any more, and the next release rejects the command"
             => key(Order::Option, "on").with(FIELD)

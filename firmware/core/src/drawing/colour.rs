@@ -18,23 +18,22 @@ impl Rgb565 {
         Self(nearest(rgb[0], 31) << 11 | nearest(rgb[1], 63) << 5 | nearest(rgb[2], 31))
     }
 
-    /// Converts a colour of 8 bits per channel for the pixel in column x and line y, with ordered dithering: over 4×4 pixels the mean of
-    /// a channel is the given one, within 1/255. A full channel stays full.
-    pub fn dithered(rgb: [u8; 3], x: u32, y: u32) -> Self {
-        Self::rounded_at(Self::with_fractions(rgb), x, y)
-    }
-
     /// Scales a colour of 8 bits per channel to channels with fraction bits: red u5.3, green u6.2, blue u5.3, whose largest values are
     /// those of RGB565.
     pub const fn with_fractions([r, g, b]: [u8; 3]) -> [u8; 3] {
         [r - (r >> 5), g - (g >> 6), b - (b >> 5)]
     }
 
-    /// Rounds channels with fraction bits, as of [`with_fractions`](Self::with_fractions), for the pixel in column x and line y, with
-    /// ordered dithering. A channel without a fraction stays as it is; one above the largest value wraps, as in the gateware.
-    pub fn rounded_at([r, g, b]: [u8; 3], x: u32, y: u32) -> Self {
-        const THRESHOLDS: [[u8; 4]; 4] = [[0, 4, 1, 5], [6, 2, 7, 3], [1, 5, 0, 4], [7, 3, 6, 2]];
-        let threshold = THRESHOLDS[y as usize % 4][x as usize % 4];
+    /// The channels with fraction bits, as of [`with_fractions`](Self::with_fractions), that are 0.
+    pub const fn fractions(self) -> [u8; 3] {
+        let [r, g, b] = self.channels();
+        [r << 3, g << 2, b << 3]
+    }
+
+    /// Rounds channels with fraction bits, as of [`with_fractions`](Self::with_fractions), for the pixel in column x and line y. A channel
+    /// whose fraction is 0 stays as it is; one above the largest value wraps, as in the gateware.
+    pub fn rounded([r, g, b]: [u8; 3], rounding: Rounding, place: [u32; 2]) -> Self {
+        let threshold = rounding.threshold(place);
         let five = |channel: u8| (channel.wrapping_add(threshold) >> 3) as u16;
         let green = (g.wrapping_add(threshold / 2) >> 2) as u16;
         Self(five(r) << 11 | green << 5 | five(b))
@@ -53,6 +52,44 @@ impl Rgb565 {
             (self.0 >> 5 & 0x3F) as u8,
             (self.0 & 0x1F) as u8,
         ]
+    }
+}
+
+/// How channels with fraction bits are rounded to RGB565.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rounding {
+    /// With ordered dithering: over 4×4 pixels of one colour the mean of a channel is the given one, within 1/255.
+    #[default]
+    Dithered,
+    /// To nearest.
+    Nearest,
+}
+
+impl Rounding {
+    /// The rounding with or without dithering.
+    pub const fn new(is_dithered: bool) -> Self {
+        match is_dithered {
+            true => Self::Dithered,
+            false => Self::Nearest,
+        }
+    }
+
+    /// What is added before a channel is truncated to its fraction bits, whose unit is 2^`unit_log2`, for [`Rgb565::rounded`]: half the unit,
+    /// or nothing before rounding to nearest, which would round a second time.
+    pub const fn before_fractions(self, unit_log2: u32) -> u32 {
+        match self {
+            Self::Dithered => 1 << (unit_log2 - 1),
+            Self::Nearest => 0,
+        }
+    }
+
+    /// What is added before truncation in the pixel in column x and line y, in eighths of a step of red and blue. Half of it, rounded
+    /// down, is added to green, in quarters of a step.
+    pub fn threshold(self, [x, y]: [u32; 2]) -> u8 {
+        match self {
+            Self::Dithered => ((x ^ y) << 2 & 4 | y << 1 & 2 | (x ^ y) >> 1 & 1) as u8,
+            Self::Nearest => 4,
+        }
     }
 }
 

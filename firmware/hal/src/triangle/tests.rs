@@ -212,6 +212,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
         clear: 0xabcd,
         sky: None,
         fog: None,
+        dither: true,
         list_shift: 11,
         input: Input {
             sets: [Some(set(0)), None],
@@ -237,7 +238,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
         // SAFETY: the model has no engine that accesses memory.
         unsafe { engine.start_raster(&pass) };
         let start = r.raster().read();
-        assert!(start.start() && start.slot() && !start.whole());
+        assert!(start.start() && start.slot() && !start.whole() && start.dither());
         assert_eq!(
             [start.first(), start.second(), start.depth()],
             [!second, second, depth]

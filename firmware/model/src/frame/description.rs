@@ -2,7 +2,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::colour::{Rgb565, Shading, Winding};
+use glint_core::colour::{Rgb565, Rounding, Shading, Winding};
 use glint_core::feature::{ANTIALIASING, FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
@@ -40,6 +40,8 @@ pub struct Frame<'a> {
     /// Density of the fog on the meshes per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog. The fog of a field is
     /// in the field's appearance.
     pub fog: U4_28,
+    /// How colours are rounded to RGB565.
+    pub rounding: Rounding,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
     /// The replacement texture, which all faces with a texture show in place of their own; `None` for their own textures.
@@ -260,6 +262,7 @@ impl<'a> Frame<'a> {
             clear: Rgb565(0),
             sky: None,
             fog: U4_28::ZERO,
+            rounding: Rounding::Dithered,
             lighting: MeshLighting::CAMERA,
             replacement_texture: None,
             stereo: None,

@@ -1,6 +1,6 @@
 //! Averages of samples: the pixels of a frame with four samples a pixel (docs/formats/triangle.md, "Samples").
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::picture::Samples;
 
 use super::description::Frame;
@@ -24,27 +24,34 @@ impl Frame<'_> {
         for (y, (pair, line)) in pairs.zip(lines.skip(top)).enumerate() {
             let (upper, lower) = pair.split_at(columns);
             let pixels = line.get_mut(left..).unwrap_or_default();
-            average_lines([upper, lower], y as u32, pixels);
+            average_lines([upper, lower], y as u32, self.rounding, pixels);
             progress();
         }
     }
 }
 
 /// Stores the averages of two lines of samples in the `pixels` of line y.
-pub fn average_lines([upper, lower]: [&[u16]; 2], y: u32, pixels: &mut [u16]) {
+pub fn average_lines([upper, lower]: [&[u16]; 2], y: u32, rounding: Rounding, pixels: &mut [u16]) {
     let [upper, lower] = [upper, lower].map(|line| line.as_chunks::<2>().0);
     let quads = upper.iter().zip(lower);
     for (x, (pixel, (&[a, b], &[c, d]))) in (0..).zip(pixels.iter_mut().zip(quads)) {
-        *pixel = average([a, b, c, d], x, y);
+        *pixel = average([a, b, c, d], threshold(rounding, x, y));
     }
 }
 
-/// The average of four samples in RGB565, for the pixel in column x and line y, whose sum of each channel is rounded by one of the
-/// thresholds 0 to 3. Each 2×2 pixels have all thresholds, and so do those of four neighbours whose columns and lines have an even sum: the
-/// samples were dithered by thresholds that depend on this sum ([`Rgb565::dithered`]).
-fn average(samples: [u16; 4], x: u32, y: u32) -> u16 {
+/// What is added to the sums of four channels in the pixel in column x and line y, before they are divided by four and rounded down: 0 to
+/// 3. Each 2×2 pixels have all thresholds, and so do those of four neighbours whose columns and lines have an even sum: the samples were
+/// dithered by thresholds that depend on this sum ([`Rounding::threshold`]).
+fn threshold(rounding: Rounding, x: u32, y: u32) -> u8 {
     const THRESHOLDS: [[u8; 4]; 2] = [[0, 2, 3, 1], [3, 1, 0, 2]];
-    let threshold = THRESHOLDS[y as usize % 2][x as usize % 4];
+    match rounding {
+        Rounding::Dithered => THRESHOLDS[y as usize % 2][x as usize % 4],
+        Rounding::Nearest => 2,
+    }
+}
+
+/// The average of four samples in RGB565, whose sums of channels are rounded by a threshold.
+fn average(samples: [u16; 4], threshold: u8) -> u16 {
     let channels = samples.map(|sample| Rgb565(sample).channels());
     let [red, green, blue] = [0, 1, 2].map(|i: usize| {
         let sum: u8 = channels.iter().map(|channels| channels[i]).sum();

@@ -1,5 +1,7 @@
 //! Drawing of all pixels of a frame with a distance field.
 
+use glint_core::colour::{Rgb565, Rounding};
+
 use super::end::{RayEnd, State};
 use super::paint::paint;
 use super::palette::Palette;
@@ -63,10 +65,12 @@ pub fn render_field(
 ) -> Result<FieldStats, RenderError> {
     target.check()?;
     target.check_size((setup.width, setup.height))?;
+    let rounding = target.rounding;
     let (colour, depth) = (&mut *target.colour, &mut *target.depth);
     Ok(render_rows(
         &setup.tracer(),
         palette,
+        rounding,
         0,
         colour,
         depth,
@@ -79,6 +83,7 @@ pub fn render_field(
 pub fn render_rows(
     tracer: &Tracer,
     palette: &Palette,
+    rounding: Rounding,
     first: u32,
     colour: &mut [u16],
     depth: &mut [u32],
@@ -100,7 +105,9 @@ pub fn render_rows(
         match setup.stereo {
             None => {
                 if code >= *depth {
-                    (*colour, *depth) = (rgb565(left), code);
+                    let left = Rgb565::with_fractions(left);
+                    *colour = Rgb565::rounded(left, rounding, [x, y]).0;
+                    *depth = code;
                 }
             }
             Some(tint) => {
@@ -130,13 +137,4 @@ impl FieldSetup {
         let product = u64::from(self.depth.mantissa) * u64::from(y);
         ((((product >> (shift - 1)) + 1) >> 1) as u32).clamp(1, MOST)
     }
-}
-
-/// Converts three channels of eight bits to RGB565. Each channel is rounded to nearest; the result saturates at the channel's largest
-/// value.
-pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
-    let narrow = |x: u8, bits: u32| {
-        ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16
-    };
-    narrow(r, 5) << 11 | narrow(g, 6) << 5 | narrow(b, 5)
 }

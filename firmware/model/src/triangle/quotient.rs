@@ -1,7 +1,7 @@
 //! Smooth shading: the division of light by depth that gives the colour of each pixel (docs/formats/triangle.md, "Smooth
 //! shading").
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 
 /// `INVERSE[i]` is 2^17/(1 + (i + 1/2)/1024), rounded to nearest, u0.17.
 pub const INVERSE: [u32; 1024] = inverses();
@@ -21,25 +21,28 @@ const fn inverses() -> [u32; 1024] {
 /// Bits per channel: red, green and blue.
 pub const CHANNEL_BITS: [u32; 3] = [5, 6, 5];
 
-/// The colour of a pixel, from the light accumulators of its channels, and from `depth`, its depth accumulator plus
+/// The largest channels with fraction bits: 31, 63 and 31 steps.
+pub const LARGEST: [u8; 3] = Rgb565::WHITE.fractions();
+
+/// The channels of a pixel, red u5.3, green u6.2 and blue u5.3, from the light accumulators of its channels, and from `depth`, its depth accumulator plus
 /// half a code.
 ///
 /// The depth of a covered pixel is at least 2^7 codes; smaller depths give a meaningless colour.
-pub fn colour(light: [u32; 3], depth: u32) -> Rgb565 {
+pub fn colour(light: [u32; 3], depth: u32, rounding: Rounding) -> [u8; 3] {
     let shift = depth.leading_zeros().min(11);
     let inverse = INVERSE[((depth << shift) >> 21 & 0x3FF) as usize];
-    let mut colour = 0;
-    for (value, bits) in core::iter::zip(light, CHANNEL_BITS) {
+    // With 8 bits of a channel; 40 − `shift` bits of a product are fraction bits of the light.
+    let cut = 32 - shift;
+    [0, 1, 2].map(|i: usize| {
+        let value = light[i];
         // Light is at most 63/64 of the depth, so an accumulator whose highest six bits are ones is a light of 0 that was
         // rounded to slightly below 0.
-        let product = if value >> 26 == 0x3F {
-            0
-        } else {
-            u64::from(value >> 8) * u64::from(inverse)
-        };
-        let cut = 40 - bits - shift;
-        let channel = (product + (1 << (cut - 1))) >> cut;
-        colour = colour << bits | channel as u16 & ((1 << bits) - 1);
-    }
-    Rgb565(colour)
+        if value >> 26 == 0x3F {
+            return 0;
+        }
+        let product = u64::from(value >> 8) * u64::from(inverse);
+        let channel = ((product + u64::from(rounding.before_fractions(cut))) >> cut) as u8;
+        // Full light may be rounded to slightly above the largest step.
+        channel.min(LARGEST[i])
+    })
 }

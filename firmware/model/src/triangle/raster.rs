@@ -6,7 +6,7 @@
 
 use core::ops::{Add, BitOr, Sub};
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::texture::Blend;
 
 use crate::fog::Fog;
@@ -45,11 +45,13 @@ pub fn draw_in_fog(
     fog: &Fog,
     target: &mut FrameBuffer,
 ) -> Coverage {
-    let mut draw = |brush: &mut dyn Brush| draw_with(setup, Fogged::new(brush, setup, fog), target);
+    let rounding = target.rounding;
+    let mut draw =
+        |brush: &mut dyn Brush<Colour = [u8; 3]>| draw_with(setup, Fogged::new(brush, fog), target);
     match (textured, &setup.light) {
-        (Some(textured), _) => draw(&mut Textures::new(setup, textured)),
-        (None, Some(light)) => draw(&mut Smooth::new(setup, light)),
-        (None, None) => draw(&mut { colour }),
+        (Some(textured), _) => draw(&mut Textures::new(setup, textured, rounding)),
+        (None, Some(light)) => draw(&mut Smooth::new(setup, light, rounding)),
+        (None, None) => draw(&mut Flat::new(colour, rounding)),
     }
 }
 
@@ -63,16 +65,23 @@ pub fn draw_groups(
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
 ) -> Coverage {
+    let rounding = target.rounding;
     match (textured, &setup.light) {
-        (Some(textured), _) => grouped(setup, Textures::new(setup, textured), fog, target, visit),
-        (None, Some(light)) => grouped(setup, Smooth::new(setup, light), fog, target, visit),
-        (None, None) => grouped(setup, colour, fog, target, visit),
+        (Some(textured), _) => {
+            let brush = Textures::new(setup, textured, rounding);
+            grouped(setup, brush, fog, target, visit)
+        }
+        (None, Some(light)) => {
+            let brush = Smooth::new(setup, light, rounding);
+            grouped(setup, brush, fog, target, visit)
+        }
+        (None, None) => grouped(setup, Flat::new(colour, rounding), fog, target, visit),
     }
 }
 
 fn grouped(
     setup: &Setup,
-    mut brush: impl Brush,
+    mut brush: impl Brush<Colour = [u8; 3]>,
     fog: Option<&Fog>,
     target: &mut FrameBuffer,
     visit: &mut dyn FnMut(i32, [i32; 2]),
@@ -81,7 +90,7 @@ fn grouped(
     match fog {
         None => draw_with(setup, Grouped { brush, row, visit }, target),
         Some(fog) => {
-            let brush = Fogged::new(&mut brush, setup, fog);
+            let brush = Fogged::new(&mut brush, fog);
             draw_with(setup, Grouped { brush, row, visit }, target)
         }
     }
@@ -91,13 +100,15 @@ fn grouped(
 /// into the instruction cache.
 #[inline(never)]
 fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
-    draw_with(setup, Smooth::new(setup, light), target)
+    let brush = Smooth::new(setup, light, target.rounding);
+    draw_with(setup, brush, target)
 }
 
 /// Draws a triangle with a texture. Not inlined, so that other triangles do not load this code into the instruction cache.
 #[inline(never)]
 pub fn draw_textured(setup: &Setup, textured: &Textured, target: &mut FrameBuffer) -> Coverage {
-    draw_with(setup, Textures::new(setup, textured), target)
+    let brush = Textures::new(setup, textured, target.rounding);
+    draw_with(setup, brush, target)
 }
 
 fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Coverage {
@@ -110,6 +121,8 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
 
 /// The source of pixel colours. The walker moves it over the triangle together with the depth.
 trait Brush {
+    /// A colour: RGB565, or its channels with fraction bits, as of [`Rgb565::with_fractions`].
+    type Colour;
     /// Begins the covered columns of a row; `columns` are the first and the last one, and the first is `offset` columns right of the start
     /// column.
     fn go_to(&mut self, offset: u32, columns: [i32; 2]);
@@ -118,12 +131,16 @@ trait Brush {
     /// Moves to the next row. The column is unspecified until the next `go_to`.
     fn go_down(&mut self);
     /// The colour of the pixel; `depth` is its depth accumulator plus half a code. `None` for a transparent pixel.
-    fn colour(&self, depth: u32) -> Option<Rgb565>;
-    /// Writes a pixel that passed the depth test, with its `colour` and depth `code`.
-    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
-        *stored = code;
-        *pixel = colour.0;
-    }
+    fn colour(&self, depth: u32) -> Option<Self::Colour>;
+    /// Writes a pixel that passed the depth test, with its `colour` and depth `code`; `place` is its column and row.
+    fn write(
+        &self,
+        colour: Self::Colour,
+        code: u32,
+        place: [u32; 2],
+        pixel: &mut u16,
+        stored: &mut u32,
+    );
     /// Whether pixels are added to the picture, so that fog darkens them.
     fn is_added(&self) -> bool {
         false
@@ -132,11 +149,52 @@ trait Brush {
 
 /// Flat shading: every pixel has the triangle's colour.
 impl Brush for Rgb565 {
+    type Colour = Self;
     fn go_to(&mut self, _: u32, _: [i32; 2]) {}
     fn go_right(&mut self) {}
     fn go_down(&mut self) {}
-    fn colour(&self, _: u32) -> Option<Rgb565> {
+    fn colour(&self, _: u32) -> Option<Self> {
         Some(*self)
+    }
+    fn write(&self, colour: Self, code: u32, _: [u32; 2], pixel: &mut u16, stored: &mut u32) {
+        *stored = code;
+        *pixel = colour.0;
+    }
+}
+
+/// Flat shading, with the fraction bits that a pixel in fog has.
+struct Flat {
+    colour: [u8; 3],
+    rounding: Rounding,
+}
+
+impl Flat {
+    const fn new(colour: Rgb565, rounding: Rounding) -> Self {
+        Self {
+            colour: colour.fractions(),
+            rounding,
+        }
+    }
+}
+
+impl Brush for Flat {
+    type Colour = [u8; 3];
+    fn go_to(&mut self, _: u32, _: [i32; 2]) {}
+    fn go_right(&mut self) {}
+    fn go_down(&mut self) {}
+    fn colour(&self, _: u32) -> Option<[u8; 3]> {
+        Some(self.colour)
+    }
+    fn write(
+        &self,
+        colour: [u8; 3],
+        code: u32,
+        place: [u32; 2],
+        pixel: &mut u16,
+        stored: &mut u32,
+    ) {
+        *stored = code;
+        *pixel = Rgb565::rounded(colour, self.rounding, place).0;
     }
 }
 
@@ -148,6 +206,7 @@ struct Grouped<'a, B> {
 }
 
 impl<B: Brush> Brush for Grouped<'_, B> {
+    type Colour = B::Colour;
     fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
         (self.visit)(self.row, columns.map(|column| column / GROUP));
         self.brush.go_to(offset, columns);
@@ -159,57 +218,60 @@ impl<B: Brush> Brush for Grouped<'_, B> {
         self.brush.go_down();
         self.row += 1;
     }
-    fn colour(&self, depth: u32) -> Option<Rgb565> {
+    fn colour(&self, depth: u32) -> Option<B::Colour> {
         self.brush.colour(depth)
     }
-    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
-        self.brush.write(colour, code, pixel, stored);
+    fn write(
+        &self,
+        colour: B::Colour,
+        code: u32,
+        place: [u32; 2],
+        pixel: &mut u16,
+        stored: &mut u32,
+    ) {
+        self.brush.write(colour, code, place, pixel, stored);
     }
 }
 
 /// A brush in fog.
 struct Fogged<'a> {
-    brush: &'a mut dyn Brush,
+    brush: &'a mut dyn Brush<Colour = [u8; 3]>,
     fog: &'a Fog,
     /// Colour of the fog, black for pixels that are added to the picture.
     colour: [u8; 3],
-    row: i32,
-    column: i32,
 }
 
 impl<'a> Fogged<'a> {
-    fn new(brush: &'a mut dyn Brush, setup: &Setup, fog: &'a Fog) -> Self {
+    fn new(brush: &'a mut dyn Brush<Colour = [u8; 3]>, fog: &'a Fog) -> Self {
         let colour = if brush.is_added() { [0; 3] } else { fog.colour };
-        Self {
-            brush,
-            fog,
-            colour,
-            row: setup.bounds.top,
-            column: 0,
-        }
+        Self { brush, fog, colour }
     }
 }
 
 impl Brush for Fogged<'_> {
+    type Colour = [u8; 3];
     fn go_to(&mut self, offset: u32, columns: [i32; 2]) {
-        self.column = columns[0];
         self.brush.go_to(offset, columns);
     }
     fn go_right(&mut self) {
-        self.column += 1;
         self.brush.go_right();
     }
     fn go_down(&mut self) {
-        self.row += 1;
         self.brush.go_down();
     }
-    fn colour(&self, depth: u32) -> Option<Rgb565> {
+    fn colour(&self, depth: u32) -> Option<[u8; 3]> {
         self.brush.colour(depth)
     }
-    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
-        let place = [self.column, self.row].map(|place| place as u32);
-        let colour = self.fog.over(self.colour, colour, code, place);
-        self.brush.write(colour, code, pixel, stored);
+    fn write(
+        &self,
+        colour: [u8; 3],
+        code: u32,
+        place: [u32; 2],
+        pixel: &mut u16,
+        stored: &mut u32,
+    ) {
+        let colour = self.fog.over(self.colour, colour, code);
+        self.brush.write(colour, code, place, pixel, stored);
     }
 }
 
@@ -250,18 +312,21 @@ struct Smooth {
     light: [Accumulation; 3],
     /// The common weight of the light; `None` if the depth of each pixel is its weight.
     weight: Option<u32>,
+    rounding: Rounding,
 }
 
 impl Smooth {
-    fn new(setup: &Setup, light: &[Plane; 3]) -> Self {
+    fn new(setup: &Setup, light: &[Plane; 3], rounding: Rounding) -> Self {
         Self {
             light: light.map(Accumulation::new),
             weight: setup.weight,
+            rounding,
         }
     }
 }
 
 impl Brush for Smooth {
+    type Colour = [u8; 3];
     fn go_to(&mut self, offset: u32, _: [i32; 2]) {
         self.light.iter_mut().for_each(|light| light.go_to(offset));
     }
@@ -271,9 +336,21 @@ impl Brush for Smooth {
     fn go_down(&mut self) {
         self.light.iter_mut().for_each(Accumulation::go_down);
     }
-    fn colour(&self, depth: u32) -> Option<Rgb565> {
+    fn colour(&self, depth: u32) -> Option<[u8; 3]> {
         let depth = self.weight.unwrap_or(depth);
-        Some(quotient::colour(self.light.map(|light| light.value), depth))
+        let light = self.light.map(|light| light.value);
+        Some(quotient::colour(light, depth, self.rounding))
+    }
+    fn write(
+        &self,
+        colour: [u8; 3],
+        code: u32,
+        place: [u32; 2],
+        pixel: &mut u16,
+        stored: &mut u32,
+    ) {
+        *stored = code;
+        *pixel = Rgb565::rounded(colour, self.rounding, place).0;
     }
 }
 
@@ -289,10 +366,11 @@ struct Textures<'a> {
     column: i32,
     /// The mip level of the group of columns.
     level: u32,
+    rounding: Rounding,
 }
 
 impl<'a> Textures<'a> {
-    fn new(setup: &'a Setup, textured: &'a Textured) -> Self {
+    fn new(setup: &'a Setup, textured: &'a Textured, rounding: Rounding) -> Self {
         let mut depth = Accumulation::new(setup.depth);
         depth.row = depth.row.wrapping_add(1 << 13);
         Self {
@@ -303,6 +381,7 @@ impl<'a> Textures<'a> {
             depth,
             column: 0,
             level: 0,
+            rounding,
         }
     }
 
@@ -320,6 +399,7 @@ impl<'a> Textures<'a> {
 }
 
 impl Brush for Textures<'_> {
+    type Colour = [u8; 3];
     fn go_to(&mut self, offset: u32, [first, _]: [i32; 2]) {
         self.all().for_each(|plane| plane.go_to(offset));
         self.column = first;
@@ -335,13 +415,22 @@ impl Brush for Textures<'_> {
     fn go_down(&mut self) {
         self.all().for_each(Accumulation::go_down);
     }
-    fn colour(&self, depth: u32) -> Option<Rgb565> {
+    fn colour(&self, depth: u32) -> Option<[u8; 3]> {
         let light = self.light.map(|light| light.map(|light| light.value));
         let places = self.places.map(|place| place.value);
-        self.textured.colour(depth, places, self.level, light)
+        self.textured
+            .colour(depth, places, self.level, light, self.rounding)
     }
     /// The depth behind a blended pixel stays.
-    fn write(&self, colour: Rgb565, code: u32, pixel: &mut u16, stored: &mut u32) {
+    fn write(
+        &self,
+        colour: [u8; 3],
+        code: u32,
+        place: [u32; 2],
+        pixel: &mut u16,
+        stored: &mut u32,
+    ) {
+        let colour = Rgb565::rounded(colour, self.rounding, place);
         match self.textured.texture.blend() {
             Blend::Opaque => {
                 *stored = code;
@@ -433,12 +522,12 @@ fn fill(
     let colours = target.colour.get_mut(span.clone()).unwrap_or_default();
     let depths = target.depth.get_mut(span).unwrap_or_default();
     let mut drawn = 0;
-    for (pixel, stored) in colours.iter_mut().zip(depths) {
+    for (column, (pixel, stored)) in (from as u32..).zip(colours.iter_mut().zip(depths)) {
         let code = (depth >> 14).max(1);
         if code >= *stored
             && let Some(colour) = brush.colour(depth)
         {
-            brush.write(colour, code, pixel, stored);
+            brush.write(colour, code, [column, row as u32], pixel, stored);
             drawn += 1;
         }
         depth = depth.wrapping_add(step);

@@ -2,13 +2,13 @@
 
 use core::ops::RangeInclusive;
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::feature::TEXTURE;
 use glint_core::mesh::{Attribute, Mesh, Triangle};
 use glint_core::records::TextureCoordinates;
 use glint_core::texture::{Filter, Texture, Wrap};
 
-use crate::triangle::quotient::CHANNEL_BITS;
+use crate::triangle::quotient::{CHANNEL_BITS, LARGEST};
 use crate::triangle::setup::{Oriented, Plane, Setup, WEIGHT};
 use crate::triangle::shade::HALF_CODE;
 
@@ -157,7 +157,7 @@ impl<'a> Textured<'a> {
         }
     }
 
-    /// The colour of a pixel from its depth accumulator plus half a code, the accumulators of its coordinates, its mip level, and under
+    /// The colour of a pixel, as of [`lit`], from its depth accumulator plus half a code, the accumulators of its coordinates, its mip level, and under
     /// smooth shading the accumulators of its light; `None` where the texture is transparent.
     pub fn colour(
         &self,
@@ -165,15 +165,19 @@ impl<'a> Textured<'a> {
         values: [u32; 2],
         level: u32,
         light: Option<[u32; 3]>,
-    ) -> Option<Rgb565> {
+        rounding: Rounding,
+    ) -> Option<[u8; 3]> {
         let inverse = Inverse::of(self.weight.unwrap_or(depth));
         let texel = sample(&self.texture, level, self.places_by(&inverse, values))?;
         let light = match light {
             None => self.light,
             // Rounded to nearest. Light and coordinates have the same weight.
-            Some(light) => light.map(|value| ((inverse.share(value, 8 + 1) + 1) >> 1) as u8),
+            Some(light) => [0, 1, 2].map(|i: usize| {
+                let light = (inverse.share(light[i], 8 + 1) + 1) >> 1;
+                light.min(LARGEST[i].into()) as u8
+            }),
         };
-        Some(lit(texel, light))
+        Some(lit(texel, light, rounding))
     }
 
     /// The position of a pixel in the texture, in texels of level 0 with 8 fraction bits, rounded down; `depth` and `values` as for
@@ -405,18 +409,16 @@ pub fn average(neighbours: [[u8; 3]; 4], weights: [u32; 2]) -> [u8; 3] {
     })
 }
 
-/// Multiplies a colour of [`sample`] by the light of each channel, rounded to nearest. The light is u0.8. The largest light is 31/32 for
-/// red and blue and 63/64 for green; it leaves the colour unchanged.
-pub fn lit(texel: [u8; 3], light: [u8; 3]) -> Rgb565 {
-    let mut colour = 0;
-    for (channel, bits) in CHANNEL_BITS.into_iter().enumerate() {
-        let light = u32::from(light[channel]);
-        let share = light + ((light + (1 << (8 - bits))) >> bits);
-        let product = u32::from(texel[channel]) * share;
-        let cut = 16 - bits;
-        colour = colour << bits | ((product + (1 << (cut - 1))) >> cut);
-    }
-    Rgb565(colour as u16)
+/// Multiplies a colour of [`sample`] by the light of each channel. The light is u0.8. The largest light is 31/32 for red and blue and 63/64
+/// for green; it leaves the colour unchanged. A channel of the result has 8 bits, as in [`sample`].
+pub fn lit(texel: [u8; 3], light: [u8; 3], rounding: Rounding) -> [u8; 3] {
+    [0, 1, 2].map(|i: usize| {
+        let light = u32::from(light[i]);
+        // The light times 32/31 or 64/63, from its highest six bits.
+        let most = (1 << CHANNEL_BITS[i]) - 1;
+        let share = light + (2 * (light & !3) + most) / (2 * most);
+        ((u32::from(texel[i]) * share + rounding.before_fractions(8)) >> 8) as u8
+    })
 }
 
 /// The light of a flat triangle for [`lit`]: its colour times the share of each channel, u1.8.

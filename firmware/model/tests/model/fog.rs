@@ -81,10 +81,12 @@ fn ends_of_the_fog() {
     let thin = Fog::new(U4_28::from_bits(1), scale, [255; 3]).unwrap();
     let dense = Fog::new(U4_28::MAX, scale, [255; 3]).unwrap();
     for colour in (0..=u16::MAX).step_by(37).map(Rgb565) {
-        for place in [[0, 0], [1, 0], [2, 3], [3, 3]] {
-            assert_eq!(thin.over(thin.colour, colour, 1 << 17, place), colour);
-            assert_eq!(dense.over(dense.colour, colour, 1, place), Rgb565::WHITE);
-        }
+        let colour = colour.fractions();
+        assert_eq!(thin.over(thin.colour, colour, 1 << 17), colour);
+        assert_eq!(
+            dense.over(dense.colour, colour, 1),
+            Rgb565::WHITE.fractions()
+        );
     }
 }
 

@@ -5,6 +5,7 @@
 mod clipping;
 mod depth;
 mod descriptor;
+mod dither;
 mod exits;
 mod fog;
 mod frame;

@@ -2,7 +2,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{Projection, View};
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::field::Field;
 use glint_core::fixed::{Turns, U8_28};
 use glint_core::matrix::{Axis, Matrix};
@@ -339,7 +339,9 @@ fn light_against_f64() {
         }
         let setup = Setup::linear(&triangle, bounds, &light);
         let mut picture = Picture::blank(SIZE);
-        pixels += draw(&setup, Rgb565(0), &mut picture.target()).covered;
+        let mut target = picture.target();
+        target.rounding = Rounding::Nearest;
+        pixels += draw(&setup, Rgb565(0), &mut target).covered;
         let place = triangle
             .vertices
             .map(|v| [v.x, v.y].map(|x| f64::from(x) / 256.0));

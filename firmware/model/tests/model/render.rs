@@ -1,6 +1,7 @@
 //! Tests of whole frames: drawing order, facing, chunks, and errors.
 
 use glint_core::camera::View;
+use glint_core::colour::Rounding;
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::setup::{Facing, Oriented};
@@ -172,6 +173,7 @@ fn what_does_not_fit_is_refused() {
             height,
             colour: &mut colour,
             depth: &mut depth,
+            rounding: Rounding::Dithered,
         };
         let result = render(
             &mesh,

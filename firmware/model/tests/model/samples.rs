@@ -2,7 +2,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::Projection;
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::field::Field;
 use glint_core::picture::{Quarter, Samples, Size};
 use glint_core::quality::Quality;
@@ -43,7 +43,7 @@ fn averages_keep_the_mean() {
             let mut sum = 0;
             for y in 0..2 {
                 let mut pixels = [0; 4];
-                average_lines([&lines[0], &lines[1]], y, &mut pixels);
+                average_lines([&lines[0], &lines[1]], y, Rounding::Dithered, &mut pixels);
                 sum += pixels
                     .iter()
                     .map(|pixel| u32::from(pixel / step))
@@ -55,24 +55,26 @@ fn averages_keep_the_mean() {
     }
     let white = [0xFFFF; 8];
     let mut pixels = [0; 4];
-    average_lines([&white, &white], 1, &mut pixels);
+    average_lines([&white, &white], 1, Rounding::Dithered, &mut pixels);
     assert_eq!(pixels, [0xFFFF; 4]);
 }
 
 /// The mean of a sky's or a fog's colour is kept by both roundings: of the samples, and of their averages.
 #[test]
 fn dithered_samples_keep_the_mean() {
+    let rounding = Rounding::Dithered;
     for channel in 0..=255_u8 {
+        let fine = Rgb565::with_fractions([channel; 3]);
         let samples = |y: u32| -> Vec<u16> {
             (0..8)
-                .map(|x| Rgb565::dithered([channel; 3], x, y).0)
+                .map(|x| Rgb565::rounded(fine, rounding, [x, y]).0)
                 .collect()
         };
         let lines = [0, 1, 2, 3, 4, 5, 6, 7].map(samples);
         let mut sums = [0_u32; 3];
         for (y, pair) in lines.as_chunks::<2>().0.iter().enumerate() {
             let mut pixels = [0; 4];
-            average_lines([&pair[0], &pair[1]], y as u32, &mut pixels);
+            average_lines([&pair[0], &pair[1]], y as u32, rounding, &mut pixels);
             for pixel in pixels {
                 let shown = Rgb565(pixel).to_rgb888();
                 sums = [0, 1, 2].map(|i: usize| sums[i] + u32::from(shown[i]));

@@ -1,6 +1,6 @@
 //! Tests of exact properties of smooth shading. `tools/reference` measures the errors of smooth shading.
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::quotient::{INVERSE, colour};
 use glint_model::triangle::raster::draw;
@@ -56,16 +56,22 @@ fn quotients_of_anything() {
     for shift in 0..=32 {
         for _ in 0..2000 {
             let light = [0; 3].map(|_| (random.bits() >> random.integer(32, 63)) as u32);
-            colour(light, ((random.bits() & 0xFFFF_FFFF) >> shift) as u32);
+            let depth = ((random.bits() & 0xFFFF_FFFF) >> shift) as u32;
+            colour(light, depth, Rounding::Dithered);
         }
     }
     // Tests the largest light and a light slightly below 0, at the smallest and the largest depth.
     for codes in [228u32, (1 << 18) - 4] {
         let depth = (codes << 14) + (1 << 13);
         let most = (u64::from(depth) * 63 / 64) as u32;
-        let found = colour([(u64::from(depth) * 31 / 32) as u32, most, 0], depth);
-        assert_eq!(found, Rgb565(0xFFE0));
-        assert_eq!(colour([u32::MAX - (1 << 13); 3], depth), Rgb565(0));
+        let found = colour(
+            [(u64::from(depth) * 31 / 32) as u32, most, 0],
+            depth,
+            Rounding::Dithered,
+        );
+        assert_eq!(found, Rgb565(0xFFE0).fractions());
+        let found = colour([u32::MAX - (1 << 13); 3], depth, Rounding::Dithered);
+        assert_eq!(found, [0; 3]);
     }
 }
 

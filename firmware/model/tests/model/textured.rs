@@ -1,6 +1,6 @@
 //! Textures on triangles against exact perspective: positions in the texture, mip levels, and the colours of whole pictures.
 
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::{ChunkHeader, Mesh, MeshHeader, Triangle, Vertex};
 use glint_core::picture::Size;
@@ -310,10 +310,17 @@ fn a_texture_replaces_those_of_the_mesh() {
 #[test]
 fn colours_at_the_limits_are_exact() {
     for colour in (0..=u16::MAX).map(Rgb565) {
-        let [r, g, b] = colour.channels();
-        let texel = [r << 3, g << 2, b << 3];
-        assert_eq!(lit(texel, flat_light(Rgb565::WHITE, [256; 3])), colour);
-        assert_eq!(lit(texel, flat_light(Rgb565::WHITE, [0; 3])), Rgb565(0));
+        let texel = colour.fractions();
+        for rounding in [Rounding::Dithered, Rounding::Nearest] {
+            let under = |light| lit(texel, flat_light(Rgb565::WHITE, light), rounding);
+            assert_eq!((under([256; 3]), under([0; 3])), (texel, [0; 3]));
+            // A white texel has the colour of the light in every pixel.
+            let white = Rgb565::WHITE.fractions();
+            let found = lit(white, flat_light(colour, [256; 3]), rounding);
+            for place in (0..16).map(|place| [place % 4, place / 4]) {
+                assert_eq!(Rgb565::rounded(found, rounding, place), colour);
+            }
+        }
     }
     let mut random = Random(7);
     for format in Format::ALL {
@@ -402,7 +409,11 @@ fn anything_has_a_colour() {
             let level = textured.level(&setup, depth, values);
             assert_eq!(level, 0);
             let light = random.coin().then(|| [(); 3].map(|()| any(&mut random)));
-            assert!(textured.colour(depth, values, level, light).is_some());
+            assert!(
+                textured
+                    .colour(depth, values, level, light, Rounding::Dithered)
+                    .is_some()
+            );
         }
     }
 }

@@ -70,6 +70,7 @@ fn samples(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
         height: image.height,
         colour: &mut image.colour,
         depth: &mut image.depth,
+        rounding: frame.rounding,
     };
     let scratch = &mut vec![Projected::Behind; frame.scratch_vertices()];
     let (constants, quiet) = (frame.constants()?, &mut || {});
@@ -87,6 +88,7 @@ mod tests {
     use super::on_model;
     use crate::render::Rendered;
     use crate::{convert, generate, view};
+    use glint_core::colour::Rounding;
     use glint_core::mesh::Mesh;
     use glint_core::picture::{Edges, Size};
     use glint_model::edges::EdgeList;
@@ -156,6 +158,7 @@ mod tests {
                             height: image.height,
                             colour: &mut image.colour,
                             depth: &mut image.depth,
+                            rounding: Rounding::Dithered,
                         };
                         let drawn = segments.iter().map(|segment| segment.draw(&mut target));
                         drawn.sum::<u32>()

@@ -4,6 +4,7 @@ use crate::common::{console, drawn_alike, emulator, info, renderer};
 use glint::render::{self, FieldSubject, Frame, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
+use glint_core::colour::Rounding;
 use glint_core::field::Field;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
@@ -57,6 +58,7 @@ fn a_quality_is_a_size_and_a_threshold() {
                 height: size.height(),
                 colour: &mut colour,
                 depth: &mut depth,
+                rounding: Rounding::Dithered,
             };
             let stats = render_field(&setup, &options.palette, &mut target, &mut |_, _, _| {});
             let evaluations = stats.unwrap().evaluations;

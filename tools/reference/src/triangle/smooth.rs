@@ -10,7 +10,7 @@ mod scenes;
 pub use scenes::scenes;
 
 use glint_core::camera::View;
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::Lit;
 use glint_model::{Options, ScreenVertex, Shading, triangle::raster};
@@ -119,7 +119,9 @@ impl Triangle {
     pub fn pixels(&self, setup: &Setup) -> Vec<Pixel> {
         let width = self.size.0 as i32;
         let mut picture = Picture::blank(self.size);
-        raster::draw(setup, Rgb565(0), &mut picture.target());
+        let mut target = picture.target();
+        target.rounding = Rounding::Nearest;
+        raster::draw(setup, Rgb565(0), &mut target);
         let covered = picture
             .depth
             .iter()

@@ -1,5 +1,6 @@
 //! Test bench of the band buffer: sources of pixel groups and of band ends, and a memory.
 
+use glint_core::colour::Rounding;
 use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
 
@@ -69,6 +70,7 @@ impl Bench {
                     "clear",
                     "compose",
                     "sky",
+                    "dither",
                 ],
                 Stalls::new(seed + 100, group_stalls),
             ),
@@ -168,6 +170,7 @@ impl Bench {
             Bits::from(u64::from(band.clear)),
             Bits::from(u64::from(band.compose)),
             Bits::from(u64::from(band.sky)),
+            Bits::from(u64::from(band.rounding == Rounding::Dithered)),
         ]);
         self.bands.push_back(band);
     }

@@ -5,6 +5,7 @@ mod bench;
 mod pixels;
 mod sky;
 
+use glint_core::colour::Rounding;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -45,6 +46,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
         with_depth: random.random_ratio(1, 4),
         clear: random.random(),
         sky: false,
+        rounding: Rounding::new(random.random()),
         compose: 0,
     }
 }
@@ -74,6 +76,7 @@ fn plain_band([lines, stride]: [usize; 2]) -> Band {
         with_depth: false,
         clear: 0xa55a,
         sky: false,
+        rounding: Rounding::Dithered,
         compose: 0,
     }
 }

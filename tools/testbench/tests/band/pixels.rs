@@ -1,6 +1,6 @@
 //! Model of the band buffer: pixel groups, bands, and the expected words of the flush of a band.
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::stereo::Tint;
 use std::ops::Range;
 
@@ -45,6 +45,8 @@ pub struct Band {
     pub clear: u16,
     /// Whether a sky replaces the clear colour.
     pub sky: bool,
+    /// How the sky is rounded.
+    pub rounding: Rounding,
     /// Composition of colours from the luminances of two eyes: 0 for none, 1 with the tint red and blue, 2 with the tint red and cyan.
     pub compose: u8,
 }
@@ -60,7 +62,10 @@ impl Band {
     fn background(&self, row: usize, lane: usize) -> u16 {
         let (colour, line) = self.sky_of(row);
         match self.sky {
-            true => Rgb565::dithered(colour, lane as u32, line).0,
+            true => {
+                let colour = Rgb565::with_fractions(colour);
+                Rgb565::rounded(colour, self.rounding, [lane as u32, line]).0
+            }
             false => self.clear,
         }
     }

@@ -1,5 +1,6 @@
 //! Tests of the module `ray_paint`, which computes colours and depths from the ends of rays.
 
+use glint_core::colour::Rounding;
 use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, RayEnd, State};
 use glint_model::triangle::descriptor::band_rows;
@@ -62,6 +63,9 @@ fn check(name: &str, has_shadows: bool) {
         let palette = palette(&mut random);
         set_paint(&mut pipe.module, &setup, &palette);
         pipe.module.drive("stride", setup.width / 8);
+        let (rounding, first_line) = (Rounding::new(random.coin()), random.integer(0, 3) as u32);
+        pipe.module.drive("dither", rounding == Rounding::Dithered);
+        pipe.module.drive("first_line", first_line);
         let expected: Vec<_> = (0..COUNT)
             .map(|_| {
                 let lines = i64::from(band_rows(setup.width));
@@ -74,7 +78,9 @@ fn check(name: &str, has_shadows: bool) {
                 let mut end = ending(&mut random, &setup, place);
                 end.shadow &= has_shadows;
                 pipe.source.push(vec![exit_end(&layout, place, &end)]);
-                (pixel(&setup, &palette, place, &end), end)
+                let row = first_line + place.line;
+                let pixel = pixel(&setup, &palette, rounding, place, row, &end);
+                (pixel, end)
             })
             .collect();
         let limit = 20 * COUNT as u64;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_model::triangle::textured::{average, lit};
 use glint_testbench::{Bits, Module, Port};
 use rand::RngExt;
@@ -38,6 +38,8 @@ struct Step {
     last: bool,
     opaque: u8,
     light: [u8; 3],
+    /// The lowest bits of the line in the picture.
+    line: u8,
 }
 
 impl Step {
@@ -46,13 +48,10 @@ impl Step {
     }
 
     /// The model's colour of each covered lane.
-    fn colours(&self) -> [Option<u16>; 4] {
+    fn colours(&self, rounding: Rounding) -> [Option<u16>; 4] {
         [0, 1, 2, 3].map(|lane: usize| {
             let texel = match self.texels {
-                Texels::Nearest(texels) => {
-                    let [r, g, b] = Rgb565(texels[lane]).channels();
-                    [r << 3, g << 2, b << 3]
-                }
+                Texels::Nearest(texels) => Rgb565(texels[lane]).fractions(),
                 Texels::Bilinear {
                     neighbours,
                     weights,
@@ -62,14 +61,18 @@ impl Step {
                     average(neighbours, weights[lane % 2].map(u32::from))
                 }
             };
-            (self.mask >> lane & 1 == 1).then(|| lit(texel, self.light).0)
+            let place = [lane as u32, self.line.into()];
+            (self.mask >> lane & 1 == 1)
+                .then(|| Rgb565::rounded(lit(texel, self.light, rounding), rounding, place).0)
         })
     }
 }
 
 struct Bench {
     module: Module,
+    rounding: Rounding,
     light: Port,
+    line: Port,
     inputs: [Port; 9],
     outputs: [Port; 6],
     /// Steps of the last clocks, newest first.
@@ -79,9 +82,13 @@ struct Bench {
 
 impl Bench {
     fn new(seed: u32) -> Self {
-        let module = Module::new("texture_filter", seed);
+        let mut module = Module::new("texture_filter", seed);
+        let rounding = Rounding::new(!seed.is_multiple_of(2));
+        module.drive("dither", rounding == Rounding::Dithered);
         Self {
+            rounding,
             light: module.port("light"),
+            line: module.port("line"),
             inputs: [
                 "valid",
                 "mask",
@@ -132,6 +139,7 @@ impl Bench {
         }
         if let Some(step) = self.inside[LIGHT] {
             module.set(self.light, Bits::pack(8, step.light));
+            module.set(self.line, u64::from(step.line));
         }
         module.settle();
         let [valid, mask, half, last, opaque, colours] = self.outputs;
@@ -143,7 +151,7 @@ impl Bench {
             assert_eq!(module.is_high(half), step.half, "{step:?}");
             assert_eq!(module.is_high(last), step.last, "{step:?}");
             let found = module.value(colours);
-            for (lane, colour) in step.colours().into_iter().enumerate() {
+            for (lane, colour) in step.colours(self.rounding).into_iter().enumerate() {
                 let found = (found >> (16 * lane)) as u16;
                 if let Some(colour) = colour {
                     assert_eq!(found, colour, "{found:04x}, lane {lane} of {step:?}");
@@ -178,6 +186,7 @@ fn step(texels: Texels, light: [u8; 3]) -> Step {
         last: false,
         opaque: mask,
         light,
+        line: (light[0] ^ light[1]) % 4,
     }
 }
 
@@ -188,7 +197,14 @@ fn light(number: usize) -> [u8; 3] {
 
 #[test]
 fn nearest_texels_with_every_light() {
-    let mut bench = Bench::new(1);
+    for seed in [1, 2] {
+        nearest_texels(seed);
+    }
+}
+
+/// Checks with dithering for an odd seed, without it for an even one.
+fn nearest_texels(seed: u32) {
+    let mut bench = Bench::new(seed);
     for number in 0..=252 {
         for value in 0..64 {
             let texels = [0, 19, 38, 57].map(|lane: usize| {
@@ -204,7 +220,14 @@ fn nearest_texels_with_every_light() {
 
 #[test]
 fn averages_of_every_value_with_every_light() {
-    let mut bench = Bench::new(2);
+    for seed in [3, 4] {
+        averages(seed);
+    }
+}
+
+/// Checks with dithering for an odd seed, without it for an even one.
+fn averages(seed: u32) {
+    let mut bench = Bench::new(seed);
     for number in 0..=252 {
         for value in 0..64 {
             // The weights of the two pixels together are all even weights, which give all values of
@@ -229,7 +252,7 @@ fn averages_of_every_value_with_every_light() {
 
 #[test]
 fn every_weight_with_random_and_extreme_texels() {
-    let mut bench = Bench::new(3);
+    let mut bench = Bench::new(5);
     let mut random = Pcg64Mcg::new(7);
     for round in 0..64 {
         for weights in 0..=255 {
@@ -263,7 +286,7 @@ fn every_weight_with_random_and_extreme_texels() {
 /// order with their flags `half`, `last` and `opaque`.
 #[test]
 fn steps_keep_their_flags() {
-    let mut bench = Bench::new(4);
+    let mut bench = Bench::new(7);
     let mut random = Pcg64Mcg::new(8);
     for is_bilinear in [false, true, false, true] {
         for _ in 0..2000 {
@@ -283,10 +306,11 @@ fn steps_keep_their_flags() {
                 (true, false) => random.random_range(1..4),
                 (true, true) => 4 * random.random_range(1..4),
             };
+            step.line = random.random_range(0..4);
             step.opaque = random.random_range(0..16);
             (step.half, step.last) = (random.random(), random.random());
             if let Texels::Nearest(texels) = texels {
-                for (colour, texel) in step.colours().into_iter().zip(texels) {
+                for (colour, texel) in step.colours(bench.rounding).into_iter().zip(texels) {
                     assert!(colour.is_none_or(|colour| colour == texel));
                 }
             }

@@ -16,6 +16,7 @@ mod textured;
 use bench::Bench;
 use expected::{CLEAR, SIZES, expected, expected_on, expected_smooth};
 use glint_core::camera::{Projection, View};
+use glint_core::colour::Rounding;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_mesh::{convert, generate};
 use glint_vectors::meshes::{self, ahead, at};
@@ -135,8 +136,12 @@ fn random_lists_with_random_stalls() {
         } else {
             View::spherical(r, theta, phi).unwrap()
         };
-        let draw = if smooth { expected_smooth } else { expected };
-        let expected = draw(&mesh, &view, SIZES[0], random.random());
+        let (cull, rounding) = (random.random(), Rounding::new(seed % 3 != 0));
+        let expected = if smooth {
+            expected_smooth(rounding, &mesh, &view, SIZES[0], cull)
+        } else {
+            expected(&mesh, &view, SIZES[0], cull)
+        };
         bench.draw(&format!("list {seed}"), &mesh, &expected);
     }
 }
@@ -368,7 +373,7 @@ fn a_sphere_is_drawn_fast() {
         let mesh = generated(name);
         let view = ahead(0.4781, 0.5);
         let (expected, mut bench) = if smooth {
-            let expected = expected_smooth(&mesh, &view, size, true);
+            let expected = expected_smooth(Rounding::Dithered, &mesh, &view, size, true);
             (expected, Bench::of("smooth", 9, 0.0))
         } else {
             let expected = expected(&mesh, &view, size, true);

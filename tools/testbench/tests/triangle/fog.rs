@@ -1,6 +1,6 @@
 //! Tests of the fog on groups of pixels, which must equal the model's.
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_model::Fog;
 use glint_testbench::{Bits, Pipe, drive_fog};
 use glint_vectors::Random;
@@ -11,7 +11,8 @@ struct Group {
     line: u64,
     mask: u64,
     codes: [u32; 8],
-    colours: [u16; 8],
+    /// With fraction bits.
+    colours: [[u8; 3]; 8],
     is_added: bool,
 }
 
@@ -26,7 +27,7 @@ impl Group {
                 _ => random.integer(1, 255) as u64,
             },
             codes,
-            colours: [(); 8].map(|()| random.integer(0, 0xFFFF) as u16),
+            colours: [(); 8].map(|()| [248, 252, 248].map(|full| random.integer(0, full) as u8)),
             is_added: random.integer(0, 7) == 0,
         }
     }
@@ -37,7 +38,7 @@ impl Group {
             self.line.into(),
             self.mask.into(),
             Bits::pack(18, self.codes),
-            Bits::pack(16, self.colours),
+            Bits::pack(8, self.colours.as_flattened().iter().copied()),
             u64::from(self.is_added).into(),
         ]
     }
@@ -64,6 +65,8 @@ impl Bench {
         let module = &mut self.pipe.module;
         module.drive("enable", u64::from(fog.is_some()));
         module.drive("first_line", first_line);
+        let rounding = Rounding::new(self.random.coin());
+        module.drive("dither", rounding == Rounding::Dithered);
         if let Some(fog) = fog {
             drive_fog(module, fog);
         }
@@ -83,17 +86,17 @@ impl Bench {
             assert_eq!(mask.number(), group.mask);
             assert_eq!(*codes, Bits::pack(18, group.codes));
             for lane in (0..8).filter(|lane| group.mask >> lane & 1 == 1) {
-                let (code, colour) = (group.codes[lane], Rgb565(group.colours[lane]));
+                let (code, colour) = (group.codes[lane], group.colours[lane]);
                 let place = [lane as u32, group.line as u32 + first_line];
                 let expected = fog.map_or(colour, |fog| {
                     let target = if group.is_added { [0; 3] } else { fog.colour };
-                    fog.over(target, colour, code, place)
+                    fog.over(target, colour, code)
                 });
+                let expected = Rgb565::rounded(expected, rounding, place);
                 assert_eq!(
                     colours.element(16, lane),
                     u64::from(expected.0),
-                    "code {code:#x}, colour {:#06x}, lane {lane}, line {} + {first_line}, {fog:?}",
-                    colour.0,
+                    "code {code:#x}, colour {colour:?}, lane {lane}, line {} + {first_line}, {fog:?}",
                     group.line
                 );
             }

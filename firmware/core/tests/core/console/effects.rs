@@ -9,7 +9,7 @@ fn parse(line: &str) -> Command<'_> {
 #[test]
 fn commands_that_show_something_leave_the_picture() {
     let shown = "help, info, selftest, buttons, scene, models, field, mesh, stereo, object, material, light, ambient, highlight, shadow, background, \
-        fog, occlusion, undecided, view, imu, mounting, sensitivity, replay, gesture, animate, quality, backend, shading, texture, edges, overlay, \
+        fog, occlusion, undecided, view, imu, mounting, sensitivity, replay, gesture, animate, quality, backend, shading, texture, edges, dither, overlay, \
         render, frame, stats, bench, demo, object list, imu calibrate, imu stream, gesture calibrate, gesture mask, overlay on, \
         demo on, reboot, leds 1, echo a";
     for line in shown.split(", ") {

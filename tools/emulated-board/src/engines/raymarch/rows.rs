@@ -11,6 +11,7 @@ const ROWS: usize = 16;
 
 /// Draws a field into a picture without triangles. Returns the counts of its rays.
 pub fn render(tracer: &Tracer, palette: &Palette, target: &mut FrameBuffer) -> FieldStats {
+    let rounding = target.rounding;
     let pixels = ROWS * target.width as usize;
     let strips = target.colour.chunks_mut(pixels);
     let strips = strips.zip(target.depth.chunks_mut(pixels));
@@ -22,7 +23,15 @@ pub fn render(tracer: &Tracer, palette: &Palette, target: &mut FrameBuffer) -> F
             let Some((first, (colour, depth))) = next else {
                 return;
             };
-            let stats = render_rows(tracer, palette, first, colour, depth, &mut |_, _, _| {});
+            let stats = render_rows(
+                tracer,
+                palette,
+                rounding,
+                first,
+                colour,
+                depth,
+                &mut |_, _, _| {},
+            );
             let mut sum = sum.lock().unwrap_or_else(PoisonError::into_inner);
             sum.add(&stats);
         }

@@ -1,5 +1,6 @@
 //! The raster pass: draws the descriptors of the band lists in memory into a frame in memory.
 
+use glint_core::colour::Rounding;
 use glint_core::picture::{Quarter, Samples, Size, Window};
 use glint_core::texture::{Blend, Filter, Texture};
 use glint_model::line::band_bounds;
@@ -126,7 +127,7 @@ impl RasterUnit {
         let is_whole =
             flags.whole() || has_depth || sky.is_some() || averages.is_some() || !self.known[slot];
         let table = parameters.word(offset::TEXTURES) / WORD;
-        let mut drawing = self.begin(size, clear, layout, table);
+        let mut drawing = self.begin(size, clear, Rounding::new(flags.dither()), layout, table);
         drawing.fog = flags.fog().then(|| read_fog(parameters));
         if has_field {
             drawing.draw_field(raymarcher, now);
@@ -176,7 +177,14 @@ impl RasterUnit {
         })
     }
 
-    fn begin(&mut self, size: Size, clear: u16, layout: Layout, textures: u32) -> Drawing<'_> {
+    fn begin(
+        &mut self,
+        size: Size,
+        clear: u16,
+        rounding: Rounding,
+        layout: Layout,
+        textures: u32,
+    ) -> Drawing<'_> {
         let [width, height] = size.pixels();
         let pixels = size.pixel_count();
         // The buffers have the size of the largest picture.
@@ -192,6 +200,7 @@ impl RasterUnit {
                 height,
                 colour,
                 depth,
+                rounding,
             },
             layout,
             textures,
@@ -251,7 +260,12 @@ impl RasterUnit {
         let lines = size.height() / 2;
         let mut pixels = vec![0; width / 2];
         for (y, pair) in (0..lines).zip(pairs) {
-            average_lines(pair.split_at(width).into(), y, &mut pixels);
+            average_lines(
+                pair.split_at(width).into(),
+                y,
+                averages.rounding,
+                &mut pixels,
+            );
             let [left, top] = averages.origin;
             let place = frame + 2 * ((top + y) * averages.frame.width() + left);
             if let Some(bytes) = ram.bytes_mut(place, 2 * pixels.len()) {
@@ -281,11 +295,14 @@ struct Averages {
     frame: Size,
     /// Column and line of the frame at which the pixels begin.
     origin: [u32; 2],
+    /// How the averages are rounded.
+    rounding: Rounding,
 }
 
 impl Averages {
     /// The pixels for a picture of samples of this size.
     fn of(flags: Raster, samples: Size) -> Self {
+        let rounding = Rounding::new(flags.dither());
         if flags.quarter() {
             let quarter = Quarter {
                 is_right: flags.right(),
@@ -298,6 +315,7 @@ impl Averages {
             return Self {
                 frame: samples,
                 origin: window.origin().map(|place| place / 2),
+                rounding,
             };
         }
         // The smallest picture of samples stands for half of its width and height, which is no size of a picture.
@@ -307,6 +325,7 @@ impl Averages {
         Self {
             frame: half.unwrap_or(samples),
             origin: [0; 2],
+            rounding,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Test bench of the triangle engine, with a memory.
 
 use glint_core::camera::Projection;
+use glint_core::colour::Rounding;
 use glint_core::mesh::{Attribute, Mesh};
 use glint_core::picture::Quarter;
 use glint_model::triangle::descriptor::{Descriptor, Layout, band_rows, list_word};
@@ -309,6 +310,8 @@ impl Bench {
         if let Some(sky) = &expected.sky {
             drive_sky(&mut self.module, sky);
         }
+        let is_dithered = expected.rounding == Rounding::Dithered;
+        self.set("raster_flags.dither", u64::from(is_dithered));
         self.set("raster_flags.fog", u64::from(expected.fog.is_some()));
         if let Some(fog) = &expected.fog {
             drive_fog(&mut self.module, fog);

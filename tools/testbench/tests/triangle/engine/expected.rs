@@ -1,6 +1,7 @@
 //! Frames drawn by the model, which the triangle engine must reproduce.
 
 use glint_core::camera::View;
+use glint_core::colour::Rounding;
 use glint_core::fixed::U4_28;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Quarter;
@@ -26,6 +27,8 @@ pub struct Expected {
     pub sky: Option<Sky>,
     /// The fog on the triangles.
     pub fog: Option<Fog>,
+    /// How colours are rounded.
+    pub rounding: Rounding,
     pub colour: Vec<u16>,
     pub depth: Vec<u32>,
     /// Setups and colours of the clipped triangles.
@@ -65,18 +68,34 @@ pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull:
 }
 
 /// Draws a frame with the model, with smooth shading.
-pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+pub fn expected_smooth(
+    rounding: Rounding,
+    mesh: &[u8],
+    view: &View,
+    size: (u32, u32),
+    cull: bool,
+) -> Expected {
     let options = Options {
         cull,
         clear: CLEAR,
         shading: Shading::Smooth,
         ..Options::default()
     };
-    expected_with(options, mesh, view, size)
+    expected_rounded(rounding, options, mesh, view, size)
 }
 
 /// Draws a frame with the model, with any options.
 pub fn expected_with(
+    options: Options<'static>,
+    mesh: &[u8],
+    view: &View,
+    size: (u32, u32),
+) -> Expected {
+    expected_rounded(Rounding::Dithered, options, mesh, view, size)
+}
+
+fn expected_rounded(
+    rounding: Rounding,
     options: Options<'static>,
     mesh: &[u8],
     view: &View,
@@ -87,11 +106,12 @@ pub fn expected_with(
     if let Some(light) = options.light {
         frame.light = light.row;
     }
-    expected_parts(size, &[(mesh, frame, options)])
+    expected_parts_in_fog(rounding, None, size, &[(mesh, frame, options)])
 }
 
 /// Draws a frame with the model in fog of a density per world unit and a colour.
 pub fn expected_in_fog(
+    rounding: Rounding,
     (density, colour): (f64, [u8; 3]),
     options: Options<'static>,
     mesh: &[u8],
@@ -101,15 +121,16 @@ pub fn expected_in_fog(
     let mesh = Mesh::new_checked(mesh).unwrap();
     let frame = MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap();
     let fog = Fog::new(U4_28::from_num(density), frame.depth, colour);
-    expected_parts_in_fog(fog, size, &[(mesh, frame, options)])
+    expected_parts_in_fog(rounding, fog, size, &[(mesh, frame, options)])
 }
 
 /// Draws a frame of several meshes with the model, from each mesh's frame constants and options.
 pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'static>)]) -> Expected {
-    expected_parts_in_fog(None, size, parts)
+    expected_parts_in_fog(Rounding::Dithered, None, size, parts)
 }
 
 fn expected_parts_in_fog(
+    rounding: Rounding,
     fog: Option<Fog>,
     size: (u32, u32),
     parts: &[(Mesh, MeshSetup, Options<'static>)],
@@ -123,6 +144,7 @@ fn expected_parts_in_fog(
         height: size.1,
         colour: &mut colour,
         depth: &mut depth,
+        rounding,
     };
     let mut clipped = Vec::new();
     let mut show = |triangle: &DrawnTriangle| {
@@ -156,6 +178,7 @@ fn expected_parts_in_fog(
         averages: None,
         sky: None,
         fog,
+        rounding,
         colour,
         depth,
         clipped,
@@ -186,6 +209,7 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
         averages: None,
         sky: None,
         fog: None,
+        rounding: Rounding::Dithered,
         colour,
         depth,
         clipped: vec![],

@@ -2,6 +2,7 @@
 //! model replaces the raymarcher, and sends the pixels of each band in a random order.
 
 use glint_core::appearance::Appearance;
+use glint_core::colour::Rounding;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
 use glint_core::picture::Size;
@@ -46,7 +47,7 @@ impl Picture {
         let constants = frame.constants().unwrap();
         let field = constants.field().unwrap();
         let eyes = if tint.is_some() { 2 } else { 1 };
-        let bands = bands(field, eyes);
+        let bands = bands(field, frame.rounding, eyes);
         Self {
             expected: picture(
                 (field.setup.width, field.setup.height),
@@ -61,7 +62,7 @@ impl Picture {
 }
 
 /// The pixels of each band of a field, for one eye or two.
-pub fn bands(field: &FieldConstants, eyes: usize) -> Vec<Vec<Pixel>> {
+pub fn bands(field: &FieldConstants, rounding: Rounding, eyes: usize) -> Vec<Vec<Pixel>> {
     let setup = &field.setup;
     let tracer = setup.tracer();
     let lines = band_rows(setup.width);
@@ -74,7 +75,8 @@ pub fn bands(field: &FieldConstants, eyes: usize) -> Vec<Vec<Pixel>> {
                 column: x,
                 eye,
             };
-            let pixel = pixel(setup, &field.palette, place, &tracer.trace(eye, x, y));
+            let end = tracer.trace(eye, x, y);
+            let pixel = pixel(setup, &field.palette, rounding, place, y, &end);
             bands[(y / lines) as usize].push(pixel);
         }
     }

@@ -1,5 +1,6 @@
 //! Frames in fog.
 
+use glint_core::colour::Rounding;
 use glint_model::{Options, Shading};
 use glint_vectors::meshes::{self, ahead};
 use glint_vectors::scenes::inside;
@@ -36,7 +37,9 @@ fn random_frames_in_fog() {
             let density = [0.0, 0.02, 0.5, 15.9][random.random_range(0..4)];
             let shading = [Shading::Flat, Shading::Smooth][random.random_range(0..2)];
             let fog = (density, random.random());
-            let expected = expected_in_fog(fog, options(shading), &mesh, &inside(), size);
+            let rounding = Rounding::new(random.random());
+            let options = options(shading);
+            let expected = expected_in_fog(rounding, fog, options, &mesh, &inside(), size);
             foggy += u32::from(expected.fog.is_some());
             clipped += expected.clipped.len();
             bench.draw(&format!("frame {count} of seed {seed}"), &mesh, &expected);
@@ -59,7 +62,7 @@ fn a_sphere_in_fog_is_drawn_fast() {
             cull: true,
             ..options(Shading::Flat)
         };
-        let expected = expected_in_fog(fog, options, &mesh, &view, size);
+        let expected = expected_in_fog(Rounding::Dithered, fog, options, &mesh, &view, size);
         let mut bench = Bench::of("smooth_lines", 9, 0.0);
         bench.with_depth = false;
         bench.draw("before it", &mesh, &expected);

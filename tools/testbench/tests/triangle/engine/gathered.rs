@@ -1,5 +1,6 @@
 //! Frames of several geometry passes, of meshes and of lines.
 
+use glint_core::colour::Rounding;
 use glint_model::FrameBuffer;
 use glint_model::line::Segment;
 use glint_model::triangle::descriptor::list_word;
@@ -28,6 +29,7 @@ impl Expected {
             height: self.size.1,
             colour: &mut self.colour,
             depth: &mut self.depth,
+            rounding: Rounding::Dithered,
         };
         for segment in segments {
             segment.draw(&mut target);

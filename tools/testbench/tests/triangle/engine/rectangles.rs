@@ -1,6 +1,6 @@
 //! Rectangles of the screen in front of frames of meshes with textures.
 
-use glint_core::colour::Rgb565;
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::field::Field;
 use glint_core::font::Font;
 use glint_core::picture::{Samples, Size, Window};
@@ -33,6 +33,7 @@ fn draw_over(expected: &mut Expected, rectangles: &[Numbered]) -> Vec<(Descripto
         height,
         colour: &mut expected.colour,
         depth: &mut expected.depth,
+        rounding: expected.rounding,
     };
     let placed = rectangles.iter().filter_map(|(rectangle, number)| {
         let (setup, textured) = set_up(rectangle, window, Samples::One)?;
@@ -82,10 +83,11 @@ fn frames_with_rectangles() {
             let mesh = textured_layers(&textures, 1.0, 0.3);
             let eye = [0.4, random.random_range(-4.0..-1.0), 1.0];
             let sky = (count == 1).then(|| random.random());
+            let rounding = Rounding::new(random.random());
             let mut shown = if count == 0 {
-                Shown::orthographic(mesh, eye)
+                Shown::orthographic(mesh, eye, rounding)
             } else {
-                Shown::before(mesh, eye, None, sky, 0.0)
+                Shown::before(mesh, eye, None, sky, 0.0, rounding)
             };
             let rectangles = some_rectangles(&mut random, &textures);
             let over = draw_over(&mut shown.expected, &rectangles);
@@ -111,7 +113,14 @@ fn rectangles_in_front_of_a_field() {
         quality: Quality::default(),
     };
     let mesh = textured_layers(&textures, 1.0, 0.3);
-    let mut shown = Shown::before(mesh, [0.4, -3.5, 2.0], Some(&field), None, 0.0);
+    let mut shown = Shown::before(
+        mesh,
+        [0.4, -3.5, 2.0],
+        Some(&field),
+        None,
+        0.0,
+        Rounding::Nearest,
+    );
     let rectangles = some_rectangles(&mut random, &textures);
     let over = draw_over(&mut shown.expected, &rectangles);
     let triangles = [shown.whole, shown.clipped, over].concat();

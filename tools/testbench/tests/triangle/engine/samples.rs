@@ -1,7 +1,7 @@
 //! Frames with four samples a pixel, whole and in quarters.
 
 use glint_core::camera::View;
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::mesh::Mesh;
@@ -70,6 +70,7 @@ fn frames_are_averaged() {
             let has_field = size == Size::W320 && count > 0;
             let frame = Frame {
                 samples: Samples::Four,
+                rounding: Rounding::new(random.random()),
                 clear: Rgb565(random.random()),
                 sky: random.random_bool(0.6).then(|| random.random()),
                 fog: U4_28::from_num([0.0, 0.3][random.random_range(0..2)]),

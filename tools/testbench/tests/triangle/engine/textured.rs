@@ -2,7 +2,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{Projection, View};
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::light::{Light, MeshLighting, Rgb};
@@ -89,13 +89,13 @@ fn looking(eye: [f64; 3]) -> View {
 
 impl Shown {
     fn new(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
-        Self::before(bytes, eye, None, None, 0.0)
+        Self::before(bytes, eye, None, None, 0.0, Rounding::Dithered)
     }
 
     /// As [`new`](Self::new), in orthographic projection.
-    pub fn orthographic(bytes: Vec<u8>, eye: [f64; 3]) -> Self {
+    pub fn orthographic(bytes: Vec<u8>, eye: [f64; 3], rounding: Rounding) -> Self {
         let view = looking(eye).with_projection(Projection::Orthographic);
-        Self::seen(bytes, view, Size::W320, None, None, 0.0)
+        Self::seen(bytes, view, Size::W320, None, None, 0.0, rounding)
     }
 
     /// A mesh in a field, or before a sky, in fog of a density per world unit.
@@ -105,8 +105,9 @@ impl Shown {
         field: Option<&FieldSubject>,
         sky: Option<[Rgb; 3]>,
         fog: f64,
+        rounding: Rounding,
     ) -> Self {
-        Self::seen(bytes, looking(eye), Size::W320, field, sky, fog)
+        Self::seen(bytes, looking(eye), Size::W320, field, sky, fog, rounding)
     }
 
     /// A mesh as a view shows it, in a field, or before a sky, and in fog.
@@ -117,6 +118,7 @@ impl Shown {
         field: Option<&FieldSubject>,
         sky: Option<[Rgb; 3]>,
         fog: f64,
+        rounding: Rounding,
     ) -> Self {
         let mesh = Mesh::new_checked(&bytes).unwrap();
         let subject = MeshSubject {
@@ -131,6 +133,7 @@ impl Shown {
             clear: Rgb565(0x001F),
             sky,
             fog: U4_28::from_num(fog),
+            rounding,
             lighting: MeshLighting {
                 ambient: [0x60; 3],
                 light: Light::at_camera([0xA0; 3]),
@@ -144,6 +147,7 @@ impl Shown {
     pub fn of(bytes: &[u8], frame: &Frame, mut before: Vec<u16>) -> Self {
         let mesh = Mesh::new_checked(bytes).unwrap();
         let window = frame.window();
+        let rounding = frame.rounding;
         let mut constants = FrameConstants::default();
         constants.update(frame).unwrap();
         let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
@@ -193,12 +197,13 @@ impl Shown {
             },
             sky: constants.sky().copied(),
             fog: constants.fog().copied(),
+            rounding,
             colour,
             depth: picture.depth,
             clipped: vec![],
             stats: Stats::default(),
         };
-        let bands = constants.field().map(|field| bands(field, 1));
+        let bands = constants.field().map(|field| bands(field, rounding, 1));
         Self {
             mesh: bytes.to_vec(),
             expected,
@@ -236,10 +241,11 @@ fn frames_with_textures() {
                 distance * random.random_range(0.05..1.5),
             ];
             let is_orthographic = random.random_bool(0.3);
+            let rounding = Rounding::new(random.random());
             let shown = if is_orthographic {
-                Shown::orthographic(mesh, eye)
+                Shown::orthographic(mesh, eye, rounding)
             } else {
-                Shown::new(mesh, eye)
+                Shown::before(mesh, eye, None, None, 0.0, rounding)
             };
             let expected = &shown.expected;
             orthographic += u32::from(is_orthographic);
@@ -281,7 +287,8 @@ fn frames_with_textures_in_a_field() {
             };
             // From afar no triangle is clipped, so the second set has them all.
             let eye = [0.4, random.random_range(-4.0..-3.0), 2.0];
-            let mut shown = Shown::before(mesh, eye, Some(&field), None, 0.0);
+            let rounding = Rounding::new(count == 0);
+            let mut shown = Shown::before(mesh, eye, Some(&field), None, 0.0, rounding);
             let name = format!("frame {count} in {text}");
             let triangles = [shown.whole, shown.clipped].concat();
             bench.set("field_source.enable", 1);
@@ -317,7 +324,8 @@ fn frames_with_textures_before_a_sky() {
                 firsts[usize::from(is_first)] += 1;
             }
             let fog = [0.0, 0.1, 1.0][random.random_range(0..3)];
-            let shown = Shown::before(mesh, eye, None, sky, fog);
+            let rounding = Rounding::new(random.random());
+            let shown = Shown::before(mesh, eye, None, sky, fog, rounding);
             let triangles = [shown.whole, shown.clipped].concat();
             bench.slot = random.random_range(0..2);
             bench.set("raster_flags.sky_first", u64::from(is_first));
@@ -375,6 +383,7 @@ fn a_sphere_with_a_texture_is_drawn_fast() {
             None,
             None,
             fog,
+            Rounding::Dithered,
         );
         let pixels = shown
             .expected

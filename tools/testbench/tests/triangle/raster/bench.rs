@@ -1,5 +1,6 @@
 //! Test bench of the rasterizer: draws band after band, and composes the picture from the output groups.
 
+use glint_core::colour::Rounding;
 use glint_model::triangle::descriptor::band_rows;
 use glint_model::triangle::raster::draw;
 use glint_model::{FrameBuffer, Shading};
@@ -133,6 +134,7 @@ impl Bench {
             height: size.1,
             colour: &mut colour,
             depth: &mut depth,
+            rounding: Rounding::Dithered,
         };
         let covered: u64 = triangles
             .iter()

@@ -1,5 +1,6 @@
 //! Experiment: colours of textures by filter and mip level, compared with the average of 64 samples of a pixel.
 
+use glint_core::colour::{Rgb565, Rounding};
 use glint_core::texture::{Filter, Format, Sampler, Texture};
 use glint_texture::convert::convert;
 use glint_texture::levels::{linear, srgb};
@@ -106,8 +107,10 @@ fn measure_scene(scene: &Scene, filter: Filter) -> Vec<Row> {
             for ((_, difference), errors) in LEVELS.iter().zip(&mut errors) {
                 let level = difference.map_or(0, |by| (chosen as i32 + by).clamp(0, last));
                 let textured = &drawn.textured;
-                let colour = textured.colour(pixel.depth, pixel.values, level as u32, None);
-                let colour = colour.unwrap_or_default().to_rgb888();
+                let (level, rounding) = (level as u32, Rounding::Nearest);
+                let colour = textured.colour(pixel.depth, pixel.values, level, None, rounding);
+                let colour = Rgb565::rounded(colour.unwrap_or_default(), rounding, [0; 2]);
+                let colour = colour.to_rgb888();
                 for channel in 0..3 {
                     errors.add(f64::from(colour[channel]) - exact[channel]);
                 }
