@@ -6,6 +6,7 @@ use std::rc::Rc;
 use emulated_board::{Device, MainMemory, TriangleEngine};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
+use glint_core::colour::Rounding;
 use glint_core::field::{Field, Primitive};
 use glint_core::light::{Background, Highlight, Light, Material};
 use glint_core::picture::Size;
@@ -70,6 +71,8 @@ struct Bench {
     machine: Shared,
     engine: Driver,
     raymarcher: Raymarcher,
+    /// Whether the last picture was dithered; it alternates from picture to picture.
+    dither: bool,
 }
 
 impl Bench {
@@ -86,6 +89,7 @@ impl Bench {
             machine,
             engine: Driver::probe(triangle).unwrap(),
             raymarcher: Raymarcher::probe(raymarch).unwrap(),
+            dither: false,
         }
     }
 
@@ -112,7 +116,7 @@ impl Bench {
             clear: CLEAR,
             sky: None,
             fog: None,
-            dither: true,
+            dither: self.dither,
             list_shift: 8,
             input: Input::default(),
         };
@@ -147,8 +151,10 @@ fn view() -> View {
 /// Draws a field with the engine and with the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size: Size) {
     let name = format!("{} {size} {stereo:?}", subject.field);
+    bench.dither = !bench.dither;
     let frame = Frame {
         stereo,
+        rounding: Rounding::new(bench.dither),
         ..Frame::new(Subject::Field(subject), view(), size)
     };
     let constants = frame.constants().unwrap();

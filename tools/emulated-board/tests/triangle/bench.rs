@@ -2,7 +2,7 @@
 
 use emulated_board::{Device, MainMemory, TriangleEngine};
 use glint_core::camera::{Projection, View};
-use glint_core::colour::Shading;
+use glint_core::colour::{Rounding, Shading};
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
 use glint_model::triangle::PreparedMesh;
@@ -48,6 +48,8 @@ pub struct Bench {
     pub engine: TriangleEngine,
     pub ram: MainMemory,
     pub now: u64,
+    /// How frames are rounded.
+    pub rounding: Rounding,
 }
 
 impl Bench {
@@ -56,6 +58,7 @@ impl Bench {
             engine: TriangleEngine::new(),
             ram: MainMemory::new(),
             now: 0,
+            rounding: Rounding::Dithered,
         };
         let events = EvEnable::default().with_geometry(true).with_raster(true);
         bench.set(offset::EV_ENABLE, events.bits());
@@ -230,6 +233,7 @@ impl Bench {
             .with_second(count > 0)
             .with_slot(slot)
             .with_depth(true)
+            .with_dither(self.rounding == Rounding::Dithered)
     }
 
     fn write_clipped(&mut self, size: Size, clipped: &[(Setup, Rgb565)]) -> u32 {

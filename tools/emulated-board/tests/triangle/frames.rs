@@ -1,7 +1,7 @@
 //! Frames of meshes.
 
 use glint_core::camera::{Projection, View};
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::picture::Size;
@@ -28,16 +28,18 @@ fn shape(name: &str) -> Vec<u8> {
     model.encoded()
 }
 
-fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
+fn by_model(rounding: Rounding, size: Size, parts: &[PreparedMesh]) -> Picture {
     let mut picture = Picture::blank(size.pixels().into());
     let vertices = parts.iter().map(|part| part.mesh.largest_chunk()).max();
     let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
     let mut part = |number: usize| parts.get(number).copied();
+    let mut target = picture.target();
+    target.rounding = rounding;
     picture.stats = draw_parts(
         &mut part,
         Some(CLEAR),
         None,
-        &mut picture.target(),
+        &mut target,
         &mut scratch,
         &mut |_| {},
     )
@@ -47,7 +49,7 @@ fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
 
 /// Draws parts with the engine and with the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, name: &str, size: Size, parts: &[PreparedMesh]) -> Stats {
-    let expected = by_model(size, parts);
+    let expected = by_model(bench.rounding, size, parts);
     let counters = [
         offset::VERTICES,
         offset::PIXELS_COVERED,
@@ -112,6 +114,7 @@ fn frames_with_smooth_shading() {
             for (kind, shading) in [Shading::Flat, Shading::Smooth].into_iter().enumerate() {
                 let mut part = alone(&mesh, &view, size, cull);
                 part.options.shading = shading;
+                bench.rounding = Rounding::new(random.random());
                 part.options.light = random.random::<bool>().then_some(&light);
                 if let Some(light) = part.options.light {
                     part.frame.light = light.row;
@@ -144,7 +147,7 @@ fn an_engine_without_smooth_shading() {
     let mut smooth = flat;
     smooth.options.shading = Shading::Smooth;
     bench.draw(Size::W320, false, &[smooth]);
-    let expected = by_model(Size::W320, &[flat]);
+    let expected = by_model(bench.rounding, Size::W320, &[flat]);
     bench.compare("flat", Size::W320, false, &expected);
 }
 
@@ -253,7 +256,7 @@ fn nothing_new_is_not_written() {
         assert_eq!(bench.pass(Kind::Raster, flags.bits()), Error::None);
         let written = bench.read(offset::ITEMS_OUT) - before;
         assert!(words.contains(&written), "{name}: {written} words");
-        let expected = by_model(size, &[part]);
+        let expected = by_model(bench.rounding, size, &[part]);
         assert!(bench.picture(size, slot).0 == expected.colour, "{name}");
     }
 }
@@ -264,7 +267,7 @@ fn a_frame_is_whole_after_a_cancelled_one() {
     let mut bench = Bench::new();
     let mesh = shape("icosphere:4");
     let part = alone(&mesh, &ahead(1.0, 0.1), Size::W320, true);
-    let expected = by_model(Size::W320, &[part]);
+    let expected = by_model(bench.rounding, Size::W320, &[part]);
     let untouched = UNTOUCHED.to_le_bytes().repeat(320 * 180);
     for is_cancelled in [true, false] {
         bench.draw(Size::W320, false, &[part]);
