@@ -94,8 +94,8 @@ module texture_filter #(
             .colours({wide[1][AT +: SIZE], wide[0][AT +: SIZE]})
         );
         texture_light #(.CHANNEL(BITS), .FRACTIONS(FRACTIONS)) light_narrow (
-            .clk, .dither, .light(light[k]), .texels({late[1][LOW +: BITS], REST'(0), late[0][LOW +: BITS], REST'(0)}), .thresholds(thresholds_8[3:2]),
-            .colours({narrow[1][AT +: SIZE], narrow[0][AT +: SIZE]})
+            .clk, .dither, .light(light[k]), .texels({late[1][LOW +: BITS], REST'(0), late[0][LOW +: BITS], REST'(0)}),
+            .thresholds(thresholds_8[3:2]), .colours({narrow[1][AT +: SIZE], narrow[0][AT +: SIZE]})
         );
     end
 

@@ -4,10 +4,10 @@
 //   light ─▶ share ──┐
 //           texels ──┴▶ one DSP48: both ────▶ colours
 //
-// The light is u0.8, and full light is 248, or 252 in a channel of 6 bits. It stands for a share of 256, light + nearest(light/(2^CHANNEL - 1)),
-// which is 256 for full light. One factor has both texels side by side, and their products with the share have 16 bits each, to which
-// thresholds for the rounding to CHANNEL bits are added, see colour_pkg::threshold. With FRACTIONS the colour keeps 8 bits. Above full light, the product of the first texel may carry into the second one, and the colours have no
-// meaning.
+// The light is u0.8, and full light is 248, or 252 in a channel of 6 bits. It stands for a share of 256, light + nearest(light/(2^CHANNEL −
+// 1)), which is 256 for full light. One factor has both texels side by side, and their products with the share have 16 bits each, to which
+// thresholds for the rounding to CHANNEL bits are added, see colour_pkg::threshold. With FRACTIONS the colour keeps 8 bits. Above full
+// light, the product of the first texel may carry into the second one, and the colours have no meaning.
 //
 // A texel has 8 bits, of which CHANNEL are its integer part. Its largest value is 2^8 − 2^(8 − CHANNEL). Latency 4 clocks from `light`, 3
 // clocks from `texels`; throughput two texels per clock; the pipeline cannot be stopped.
@@ -44,7 +44,8 @@ module texture_light #(
     // nearest.
     always_comb
         for (int i = 0; i < 2; i++)
-            limits[i] = {5'd0, FRACTIONS ? {3'd0, dither} : CHANNEL == 6 ? {1'b0, thresholds[i][2:1], dither} : {thresholds[i], dither}, 7'd0};
+            limits[i] = {5'd0, FRACTIONS ? {3'd0, dither} : CHANNEL == 6 ? {1'b0, thresholds[i][2:1], dither} : {thresholds[i], dither},
+                         7'd0};
 
     always_ff @(posedge clk) share <= 9'(light) + 9'(CORRECTIONS[{light[7:2], 2'd0} +: 4]);
 

@@ -2,7 +2,7 @@
 //
 //             ┌─ fifo: groups ─────────────────────────────────────────────────────────────────────────────────┐
 //   group ──▶ ┤                                                                                                ├──▶ group
-//             └─ quads ─▶ log2 of the codes ─▶ table of shares ─▶ mix with the fog ─▶ round  ─▶ fifo: colours ─┘
+//             └─ quads ─▶ log2 of the codes ─▶ table of shares ─▶ mix with the fog ─▶ round ──▶ fifo: colours ─┘
 //
 // A group takes one clock for each half with a pixel in its mask (a quad of four pixels). Streams are valid/ready; `in_ready` depends on
 // `in_mask`. Latency 14 clocks from the last quad of a group; throughput one quad per clock. The pipeline of quads cannot be stopped: a group enters only while the FIFO
@@ -130,7 +130,9 @@ module group_fog #(
             sum_11             <= product_10[31:0] + {colour_10[23:16], 8'd128, colour_10[7:0], 8'd128};
             green_11           <= green_product_10[15:0] + {colour_10[15:8], 8'd128};
 
-            foggy_12[lane]     <= colour_pkg::rounded({sum_11[31:24], green_11[15:8], sum_11[15:8]}, colour_pkg::threshold(dither, 2'(lane), line_11));
+            foggy_12[lane]     <= colour_pkg::rounded(
+                {sum_11[31:24], green_11[15:8], sum_11[15:8]}, colour_pkg::threshold(dither, 2'(lane), line_11)
+            );
         end
 
         wire _unused = &{1'b0, sum_11[23:16], sum_11[7:0], green_11[7:0], product_10[34:32], green_product_10[18:16]};

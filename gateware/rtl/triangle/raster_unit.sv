@@ -283,7 +283,8 @@ module raster_unit #(
             triangle_raster #(.SMOOTH(SMOOTH), .TEXTURE(TEXTURE), .FOG(FOG)) triangle_raster (
                 .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
                 .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
-                .triangle_planes(planes), .has_fog(flags.fog), .fog, .dither(flags.dither), .first_row(first_row[1:0]), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
+                .triangle_planes(planes), .has_fog(flags.fog), .fog, .dither(flags.dither),
+                .first_row(first_row[1:0]), .forget(begins), .texture_table(parameters.textures[4 +: ADDRESS_BITS]),
                 .ask_valid(ask_valid[3]), .ask_ready(ask_ready[3]), .ask_addr(ask_addr[3*ADDRESS_BITS +: ADDRESS_BITS]),
                 .data_valid(data_valid[3]), .data_ready(data_ready[3]), .data(data[3*128 +: 128]),
                 .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
