@@ -81,18 +81,6 @@ module geometry_unit #(
     assign width  = 11'(picture_pkg::WIDTH) << flags.size;
     assign height = 10'(picture_pkg::HEIGHT) << flags.size;
 
-    // The middle of the picture, counted from the beginning of the quarter that is drawn.
-    logic [10:0] middle_x, middle_y;
-
-    always_comb begin
-        middle_x = 11'(width[10:1]);
-        middle_y = 11'(height[9:1]);
-        if (AVERAGE && flags.quarter) begin
-            middle_x = flags.right ? '0 : width;
-            middle_y = flags.lower ? '0 : 11'(height);
-        end
-    end
-
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
 
@@ -274,6 +262,18 @@ module geometry_unit #(
 
         assign projected_valid = stage_valid && has_coordinates;
         assign stage_ready     = projected_ready && has_coordinates;
+
+        // The middle of the picture, counted from the beginning of the quarter that is drawn.
+        logic [10:0] middle_x, middle_y;
+
+        always_comb begin
+            middle_x = 11'(width[10:1]);
+            middle_y = 11'(height[9:1]);
+            if (AVERAGE && flags.quarter) begin
+                middle_x = flags.right ? '0 : width;
+                middle_y = flags.lower ? '0 : 11'(height);
+            end
+        end
 
         vertex_stage #(.AVERAGE(AVERAGE)) vertex_stage (
             .clk, .rst(rst || restart), .orthographic(flags.orthographic), .scale_shift(view.scale_shift),

@@ -33,14 +33,17 @@ fn view(random: &mut Pcg64Mcg) -> View {
 #[test]
 fn frames_are_averaged() {
     let mut drawn = [0; 3];
-    for (seed, stalls) in [(1, 0.0), (2, 0.3), (3, 0.6)] {
-        let mut random = Pcg64Mcg::new(seed);
+    let small = Size::W320;
+    let frames: [(u64, f64, &[Size]); 3] = [
+        (1, 0.0, &[small, Size::W1280, small]),
+        (2, 0.3, &[Size::W640, small]),
+        (3, 0.6, &[small, small, small]),
+    ];
+    for (seed, stalls, sizes) in frames {
+        let mut random = Pcg64Mcg::new(seed.into());
         let mut bench = Bench::of("texture_fields", seed as u32, stalls);
         bench.with_depth = false;
-        for (count, size) in [Size::W320, Size::W640, Size::W320, Size::W1280]
-            .into_iter()
-            .enumerate()
-        {
+        for (count, &size) in sizes.iter().enumerate() {
             // A blended texture takes a clock for each pixel.
             let is_small = size == Size::W320;
             let sources: Vec<_> = (0..2)
@@ -106,5 +109,5 @@ fn frames_are_averaged() {
             }
         }
     }
-    assert_eq!(drawn, [6, 3, 3 * Quarter::ALL.len()]);
+    assert_eq!(drawn, [6, 1, Quarter::ALL.len()]);
 }
