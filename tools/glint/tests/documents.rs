@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Maximum total size of the pictures of a page in bytes.
-const MAX_BYTES: u64 = 600_000;
+const MAX_BYTES: u64 = 1_800_000;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
