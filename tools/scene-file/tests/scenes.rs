@@ -89,7 +89,7 @@ fn the_scene_of_the_page_is_valid() {
     let needs = scene.needs().options().join(" ");
     assert_eq!(
         needs,
-        "--blocks scanout raymarch i2c --no-depths --fields box,spheres --lanes 2"
+        "--blocks scanout raymarch i2c --no-antialiasing --no-depths --fields box,spheres --lanes 2"
     );
 }
 

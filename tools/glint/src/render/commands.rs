@@ -3,6 +3,7 @@
 use crate::error::{FormatError, InputError};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
+use glint_core::colour::Rounding;
 use glint_core::light::{Background, MeshLighting};
 use glint_core::object::Place;
 use glint_core::picture::{Backend, Size};
@@ -50,6 +51,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
         view: frame.view,
         size: frame.size,
         samples: frame.samples,
+        dither: frame.rounding == Rounding::Dithered,
         stereo: frame.stereo,
         texture: frame.replacement_texture.map(|_| name(TEXTURE)),
         ..start.clone()

@@ -19,6 +19,7 @@ mod meshes;
 mod objects;
 mod power_up;
 mod quality;
+mod samples;
 mod scenes;
 mod scripts;
 mod sensor;

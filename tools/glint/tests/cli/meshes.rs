@@ -140,8 +140,6 @@ fn pictures_with_four_samples_a_pixel() {
     all_refused(
         &folder,
         "
-        render gear --aa 3 --out x.png
-            --aa: expected 1 or 4, found 3
         render gear --aa 4 --depth x.f32 --out x.png
             --depth: expected a picture with --aa 1, found --aa 4
         ",

@@ -37,7 +37,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 60);
+    assert_eq!(list.lines().count(), 61);
     for (command, usage) in [
         ("object", "object [ACTION [OBJECT [PLACE]]]\n"),
         ("animate", "animate [off|PART [RATE]]\n"),
