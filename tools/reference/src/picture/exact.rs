@@ -39,18 +39,27 @@ struct Pixel {
 }
 
 impl Exact {
-    /// Draws a frame of any size in f64, at the size on the monitor.
+    /// Draws a frame of any size in f64, at the size on the monitor, with a sample at the centre of each pixel.
     ///
     /// # Errors
     /// The model cannot draw the frame, or it has features that no scene uses: meshes for two eyes, edges of a mesh, an
     /// orthographic camera, occlusion, or a union.
     pub fn new(frame: &Frame) -> Result<Self> {
+        Self::at(frame, [0.0; 2])
+    }
+
+    /// Draws a frame as [`new`](Self::new), with each sample `offset` pixels to the right of and below its pixel's centre. Lines are a pixel
+    /// wide.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn at(frame: &Frame, offset: [f64; 2]) -> Result<Self> {
         let frame = &Frame {
             size: SHOWN,
             ..*frame
         };
         let picture = match frame.stereo {
-            None => one_eye(frame, None)?
+            None => one_eye(frame, None, offset)?
                 .into_iter()
                 .map(|pixel| ([pixel.seen; 2], pixel.colour))
                 .collect(),
@@ -64,7 +73,7 @@ impl Exact {
                     "expected red and cyan glasses"
                 );
                 let [left, right] =
-                    [Side::Left, Side::Right].map(|side| one_eye(frame, Some(side)));
+                    [Side::Left, Side::Right].map(|side| one_eye(frame, Some(side), offset));
                 let pairs = left?.into_iter().zip(right?);
                 pairs
                     .map(|(left, right)| {
@@ -89,7 +98,14 @@ fn size() -> Size {
     Size { width, height }
 }
 
-fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
+/// The columns and lines of the samples of all pixels, row by row.
+fn places([right, down]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let [columns, rows] = SHOWN.pixels();
+    let rows = (0..rows).map(move |y| f64::from(y) + down);
+    rows.flat_map(move |y| (0..columns).map(move |x| [f64::from(x) + right, y]))
+}
+
+fn one_eye(frame: &Frame, side: Option<Side>, offset: [f64; 2]) -> Result<Vec<Pixel>> {
     let camera = Camera::of(&frame.view);
     let background = Pixel {
         seen: Seen::Background,
@@ -98,14 +114,14 @@ fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
     };
     let mut pixels = vec![background; SHOWN.pixel_count()];
     if let Some(colours) = frame.sky {
-        draw_sky(&camera, colours, &mut pixels);
+        draw_sky(&camera, colours, offset, &mut pixels);
     }
     if let Subject::Wireframe(subject) = &frame.subject {
-        draw_lines(subject, &mut pixels)?;
+        draw_lines(subject, offset, &mut pixels)?;
         return Ok(pixels);
     }
     if let Some(subject) = frame.subject.field_part() {
-        draw_field(frame, subject, &camera, side, &mut pixels)?;
+        draw_field(frame, subject, &camera, (side, offset), &mut pixels)?;
     }
     let lighting = frame.mesh_lighting();
     let light = Lit {
@@ -122,6 +138,7 @@ fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
         camera: &camera,
         light: &light,
         fog,
+        offset,
     };
     match &frame.subject {
         Subject::Mesh(subject) | Subject::MeshInField(subject, _) => {
@@ -191,6 +208,8 @@ struct Placed<'a> {
     light: &'a Lit,
     /// Density and colour of the fog.
     fog: (f64, Vector),
+    /// Place of a sample in its pixel.
+    offset: [f64; 2],
 }
 
 impl Placed<'_> {
@@ -217,6 +236,8 @@ impl Placed<'_> {
             .map(|i| chunk.vertex(i.into()).unwrap_or_default());
         let corners = vertices.map(|vertex| self.point(vertex.position));
         let projected = ProjectedTriangle::new(self.camera, size(), corners);
+        let [right, down] = self.offset;
+        let projected = projected.moved([-right, -down]);
         let is_front =
             subject.winding == Winding::Screen || projected.front != self.matrix.mirrors();
         if subject.culls() && !is_front {
@@ -241,7 +262,8 @@ impl Placed<'_> {
                 let colour = match subject.shading {
                     Shading::Flat => flat,
                     Shading::Smooth => {
-                        let ray = self.camera.ray([column, row].map(f64::from), size());
+                        let place = [f64::from(column) + right, f64::from(row) + down];
+                        let ray = self.camera.ray(place, size());
                         let parts = barycentric(corners, ray.at(1.0 / nearness));
                         let colours = smooth.into_iter().zip(parts);
                         colours.fold([0.0; 3], |sum, (colour, part)| {
@@ -311,11 +333,10 @@ struct Appeared {
 }
 
 /// Draws the sky behind meshes, whose height at a pixel is the component along z of its ray.
-fn draw_sky(camera: &Camera, colours: [Rgb; 3], pixels: &mut [Pixel]) {
+fn draw_sky(camera: &Camera, colours: [Rgb; 3], offset: [f64; 2], pixels: &mut [Pixel]) {
     let [zenith, horizon, nadir] = colours.map(|colour| colour.map(f64::from));
-    for (place, pixel) in pixels.iter_mut().enumerate() {
-        let [x, y] = [place as u32 % SHOWN.width(), place as u32 / SHOWN.width()];
-        let ray = camera.ray([x, y].map(f64::from), size());
+    for (place, pixel) in places(offset).zip(pixels) {
+        let ray = camera.ray(place, size());
         let [_, _, height] = ray.direction;
         let end = if height < 0.0 { nadir } else { zenith };
         let part = height.abs().min(1.0);
@@ -327,7 +348,7 @@ fn draw_field(
     frame: &Frame,
     subject: &FieldSubject,
     camera: &Camera,
-    side: Option<Side>,
+    (side, offset): (Option<Side>, [f64; 2]),
     pixels: &mut [Pixel],
 ) -> Result<()> {
     let constants = frame.constants()?;
@@ -362,12 +383,10 @@ fn draw_field(
         zero: stereo.zero_parallax.to_num(),
     });
     let eye = usize::from(side == Some(Side::Right));
-    for (place, pixel) in pixels.iter_mut().enumerate() {
-        let [x, y] = [place as u32 % SHOWN.width(), place as u32 / SHOWN.width()];
-        let centre = [x, y].map(f64::from);
+    for (place, pixel) in places(offset).zip(pixels) {
         let ray = match side.zip(stereo) {
-            Some((side, stereo)) => camera.stereo_ray(side, stereo, centre, size()),
-            None => camera.ray(centre, size()),
+            Some((side, stereo)) => camera.stereo_ray(side, stereo, place, size()),
+            None => camera.ray(place, size()),
         };
         // The far limit of the model's rays.
         let farthest = reach(setup, eye, ray.direction);
@@ -431,7 +450,7 @@ fn field_pixel(
 }
 
 /// Draws the lines of a wireframe: end points in f64, snapped to the grid of the screen, and the exact pixels between them.
-fn draw_lines(subject: &WireframeSubject, pixels: &mut [Pixel]) -> Result<()> {
+fn draw_lines(subject: &WireframeSubject, offset: [f64; 2], pixels: &mut [Pixel]) -> Result<()> {
     let viewing = subject.program.viewing();
     let eye = viewing.eye.map(f64::from);
     let plane = f64::from(viewing.plane);
@@ -455,7 +474,8 @@ fn draw_lines(subject: &WireframeSubject, pixels: &mut [Pixel]) -> Result<()> {
             let [x, y] = [(eye[0], x), (eye[1], y)].map(|(eye, x)| eye - part * (eye - x));
             let right = (x - low[0]) / (high[0] - low[0]) * f64::from(width);
             let down = (high[1] - y) / (high[1] - low[1]) * f64::from(height);
-            let [x, y] = [right, down].map(|pixels| (256.0 * pixels).round() as i64);
+            let place = [right - offset[0], down - offset[1]];
+            let [x, y] = place.map(|pixels| (256.0 * pixels).round() as i64);
             SnappedVertex { x, y, w: 0 }
         });
         ExactSegment::new(snapped).for_each_pixel(picture, &mut |[x, y]| {

@@ -1,8 +1,12 @@
 //! Whole pictures: a frame in f64, and the errors of the model's picture as displayed on a monitor.
 //!
 //! - [`exact`]: the frame in f64, from triangles, exact hits of rays and exact segments, with light, fog and sky in f64.
+//! - [`averaged`]: the same frame with several samples a pixel.
+//! - [`dither`]: its colours in RGB565.
 //! - [`drawn`]: the surface visible at each pixel of the model's picture.
 
+pub mod averaged;
+pub mod dither;
 pub mod drawn;
 pub mod exact;
 mod seen;

@@ -66,6 +66,18 @@ impl ProjectedTriangle {
         }
     }
 
+    /// Moves the triangle on the screen by (x, y) pixels, with its depths.
+    #[must_use]
+    pub fn moved(mut self, [x, y]: [f64; 2]) -> Self {
+        for corner in &mut self.corners {
+            *corner = [corner[0] + x, corner[1] + y];
+        }
+        self.edges = inward_edges(&self.corners, self.front);
+        let [a, b, c] = self.inverse_depth;
+        self.inverse_depth[2] = c - a * x - b * y;
+        self
+    }
+
     /// Returns the class of the pixel in `column` and `row`, for a tolerance in pixels.
     pub fn classify(&self, column: u32, row: u32, tolerance: f64) -> Class {
         if self.corners.is_empty() {
