@@ -4,13 +4,14 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Rounding};
 use glint_core::field::Field;
+use glint_core::mesh::Mesh;
 use glint_core::picture::{Quarter, Samples, Size};
 use glint_core::quality::Quality;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{
     FieldSubject, Frame, FrameConstants, MeshSubject, Projected, Subject, average_lines,
 };
-use glint_vectors::{Camera, Picture, Random};
+use glint_vectors::{Camera, Model, Picture, Random};
 
 use crate::{any_vector, cube};
 
@@ -85,6 +86,57 @@ fn dithered_samples_keep_the_mean() {
             assert!((mean - f64::from(channel)).abs() < 1.0, "{channel}: {mean}");
         }
     }
+}
+
+/// In random frames, a picture with four samples a pixel is the average of a picture of twice the width and height, sample for sample.
+#[test]
+fn pictures_are_averages_of_larger_pictures() {
+    let mut random = Random(13);
+    let (mut drawn, mut mixed) = (0, 0);
+    for number in 0..200 {
+        let (size, larger) = match number % 20 {
+            0 => (Size::W640, Size::W1280),
+            _ => (Size::W320, Size::W640),
+        };
+        let rounding = Rounding::new(number % 2 == 0);
+        let bytes = Model::random(&mut random, 20, 16_000).encoded();
+        let subject = MeshSubject {
+            cull: false,
+            ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
+        };
+        let view = Camera::inside(&mut random).rounded();
+        let one = Frame {
+            rounding,
+            ..Frame::new(Subject::Mesh(subject), view, larger)
+        };
+        let four = Frame {
+            size,
+            samples: Samples::Four,
+            ..one
+        };
+        // A near plane that is too close for the picture's width.
+        if one.constants().is_err() {
+            assert!(four.constants().is_err());
+            continue;
+        }
+        let samples = Picture::of_frame(&one).colour;
+        let mut expected = vec![0; size.pixel_count()];
+        let columns = larger.width() as usize;
+        let lines = samples
+            .chunks(2 * columns)
+            .map(|pair| pair.split_at(columns));
+        let pixels = expected.chunks_mut(size.width() as usize);
+        for (y, ((upper, lower), pixels)) in (0..).zip(lines.zip(pixels)) {
+            average_lines([upper, lower], y, rounding, pixels);
+        }
+        assert!(averaged(&four) == expected, "frame {number}");
+        drawn += 1;
+        mixed += expected
+            .iter()
+            .filter(|pixel| !samples.contains(pixel))
+            .count();
+    }
+    assert!(drawn > 100 && mixed > 10_000, "{drawn}, {mixed}");
 }
 
 /// The frames of the quarters of a picture.

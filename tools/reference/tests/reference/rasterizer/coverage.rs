@@ -41,7 +41,7 @@ impl Tally {
 }
 
 /// Largest allowed deviation of a depth from the plane through the snapped vertices, in depth codes.
-const DEPTH_LIMIT: f64 = 2.0;
+pub const DEPTH_LIMIT: f64 = 2.0;
 
 /// Largest allowed displacement of an edge by snapping, in pixels. The Khronos conformance tests allow three steps of the
 /// subpixel grid, which are 3/256 pixel.

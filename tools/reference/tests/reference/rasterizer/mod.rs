@@ -4,6 +4,7 @@
 
 mod cameras;
 mod coverage;
+mod quarters;
 mod scenes;
 mod shade;
 mod smooth;

@@ -159,7 +159,7 @@ fn near(random: &mut Pcg64, middle: Vector, reach: f64) -> Vector {
 
 /// Makes `count` random triangles with middles in a box of half width `reach` about the origin. Each triangle's size is random
 /// between the two `sizes`.
-fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
+pub fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
     let mut scene = Scene::default();
     for _ in 0..count {
         let middle = point(random, reach);
