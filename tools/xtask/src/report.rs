@@ -45,7 +45,7 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 
 /// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: a SoC with four lanes for lattices, and the
 /// raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
-/// `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU, and the firmware of each.
+/// `antialiasing`: that, and the SoC with textures and fog. `textures`: the SoC with textures. `cpu`: the SoC with each variant of the CPU, and the firmware of each.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
@@ -55,6 +55,11 @@ fn build_parts(name: &str) -> Result<()> {
         }
         "gouraud" => model("triangle_raster"),
         "textures" => gateware::build_beside("texture", &["--texture"], Library::Quick).map(|_| ()),
+        "antialiasing" => {
+            build_parts("quality")?;
+            let options = ["--texture", "--fog"];
+            gateware::build_beside("texture-fog", &options, Library::Quick).map(|_| ())
+        }
         "quality" | "timeline" => {
             gateware::build_beside("smooth", &["--smooth"], Library::Quick).map(|_| ())
         }
@@ -94,7 +99,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     build_parts("gouraud")?;
     if !quick {
         build_parts("raymarch")?;
-        build_parts("quality")?;
+        build_parts("antialiasing")?;
         build_parts("textures")?;
         build_parts("cpu")?;
     }

@@ -10,8 +10,8 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use glint_core::quality::Quality;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    constants, cpu, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
-    textures, timeline, triangle,
+    antialiasing, constants, cpu, geometry, gesture, gouraud, imu, kernels, long, quality,
+    raymarch, sine, stiff, textures, timeline, triangle,
 };
 use glint_reference::report::provenance::{Commit, Provenance};
 use glint_reference::report::table::write_csv;
@@ -119,6 +119,15 @@ enum Page {
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
     },
+    /// One and four samples a pixel: errors against 64 samples, patterns, dithering, cycles
+    Antialiasing {
+        /// Measure only one table or group of tables: errors or cycles
+        #[arg(long, value_name = "NAME", value_parser = ["errors", "cycles"])]
+        study: Option<String>,
+        /// Measure only scenes whose name contains TEXT
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+    },
     /// Cycles of a frame of each scene by cause: soft core, engine passes, memory, evaluations
     Timeline {
         /// Measure only scenes whose name contains TEXT
@@ -177,9 +186,10 @@ impl Page {
             Self::Triangle { quick, only, .. }
             | Self::Raymarch { quick, only, .. }
             | Self::Quality { quick, only, .. } => *quick || only.is_some(),
-            Self::Timeline { only } | Self::Cpu { only, .. } | Self::Stiff { only, .. } => {
-                only.is_some()
-            }
+            Self::Antialiasing { only, .. }
+            | Self::Timeline { only }
+            | Self::Cpu { only, .. }
+            | Self::Stiff { only, .. } => only.is_some(),
             Self::Geometry { .. } | Self::Gesture { .. } | Self::Pages => false,
         }
     }
@@ -283,6 +293,9 @@ fn main() -> Result<()> {
         }
         Page::Quality { quick, study, only } => {
             measure_quality(quick, study.as_deref(), only.as_deref(), &to)?;
+        }
+        Page::Antialiasing { study, only } => {
+            measure_antialiasing(study.as_deref(), only.as_deref(), &to)?;
         }
         Page::Timeline { only } => {
             to.write(
@@ -406,6 +419,22 @@ fn measure_quality(
     }
     if study != Some("errors") && !quick {
         to.write_with_commit("quality-cycles", &quality::cycles(only)?)?;
+    }
+    Ok(())
+}
+
+/// Measures errors and cycles, or only those of `study`.
+fn measure_antialiasing(study: Option<&str>, only: Option<&str>, to: &Folder) -> Result<()> {
+    let only = only.unwrap_or_default();
+    if study != Some("cycles") {
+        let tables = antialiasing::measure(only)?;
+        to.write("antialiasing", &tables.errors)?;
+        to.write_with_commit("antialiasing-patterns", &tables.patterns)?;
+        to.write_with_commit("antialiasing-dither", &tables.dither)?;
+        to.write_with_commit("antialiasing-light", &tables.light)?;
+    }
+    if study != Some("errors") {
+        to.write_with_commit("antialiasing-cycles", &antialiasing::cycles::measure(only)?)?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! The measurements of the report. Each measurement returns rows of a type, and each row becomes a line of a CSV file.
 
+pub mod antialiasing;
 pub mod constants;
 pub mod cpu;
 pub mod geometry;
