@@ -80,6 +80,48 @@ def qualities(errors, cycles):
     return frames.assign(rate=CLOCK / frames.cycles, shipped=True)
 
 
+def root_mean_square(values):
+    """The root mean square of numbers."""
+    return np.sqrt((values ** 2).mean())
+
+
+def antialiasing(errors):
+    """Errors of each scene, and their RMS in the last row, in columns such as `colour_4` and, without dithering, `colour_4_off`. The RMS of
+    errors along edges leaves out the wireframe, whose lines are a sample wide."""
+    way = errors.samples.astype(str) + np.where(errors.dithered, "", "_off")
+    found = errors.assign(way=way).pivot(index="scene", columns="way", values=["colour", "edges"])
+    found.columns = ["_".join(column) for column in found.columns]
+    edges = found.filter(like="edges").columns
+    total = root_mean_square(found)
+    total[edges] = root_mean_square(found.drop(index="wireframe", errors="ignore")[edges])
+    found.loc["all"] = total
+    return found.join(errors.groupby("scene").share.first()).reset_index()
+
+
+def samples(errors, cycles):
+    """Errors of dithered frames with one and four samples a pixel, with their cycles and rates."""
+    frames = errors.query("dithered").merge(cycles.drop(columns="commit"), on=["scene", "samples"])
+    return frames.assign(rate=CLOCK / frames.alone, family=frames.scene, shipped=False, label=frames.samples)
+
+
+def ratios(cycles):
+    """The least and the largest ratio of the cycles of a frame with four samples a pixel to those of one with one sample."""
+    alone = cycles.pivot(index="scene", columns="samples", values="alone")
+    found = alone[4] / alone[1]
+    return found.min(), found.max()
+
+
+def patterns(errors):
+    """The errors of each pattern of samples: RMS of the scenes. The centre is the grid of one sample."""
+
+    def of(column, chosen):
+        return chosen.groupby(["pattern", "samples"], sort=False)[column].agg(root_mean_square)
+
+    found = errors.groupby(["pattern", "samples"], sort=False).shipped.first().to_frame()
+    found = found.assign(colour=of("colour", errors), edges=of("edges", errors.query("scene != 'wireframe'"))).reset_index()
+    return found.assign(family=found.pattern.replace("centre", "grid"), label=found.pattern)
+
+
 def frames(scenes, soft_core):
     """Points of the diagram of frames: drawn by the triangle engine, back to back and alone, and drawn by the soft core."""
     size = scenes.width.astype(str) + "×" + scenes.height.astype(str)

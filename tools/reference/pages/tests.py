@@ -67,6 +67,23 @@ class Qualities(unittest.TestCase):
                 self.assertTrue((is_ordered * levels[column].diff()[1:] > 0).all(), f"{scene}: {column}")
 
 
+class Antialiasing(unittest.TestCase):
+    def test_the_last_row_is_the_rms_and_that_of_edges_leaves_out_lines(self):
+        rows = [(scene, samples, dithered, factor / samples, 10 * factor / samples, 0.1)
+                for scene, factor in [("lamp", 1), ("room", 7), ("wireframe", 5)] for samples in (1, 4) for dithered in (True, False)]
+        columns = ["scene", "samples", "dithered", "colour", "edges", "share"]
+        found = tables.rows(figures.antialiasing(pd.DataFrame(rows, columns=columns)))[-1]
+        self.assertEqual([found[name] for name in ("scene", "colour_1", "colour_4_off", "edges_1", "edges_4_off")],
+                         ["all", 5, 1.25, 50, 12.5])
+
+    def test_the_centre_is_the_grid_of_one_sample(self):
+        rows = [(scene, pattern, samples, factor, factor, False) for pattern, samples in [("centre", 1), ("grid", 4), ("rotated grid", 4)]
+                for scene, factor in [("lamp", 1), ("room", 7), ("wireframe", 5)]]
+        found = figures.patterns(pd.DataFrame(rows, columns=["scene", "pattern", "samples", "colour", "edges", "shipped"]))
+        self.assertEqual(found.family.tolist(), ["grid", "grid", "rotated grid"])
+        self.assertEqual((found.colour.tolist(), found.edges.tolist()), ([5] * 3, [5] * 3))
+
+
 class Raymarcher(unittest.TestCase):
     def test_targets_are_of_the_slowest_view(self):
         rates = tables.read(tables.COMMITTED, "raymarch-rates").iloc[:2].assign(view=["aside", "amid"], cycles_frame=[1e6, 2e6])

@@ -19,6 +19,7 @@ use glint_reference::imu::motion::Motion;
 use glint_reference::raymarch::raymarched::sponges;
 use glint_reference::raymarch::views;
 use glint_reference::report::cycles::Cycles;
+use glint_reference::report::experiments::antialiasing;
 use glint_reference::report::experiments::geometry::precision;
 use glint_reference::report::experiments::gouraud::forms;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
@@ -460,6 +461,27 @@ fn the_committed_errors_of_qualities_hold() {
         if row.quality == "exact" {
             assert!(now.wrong < 0.01 && now.colour < 6.0, "{now:?}");
         }
+    }
+}
+
+/// Draws the frames of a scene of antialiasing.csv again, and compares their errors with the committed errors.
+#[test]
+fn the_committed_errors_of_samples_hold() {
+    let rows: Vec<antialiasing::errors::Row> = committed("antialiasing.csv");
+    assert_eq!(rows.len(), 6 * quality::scenes("").count());
+    let scene = quality::scenes("simplegpu").next().expect("a scene");
+    let now = scene::draw(&scene, &Changes::default(), |frame| {
+        let exact = antialiasing::errors::reference(frame)?;
+        antialiasing::errors::of_engine(scene.name(), frame, &exact)
+    });
+    let now = now.expect("a scene").expect("a picture");
+    let rows = rows.iter().filter(|row| row.scene == scene.name());
+    for (row, now) in rows.zip(now) {
+        assert_eq!((row.samples, row.dithered), (now.samples, now.dithered));
+        let name = |column| format!("antialiasing.csv: {column} of {} samples", row.samples);
+        assert_close(row.colour, now.colour, 1e-6, &name("colour"));
+        assert_close(row.edges, now.edges, 1e-6, &name("edges"));
+        assert_close(row.share, now.share, 1e-6, &name("share"));
     }
 }
 
