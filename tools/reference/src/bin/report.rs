@@ -427,7 +427,7 @@ fn measure_quality(
 fn measure_antialiasing(study: Option<&str>, only: Option<&str>, to: &Folder) -> Result<()> {
     let only = only.unwrap_or_default();
     if study != Some("cycles") {
-        let tables = antialiasing::measure(only)?;
+        let tables = antialiasing::tables::measure(only)?;
         to.write("antialiasing", &tables.errors)?;
         to.write_with_commit("antialiasing-patterns", &tables.patterns)?;
         to.write_with_commit("antialiasing-dither", &tables.dither)?;

@@ -12,7 +12,7 @@ use glint_model::Frame;
 use glint_scene_file::{SceneFile, built_in};
 use serde::{Deserialize, Serialize};
 
-use super::{draw, measured};
+use super::compared::{draw, measured};
 use crate::picture::SHOWN;
 use crate::report::experiments::quality::scenes;
 use crate::report::experiments::triangle::ahead;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FourSamples, displayed, mean};
+use super::compared::{FourSamples, displayed, mean};
 use crate::camera::Vector;
 use crate::errors::Errors;
 use crate::picture::SHOWN;

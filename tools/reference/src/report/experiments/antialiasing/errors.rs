@@ -7,7 +7,7 @@ use glint_core::picture::Samples;
 use glint_model::Frame;
 use serde::{Deserialize, Serialize};
 
-use super::{Compared, displayed, measured};
+use super::compared::{Compared, displayed, measured};
 use crate::picture::averaged::{Averaged, Pattern, grid};
 use crate::picture::dither::Matrix;
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Compared, FourSamples, mean};
+use super::compared::{Compared, FourSamples, mean};
 use crate::camera::Vector;
 use crate::picture::averaged::Averaged;
 
