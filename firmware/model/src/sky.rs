@@ -1,8 +1,9 @@
-//! The sky behind meshes: a colour for each group of eight pixels in a line (docs/formats/triangle.md, "Sky").
+//! The sky and the gradient behind meshes: a colour for each group of eight pixels in a line (docs/formats/triangle.md, "Sky").
 
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
 use glint_core::field::magnitude;
+use glint_core::light::Gradient;
 use glint_core::picture::{Samples, Window};
 
 use crate::error::RenderError;
@@ -18,7 +19,7 @@ const FRACTION: u32 = 23;
 /// The heights and colours of the sky in a frame.
 ///
 /// The height of a place in the picture is the component along z of the direction through it whose component along the camera's forward
-/// axis n is 1. It is linear in the picture: the height of the group in column x (of groups) and line y is `above` + x·`across` +
+/// axis n is 1; of a fixed gradient, it is 1 at the top and −1 at the bottom of the picture. It is linear in the picture: the height of the group in column x (of groups) and line y is `above` + x·`across` +
 /// (y + 1)·`down`, each s8.23.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sky {
@@ -37,12 +38,33 @@ pub struct Sky {
 }
 
 impl Sky {
-    /// The sky for a camera, in a picture of one of the supported sizes, with the colours of zenith, horizon and nadir.
-    pub fn new(
-        view: &View,
-        [width, height]: [u32; 2],
-        [zenith, horizon, nadir]: [[u8; 3]; 3],
-    ) -> Self {
+    /// The sky for a camera, in a picture of one of the supported sizes.
+    pub fn new(view: &View, [width, height]: [u32; 2], gradient: Gradient) -> Self {
+        let [middle, across, down] = if gradient.is_fixed {
+            [
+                0,
+                0,
+                -(((2 << FRACTION) + height as i32 / 2) / height as i32),
+            ]
+        } else {
+            Self::heights(view, width)
+        };
+        // The middle of the picture is half a step before a group, and half a line above a line.
+        let [columns, lines] = [width / 16, height / 2].map(|x| x as i32);
+        let first = middle + ((across + down) >> 1) - columns * across - lines * down;
+        let [zenith, horizon, nadir] = gradient.colours;
+        Self {
+            above: first - down,
+            across,
+            down,
+            zenith,
+            horizon,
+            nadir,
+        }
+    }
+
+    /// The height in the middle of the picture, and its changes from a group to the next one and from a line to the next one, s8.23.
+    fn heights(view: &View, width: u32) -> [i32; 3] {
         // An orthographic camera has one direction.
         let half_width = match view.projection() {
             Projection::Perspective => view.half_width().to_bits(),
@@ -56,17 +78,7 @@ impl Sky {
         let step = |row: i64, shift: u32| ((row * fifth + (1 << (shift - 1))) >> shift) as i32;
         let (across, down) = (step(u, 26 + k), step(v, 29 + k));
         let middle = (n + ((i64::from(view.shift().to_bits()) * u) >> 28)) as i32;
-        // The middle of the picture is half a step before a group, and half a line above a line.
-        let [columns, lines] = [width / 16, height / 2].map(|x| x as i32);
-        let first = middle + ((across + down) >> 1) - columns * across - lines * down;
-        Self {
-            above: first - down,
-            across,
-            down,
-            zenith,
-            horizon,
-            nadir,
-        }
+        [middle, across, down]
     }
 
     /// The sky in a window of a picture with this number of samples: its heights begin at the window's first pixel.

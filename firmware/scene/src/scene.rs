@@ -346,7 +346,7 @@ impl Scene {
             Setting::Highlight { highlight } => self.appearance.highlight = highlight,
             Setting::Shadow { on } => self.appearance.shadow = on,
             Setting::Background { background } => {
-                if background == Some(Background::Sky) && !SKY.is_built {
+                if background.and_then(Background::gradient).is_some() && !SKY.is_built {
                     return Err(SettingError::NoSky);
                 }
                 self.appearance.background = background;

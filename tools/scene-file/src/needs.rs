@@ -8,7 +8,7 @@ use glint_core::colour::{Shading, Winding};
 use glint_core::feature::{CPU, DEMO, Feature, GESTURE, IMU, MESH, SKY, SPHERES, TEXTURE, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::fixed::U4_28;
-use glint_core::light::{Background, Material};
+use glint_core::light::Material;
 use glint_core::picture::{Backend, Samples};
 use glint_core::shape::Shape;
 use glint_model::{Clip, MeshOptions};
@@ -145,7 +145,7 @@ impl SceneFile {
         {
             features.insert(UPLOAD);
         }
-        if scene.appearance.background == Some(Background::Sky) {
+        if scene.appearance.mesh_gradient().is_some() {
             features.insert(SKY);
         }
         if scene.field.is_some_and(|field| field.is_round()) {

@@ -100,7 +100,7 @@ commands! {
                 .host(switch("shadow", "on", "Shadows of the first light in a field: sponges, `boxes` and `cubes` cast shadows on their own faces. `normal` without a --light has none"));
         background Background(background: Or<Default, Background>) or show in VIEW: "show or set the background; default is white for a field and black for meshes"
             => key(Order::Option, "sky").with(LIT)
-                .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]")
+                .host(option("background", "white|sky|gradient|RRGGBB", "Background: `white`, `sky`, `gradient` or a colour RRGGBB [default: white behind a field, black behind meshes]")
                     .expects("white, sky or a colour RRGGBB"));
         fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog: transmittance is exp(-distance * DENSITY)"
             => key(Order::Option, "0.1").with(LIT)

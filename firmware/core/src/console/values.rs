@@ -234,7 +234,10 @@ impl WordArgument for Highlight {
 /// The text form of a background.
 impl WordArgument for Background {
     type Value<'a> = Self;
-    const KIND: WordKind = WordKind::Either(Self::WHITE, &WordKind::Either(Self::SKY, &Rgb::KIND));
+    const KIND: WordKind = WordKind::Either(
+        Self::WHITE,
+        &WordKind::Either(Self::SKY, &WordKind::Either(Self::GRADIENT, &Rgb::KIND)),
+    );
 
     fn parse(text: &str) -> Option<Self> {
         Self::parse(text)

@@ -5,7 +5,7 @@ use heapless::Vec;
 use crate::colour::Rgb565;
 use crate::fixed::U4_28;
 use crate::light::{
-    Background, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
+    Background, Gradient, Highlight, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb,
 };
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
@@ -84,15 +84,9 @@ impl Appearance {
         self.background.unwrap_or(Background::White)
     }
 
-    /// The colours of a sky behind meshes, at zenith, horizon and nadir.
-    pub fn mesh_sky(&self) -> Option<[Rgb; 3]> {
-        match self.background {
-            Some(Background::Sky) => {
-                let [zenith, horizon] = Background::Sky.colours();
-                Some([zenith, horizon, Background::GROUND])
-            }
-            Some(Background::White | Background::Colour(_)) | None => None,
-        }
+    /// The gradient behind meshes, if the background is no single colour.
+    pub fn mesh_gradient(&self) -> Option<Gradient> {
+        self.background.and_then(Background::gradient)
     }
 
     /// The background of meshes: a single colour.

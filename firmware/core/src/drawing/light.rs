@@ -522,6 +522,15 @@ impl Material {
     }
 }
 
+/// Three colours behind meshes, with linear changes between them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gradient {
+    /// Colours at zenith, horizon and nadir, or at the top, in the middle and at the bottom of the picture.
+    pub colours: [Rgb; 3],
+    /// Whether the colours have fixed places in the picture, with any camera.
+    pub is_fixed: bool,
+}
+
 /// Background of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
@@ -529,26 +538,47 @@ pub enum Background {
     White,
     /// A sky: blue above, pale at the horizon and below it; behind meshes darker towards the nadir.
     Sky,
+    /// Greys, dark at the top of the picture and light at the bottom; behind a field, from zenith to horizon.
+    Gradient,
     /// One colour.
     Colour(Rgb),
 }
 
 impl Background {
     /// Colour at the nadir of the sky behind meshes, which is the horizon's colour behind a field.
-    pub const GROUND: Rgb = [98, 96, 92];
+    const GROUND: Rgb = [98, 96, 92];
+    /// Colour at the bottom of the gradient.
+    const BOTTOM: Rgb = [168, 174, 182];
 
     /// Text form of [`Background::White`].
     pub const WHITE: &'static str = "white";
     /// Text form of [`Background::Sky`].
     pub const SKY: &'static str = "sky";
+    /// Text form of [`Background::Gradient`].
+    pub const GRADIENT: &'static str = "gradient";
 
-    /// Parses `white`, `sky` or a colour RRGGBB; `None` for any other text.
+    /// Parses `white`, `sky`, `gradient` or a colour RRGGBB; `None` for any other text.
     pub fn parse(text: &str) -> Option<Self> {
         match text {
             Self::WHITE => Some(Self::White),
             Self::SKY => Some(Self::Sky),
+            Self::GRADIENT => Some(Self::Gradient),
             colour => parse_rgb(colour).map(Self::Colour),
         }
+    }
+
+    /// The colours behind meshes; `None` for a single colour.
+    pub const fn gradient(self) -> Option<Gradient> {
+        let (nadir, is_fixed) = match self {
+            Self::Sky => (Self::GROUND, false),
+            Self::Gradient => (Self::BOTTOM, true),
+            Self::White | Self::Colour(_) => return None,
+        };
+        let [zenith, horizon] = self.colours();
+        Some(Gradient {
+            colours: [zenith, horizon, nadir],
+            is_fixed,
+        })
     }
 
     /// Two colours: the colour at the zenith, and the colour at and below the horizon.
@@ -556,6 +586,7 @@ impl Background {
         match self {
             Self::White => [[0xFF; 3]; 2],
             Self::Sky => [[64, 120, 216], [214, 228, 242]],
+            Self::Gradient => [[36, 40, 48], [92, 98, 108]],
             Self::Colour(colour) => [colour; 2],
         }
     }
@@ -567,6 +598,7 @@ impl fmt::Display for Background {
         match *self {
             Self::White => f.write_str(Self::WHITE),
             Self::Sky => f.write_str(Self::SKY),
+            Self::Gradient => f.write_str(Self::GRADIENT),
             Self::Colour(colour) => HexColour(colour).fmt(f),
         }
     }

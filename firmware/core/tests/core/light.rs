@@ -249,11 +249,16 @@ fn backgrounds() {
     for (text, mesh) in [
         ("white", Rgb565::WHITE),
         ("sky", Rgb565::from_rgb888([214, 228, 242])),
+        ("gradient", Rgb565::from_rgb888([92, 98, 108])),
         ("0080ff", Rgb565::from_rgb888([0, 0x80, 0xFF])),
     ] {
         let appearance = background(text);
         assert_eq!(appearance.field_background().to_string(), text);
         assert_eq!(appearance.mesh_background(), mesh);
+        let is_fixed = appearance.mesh_gradient().map(|shown| shown.is_fixed);
+        let expected = [("sky", false), ("gradient", true)];
+        let expected = expected.into_iter().find(|(name, _)| *name == text);
+        assert_eq!(is_fixed, expected.map(|(_, is_fixed)| is_fixed), "{text}");
     }
     for text in ["", "black", "12345", "1234567", "White", "+12345"] {
         assert_eq!(Background::parse(text), None, "{text}");

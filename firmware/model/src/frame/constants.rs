@@ -203,11 +203,11 @@ impl FrameConstants {
             | Subject::Objects(_) => self.mesh = None,
         }
         if SKY.is_built {
-            let colours = frame
+            let gradient = frame
                 .sky
                 .filter(|_| self.mesh.is_some() && self.field.is_none());
-            self.sky = colours.map(|colours| {
-                let sky = Sky::new(view, frame.size.pixels(), colours);
+            self.sky = gradient.map(|gradient| {
+                let sky = Sky::new(view, frame.size.pixels(), gradient);
                 sky.in_window(window, frame.drawn_samples())
             });
         }

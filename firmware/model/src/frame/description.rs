@@ -7,7 +7,7 @@ use glint_core::feature::{ANTIALIASING, FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXT
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
 use glint_core::framing::BoundingSphere;
-use glint_core::light::{MeshLighting, Rgb};
+use glint_core::light::{Gradient, MeshLighting, Rgb};
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Quarter, Samples, Size, Window};
@@ -35,8 +35,8 @@ pub struct Frame<'a> {
     pub quarter: Quarter,
     /// Background: the colour of pixels without a triangle. A field covers every pixel.
     pub clear: Rgb565,
-    /// Colours of a sky at zenith, horizon and nadir, which is drawn in place of `clear` behind meshes and their edges.
-    pub sky: Option<[Rgb; 3]>,
+    /// A sky or another gradient, which is drawn in place of `clear` behind meshes and their edges.
+    pub sky: Option<Gradient>,
     /// Density of the fog on the meshes per world unit: transmittance is e^(−density · z) at depth z. 0 is no fog. The fog of a field is
     /// in the field's appearance.
     pub fog: U4_28,
@@ -333,7 +333,7 @@ impl<'a> Frame<'a> {
         let (clear, sky, fog) = match subject {
             Subject::Mesh(_) | Subject::Objects(_) | Subject::Edges(_, Edges::Over) => (
                 appearance.mesh_background(),
-                appearance.mesh_sky(),
+                appearance.mesh_gradient(),
                 appearance.fog,
             ),
             Subject::Edges(_, Edges::Hidden)
@@ -388,7 +388,8 @@ impl<'a> Frame<'a> {
             | Subject::Field(_)
             | Subject::Objects(_)
             | Subject::Wireframe(_) => {
-                let [_, horizon, _] = self.sky.unwrap_or([self.clear.to_rgb888(); 3]);
+                let gradient = self.sky.map(|Gradient { colours, .. }| colours);
+                let [_, horizon, _] = gradient.unwrap_or([self.clear.to_rgb888(); 3]);
                 (self.fog, horizon)
             }
         }

@@ -5,6 +5,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::Rgb565;
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, U4_28};
+use glint_core::light::Background;
 use glint_core::picture::{Edges, Samples, Size};
 use glint_core::quality::Quality;
 use glint_core::rectangle::{Part, Rectangle};
@@ -325,7 +326,7 @@ fn rectangles_are_in_front_of_everything() {
     };
     let mesh = MeshSubject::new(cube());
     let foggy = Frame {
-        sky: Some([[20, 40, 90], [200; 3], [60, 50, 40]]),
+        sky: Background::Sky.gradient(),
         fog: U4_28::from_num(2.0),
         ..scene(Subject::Mesh(mesh))
     };

@@ -1,9 +1,18 @@
 //! The sky behind meshes, compared with its height in f64.
 
-use glint_core::picture::Size;
+use glint_core::light::Gradient;
+use glint_core::picture::{Quarter, Samples, Size, Window};
 use glint_model::Sky;
 use glint_vectors::camera::Size as Pixels;
 use glint_vectors::{Camera, Random};
+
+/// A gradient without light.
+fn gradient(is_fixed: bool) -> Gradient {
+    Gradient {
+        colours: [[0; 3]; 3],
+        is_fixed,
+    }
+}
 
 /// The height of each group is the component along z of the ray through its middle.
 #[test]
@@ -19,7 +28,7 @@ fn heights_of_random_cameras() {
                     Camera::aimed(&mut random, [0.0; 3], towards, [0.0; 2], half_width, 0.1);
                 let view = camera.rounded();
                 let camera = Camera::of(&view);
-                let sky = Sky::new(&view, size.pixels(), [[0; 3]; 3]);
+                let sky = Sky::new(&view, size.pixels(), gradient(false));
                 for _ in 0..200 {
                     let x = random.integer(0, i64::from(width / 8) - 1) as u32;
                     let y = random.integer(0, i64::from(height) - 1) as u32;
@@ -36,5 +45,40 @@ fn heights_of_random_cameras() {
             worst < 221.0 / f64::from(1 << 23),
             "half width {half_width}"
         );
+    }
+}
+
+/// The height of a fixed gradient is that of the middle of each line, for all cameras, sizes, samples and windows.
+#[test]
+fn heights_of_fixed_gradients() {
+    let mut random = Random(8);
+    for size in Size::ALL {
+        let towards = random.direction();
+        let view = Camera::aimed(&mut random, [0.0; 3], towards, [0.0; 2], 1.0, 0.1).rounded();
+        let whole = Sky::new(&view, size.pixels(), gradient(true));
+        let mut worst = 0.0_f64;
+        for (is_lower, samples) in [
+            (false, Samples::One),
+            (false, Samples::Four),
+            (true, Samples::Four),
+        ] {
+            let window = Window {
+                size,
+                quarter: (samples == Samples::Four).then_some(Quarter {
+                    is_right: true,
+                    is_lower,
+                }),
+            };
+            let sky = whole.in_window(window, samples);
+            let [_, first] = window.origin().map(|place| place / samples.across());
+            for line in 0..size.height() / samples.across() {
+                let place = f64::from(2 * (first + line) + 1) / f64::from(size.height());
+                let found = f64::from(sky.height(line % (size.width() / 8), line));
+                worst = worst.max((found / f64::from(1 << 23) - (1.0 - place)).abs());
+            }
+        }
+        println!("{size}: height within {worst:.2e}");
+        // A step is off by at most half a unit, 360 lines from the middle.
+        assert!(worst < 181.0 / f64::from(1 << 23), "{size}");
     }
 }

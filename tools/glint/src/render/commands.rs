@@ -106,6 +106,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
 /// The appearance with the light, background and fog of a frame's meshes.
 fn appearance(frame: &Frame) -> Appearance {
     let background = match frame.sky {
+        Some(gradient) if gradient.is_fixed => Background::Gradient,
         Some(_) => Background::Sky,
         None => Background::Colour(frame.clear.to_rgb888()),
     };

@@ -8,9 +8,8 @@ use glint::render::{
     self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Route, Stats, Subject, TriangleCounts,
 };
 use glint::{generate, view};
-use glint_core::appearance::Appearance;
 use glint_core::colour::Shading;
-use glint_core::light::{Background, Rgb};
+use glint_core::light::{Background, Gradient};
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
 use glint_core::picture::Size;
@@ -84,12 +83,8 @@ pub fn counts(stats: &Stats) -> impl PartialEq + std::fmt::Debug {
 }
 
 /// The colours of the sky behind meshes.
-pub fn sky() -> [Rgb; 3] {
-    let appearance = Appearance {
-        background: Some(Background::Sky),
-        ..Appearance::default()
-    };
-    appearance.mesh_sky().unwrap()
+pub fn sky() -> Gradient {
+    Background::Sky.gradient().unwrap()
 }
 
 /// The subject that shows a mesh with default options.

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::light::{Light, Material, Rgb};
+use glint_core::light::{Gradient, Light, Material, Rgb};
 use glint_core::matrix::Matrix;
 use glint_core::mesh::{Chunk, Triangle};
 use glint_core::stereo::Tint;
@@ -113,8 +113,8 @@ fn one_eye(frame: &Frame, side: Option<Side>, offset: [f64; 2]) -> Result<Vec<Pi
         nearness: 0.0,
     };
     let mut pixels = vec![background; SHOWN.pixel_count()];
-    if let Some(colours) = frame.sky {
-        draw_sky(&camera, colours, offset, &mut pixels);
+    if let Some(gradient) = frame.sky {
+        draw_gradient(&camera, gradient, offset, &mut pixels);
     }
     if let Subject::Wireframe(subject) = &frame.subject {
         draw_lines(subject, offset, &mut pixels)?;
@@ -332,12 +332,18 @@ struct Appeared {
     is_round: bool,
 }
 
-/// Draws the sky behind meshes, whose height at a pixel is the component along z of its ray.
-fn draw_sky(camera: &Camera, colours: [Rgb; 3], offset: [f64; 2], pixels: &mut [Pixel]) {
-    let [zenith, horizon, nadir] = colours.map(|colour| colour.map(f64::from));
+/// Draws the gradient behind meshes. Its height at a pixel is the component along z of the pixel's ray or, with fixed places, 1 at the top
+/// and −1 at the bottom of the picture.
+fn draw_gradient(camera: &Camera, gradient: Gradient, offset: [f64; 2], pixels: &mut [Pixel]) {
+    let [zenith, horizon, nadir] = gradient.colours.map(|colour| colour.map(f64::from));
     for (place, pixel) in places(offset).zip(pixels) {
-        let ray = camera.ray(place, size());
-        let [_, _, height] = ray.direction;
+        let [_, y] = place;
+        let height = if gradient.is_fixed {
+            1.0 - (2.0 * y + 1.0) / f64::from(SHOWN.height())
+        } else {
+            let [_, _, height] = camera.ray(place, size()).direction;
+            height
+        };
         let end = if height < 0.0 { nadir } else { zenith };
         let part = height.abs().min(1.0);
         pixel.colour = add_scaled(horizon, subtract(end, horizon), part);

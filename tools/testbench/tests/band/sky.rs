@@ -32,12 +32,12 @@ fn colours_of_random_pictures() {
         for half_width in [0.0087, 0.6, 1.5, 115.0] {
             let towards = random.direction();
             let camera = Camera::aimed(&mut random, [0.0; 3], towards, [0.0; 2], half_width, 0.1);
-            let [zenith, horizon] = Background::Sky.colours();
+            let background = [Background::Sky, Background::Gradient][random.integer(0, 1) as usize];
             let size = [Size::W320, Size::W640, Size::W1280][random.integer(0, 2) as usize];
             let sky = Sky::new(
                 &camera.rounded(),
                 size.pixels(),
-                [zenith, horizon, Background::GROUND],
+                background.gradient().unwrap(),
             );
             let groups = size.width() / 8;
             drive_sky(&mut module, &sky);

@@ -3,6 +3,7 @@
 use glint_core::camera::View;
 use glint_core::colour::Rounding;
 use glint_core::fixed::U4_28;
+use glint_core::light::Gradient;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Quarter;
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
@@ -10,6 +11,8 @@ use glint_model::triangle::{PreparedMesh, draw_parts};
 use glint_model::{
     DrawnTriangle, Fog, FrameBuffer, MeshSetup, Options, Projected, Shading, Sky, Stats,
 };
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 pub const CLEAR: u16 = 0x1234;
@@ -214,5 +217,13 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
         depth,
         clipped: vec![],
         stats: Stats::default(),
+    }
+}
+
+/// A gradient of random colours, as a sky or with fixed places.
+pub fn gradient(random: &mut Pcg64Mcg) -> Gradient {
+    Gradient {
+        colours: random.random(),
+        is_fixed: random.random(),
     }
 }

@@ -17,7 +17,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use super::bench::Bench;
-use super::expected::Expected;
+use super::expected::{Expected, gradient};
 use super::fields::send_bands;
 use super::textured::{BEFORE, Shown, texture};
 
@@ -82,7 +82,7 @@ fn frames_with_rectangles() {
             let textures = sources.map(|source| encode(&source).unwrap());
             let mesh = textured_layers(&textures, 1.0, 0.3);
             let eye = [0.4, random.random_range(-4.0..-1.0), 1.0];
-            let sky = (count == 1).then(|| random.random());
+            let sky = (count == 1).then(|| gradient(&mut random));
             let rounding = Rounding::new(random.random());
             let mut shown = if count == 0 {
                 Shown::orthographic(mesh, eye, rounding)

@@ -15,6 +15,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use super::bench::Bench;
+use super::expected::gradient;
 use super::fields::send_bands;
 use super::textured::{Shown, texture};
 
@@ -75,7 +76,7 @@ fn frames_are_averaged() {
                 samples: Samples::Four,
                 rounding: Rounding::new(random.random()),
                 clear: Rgb565(random.random()),
-                sky: random.random_bool(0.6).then(|| random.random()),
+                sky: random.random_bool(0.6).then(|| gradient(&mut random)),
                 fog: U4_28::from_num([0.0, 0.3][random.random_range(0..2)]),
                 ..Frame::new(
                     if has_field {

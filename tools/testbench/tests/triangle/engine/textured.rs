@@ -5,7 +5,7 @@ use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Rounding, Shading};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
-use glint_core::light::{Light, MeshLighting, Rgb};
+use glint_core::light::{Gradient, Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Samples, Size};
 use glint_core::quality::Quality;
@@ -24,7 +24,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use super::bench::Bench;
-use super::expected::{Averages, Expected};
+use super::expected::{Averages, Expected, gradient};
 use super::fields::{bands, send_bands};
 use super::generated;
 
@@ -103,7 +103,7 @@ impl Shown {
         bytes: Vec<u8>,
         eye: [f64; 3],
         field: Option<&FieldSubject>,
-        sky: Option<[Rgb; 3]>,
+        sky: Option<Gradient>,
         fog: f64,
         rounding: Rounding,
     ) -> Self {
@@ -116,7 +116,7 @@ impl Shown {
         view: View,
         size: Size,
         field: Option<&FieldSubject>,
-        sky: Option<[Rgb; 3]>,
+        sky: Option<Gradient>,
         fog: f64,
         rounding: Rounding,
     ) -> Self {
@@ -319,7 +319,7 @@ fn frames_with_textures_before_a_sky() {
                 .collect();
             let mesh = textured_layers(&textures, 1.0, 0.3);
             let eye = [0.4, random.random_range(-4.0..-1.0), 1.0];
-            let sky = (count % 3 != 2).then(|| random.random());
+            let sky = (count % 3 != 2).then(|| gradient(&mut random));
             if sky.is_some() {
                 firsts[usize::from(is_first)] += 1;
             }
