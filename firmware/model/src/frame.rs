@@ -112,9 +112,9 @@ impl Frame<'_> {
         if WIREFRAME.is_built
             && let Subject::Wireframe(subject) = &self.subject
         {
-            let window = self.window();
+            let (window, samples) = (self.window(), self.drawn_samples());
             stats.wireframe = Some(render_wireframe(
-                subject, self.clear, window, buffer, progress,
+                subject, self.clear, window, samples, buffer, progress,
             )?);
         }
         // A field covers every pixel. Meshes are drawn over it, so that what they blend with the picture may be in front of it.

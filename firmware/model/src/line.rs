@@ -9,6 +9,7 @@
 mod piece;
 
 use glint_core::colour::Rgb565;
+use glint_core::picture::Samples;
 use glint_core::records::segment_end;
 
 use crate::frame_buffer::FrameBuffer;
@@ -98,6 +99,36 @@ impl Segment {
     /// The header of a chunk with one vertex and `segments` segments, and the vertex. Together they are as long as a segment.
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
+    }
+
+    /// The lines that draw the segment a pixel wide: one, or with four samples a pixel two, each half a sample from the segment along its
+    /// minor axis. They may be up to a whole sample from it, and so have twice its bias (docs/formats/line.md, "Lines").
+    pub fn strokes(self, samples: Samples) -> impl Iterator<Item = Self> {
+        let [a, b] = self.ends;
+        let is_flat = (b.x - a.x).abs() >= (b.y - a.y).abs();
+        let offsets: &[i32] = match samples {
+            Samples::One => &[0],
+            Samples::Four => &[-128, 128],
+        };
+        offsets.iter().map(move |&offset| Self {
+            ends: self.ends.map(|end| {
+                // An end at the limit of coordinates stays there: it is far outside of the picture.
+                let moved = |place: i32| (place + offset).clamp(REACH.start, REACH.end - 1);
+                let (x, y) = if is_flat {
+                    (end.x, moved(end.y))
+                } else {
+                    (moved(end.x), end.y)
+                };
+                ScreenVertex { x, y, ..end }
+            }),
+            depth: match self.depth {
+                LineDepth::Tested { bias } if samples == Samples::Four => LineDepth::Tested {
+                    bias: bias.saturating_mul(2),
+                },
+                depth => depth,
+            },
+            ..self
+        })
     }
 
     /// Number of pixels of the segment in the picture.

@@ -1,7 +1,7 @@
 //! Pictures of the wireframe simulator: each segment of a program is transformed, projected, and drawn as a line (docs/wireframe.md).
 
 use glint_core::colour::Rgb565;
-use glint_core::picture::Window;
+use glint_core::picture::{Samples, Window};
 use glint_core::wireframe::{Pose, Program, Projection, Segment};
 
 use crate::error::RenderError;
@@ -43,7 +43,7 @@ pub struct WireframeStats {
     pub segments: u32,
     /// Number of segments with a part beyond the view plane and within the guard band.
     pub lines: u32,
-    /// Pixels written; a pixel of several lines counts once per line.
+    /// Pixels written, or samples of averaged pixels; one of several lines counts once per line.
     pub pixels: u64,
 }
 
@@ -56,7 +56,7 @@ impl WireframeStats {
     }
 }
 
-/// Clears the window of a picture to `clear` and draws a program into it. Pixels of lines have the largest depth code, all other pixels code 0. Calls
+/// Clears the window of a picture with this number of samples to `clear` and draws a program into it. Pixels of lines have the largest depth code, all other pixels code 0. Calls
 /// `progress` at short intervals.
 ///
 /// # Errors
@@ -65,6 +65,7 @@ pub fn render_wireframe(
     subject: &WireframeSubject,
     clear: Rgb565,
     window: Window,
+    samples: Samples,
     target: &mut FrameBuffer,
     progress: &mut dyn FnMut(),
 ) -> Result<WireframeStats, RenderError> {
@@ -81,7 +82,10 @@ pub fn render_wireframe(
         stats.segments += 1;
         if let Some(line) = subject.line(&projection, segment) {
             stats.lines += 1;
-            stats.pixels += u64::from(line.draw(target));
+            let strokes = line.strokes(samples);
+            stats.pixels += strokes
+                .map(|line| u64::from(line.draw(target)))
+                .sum::<u64>();
         }
     }
     Ok(stats)

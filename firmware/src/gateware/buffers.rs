@@ -250,11 +250,13 @@ impl TextureTable {
     }
 }
 
-/// Progress of the projection of a wireframe's program to segments.
+/// Progress of the projection of a wireframe's program, or of a mesh's edges, to segments in memory.
 #[derive(Default)]
 pub struct Projected {
     /// Number of projected words of the program.
     pub words: usize,
+    /// Number of segments in memory.
+    pub lines: u32,
     /// Counts of these words, without pixels.
     pub stats: WireframeStats,
 }

@@ -292,7 +292,7 @@ impl GatewareRenderer {
         let next = match (self.stage, &frame.subject) {
             (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
             (Stage::Project, Subject::Wireframe(wireframe)) if WIREFRAME.is_built => {
-                match self.project(wireframe, frame.window(), 0) {
+                match self.project(wireframe, frame, 0) {
                     Ok(false) => return None,
                     Ok(true) => {
                         let prepared = self.prepare_lines(frame.window().size, 0);

@@ -29,9 +29,12 @@ impl Frame<'_> {
         };
         buffer.check()?;
         let (mut covered, mut drawn) = (0, 0);
+        let samples = self.drawn_samples();
         let mut draw = |segment: &Segment| {
-            covered += segment.covered(buffer) as u64;
-            drawn += u64::from(segment.draw(buffer));
+            for line in segment.strokes(samples) {
+                covered += line.covered(buffer) as u64;
+                drawn += u64::from(line.draw(buffer));
+            }
         };
         let (mesh, culls) = (&subject.mesh, subject.culls());
         let edges = list.segments(mesh, culls, setup, scratch, progress, &mut draw)?;

@@ -1,8 +1,9 @@
 //! Tests of lines with triangles, other lines and depths; `glint-reference` tests the exact pixels of single segments.
 
 use glint_core::colour::Rgb565;
+use glint_core::picture::Samples;
 use glint_model::ScreenVertex;
-use glint_model::line::{Line, LineDepth, LinePixel, draw};
+use glint_model::line::{Line, LineDepth, LinePixel, Segment, draw};
 use glint_model::triangle::descriptor::band_rows;
 use glint_model::triangle::raster;
 use glint_model::triangle::setup::Bounds;
@@ -183,4 +184,62 @@ fn edges_with_bias_lie_in_front_of_their_face() {
     }
     println!("{drawn} pixels of edges, {hidden_without} hidden without bias");
     assert!(drawn > 50_000 && hidden_without > 1_000);
+}
+
+/// With four samples a pixel, a segment is two lines: the second covers the samples beside those of the first, on the other side of the
+/// segment. Ends at the limits of coordinates stay in range.
+#[test]
+fn segments_are_as_wide_as_pixels() {
+    let mut random = Random(11);
+    for number in 0..300 {
+        let ends = [(); 2].map(|()| {
+            let [x, y] = match number % 3 {
+                0 => [(); 2].map(|()| random.integer(-(1 << 19), (1 << 19) - 1)),
+                _ => place(&mut random),
+            };
+            ScreenVertex {
+                x: x as i32,
+                y: y as i32,
+                w: random.integer(1 << 8, 1 << 23) as u32,
+            }
+        });
+        let bias = random.integer(0, 1 << 15) as u16;
+        let segment = Segment {
+            ends,
+            colour: Rgb565(0xFFFF),
+            depth: LineDepth::Tested { bias },
+        };
+        assert!(segment.strokes(Samples::One).eq([segment]));
+        let lines: Vec<_> = segment.strokes(Samples::Four).collect();
+        assert!(lines.iter().all(|line| {
+            let is_in_range = |place: i32| (-(1 << 19)..1 << 19).contains(&place);
+            line.ends
+                .iter()
+                .all(|end| is_in_range(end.x) && is_in_range(end.y))
+                && line.depth == LineDepth::Tested { bias: 2 * bias }
+        }));
+        if number % 3 == 0 {
+            continue;
+        }
+        let [a, b] = ends;
+        let everywhere = Bounds {
+            left: -2048,
+            right: 2048,
+            top: -2048,
+            bottom: 2048,
+        };
+        let is_flat = (b.x - a.x).abs() >= (b.y - a.y).abs();
+        let [first, second] = [0, 1].map(|line: usize| pixels(lines[line].ends, everywhere));
+        let beside = first.iter().map(|pixel| match is_flat {
+            true => [pixel.column, pixel.row + 1],
+            false => [pixel.column + 1, pixel.row],
+        });
+        assert!(
+            second
+                .iter()
+                .map(|pixel| [pixel.column, pixel.row])
+                .eq(beside),
+            "{segment:?}"
+        );
+    }
 }

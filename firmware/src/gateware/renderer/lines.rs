@@ -1,6 +1,6 @@
 //! Wireframes, and the edges of meshes: the CPU makes segments, and the line engine draws them.
 
-use glint_core::picture::{Size, Window};
+use glint_core::picture::Size;
 use glint_core::wireframe::Projection;
 use glint_engines::triangle::size_code;
 use glint_hal::triangle::{EngineError, Error, Prepared};
@@ -22,26 +22,29 @@ impl GatewareRenderer {
     pub(super) fn project(
         &mut self,
         subject: &WireframeSubject,
-        window: Window,
+        frame: &Frame,
         place: usize,
     ) -> Result<bool, EngineError> {
         let done = &mut self.projected;
-        let projection = Projection::new(subject.program.viewing(), window);
+        let projection = Projection::new(subject.program.viewing(), frame.window());
         let records = self.buffers[place].segments_mut();
         let Some((header, records)) = records.split_first_mut() else {
             return Err(FULL);
         };
         for _ in 0..WORDS_A_CALL {
             if done.words == subject.program.word_count() {
-                *header = Segment::header(done.stats.lines);
+                *header = Segment::header(done.lines);
                 return Ok(true);
             }
             if let Some(segment) = subject.program.segment(done.words) {
                 done.stats.segments += 1;
                 if let Some(line) = subject.line(&projection, segment) {
-                    let record = records.get_mut(done.stats.lines as usize);
-                    *record.ok_or(FULL)? = line.words();
                     done.stats.lines += 1;
+                    for line in line.strokes(frame.drawn_samples()) {
+                        let record = records.get_mut(done.lines as usize);
+                        *record.ok_or(FULL)? = line.words();
+                        done.lines += 1;
+                    }
                 }
             }
             done.words += 1;
@@ -53,7 +56,7 @@ impl GatewareRenderer {
     pub(super) fn prepare_lines(&mut self, size: Size, place: usize) -> Prepared {
         let buffers = &self.buffers[place];
         let segments = buffers.segments();
-        let count = 1 + self.projected.stats.lines as usize;
+        let count = 1 + self.projected.lines as usize;
         let segments = segments.get(..count).unwrap_or(segments);
         let lists = buffers.lists(self.layout, size);
         self.engine.prepare_lines(segments, size_code(size), &lists)
@@ -82,11 +85,17 @@ impl GatewareRenderer {
         let records = self.buffers[1].segments_mut();
         let (header, records) = records.split_first_mut().ok_or(FULL)?;
         let scratch = cpu.scratch.vertices(frame.scratch_vertices());
-        let mut free = records.iter_mut();
+        let samples = frame.drawn_samples();
         let mut is_full = false;
-        let mut put = |segment: &Segment| match free.next() {
-            Some(record) => *record = segment.words(),
-            None => is_full = true,
+        let mut lines = 0;
+        let mut put = |segment: &Segment| {
+            for line in segment.strokes(samples) {
+                match records.get_mut(lines as usize) {
+                    Some(record) => *record = line.words(),
+                    None => is_full = true,
+                }
+                lines += 1;
+            }
         };
         let (mesh, culls) = (&subject.mesh, subject.culls());
         self.edges = cpu
@@ -95,7 +104,8 @@ impl GatewareRenderer {
         if is_full {
             return Err(FULL.into());
         }
-        *header = Segment::header(self.edges.drawn);
+        *header = Segment::header(lines);
+        self.projected.lines = lines;
         Ok(())
     }
 
@@ -103,7 +113,7 @@ impl GatewareRenderer {
     pub(super) fn start_edges(&mut self, size: Size) {
         let [drawn, other] = &self.buffers;
         let segments = other.segments();
-        let count = 1 + self.edges.drawn as usize;
+        let count = 1 + self.projected.lines as usize;
         let segments = segments.get(..count).unwrap_or(segments);
         let lists = drawn.edge_lists(self.layout, size);
         let prepared = self.engine.prepare_lines(segments, size_code(size), &lists);

@@ -198,7 +198,7 @@ impl GatewareRenderer {
         let (mut now, mut next) = (0, 1);
         for number in 0..count {
             self.projected = Projected::default();
-            while !self.project(subject, frame.window(), now)? {}
+            while !self.project(subject, frame, now)? {}
             let prepared = self.prepare_lines(frame.window().size, now);
             self.start_pass(prepared);
             self.wait(TriangleEngine::geometry, output)?;

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glint_core::choice::Choice;
 use glint_core::colour::Rgb565;
 use glint_core::fixed::Q5_11;
-use glint_core::picture::Size;
+use glint_core::picture::{Samples, Size};
 use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{Key, Motion, Point, Program, Projection};
 use glint_model::wireframe::render_wireframe;
@@ -81,6 +81,7 @@ fn draw(bytes: &[u8], size: Size) -> Result<WireframeStats> {
         &subject,
         Rgb565(0),
         size.into(),
+        Samples::One,
         &mut picture.target(),
         &mut || {},
     )?)
