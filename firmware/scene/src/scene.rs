@@ -371,9 +371,15 @@ impl Scene {
             Setting::Fit { lens } => {
                 if FIT.is_built {
                     let (up, angle) = lens.unwrap_or((Axis::Z, None));
-                    let sphere = self.bounds(board).ok_or(SettingError::FitOfOthers)?;
+                    let meshes = self.placed_meshes(board);
+                    let meshes = meshes.iter().copied();
+                    let sphere = framing::BoundingSphere::around(meshes.clone());
+                    let sphere = sphere.ok_or(SettingError::FitOfOthers)?;
                     let view = sphere.framed(up, Turns::default(), angle);
                     self.view = view.map_err(SettingError::Fit)?;
+                    if angle.is_none() {
+                        framing::fill(core::slice::from_mut(&mut self.view), meshes)?;
+                    }
                 }
             }
             Setting::Quality { quality } => {
@@ -678,9 +684,9 @@ impl Scene {
         }
     }
 
-    /// The sphere around the single shown mesh, or around the objects.
-    fn bounds(&self, board: &dyn Board) -> Option<framing::BoundingSphere> {
-        let mut meshes: Vec<(Mesh, Matrix), MAX_OBJECTS> = Vec::new();
+    /// The single shown mesh, or the objects.
+    fn placed_meshes<'b>(&self, board: &'b dyn Board) -> Vec<(Mesh<'b>, Matrix), MAX_OBJECTS> {
+        let mut meshes = Vec::new();
         // The list has space for all objects, so no object is dropped.
         match self.subject() {
             SceneSubject::Mesh(mesh) | SceneSubject::Edges(mesh, _) => {
@@ -695,7 +701,7 @@ impl Scene {
             SceneSubject::Field(_) | SceneSubject::MeshInField(..) | SceneSubject::Wireframe(_) => {
             }
         }
-        framing::BoundingSphere::around(meshes.iter().copied())
+        meshes
     }
 
     /// The optional gateware blocks that the scene needs, one bit per block ([`Block::bit`]). A picture drawn by the soft core

@@ -69,11 +69,7 @@ impl core::error::Error for FramingError {}
 impl BoundingSphere {
     /// Computes the sphere around placed meshes; `None` without a mesh. Centre and radius are within 2^−19 of their exact values.
     pub fn around<'a>(meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone) -> Option<Self> {
-        let points = meshes.flat_map(|(mesh, matrix)| {
-            let vertices = mesh.chunks().flat_map(|chunk| chunk.vertices());
-            // Converted from units of 2^−38, rounded down.
-            vertices.map(move |vertex| matrix.apply(vertex.position).map(|x| x >> 18))
-        });
+        let points = points(meshes);
         let first = points.clone().next()?;
         let (mut low, mut high) = (first, first);
         for point in points.clone() {
@@ -135,6 +131,51 @@ impl BoundingSphere {
         };
         view.map_err(FramingError::View)
     }
+}
+
+/// Sets the half width of the image plane of cameras whose eyes are outside of the sphere around placed meshes: the smallest with which all
+/// vertices, in the pictures of all cameras, are within the middle 90 % of width and height.
+///
+/// A mesh that is too small for this fills less.
+///
+/// # Errors
+/// None: the half width is clamped to its range.
+pub fn fill<'a>(
+    views: &mut [View],
+    meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone,
+) -> Result<(), ViewError> {
+    let mut widest = 0_u64;
+    for view in views.iter() {
+        let eye = view.eye().map(|x| x.to_bits() >> 12);
+        let axes = [view.u(), view.v(), view.n()];
+        for point in points(meshes.clone()) {
+            let from_eye = [0, 1, 2].map(|i| point[i] - eye[i]);
+            // Units of 2^−43; below 2^51, because eye and point are within 8 world units of the origin.
+            let [right, down, forward] = axes.map(|axis| {
+                let products = [0, 1, 2].map(|i| from_eye[i] * i64::from(axis[i].to_bits()));
+                products.iter().sum::<Length>()
+            });
+            // A half width h means a half height of 9/16·h.
+            let across = right.unsigned_abs().max(down.unsigned_abs() / 9 * 16);
+            widest = widest.max(across / (forward.unsigned_abs() >> 28).max(1));
+        }
+    }
+    let half_width = U8_28::from_bits(widest / 9 * 10).clamp(HALF_WIDTH[0], HALF_WIDTH[1]);
+    for view in views {
+        *view = view.with_half_width(half_width)?;
+    }
+    Ok(())
+}
+
+/// The vertices of placed meshes, rounded down.
+fn points<'a>(
+    meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone,
+) -> impl Iterator<Item = [Length; 3]> + Clone {
+    meshes.flat_map(|(mesh, matrix)| {
+        let vertices = mesh.chunks().flat_map(|chunk| chunk.vertices());
+        // Converted from units of 2^−38.
+        vertices.map(move |vertex| matrix.apply(vertex.position).map(|x| x >> 18))
+    })
 }
 
 /// Length of a tangent from the eye to a sphere of this radius that fills 80 % of the height with this field of view; at most

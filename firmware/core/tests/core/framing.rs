@@ -2,7 +2,7 @@
 
 use glint_core::camera::{HALF_WIDTH, View};
 use glint_core::fixed::{Q8_24, Q32_32, Turns};
-use glint_core::framing::{BoundingSphere, FramingError};
+use glint_core::framing::{BoundingSphere, FramingError, fill};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::{IndexedTriangle, Mesh, Vertex, encode};
 use proptest::prelude::*;
@@ -101,6 +101,49 @@ proptest! {
             let wanted = (3.5 * exact.1).max(exact.1 + 0.2).min(7.9 - length(exact.0));
             prop_assert!((distance - wanted).abs() < 1e-4, "{} {}", distance, wanted);
         }
+    }
+}
+
+/// The largest part of the half width or of the half height, of a picture with the sides 16:9, at which a camera shows one of the points.
+fn largest_part(view: &View, points: &[Vector]) -> f64 {
+    let eye = view.eye().map(|x| x.to_num::<f64>());
+    let axes = [view.u(), view.v(), view.n()].map(|row| row.map(|x| x.to_num::<f64>()));
+    let half_width = view.half_width().to_num::<f64>();
+    let parts = points.iter().map(|point| {
+        let [right, down, forward] =
+            axes.map(|axis| dot(axis, [0, 1, 2].map(|i| point[i] - eye[i])));
+        (right.abs() / half_width).max(down.abs() / (half_width * 9.0 / 16.0)) / forward
+    });
+    parts.fold(0.0, f64::max)
+}
+
+proptest! {
+    /// All cameras of a turn show all vertices in the middle 90 % of the picture, and one of them shows a vertex at its border.
+    #[test]
+    fn a_turn_of_cameras_is_filled(
+        points in prop::collection::vec(prop::array::uniform3(-16_384_i16..=16_384), 2..20),
+        scale in 0.01..2.0,
+        cameras in 1_u32..5,
+    ) {
+        let matrix = Matrix::scale([Q8_24::from_num(scale); 3]).expect("a matrix");
+        let placed: Vec<Vector> = points
+            .iter()
+            .map(|point| point.map(|x| f64::from(x) / 16_384.0 * scale))
+            .collect();
+        let bytes = mesh(&points);
+        let sphere = sphere(&[(&bytes, matrix)]).expect("points");
+        let turned = (0..cameras).map(|turn| Turns(turn * (u32::MAX / cameras)));
+        let mut views: Vec<View> = turned
+            .map(|turned| sphere.framed(Axis::Z, turned, None).expect("near the origin"))
+            .collect();
+        fill(&mut views, [(Mesh::new_checked(&bytes).expect("a mesh"), matrix)].into_iter())
+            .expect("in range");
+        let half_width = views[0].half_width();
+        prop_assert!(views.iter().all(|view| view.half_width() == half_width));
+        let parts = views.iter().map(|view| largest_part(view, &placed));
+        let largest = parts.fold(0.0, f64::max);
+        let is_limited = half_width == HALF_WIDTH[0];
+        prop_assert!(largest < 0.9001 && (is_limited || largest > 0.899), "{}", largest);
     }
 }
 

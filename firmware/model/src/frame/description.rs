@@ -6,8 +6,7 @@ use glint_core::colour::{Rgb565, Rounding, Shading, Winding};
 use glint_core::feature::{ANTIALIASING, FIELD, MESH, MESH_IN_FIELD, OBJECT, TEXTURE};
 use glint_core::field::Field;
 use glint_core::fixed::U4_28;
-use glint_core::framing::BoundingSphere;
-use glint_core::light::{Gradient, MeshLighting, Rgb};
+use glint_core::light::{Background, Gradient, MeshLighting, Rgb};
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Quarter, Samples, Size, Window};
@@ -196,8 +195,8 @@ impl<'a> Subject<'a> {
         self.mesh_part().into_iter().chain(objects)
     }
 
-    /// The bounding sphere of all meshes; `None` without a mesh, and for a field, with or without a mesh.
-    pub fn sphere(&self) -> Option<BoundingSphere> {
+    /// All meshes with their model matrices; none for a field, with or without a mesh.
+    pub fn placed_meshes(&self) -> impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone {
         let mesh = self.mesh_part().filter(|_| self.field_part().is_none());
         let mesh = mesh.map(|subject| (subject.mesh, Matrix::IDENTITY));
         let objects = self.objects().unwrap_or_default().iter();

@@ -4,6 +4,7 @@
 use super::common::{bad_value, named};
 use super::messages::note;
 use super::options::OptionArguments;
+use anyhow::Context;
 use clap::Args;
 use glint::convert::TextureReport;
 use glint::error::InputError;
@@ -11,8 +12,9 @@ use glint::render::Frame;
 use glint::view;
 use glint_core::camera::View;
 use glint_core::fixed::Turns;
-use glint_core::framing::{BoundingSphere, FramingError};
-use glint_core::matrix::Axis;
+use glint_core::framing::{self, BoundingSphere, FramingError};
+use glint_core::matrix::{Axis, Matrix};
+use glint_core::mesh::Mesh;
 use glint_model::{MAX_EYE, RenderError};
 use glint_scene_file::{SceneFile, upright};
 use std::path::{Path, PathBuf};
@@ -70,9 +72,10 @@ impl CameraArguments {
         if shown.scene.is_some() && self.up.is_some() {
             return Err(bad_value("--up", "a model", "a --scene").into());
         }
-        if let Some(sphere) = self.framing(options, shown) {
+        if self.is_free(options, shown) {
             let up = self.up_of(shown.model);
-            return framed(options, &sphere, shown, up, Turns::default());
+            let views = framed(options, shown, up, angles(1))?;
+            return views.first().copied().context("expected a camera");
         }
         let (view, source) = match (&self.view, &self.look) {
             (Some(path), _) => (view::read(path)?, path.display().to_string()),
@@ -93,10 +96,10 @@ impl CameraArguments {
         Ok(view)
     }
 
-    /// The sphere that the camera must show, if no option gives a camera.
-    fn framing(&self, options: &OptionArguments, shown: &CameraSubject) -> Option<BoundingSphere> {
-        let is_free = shown.scene.is_none() && !self.is_given(options);
-        shown.frame.subject.sphere().filter(|_| is_free)
+    /// Whether the meshes determine the camera, because no option gives one.
+    fn is_free(&self, options: &OptionArguments, shown: &CameraSubject) -> bool {
+        let has_meshes = shown.frame.subject.placed_meshes().next().is_some();
+        has_meshes && shown.scene.is_none() && !self.is_given(options)
     }
 
     /// The cameras of a full turn in `steps` steps, starting with the camera of
@@ -108,25 +111,27 @@ impl CameraArguments {
         shown: &CameraSubject,
         steps: u16,
     ) -> anyhow::Result<Vec<View>> {
-        let Some(sphere) = self.framing(options, shown) else {
-            let first = self.view(options, shown)?;
-            let fit = shown.scene.and_then(SceneFile::fit);
-            let fit = fit.filter(|_| !self.is_given(options));
-            return match (fit, shown.frame.subject.sphere()) {
-                (Some((up, angle)), Some(sphere)) => angles(steps)
-                    .map(|turned| {
-                        let view = sphere.framed(up, turned, angle);
-                        let view = view.map_err(|error| no_camera("--scene", &error))?;
-                        Ok(view.with_lens_of(&first))
-                    })
-                    .collect(),
-                _ => turn(&first, steps),
-            };
-        };
-        let up = self.up_of(shown.model);
-        angles(steps)
-            .map(|angle| framed(options, &sphere, shown, up, angle))
-            .collect()
+        if self.is_free(options, shown) {
+            return framed(options, shown, self.up_of(shown.model), angles(steps));
+        }
+        let fit = shown.scene.and_then(SceneFile::fit);
+        match fit.filter(|_| !self.is_given(options)) {
+            Some((up, angle)) => {
+                let refuse = |error| no_camera("--scene", &error);
+                let meshes = || shown.frame.subject.placed_meshes();
+                let still = whole(meshes(), up, angles(1), angle).map_err(refuse)?;
+                let mut views = whole(meshes(), up, angles(steps), angle).map_err(refuse)?;
+                let first = self.view(options, shown)?;
+                // A lens that an option or the scene sets stays.
+                if still != [first] {
+                    for view in &mut views {
+                        *view = view.with_lens_of(&first);
+                    }
+                }
+                Ok(views)
+            }
+            None => turn(&self.view(options, shown)?, steps),
+        }
     }
 
     /// The up axis from the option or from the format of the model; prints a note in the second case.
@@ -144,17 +149,37 @@ impl CameraArguments {
     }
 }
 
-/// The camera that shows the whole model, `turned` about the axis `up`.
+/// The cameras that show all meshes, turned about the axis `up`, with the given options for the lens.
 fn framed(
     options: &OptionArguments,
-    sphere: &BoundingSphere,
     shown: &CameraSubject,
     up: Axis,
-    turned: Turns,
-) -> anyhow::Result<View> {
-    let view = sphere.framed(up, turned, options.field_of_view()?);
+    turned: impl Iterator<Item = Turns>,
+) -> anyhow::Result<Vec<View>> {
+    let meshes = shown.frame.subject.placed_meshes();
+    let views = whole(meshes, up, turned, options.field_of_view()?);
     let name = shown.model.unwrap_or("--object");
-    options.camera(view.map_err(|error| no_camera(name, &error))?)
+    let views = views.map_err(|error| no_camera(name, &error))?;
+    views.into_iter().map(|view| options.camera(view)).collect()
+}
+
+/// The cameras that show placed meshes, turned about the axis `up`; none without a mesh. Without a field of view, the meshes fill the
+/// pictures.
+pub fn whole<'a>(
+    meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone,
+    up: Axis,
+    turned: impl Iterator<Item = Turns>,
+    field_of_view: Option<Turns>,
+) -> Result<Vec<View>, FramingError> {
+    let Some(sphere) = BoundingSphere::around(meshes.clone()) else {
+        return Ok(Vec::new());
+    };
+    let views = turned.map(|turned| sphere.framed(up, turned, field_of_view));
+    let mut views = views.collect::<Result<Vec<_>, _>>()?;
+    if field_of_view.is_none() {
+        framing::fill(&mut views, meshes).map_err(FramingError::View)?;
+    }
+    Ok(views)
 }
 
 /// The error for meshes that no camera can show completely.
@@ -163,12 +188,12 @@ fn no_camera(name: &str, error: &FramingError) -> InputError {
 }
 
 /// The angles of a full turn in `steps` steps, starting with 0.
-fn angles(steps: u16) -> impl Iterator<Item = Turns> {
+pub fn angles(steps: u16) -> impl Iterator<Item = Turns> {
     (0..steps).map(move |step| Turns(((u64::from(step) << 32) / u64::from(steps)) as u32))
 }
 
 /// The cameras of a full turn about the z axis in `steps` steps, starting with `first`.
-pub fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
+fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
     let turned = |angle| Ok(view::turned(first, angle).map_err(|error| error.in_file("camera"))?);
     angles(steps).map(turned).collect()
 }

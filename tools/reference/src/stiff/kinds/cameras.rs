@@ -1,9 +1,11 @@
 //! Cameras: parallel directions, poles, fields of view, long orbits, and whole meshes in view.
 
+use std::slice;
+
 use anyhow::{Context, Result};
 use glint_core::camera::{View, ViewError};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
-use glint_core::framing::BoundingSphere;
+use glint_core::framing::{self, BoundingSphere, FramingError};
 use glint_core::matrix::{Axis, Matrix};
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
@@ -109,11 +111,17 @@ fn fit(input: Fitted) -> Result<Outcome> {
     let place = Matrix::translation(input.place.map(number))?;
     let matrix = Matrix::scale([number(input.scale); 3])?.then(&place)?;
     let meshes = std::iter::once((mesh(&bytes), matrix));
-    let sphere = BoundingSphere::around(meshes).context("no mesh")?;
+    let sphere = BoundingSphere::around(meshes.clone()).context("no mesh")?;
     let angle = input
         .angle
         .map(|x| Turns::from_degrees(Q32_32::from_num(x)));
     let view = sphere.framed(Axis::Z, Turns(0), angle);
+    let view = view.and_then(|mut view| {
+        if angle.is_none() {
+            framing::fill(slice::from_mut(&mut view), meshes).map_err(FramingError::View)?;
+        }
+        Ok(view)
+    });
     Ok(Outcome::of(view, |view| {
         let [x, y, z] = view.eye();
         format!("eye ({x}, {y}, {z}), half width {}", view.half_width())
