@@ -12,12 +12,22 @@ const COLOURS = Uint32Array.from({ length: 65536 }, (_, colour) => {
   return ((255 << 24) | (((b << 3) | (b >> 2)) << 16) | (((g << 2) | (g >> 4)) << 8) | ((r << 3) | (r >> 2))) >>> 0;
 });
 
+// Shows pixels as squares if each is at least two pixels of the screen wide. At smaller factors, squares would have unequal widths, and make
+// stair steps at smooth edges.
+function chooseScaling() {
+  const factor = (canvas.clientWidth * devicePixelRatio) / canvas.width;
+  canvas.classList.toggle("squares", factor >= 2);
+}
+
+new ResizeObserver(chooseScaling).observe(canvas);
+
 // Draws the picture of a binary message.
 export function showPicture(data) {
   const head = new DataView(data);
   const [width, height] = [head.getUint16(0, true), head.getUint16(2, true)];
   if (!image || image.width !== width || image.height !== height) {
     [canvas.width, canvas.height] = [width, height];
+    chooseScaling();
     image = context.createImageData(width, height);
   }
   const pixels = new Uint16Array(data, HEAD, width * height);
