@@ -41,6 +41,9 @@ pub struct Report {
     pub points: usize,
     /// Number of polygons in the file, plus the added back faces.
     pub faces: usize,
+    /// Whether the surface is known to be smooth: the file has a normal for each corner, or the generator states it. False for `.glm` files,
+    /// whose normals may be means of those of faces.
+    pub smooth: bool,
     /// Number of vertices in the mesh. A vertex in several chunks is counted once per chunk.
     pub vertices: u32,
     /// Number of triangles in the mesh.
@@ -124,6 +127,10 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     let written = crate::formats::glm::check(&bytes)?;
     let report = Report {
         points: polygons.points.len(),
+        smooth: polygons.is_smooth.unwrap_or_else(|| {
+            let mut corners = polygons.corners.iter();
+            corners.all(|corner| corner.normal != Corner::NO_NORMAL)
+        }),
         faces: polygons.faces.len(),
         vertices: written.vertex_count(),
         triangles: written.triangle_count(),

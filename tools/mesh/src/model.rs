@@ -27,6 +27,11 @@ impl Model {
         self.report.as_ref().map_or(&[], |report| &report.textures)
     }
 
+    /// Whether the surface is known to be smooth, as [`Report::smooth`] states.
+    pub fn is_smooth(&self) -> bool {
+        self.report.as_ref().is_some_and(|report| report.smooth)
+    }
+
     /// The remarks on the file.
     pub fn remarks(&self) -> &[String] {
         self.report.as_ref().map_or(&[], |report| &report.remarks)

@@ -141,6 +141,8 @@ pub struct Polygons {
     pub corners: Vec<Corner>,
     /// The faces.
     pub faces: Vec<Face>,
+    /// Whether the surface is known to be smooth or not; `None` if it is smooth when all corners have normals.
+    pub is_smooth: Option<bool>,
     /// Remarks for the user, such as a missing material file; at most [`MAX_REMARKS`] from a file.
     pub remarks: Vec<String>,
     triangles: usize,

@@ -52,7 +52,7 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         Some((stem, number)) => (stem, Some(number.parse::<u32>().map_err(|_| refuse())?)),
         None => (name, None),
     };
-    match (stem, number) {
+    let mut polygons = match (stem, number) {
         ("cube", None) => cube::cube(),
         ("icosphere", Some(frequency @ 1..=64)) => icosphere::icosphere(frequency),
         ("torus-knot", None) => torus_knot::torus_knot(),
@@ -65,7 +65,10 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
         ("scan", Some(frequency @ 1..=64)) => scan::scan(frequency),
         _ => Err(refuse()),
-    }
+    }?;
+    let smooth = ["icosphere", "torus-knot", "teapot", "globe", "scan"];
+    polygons.is_smooth = Some(smooth.contains(&stem));
+    Ok(polygons)
 }
 
 #[cfg(test)]
